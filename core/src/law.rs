@@ -1,0 +1,210 @@
+//! The contract of a contact law: what the compiler emits and the runtime reads.
+//!
+//! A law is a force `phi(g, r; a)` of one gap `g`, of its rate `r = dg/dt` and of arguments `a`. *Levels* of the gap
+//! divide it into pieces: piece `i` lies between level `i - 1` and level `i`, so `L` levels make `L + 1` pieces. Inside
+//! a piece the force is smooth, except for powers that vanish or are unbounded at its ends.
+//!
+//! All evaluation is batched, structure of arrays: one dynamic call for a whole batch.
+
+use std::borrow::Cow;
+
+use crate::generic::LawData;
+
+/// A law as the runtime sees it. Generated types, the interpreter and laws written by hand implement it alike.
+///
+/// Every method that takes slices requires `arguments.len()` to be the number of arguments in [`LawFacts`], and all
+/// slices of samples to be of one length; implementations may panic otherwise (the runtime upholds it).
+///
+/// At a level the force belongs to the piece that the declaration says (`>` or `>=`). A derivative that is
+/// unbounded there, as that of `g^0.6` at `g = 0`, is returned as zero *at the level itself*: a single point carries no
+/// weight in an integral, and an infinity in a sampled Jacobian would hide every other term. Beside the level it is
+/// returned as it is.
+pub trait Law: Send + Sync {
+    /// What is known of the law without evaluating it.
+    fn facts(&self) -> &LawFacts;
+
+    /// The same law as data, for the interpreter.
+    fn data(&self) -> &LawData;
+
+    /// Writes the gaps at which pieces meet, in increasing order. `levels.len()` is the number of levels.
+    fn levels(&self, arguments: &[f64], levels: &mut [f64]);
+
+    /// Writes the derivative of every level with respect to one argument.
+    fn levels_by(&self, arguments: &[f64], argument: usize, by_argument: &mut [f64]);
+
+    /// Force at every sample.
+    fn force(&self, on: On, arguments: &[f64], gap: &[f64], rate: &[f64], force: &mut [f64]);
+
+    /// Force and its derivatives with respect to gap and rate at every sample.
+    fn derivatives(
+        &self,
+        on: On,
+        arguments: &[f64],
+        gap: &[f64],
+        rate: &[f64],
+        out: Derivatives<'_>,
+    );
+
+    /// As [`Law::derivatives`], and the derivative of the force with respect to one argument.
+    fn derivatives_and_by(
+        &self,
+        argument: usize,
+        on: On,
+        arguments: &[f64],
+        gap: &[f64],
+        rate: &[f64],
+        out: Derivatives<'_>,
+        by_argument: &mut [f64],
+    );
+
+    /// Where the force is linear in the rate, `phi = f(g) + h(g) r`: the spring `f` and the primitive `G` with
+    /// `G' = h`, continuous across levels, as laws of the gap alone with the same arguments and levels. Then
+    /// `h(g) dg/dt = dG(g)/dt`. `None` unless [`LawFacts::rate`] is [`RateDependence::Linear`].
+    fn parts(&self) -> Option<Parts<'_>>;
+}
+
+/// The two laws of the gap alone of which a law that is linear in its rate consists, see [`Law::parts`].
+#[derive(Clone, Copy)]
+pub struct Parts<'a> {
+    /// `f(g)`, the force at zero rate.
+    pub spring: &'a dyn Law,
+    /// `G(g)`, whose time derivative is the rate term.
+    pub primitive: &'a dyn Law,
+}
+
+/// Which pieces a batch is evaluated on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum On {
+    /// Every sample on the piece its gap lies in: sampled evaluation, by selection.
+    AllPieces,
+    /// Every sample on this piece, wherever its gap lies: switched evaluation, and one-sided limits at a level. Powers
+    /// are guarded: outside the piece the result is finite but means nothing.
+    Piece(usize),
+}
+
+/// Where [`Law::derivatives`] writes. All slices have the length of the batch.
+#[derive(Debug)]
+pub struct Derivatives<'a> {
+    /// `phi`
+    pub force: &'a mut [f64],
+    /// `d phi / d gap`
+    pub by_gap: &'a mut [f64],
+    /// `d phi / d rate`
+    pub by_rate: &'a mut [f64],
+}
+
+/// What is known of a law without evaluating it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawFacts {
+    /// Name in the declaration.
+    pub name: Cow<'static, str>,
+    /// Names of the arguments, in the order of the argument slice.
+    pub arguments: Cow<'static, [Cow<'static, str>]>,
+    /// One entry per level, in increasing order of the gap.
+    pub levels: Cow<'static, [LevelFacts]>,
+    /// One entry per piece, `levels.len() + 1` of them, in increasing order of the gap.
+    pub pieces: Cow<'static, [PieceFacts]>,
+    /// How the force depends on the rate.
+    pub rate: RateDependence,
+    /// The force is odd in gap and rate together: `phi(-g, -r) = -phi(g, r)`.
+    pub odd: bool,
+}
+
+/// How a force depends on the rate of its gap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RateDependence {
+    /// Not at all.
+    None,
+    /// `f(g) + h(g) r`: the rate term has a primitive, see [`Law::parts`].
+    Linear,
+    /// In any other way.
+    General,
+}
+
+/// What happens to the force and its derivatives where two pieces meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LevelFacts {
+    /// The level itself belongs to the piece above it (`gap >= level`).
+    pub belongs_above: bool,
+    /// The force jumps, even at zero rate (a preloaded stop).
+    pub force_jumps: bool,
+    /// `d phi / d gap` differs on the two sides, or is unbounded on one of them.
+    pub by_gap_jumps: bool,
+    /// `d phi / d rate` differs on the two sides: the force jumps wherever the rate is not zero.
+    pub by_rate_jumps: bool,
+    /// `d phi / d gap` is unbounded on at least one side (an exponent below one).
+    pub unbounded_by_gap: bool,
+}
+
+/// What is known of one piece.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PieceFacts {
+    /// The force is constant plus linear in gap and rate, with coefficients that do not depend on either.
+    pub affine: bool,
+    /// How the force varies over the piece.
+    pub force: Variation,
+    /// How `d phi / d gap` varies over the piece.
+    pub by_gap: Variation,
+    /// How `d phi / d rate` varies over the piece.
+    pub by_rate: Variation,
+    /// How `d phi / d argument` varies over the piece, one entry per argument.
+    pub by_argument: Cow<'static, [Variation]>,
+    /// Every additive term of the force and of each derivative, with its exponents at the ends of the piece.
+    pub terms: Cow<'static, [TermFacts]>,
+}
+
+/// How a quantity varies over a piece.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variation {
+    /// Zero everywhere.
+    Zero,
+    /// The same everywhere on the piece, whatever gap and rate.
+    Constant,
+    /// Depends on gap or rate.
+    Varying,
+}
+
+/// The behaviour of one additive term near the ends of its piece: it is `|g - level|^exponent` times a smooth factor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TermFacts {
+    /// The quantity the term belongs to.
+    pub of: Quantity,
+    /// Exponent at the lower end; zero where the term is smooth or the piece is unbounded below.
+    pub lower: Exponent,
+    /// Exponent at the upper end; zero where the term is smooth or the piece is unbounded above.
+    pub upper: Exponent,
+    /// The term carries a logarithm of the distance as well (the derivative by a runtime exponent).
+    pub logarithm: bool,
+}
+
+/// A force or one of its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// `phi`
+    Force,
+    /// `d phi / d gap`
+    ByGap,
+    /// `d phi / d rate`
+    ByRate,
+    /// `d phi / d argument`
+    ByArgument(usize),
+}
+
+/// An exponent known at compile time, or a runtime argument plus a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exponent {
+    /// The number.
+    pub number: f64,
+    /// The argument added to it, by position.
+    pub argument: Option<usize>,
+}
+
+impl Exponent {
+    /// No power: smooth.
+    pub const ZERO: Self = Self { number: 0.0, argument: None };
+
+    /// Its value for given arguments.
+    pub fn value(self, arguments: &[f64]) -> f64 {
+        self.number + self.argument.map_or(0.0, |index| arguments[index])
+    }
+}

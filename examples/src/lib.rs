@@ -1,0 +1,1 @@
+//! Programs a user of hertzian would run and copy.

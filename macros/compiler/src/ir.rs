@@ -1,0 +1,115 @@
+//! The checked model: what [`lower`](crate::lower) makes of a declaration, and what the later stages read.
+//!
+//! It mirrors the runtime's contract (`hertzian::system` and `hertzian::law`): every scalar is an expression in one
+//! shared graph, and everything but the laws is a coefficient with a place.
+
+use crate::dag::{Dag, Id};
+
+/// A declared model, checked.
+#[derive(Debug)]
+pub struct Model {
+    /// The graph that every [`Id`] below belongs to.
+    pub dag: Dag,
+    /// Visibility of the type to emit.
+    pub visibility: syn::Visibility,
+    /// Name of the type to emit.
+    pub name: syn::Ident,
+    /// Documentation of the type.
+    pub documentation: String,
+    /// The equations as written, in one line each.
+    pub equation: String,
+    /// Names of the coordinates.
+    pub coordinates: Vec<syn::Ident>,
+    /// Parameters in order of declaration.
+    pub parameters: Vec<Parameter>,
+    /// Base frequency is `omega / divisor`.
+    pub divisor: u32,
+    /// Distinct laws.
+    pub laws: Vec<Law>,
+    /// Terms `e_c phi_c`; the law of each.
+    pub contacts: Vec<Contact>,
+    /// Coefficients: functions of parameters and omega, with their places.
+    pub coefficients: Vec<(Place, Id)>,
+}
+
+/// A declared parameter.
+#[derive(Debug, Clone)]
+pub struct Parameter {
+    /// Name of the field.
+    pub name: syn::Ident,
+    /// Its documentation.
+    pub documentation: String,
+    /// Range.
+    pub minimum: Bound,
+    /// Range.
+    pub maximum: Bound,
+}
+
+/// One end of a range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bound {
+    /// No bound.
+    Unbounded,
+    /// The value itself is allowed.
+    Included(f64),
+    /// The value itself is not allowed.
+    Excluded(f64),
+}
+
+/// A force of one gap, its rate and arguments.
+///
+/// Its expressions contain only `Variable::Gap`, `Variable::Rate` and `Variable::Argument(i)`. No step, sign or
+/// absolute value of the gap is left in a piece: lowering has resolved them, so that a piece is smooth inside, and
+/// every base of a non-integer power is provably not negative on it (`gap`, `-gap`, `gap - b`, ...).
+#[derive(Debug, Clone)]
+pub struct Law {
+    /// Name in the declaration, or one made up for a law found in the equation.
+    pub name: String,
+    /// Names of the arguments.
+    pub arguments: Vec<String>,
+    /// Ranges of the arguments, as far as known.
+    pub ranges: Vec<(Bound, Bound)>,
+    /// Levels in increasing order.
+    pub levels: Vec<Level>,
+    /// Forces of the `levels.len() + 1` pieces, in increasing order of the gap.
+    pub pieces: Vec<Id>,
+}
+
+/// Where two pieces meet.
+#[derive(Debug, Clone, Copy)]
+pub struct Level {
+    /// Its value, a function of the arguments.
+    pub value: Id,
+    /// The level itself belongs to the piece above.
+    pub belongs_above: bool,
+}
+
+/// A term `e_c phi_c` of the equations of motion.
+#[derive(Debug, Clone, Copy)]
+pub struct Contact {
+    /// Index into [`Model::laws`].
+    pub law: usize,
+}
+
+/// A function of the phase: one of `1`, `cos h tau`, `sin h tau`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Wave {
+    /// Zero for the constant, which is a cosine.
+    pub harmonic: u32,
+    /// Sine rather than cosine.
+    pub sine: bool,
+}
+
+/// Where a coefficient stands; see `hertzian::system::Place`, which it mirrors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum Place {
+    Mass { row: usize, column: usize },
+    Damping { row: usize, column: usize },
+    Stiffness { row: usize, column: usize, wave: Wave },
+    Load { row: usize, wave: Wave },
+    ForceDirection { contact: usize, row: usize, wave: Wave },
+    GapDirection { contact: usize, column: usize, wave: Wave },
+    Offset { contact: usize, wave: Wave },
+    Argument { contact: usize, index: usize },
+}

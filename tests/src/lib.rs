@@ -1,0 +1,1 @@
+//! Tests of hertzian across its crates.
