@@ -1,17 +1,30 @@
-//! Hash-consed expressions.
+//! Hash-consed expressions in canonical form.
+//!
+//! Equal expressions have equal positions, and operands come before their use, so a walk in order of position is a walk
+//! from leaves to root and needs no recursion.
+//!
+//! # Canonical form
+//!
+//! - Sums and products are flattened and sorted; numbers, zeros and ones are folded; like terms are collected
+//!   (`2 x + 3 x = 5 x`) and powers of one base are merged (`x x^2 = x^3`); a number times a sum is multiplied out.
+//! - Powers of one base are merged *as limits*: `g^1.5 g^-1 = g^0.5`, `x x^-1 = 1`. The two sides can differ only where
+//!   the base is zero, where the guarded negative power is defined as zero by fiat and the limit is the better value.
+//! - A power that is not an integer has a base that is not negative where it is used, so `(x^a)^b = x^(a b)`, but
+//!   `(x^2)^(1/2) = |x|`.
+//! - Exact numbers that would not fit into 128 bits stay unevaluated.
+
+mod construct;
+mod display;
+mod rational;
+mod walk;
 
 use std::collections::HashMap;
+
+pub use rational::Rational;
 
 /// Position of an expression in its [`Dag`]. Equal expressions have equal positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub(crate) u32);
-
-/// An exact rational number, in lowest terms, with a positive denominator.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Rational {
-    numerator: i128,
-    denominator: i128,
-}
 
 /// What an expression may depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -59,6 +72,7 @@ pub enum Node {
     Pi,
     Variable(Variable),
     Sum(Vec<Id>),
+    /// A number, if there is one, comes first.
     Product(Vec<Id>),
     /// Guarded power; quotients are powers of exponent -1.
     Power(Id, Id),
@@ -68,8 +82,46 @@ pub enum Node {
 }
 
 /// The graph: every expression once.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub struct Dag {
     nodes: Vec<Node>,
     positions: HashMap<Node, Id>,
+}
+
+impl Dag {
+    /// The node at a position.
+    pub fn node(&self, id: Id) -> &Node {
+        &self.nodes[id.0 as usize]
+    }
+
+    /// The value of a number; `None` for any other expression.
+    pub fn as_number(&self, id: Id) -> Option<Rational> {
+        match self.node(id) {
+            Node::Number(value) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// The operands of a node.
+    pub fn operands(&self, id: Id) -> Vec<Id> {
+        match self.node(id) {
+            Node::Number(_) | Node::Pi | Node::Variable(_) => Vec::new(),
+            Node::Sum(operands) | Node::Product(operands) => operands.clone(),
+            Node::Power(base, exponent) | Node::PowerLog(base, exponent) => vec![*base, *exponent],
+            Node::Call(_, operand) => vec![*operand],
+        }
+    }
+
+    /// The position of a node that is canonical already.
+    pub(crate) fn intern(&mut self, node: Node) -> Id {
+        if let Some(&id) = self.positions.get(&node) {
+            return id;
+        }
+        let id =
+            Id(u32::try_from(self.nodes.len())
+                .expect("fewer than 2^32 expressions fit into memory"));
+        self.nodes.push(node.clone());
+        self.positions.insert(node, id);
+        id
+    }
 }

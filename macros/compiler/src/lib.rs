@@ -2,6 +2,7 @@
 #![deny(missing_docs)]
 
 pub mod dag;
+pub mod differentiate;
 pub mod ir;
 
 /// Expands a declaration.

@@ -1,0 +1,152 @@
+//! Expressions as a person writes them.
+
+use std::collections::HashMap;
+
+use super::{Dag, Function, Id, Node, Rational, Variable};
+
+/// How tightly the outermost operation of a text binds.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Binding {
+    Sum,
+    Product,
+    Power,
+    Atom,
+}
+
+impl Dag {
+    /// The expression in infix notation.
+    pub fn display(&self, id: Id, names: &dyn Fn(Variable) -> String) -> String {
+        let mut texts: HashMap<Id, (String, Binding)> = HashMap::new();
+        for current in self.reachable(&[id]) {
+            let at_least = |operand: &Id, binding: Binding| {
+                let (text, own) = &texts[operand];
+                if *own >= binding {
+                    text.clone()
+                } else {
+                    format!("({text})")
+                }
+            };
+            let text = match self.node(current) {
+                Node::Number(number) => display_number(*number),
+                Node::Pi => ("pi".to_owned(), Binding::Atom),
+                Node::Variable(variable) => (names(*variable), Binding::Atom),
+                Node::Sum(terms) => {
+                    // Positive terms first, and a number last, as one would write it.
+                    let mut terms: Vec<(bool, bool, String)> = terms
+                        .iter()
+                        .map(|term| {
+                            let text = at_least(term, Binding::Sum);
+                            (text.starts_with('-'), self.as_number(*term).is_some(), text)
+                        })
+                        .collect();
+                    terms.sort_by_key(|&(negative, number, _)| (negative, number));
+                    let mut joined = String::new();
+                    for (index, (_, _, text)) in terms.iter().enumerate() {
+                        match (index, text.strip_prefix('-')) {
+                            (0, _) => joined.push_str(text),
+                            (_, Some(magnitude)) => joined += &format!(" - {magnitude}"),
+                            (_, None) => joined += &format!(" + {text}"),
+                        }
+                    }
+                    (joined, Binding::Sum)
+                }
+                Node::Product(factors) => {
+                    (self.display_product(factors, &at_least), Binding::Product)
+                }
+                Node::Power(base, exponent) if self.is_minus_one(*exponent) => (
+                    format!("1/{}", at_least(base, Binding::Power)),
+                    Binding::Product,
+                ),
+                Node::Power(base, exponent) => {
+                    let (base, exponent) = (
+                        at_least(base, Binding::Atom),
+                        at_least(exponent, Binding::Atom),
+                    );
+                    (format!("{base}^{exponent}"), Binding::Power)
+                }
+                Node::PowerLog(base, exponent) => {
+                    let logarithm = format!("ln({})", texts[base].0);
+                    let power = (
+                        at_least(base, Binding::Atom),
+                        at_least(exponent, Binding::Atom),
+                    );
+                    (
+                        format!("{}^{}*{logarithm}", power.0, power.1),
+                        Binding::Product,
+                    )
+                }
+                Node::Call(Function::Absolute, operand) => {
+                    (format!("|{}|", texts[operand].0), Binding::Atom)
+                }
+                Node::Call(function, operand) => (
+                    format!("{}({})", function_name(*function), texts[operand].0),
+                    Binding::Atom,
+                ),
+            };
+            texts.insert(current, text);
+        }
+        texts.remove(&id).map(|(text, _)| text).unwrap_or_default()
+    }
+
+    fn display_product(&self, factors: &[Id], at_least: &dyn Fn(&Id, Binding) -> String) -> String {
+        let mut above = Vec::new();
+        let mut below = Vec::new();
+        let mut sign = "";
+        for factor in factors {
+            match self.node(*factor) {
+                Node::Number(number) if *number == Rational::integer(-1) => sign = "-",
+                Node::Power(base, exponent) if self.is_minus_one(*exponent) => {
+                    below.push(at_least(base, Binding::Power));
+                }
+                _ => above.push(at_least(factor, Binding::Product)),
+            }
+        }
+        let mut text = if above.is_empty() {
+            "1".to_owned()
+        } else {
+            above.join("*")
+        };
+        for divisor in below {
+            text += &format!("/{divisor}");
+        }
+        format!("{sign}{text}")
+    }
+
+    fn is_minus_one(&self, id: Id) -> bool {
+        self.as_number(id) == Some(Rational::integer(-1))
+    }
+}
+
+/// Decimal where that is exact and short, a fraction otherwise.
+fn display_number(number: Rational) -> (String, Binding) {
+    let decimal = format!("{}", number.to_f64());
+    if number.is_integer() {
+        let binding = if number.is_negative() {
+            Binding::Sum
+        } else {
+            Binding::Atom
+        };
+        (number.to_string(), binding)
+    } else if decimal.len() <= 8 && Rational::from_decimal(&decimal) == Some(number) {
+        let binding = if number.is_negative() {
+            Binding::Sum
+        } else {
+            Binding::Atom
+        };
+        (decimal, binding)
+    } else {
+        (number.to_string(), Binding::Product)
+    }
+}
+
+fn function_name(function: Function) -> &'static str {
+    match function {
+        Function::Absolute => "abs",
+        Function::Sign => "sgn",
+        Function::Step => "H",
+        Function::Sine => "sin",
+        Function::Cosine => "cos",
+        Function::Exponential => "exp",
+        Function::Tanh => "tanh",
+    }
+}
