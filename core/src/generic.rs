@@ -3,7 +3,67 @@
 //! A law is a list of nodes in which every operand comes before its use, and, for each piece, the nodes that are its
 //! force and its derivatives. The data come from the same front end as the generated code, so the two cannot drift.
 
+mod law;
+mod program;
+#[cfg(test)]
+mod tests;
+
 use std::borrow::Cow;
+
+use crate::law::Law;
+use crate::system::{System, SystemFacts, Variable};
+
+pub use law::InterpretedLaw;
+
+/// A system whose laws are interpreted; everything else is the system's own.
+///
+/// It computes what the system computes, from the same declaration, without the generated kernels.
+pub struct Interpreted<'a> {
+    system: &'a dyn System,
+    laws: Vec<InterpretedLaw>,
+}
+
+impl<'a> Interpreted<'a> {
+    /// The same system, its laws interpreted.
+    ///
+    /// # Panics
+    /// If the data of a law are not what [`InterpretedLaw::new`] asks for; those of generated laws are.
+    pub fn of(system: &'a dyn System) -> Self {
+        let laws = (0..system.facts().laws)
+            .map(|index| InterpretedLaw::of(system.law(index)))
+            .collect();
+        Self { system, laws }
+    }
+}
+
+impl System for Interpreted<'_> {
+    fn facts(&self) -> &SystemFacts {
+        self.system.facts()
+    }
+
+    fn values(&self, values: &mut [f64]) {
+        self.system.values(values);
+    }
+
+    fn coefficients(&self, parameters: &[f64], omega: f64, coefficients: &mut [f64]) {
+        self.system.coefficients(parameters, omega, coefficients);
+    }
+
+    fn coefficients_by(
+        &self,
+        variable: Variable,
+        parameters: &[f64],
+        omega: f64,
+        derivatives: &mut [f64],
+    ) {
+        self.system
+            .coefficients_by(variable, parameters, omega, derivatives);
+    }
+
+    fn law(&self, index: usize) -> &dyn Law {
+        &self.laws[index]
+    }
+}
 
 /// A law as data.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,0 +1,288 @@
+//! The interpreter against closed forms, on data written by hand.
+
+use std::borrow::Cow;
+
+use super::{InterpretedLaw, LawData, LevelData, Node, PieceData};
+use crate::law::{
+    Derivatives, Exponent, Law, LawFacts, LevelFacts, On, PieceFacts, Quantity, RateDependence,
+    TermFacts, Variation,
+};
+
+const ARGUMENTS: [Cow<'static, str>; 2] = [Cow::Borrowed("zeta"), Cow::Borrowed("alpha")];
+const ZETA: f64 = 0.032;
+
+/// `2 zeta r + g^alpha` for `g > 0`, else zero; the exponent is an argument or a number.
+fn hertz(exponent: Option<f64>) -> InterpretedLaw {
+    let exponent = exponent.map_or(Node::Argument(1), Node::Number);
+    let nodes = vec![
+        Node::Gap,
+        Node::Rate,
+        Node::Argument(0),
+        exponent,
+        Node::Number(2.0),
+        Node::Number(0.0),
+        Node::Number(1.0),
+        Node::Multiply(4, 2),
+        Node::Multiply(7, 1),
+        Node::Power(0, 3),
+        Node::Add(8, 9),
+        Node::Subtract(3, 6),
+        Node::Power(0, 11),
+        Node::Multiply(3, 12),
+        Node::Multiply(4, 1),
+        Node::PowerLog(0, 3),
+    ];
+    let free = piece(5, 5, 5, [5, 5]);
+    let contact = piece(10, 13, 7, [14, 15]);
+    InterpretedLaw::new(facts(), data(nodes, vec![free, contact]))
+}
+
+fn piece(force: usize, by_gap: usize, by_rate: usize, by_argument: [usize; 2]) -> PieceData {
+    PieceData {
+        force,
+        by_gap,
+        by_rate,
+        by_argument: by_argument.to_vec().into(),
+    }
+}
+
+fn data(nodes: Vec<Node>, pieces: Vec<PieceData>) -> LawData {
+    let level = LevelData {
+        value: 5,
+        by_argument: vec![5, 5].into(),
+    };
+    LawData {
+        nodes: nodes.into(),
+        levels: vec![level].into(),
+        pieces: pieces.into(),
+    }
+}
+
+fn facts() -> LawFacts {
+    let power = TermFacts {
+        of: Quantity::Force,
+        lower: Exponent {
+            number: 0.0,
+            argument: Some(1),
+        },
+        upper: Exponent::ZERO,
+        logarithm: false,
+    };
+    let piece = |variation, by_rate, terms| PieceFacts {
+        affine: false,
+        force: variation,
+        by_gap: variation,
+        by_rate,
+        by_argument: vec![variation; 2].into(),
+        terms,
+    };
+    LawFacts {
+        name: "hertz".into(),
+        arguments: ARGUMENTS.to_vec().into(),
+        levels: vec![LevelFacts {
+            belongs_above: false,
+            force_jumps: false,
+            by_gap_jumps: true,
+            by_rate_jumps: true,
+            unbounded_by_gap: true,
+        }]
+        .into(),
+        pieces: vec![
+            piece(Variation::Zero, Variation::Zero, Cow::Borrowed(&[])),
+            piece(Variation::Varying, Variation::Constant, vec![power].into()),
+        ]
+        .into(),
+        rate: RateDependence::Linear,
+        odd: false,
+    }
+}
+
+/// Force, by gap, by rate and by one argument of a batch.
+fn evaluate(
+    law: &dyn Law,
+    argument: usize,
+    on: On,
+    arguments: &[f64],
+    gap: &[f64],
+    rate: &[f64],
+) -> [Vec<f64>; 4] {
+    let mut all = [const { Vec::new() }; 4];
+    for values in &mut all {
+        values.resize(gap.len(), f64::NAN);
+    }
+    let [force, by_gap, by_rate, by] = &mut all;
+    let out = Derivatives {
+        force,
+        by_gap,
+        by_rate,
+    };
+    law.derivatives_and_by(argument, on, arguments, gap, rate, out, by);
+    all
+}
+
+/// The closed forms `[phi, by gap, by rate, by zeta, by alpha]` in contact; unbounded ones are zero at the level.
+fn contact(alpha: f64, g: f64, r: f64) -> [f64; 5] {
+    let by_gap = if g == 0.0 && alpha < 1.0 {
+        0.0
+    } else {
+        alpha * g.powf(alpha - 1.0)
+    };
+    let by_alpha = if g == 0.0 {
+        0.0
+    } else {
+        g.powf(alpha) * g.ln()
+    };
+    let force = 2.0 * ZETA * r + g.powf(alpha);
+    [force, by_gap, 2.0 * ZETA, 2.0 * r, by_alpha]
+}
+
+fn close(found: f64, expected: f64, what: &str) {
+    let error = (found - expected).abs();
+    assert!(
+        error <= 4.0 * f64::EPSILON * expected.abs(),
+        "{what}: {found:e} instead of {expected:e}"
+    );
+}
+
+const GAPS: [f64; 10] = [
+    -1e6, -1.0, -1e-300, -0.0, 0.0, 5e-324, 1e-300, 0.3, 2.0, 1e6,
+];
+
+#[test]
+fn matches_closed_forms_at_and_around_the_level() {
+    for alpha in [0.6, 1.0, 1.5] {
+        for law in [hertz(None), hertz(Some(alpha))] {
+            let rate: Vec<f64> = GAPS.iter().map(|g| 0.25 + g.signum()).collect();
+            for argument in [0, 1] {
+                let arguments = [ZETA, alpha];
+                let of = |on| evaluate(&law, argument, on, &arguments, &GAPS, &rate);
+                let [all, above] = [of(On::AllPieces), of(On::Piece(1))];
+                for (i, &g) in GAPS.iter().enumerate() {
+                    let exact = contact(alpha, g.max(0.0), rate[i]);
+                    for (k, exact) in [exact[0], exact[1], exact[2], exact[3 + argument]]
+                        .into_iter()
+                        .enumerate()
+                    {
+                        let what = format!("alpha {alpha}, gap {g:e}, output {k}");
+                        close(all[k][i], if g > 0.0 { exact } else { 0.0 }, &what);
+                        if g >= 0.0 {
+                            close(above[k][i], exact, &what);
+                        }
+                        assert!(above[k][i].is_finite(), "{what}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_level_belongs_to_the_piece_that_the_facts_say() {
+    let law = hertz(None);
+    let mut facts = law.facts().clone();
+    facts.levels.to_mut()[0].belongs_above = true;
+    let above = InterpretedLaw::new(facts, law.data().clone());
+    let of = |law: &dyn Law| evaluate(law, 0, On::AllPieces, &[ZETA, 1.5], &[0.0], &[1.0])[0][0];
+    assert_eq!(of(&law), 0.0);
+    assert_eq!(of(&above), 2.0 * ZETA);
+}
+
+#[test]
+fn batches_of_any_length_agree_with_single_samples() {
+    let law = hertz(None);
+    let arguments = [ZETA, 1.5];
+    for length in [0, 1, 63, 64, 65, 200] {
+        let gap: Vec<f64> = (0..length).map(|i| f64::from(i * 37 % 19) - 9.0).collect();
+        let rate: Vec<f64> = (0..length).map(|i| f64::from(i % 7)).collect();
+        let batch = evaluate(&law, 1, On::AllPieces, &arguments, &gap, &rate);
+        let mut force = vec![f64::NAN; gap.len()];
+        law.force(On::AllPieces, &arguments, &gap, &rate, &mut force);
+        assert_eq!(force, batch[0]);
+        for i in 0..gap.len() {
+            let single = evaluate(
+                &law,
+                1,
+                On::AllPieces,
+                &arguments,
+                &gap[i..=i],
+                &rate[i..=i],
+            );
+            for (single, batch) in single.iter().zip(&batch) {
+                assert_eq!(single[0].to_bits(), batch[i].to_bits());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_twin_has_the_same_parts() {
+    let law = hertz(None);
+    assert!(law.parts().is_none());
+    let mut facts = law.facts().clone();
+    facts.rate = RateDependence::None;
+    let nodes = &law.data().nodes;
+    let part = |force, by_gap, by| {
+        let pieces = vec![piece(5, 5, 5, [5, 5]), piece(force, by_gap, 5, by)];
+        let mut nodes = nodes.to_vec();
+        nodes.extend([Node::Multiply(7, 0), Node::Multiply(4, 0)]);
+        InterpretedLaw::new(facts.clone(), data(nodes, pieces))
+    };
+    let law = law
+        .clone()
+        .with_parts(part(9, 13, [5, 15]), part(16, 7, [17, 5]));
+    let twin = InterpretedLaw::of(&law);
+    let parts = twin.parts().expect("a law that is linear in its rate");
+    let of = |law: &dyn Law| evaluate(law, 0, On::AllPieces, &[ZETA, 1.5], &[4.0], &[3.0]);
+    let [force, by_gap, by_rate, by_zeta] = of(parts.spring);
+    assert_eq!(
+        [force[0], by_gap[0], by_rate[0], by_zeta[0]],
+        [8.0, 3.0, 0.0, 0.0]
+    );
+    let [force, by_gap, by_rate, by_zeta] = of(parts.primitive);
+    assert_eq!(
+        [force[0], by_gap[0], by_rate[0], by_zeta[0]],
+        [8.0 * ZETA, 2.0 * ZETA, 0.0, 8.0]
+    );
+}
+
+#[test]
+fn levels_follow_the_arguments() {
+    let nodes = vec![
+        Node::Argument(0),
+        Node::Negate(0),
+        Node::Number(1.0),
+        Node::Number(-1.0),
+        Node::Number(0.0),
+    ];
+    let level = |value, by_argument| LevelData {
+        value,
+        by_argument: vec![by_argument, 4].into(),
+    };
+    let mut facts = facts();
+    facts.levels = vec![facts.levels[0]; 2].into();
+    let data = LawData {
+        nodes: nodes.into(),
+        levels: vec![level(1, 3), level(0, 2)].into(),
+        pieces: vec![piece(4, 4, 4, [4, 4]); 3].into(),
+    };
+    let law = InterpretedLaw::new(facts, data);
+    let mut levels = [0.0; 2];
+    law.levels(&[0.7, 1.5], &mut levels);
+    assert_eq!(levels, [-0.7, 0.7]);
+    law.levels_by(&[0.7, 1.5], 0, &mut levels);
+    assert_eq!(levels, [-1.0, 1.0]);
+}
+
+#[test]
+#[should_panic(expected = "node 0 does not come after its operand 0")]
+fn a_node_that_uses_itself_is_refused() {
+    let nodes = vec![Node::Negate(0)];
+    let data = LawData {
+        nodes: nodes.into(),
+        levels: Cow::Borrowed(&[]),
+        pieces: vec![piece(0, 0, 0, [0, 0])].into(),
+    };
+    let mut facts = facts();
+    facts.levels = Cow::Borrowed(&[]);
+    InterpretedLaw::new(facts, data);
+}
