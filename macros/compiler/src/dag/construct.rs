@@ -68,7 +68,7 @@ impl Dag {
         for (rest, coefficient) in collected {
             let previous = merged.last_mut().filter(|(last, _)| *last == rest);
             // Where the exact sum of two coefficients does not fit, both terms stay.
-            match previous.and_then(|last| Some((last.1.add(coefficient)?, last))) {
+            match previous.and_then(|last| Some((last.1.checked_add(coefficient)?, last))) {
                 Some((total, last)) => last.1 = total,
                 None => merged.push((rest, coefficient)),
             }
@@ -120,7 +120,9 @@ impl Dag {
     fn assemble(&mut self, numbers: Vec<Rational>, mut rest: Vec<Id>) -> Id {
         let mut coefficients: Vec<Rational> = Vec::new();
         for number in numbers {
-            let product = coefficients.last().and_then(|last| last.multiply(number));
+            let product = coefficients
+                .last()
+                .and_then(|last| last.checked_mul(number));
             match (product, coefficients.last_mut()) {
                 (Some(product), Some(last)) => *last = product,
                 _ => coefficients.push(number),
@@ -153,7 +155,7 @@ impl Dag {
         let mut scaled = Vec::with_capacity(terms.len());
         for &term in terms {
             let (own, rest) = self.split_coefficient(term);
-            scaled.push(self.scale(own.multiply(coefficient)?, rest));
+            scaled.push(self.scale(own.checked_mul(coefficient)?, rest));
         }
         Some(scaled)
     }
@@ -216,8 +218,11 @@ impl Dag {
                 self.power(base, exponent)
             };
             if self.as_number(power) != Some(Rational::ONE) {
-                again |=
-                    power != base && !matches!(self.node(power), Node::Power(b, _) if *b == base);
+                again |= match self.node(power) {
+                    Node::Power(other, _) => *other != base,
+                    Node::Number(_) | Node::Product(_) => true,
+                    _ => power != base,
+                };
                 merged.push(power);
             }
             index += count;
@@ -275,7 +280,7 @@ impl Dag {
         let whole = exact(second).is_some_and(Rational::is_integer);
         if exact(first)
             .zip(exact(second))
-            .is_some_and(|(a, b)| a.multiply(b).is_none())
+            .is_some_and(|(a, b)| a.checked_mul(b).is_none())
         {
             return self.intern(Node::Power(base, second));
         }

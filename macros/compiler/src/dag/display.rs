@@ -30,26 +30,7 @@ impl Dag {
                 Node::Number(number) => display_number(*number),
                 Node::Pi => ("pi".to_owned(), Binding::Atom),
                 Node::Variable(variable) => (names(*variable), Binding::Atom),
-                Node::Sum(terms) => {
-                    // Positive terms first, and a number last, as one would write it.
-                    let mut terms: Vec<(bool, bool, String)> = terms
-                        .iter()
-                        .map(|term| {
-                            let text = at_least(term, Binding::Sum);
-                            (text.starts_with('-'), self.as_number(*term).is_some(), text)
-                        })
-                        .collect();
-                    terms.sort_by_key(|&(negative, number, _)| (negative, number));
-                    let mut joined = String::new();
-                    for (index, (_, _, text)) in terms.iter().enumerate() {
-                        match (index, text.strip_prefix('-')) {
-                            (0, _) => joined.push_str(text),
-                            (_, Some(magnitude)) => joined += &format!(" - {magnitude}"),
-                            (_, None) => joined += &format!(" + {text}"),
-                        }
-                    }
-                    (joined, Binding::Sum)
-                }
+                Node::Sum(terms) => (self.display_sum(terms, &at_least), Binding::Sum),
                 Node::Product(factors) => {
                     (self.display_product(factors, &at_least), Binding::Product)
                 }
@@ -88,13 +69,42 @@ impl Dag {
         texts.remove(&id).map(|(text, _)| text).unwrap_or_default()
     }
 
+    /// Positive terms first, and a number last, as one would write it.
+    fn display_sum(&self, terms: &[Id], at_least: &dyn Fn(&Id, Binding) -> String) -> String {
+        let mut terms: Vec<(bool, bool, String)> = terms
+            .iter()
+            .map(|term| {
+                let text = at_least(term, Binding::Sum);
+                (text.starts_with('-'), self.as_number(*term).is_some(), text)
+            })
+            .collect();
+        terms.sort_by_key(|&(negative, number, _)| (negative, number));
+        let mut joined = String::new();
+        for (_, _, text) in terms {
+            let (sign, magnitude) = match text.strip_prefix('-') {
+                _ if joined.is_empty() => ("", text.as_str()),
+                Some(magnitude) => (" - ", magnitude),
+                None => (" + ", text.as_str()),
+            };
+            joined.push_str(sign);
+            joined.push_str(magnitude);
+        }
+        joined
+    }
+
     fn display_product(&self, factors: &[Id], at_least: &dyn Fn(&Id, Binding) -> String) -> String {
         let mut above = Vec::new();
         let mut below = Vec::new();
         let mut sign = "";
         for factor in factors {
             match self.node(*factor) {
-                Node::Number(number) if *number == Rational::integer(-1) => sign = "-",
+                Node::Number(number) if number.is_negative() => {
+                    sign = "-";
+                    let magnitude = number.absolute().unwrap_or(*number);
+                    if magnitude != Rational::ONE {
+                        above.push(display_number(magnitude).0);
+                    }
+                }
                 Node::Power(base, exponent) if self.is_minus_one(*exponent) => {
                     below.push(at_least(base, Binding::Power));
                 }
@@ -107,7 +117,8 @@ impl Dag {
             above.join("*")
         };
         for divisor in below {
-            text += &format!("/{divisor}");
+            text.push('/');
+            text.push_str(&divisor);
         }
         format!("{sign}{text}")
     }

@@ -58,7 +58,7 @@ impl Rational {
         let digits = format!("{whole}{fraction}");
         let value = Self::integer(digits.parse::<i128>().ok()?);
         let exponent = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
-        value.multiply(Self::integer(10).integer_power(exponent)?)
+        value.checked_mul(Self::integer(10).integer_power(exponent)?)
     }
 
     /// The numerator, which carries the sign.
@@ -106,6 +106,7 @@ impl Rational {
     }
 
     /// `-1`, `0` or `1`.
+    #[must_use]
     pub fn sign(self) -> Self {
         Self::integer(self.numerator.signum())
     }
@@ -132,7 +133,7 @@ impl Rational {
     }
 
     /// Sum.
-    pub fn add(self, other: Self) -> Option<Self> {
+    pub fn checked_add(self, other: Self) -> Option<Self> {
         let left = self.numerator.checked_mul(other.denominator)?;
         let right = other.numerator.checked_mul(self.denominator)?;
         Self::new(
@@ -142,12 +143,12 @@ impl Rational {
     }
 
     /// Difference.
-    pub fn subtract(self, other: Self) -> Option<Self> {
-        self.add(other.negate()?)
+    pub fn checked_sub(self, other: Self) -> Option<Self> {
+        self.checked_add(other.negate()?)
     }
 
     /// Product.
-    pub fn multiply(self, other: Self) -> Option<Self> {
+    pub fn checked_mul(self, other: Self) -> Option<Self> {
         // Cancelled crosswise first, so that the product overflows only where the result does.
         let left = Self::new(self.numerator, other.denominator)?;
         let right = Self::new(other.numerator, self.denominator)?;
@@ -158,8 +159,8 @@ impl Rational {
     }
 
     /// Quotient; `None` for a zero divisor.
-    pub fn divide(self, other: Self) -> Option<Self> {
-        self.multiply(other.reciprocal()?)
+    pub fn checked_div(self, other: Self) -> Option<Self> {
+        self.checked_mul(other.reciprocal()?)
     }
 
     /// `self^exponent`; `None` for a negative power of zero.
@@ -173,11 +174,11 @@ impl Rational {
         let mut result = Self::ONE;
         while remaining > 0 {
             if remaining % 2 == 1 {
-                result = result.multiply(square)?;
+                result = result.checked_mul(square)?;
             }
             remaining /= 2;
             if remaining > 0 {
-                square = square.multiply(square)?;
+                square = square.checked_mul(square)?;
             }
         }
         Some(result)
