@@ -1,0 +1,337 @@
+//! Puts a chart on the page.
+
+use super::axis::{Range, Ticks, superscript};
+use super::legend::{Entry, Legend, Sample};
+use super::polyline::polylines;
+use super::svg::{Anchor, INK, Pen, Pixel, Rectangle, Svg, fitted, width_of};
+use super::{Axis, Chart, Line};
+
+const WIDTH: f64 = 900.0;
+const HEIGHT: f64 = 600.0;
+const MARGIN: f64 = 18.0;
+/// Sizes of letters.
+const TITLE: f64 = 19.0;
+const LABEL: f64 = 16.0;
+const TICK: f64 = 14.0;
+
+/// Dark blue, vermilion, sky blue, green, orange, purple, black: neighbours differ in lightness too.
+const COLOURS: [&str; 7] = [
+    "#0b4f8a", "#d55e00", "#56b4e9", "#007a5a", "#e69f00", "#aa4f8c", "#000000",
+];
+const GRID: Pen = pen("#e6e6e6", 0.8, "");
+const AXIS: Pen = pen(INK, 1.1, "");
+const MINOR: Pen = pen(INK, 0.7, "");
+const REFERENCE: Pen = pen("#666666", 1.4, "12 4 2 4");
+const MARKER: Pen = pen(INK, 1.6, "");
+
+const fn pen(colour: &'static str, width: f64, dashes: &'static str) -> Pen {
+    Pen {
+        colour,
+        width,
+        dashes,
+    }
+}
+
+/// The SVG document of a chart.
+pub(super) fn draw(chart: &Chart) -> String {
+    let mut plot = Plot::of(chart, 0.0);
+    let mut contents = Contents::of(chart, &plot);
+    let legend = Legend::new(entries(chart, &contents), 0.6 * WIDTH);
+    let place = legend.place(&plot.frame, &contents.everything());
+    let place = place.unwrap_or_else(|| {
+        plot = Plot::of(chart, legend.width + MARGIN);
+        contents = Contents::of(chart, &plot);
+        let left = plot.frame.right() + MARGIN;
+        legend.at(left, plot.frame.top)
+    });
+
+    let mut svg = Svg::new(WIDTH, HEIGHT, &chart.title);
+    let size = fitted(&chart.title, TITLE, WIDTH - 2.0 * MARGIN);
+    let baseline = MARGIN + 0.8 * TITLE;
+    svg.text([WIDTH / 2.0, baseline], size, Anchor::Middle, &chart.title);
+    plot.draw_axes(&mut svg);
+    contents.draw(&mut svg);
+    plot.draw_border(&mut svg);
+    if !legend.is_empty() {
+        legend.draw(&mut svg, place);
+    }
+    svg.finish()
+}
+
+/// The frame and its axes.
+struct Plot {
+    frame: Rectangle,
+    x: Ruler,
+    y: Ruler,
+}
+
+/// An axis with what is written at it.
+struct Ruler {
+    label: String,
+    range: Range,
+    labelled: Vec<(f64, String)>,
+    minor: Vec<f64>,
+}
+
+impl Ruler {
+    /// A ruler with as many ticks as fit: the labels, with some room between them, are no longer than `length`.
+    fn of(axis: &Axis, range: Range, length: f64, size_of: fn(&str) -> f64) -> Self {
+        let length_of = |ticks: &Ticks| {
+            let sizes = ticks
+                .labelled
+                .iter()
+                .map(|(_, label)| size_of(label) + 1.5 * TICK);
+            sizes.sum::<f64>()
+        };
+        let ticks = (3..=10)
+            .rev()
+            .map(|count| range.ticks(count))
+            .find(|ticks| length_of(ticks) < length)
+            .unwrap_or_else(|| range.ticks(2));
+        let label = match ticks.power {
+            0 => axis.label.clone(),
+            power => format!("{} (×10{})", axis.label, superscript(power)),
+        };
+        Self {
+            label,
+            range,
+            labelled: ticks.labelled,
+            minor: ticks.minor,
+        }
+    }
+}
+
+impl Plot {
+    /// The axes of a chart, with some room left free on the right.
+    fn of(chart: &Chart, free: f64) -> Self {
+        let values = |k: usize| shown(chart).map(move |point| point[k]);
+        let x = Range::of(chart.x.scale, values(0), false);
+        let y = Range::of(chart.y.scale, values(1), true);
+        let y = Ruler::of(&chart.y, y, 0.6 * HEIGHT, |_| TICK);
+        let x = Ruler::of(&chart.x, x, 0.8 * WIDTH - free, |label| {
+            width_of(label, TICK)
+        });
+        let widest = |ruler: &Ruler| {
+            let width = |(_, label): &(f64, String)| width_of(label, TICK);
+            ruler.labelled.iter().map(width).fold(0.0, f64::max)
+        };
+        let left = MARGIN + 1.3 * LABEL + widest(&y) + 12.0;
+        let top = MARGIN + 1.2 * TITLE + 10.0;
+        let right = (MARGIN + free).max(MARGIN + widest(&x) / 2.0);
+        let bottom = MARGIN + 1.2 * LABEL + 1.2 * TICK + 16.0;
+        let frame = Rectangle {
+            left,
+            top,
+            width: WIDTH - left - right,
+            height: HEIGHT - top - bottom,
+        };
+        Self { frame, x, y }
+    }
+
+    fn pixel(&self, [x, y]: [f64; 2]) -> Option<Pixel> {
+        Some(self.at([self.x.range.position(x)?, self.y.range.position(y)?]))
+    }
+
+    /// The pixel of positions along the axes.
+    fn at(&self, [x, y]: [f64; 2]) -> Pixel {
+        let Rectangle { left, width, .. } = self.frame;
+        [
+            left + x * width,
+            self.frame.bottom() - y * self.frame.height,
+        ]
+    }
+
+    /// Grid, ticks and all that is written at the axes.
+    fn draw_axes(&self, svg: &mut Svg) {
+        let (mut grid, mut minor) = (Vec::new(), Vec::new());
+        let frame = &self.frame;
+        for (position, label) in &self.x.labelled {
+            grid.push(vec![self.at([*position, 0.0]), self.at([*position, 1.0])]);
+            let [x, y] = self.at([*position, 0.0]);
+            svg.text([x, y + 1.2 * TICK + 4.0], TICK, Anchor::Middle, label);
+        }
+        for (position, label) in &self.y.labelled {
+            grid.push(vec![self.at([0.0, *position]), self.at([1.0, *position])]);
+            let [x, y] = self.at([0.0, *position]);
+            svg.text([x - 8.0, y + 0.35 * TICK], TICK, Anchor::End, label);
+        }
+        for &position in &self.x.minor {
+            let [x, y] = self.at([position, 0.0]);
+            minor.push(vec![[x, y], [x, y - 4.0]]);
+        }
+        for &position in &self.y.minor {
+            let [x, y] = self.at([0.0, position]);
+            minor.push(vec![[x, y], [x + 4.0, y]]);
+        }
+        svg.lines(&grid, GRID);
+        svg.lines(&minor, MINOR);
+
+        let (x, y) = (&self.x.label, &self.y.label);
+        let size = fitted(x, LABEL, frame.width);
+        let middle = frame.left + frame.width / 2.0;
+        let baseline = HEIGHT - MARGIN - 0.25 * LABEL;
+        svg.text([middle, baseline], size, Anchor::Middle, x);
+        let size = fitted(y, LABEL, frame.height);
+        let middle = frame.top + frame.height / 2.0;
+        svg.text([MARGIN + 0.75 * LABEL, middle], size, Anchor::Upwards, y);
+    }
+
+    /// The border and the labelled ticks, over the curves.
+    fn draw_border(&self, svg: &mut Svg) {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        svg.polygon(&corners.map(|corner| self.at(corner)), "none", AXIS);
+        let x = self.x.labelled.iter().map(|(position, _)| {
+            let [x, y] = self.at([*position, 0.0]);
+            vec![[x, y], [x, y - 7.0]]
+        });
+        let y = self.y.labelled.iter().map(|(position, _)| {
+            let [x, y] = self.at([0.0, *position]);
+            vec![[x, y], [x + 7.0, y]]
+        });
+        svg.lines(&x.chain(y).collect::<Vec<_>>(), AXIS);
+    }
+}
+
+/// What is inside the frame, in pixels.
+struct Contents {
+    references: Vec<Vec<Vec<Pixel>>>,
+    runs: Vec<(Pen, Vec<Vec<Pixel>>)>,
+    markers: Vec<(Shape, Vec<Pixel>)>,
+}
+
+impl Contents {
+    fn of(chart: &Chart, plot: &Plot) -> Self {
+        let lines = |points: &[[f64; 2]]| {
+            polylines(points.iter().map(|&point| plot.pixel(point)), &plot.frame)
+        };
+        let references = chart.references.iter();
+        let runs = chart.curves.iter().enumerate().flat_map(|(index, curve)| {
+            let runs = curve.runs.iter();
+            runs.map(move |run| (curve_pen(index, run.line), lines(&run.points)))
+        });
+        let markers = chart.markers.iter().enumerate().map(|(index, markers)| {
+            let points = markers.points.iter();
+            let pixels = points.filter_map(|&point| plot.pixel(point));
+            (Shape::of(index), pixels.collect())
+        });
+        Self {
+            references: references.map(|line| lines(&line.points)).collect(),
+            runs: runs.collect(),
+            markers: markers.collect(),
+        }
+    }
+
+    /// All lines, and each marker as a line of one point.
+    fn everything(&self) -> Vec<Vec<Pixel>> {
+        let references = self.references.iter().flatten();
+        let runs = self.runs.iter().flat_map(|(_, lines)| lines);
+        let markers = self.markers.iter().flat_map(|(_, pixels)| pixels);
+        references
+            .chain(runs)
+            .cloned()
+            .chain(markers.map(|&pixel| vec![pixel]))
+            .collect()
+    }
+
+    fn draw(&self, svg: &mut Svg) {
+        for lines in &self.references {
+            svg.lines(lines, REFERENCE);
+        }
+        for (pen, lines) in &self.runs {
+            svg.lines(lines, *pen);
+        }
+        for (shape, pixels) in &self.markers {
+            for &pixel in pixels {
+                draw_shape(svg, *shape, pixel);
+            }
+        }
+    }
+}
+
+/// The shape of one kind of markers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Shape {
+    Circle,
+    Square,
+    Diamond,
+    Triangle,
+}
+
+impl Shape {
+    fn of(index: usize) -> Self {
+        [Self::Circle, Self::Square, Self::Diamond, Self::Triangle][index % 4]
+    }
+}
+
+/// Draws a marker: white inside, so that it shows on a curve.
+pub(super) fn draw_shape(svg: &mut Svg, shape: Shape, [x, y]: Pixel) {
+    let mut closed = |corners: &[Pixel]| {
+        let corners: Vec<Pixel> = corners.iter().map(|[u, v]| [x + u, y + v]).collect();
+        svg.polygon(&corners, "#ffffff", MARKER);
+    };
+    match shape {
+        Shape::Circle => svg.circle([x, y], 5.0, "#ffffff", MARKER),
+        Shape::Square => closed(&[[-4.5, -4.5], [4.5, -4.5], [4.5, 4.5], [-4.5, 4.5]]),
+        Shape::Diamond => closed(&[[0.0, -6.5], [6.5, 0.0], [0.0, 6.5], [-6.5, 0.0]]),
+        Shape::Triangle => closed(&[[0.0, -6.0], [5.8, 4.2], [-5.8, 4.2]]),
+    }
+}
+
+fn curve_pen(index: usize, line: Line) -> Pen {
+    let colour = COLOURS[index % COLOURS.len()];
+    match line {
+        Line::Stable => pen(colour, 2.2, ""),
+        Line::Unstable => pen(colour, 2.0, "8 4"),
+        Line::Undecided => pen(colour, 2.2, "2 3.5"),
+    }
+}
+
+/// What decides the range of the axes: curves and markers; without any, the references.
+fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
+    let runs = chart.curves.iter().flat_map(|curve| &curve.runs);
+    let curves = runs.flat_map(|run| &run.points);
+    let markers = chart.markers.iter().flat_map(|markers| &markers.points);
+    let alone = chart.curves.is_empty() && chart.markers.is_empty();
+    let references = chart.references.iter().filter(move |_| alone);
+    curves
+        .chain(markers)
+        .chain(references.flat_map(|line| &line.points))
+        .filter(|point| point.iter().all(|value| value.is_finite()))
+        .copied()
+}
+
+/// The rows of the legend: the curves if there are several, the kinds of line, references, markers; only what is seen.
+fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    let mut add = |sample, label: &str| {
+        let label = label.to_string();
+        entries.push(Entry { sample, label });
+    };
+    let several = chart.curves.len() > 1;
+    for (index, curve) in chart.curves.iter().enumerate().filter(|_| several) {
+        add(Sample::Line(curve_pen(index, Line::Stable)), &curve.label);
+    }
+    for (line, name) in [
+        (Line::Stable, "stable"),
+        (Line::Unstable, "unstable"),
+        (Line::Undecided, "undecided"),
+    ] {
+        let runs = || chart.curves.iter().flat_map(|curve| &curve.runs);
+        if runs().any(|run| run.line == line && !run.points.is_empty()) {
+            let pen = curve_pen(0, line);
+            let colour = if several { INK } else { pen.colour };
+            add(Sample::Line(Pen { colour, ..pen }), name);
+        }
+    }
+    for (reference, lines) in chart.references.iter().zip(&contents.references) {
+        if !lines.is_empty() {
+            add(Sample::Line(REFERENCE), &reference.label);
+        }
+    }
+    for (markers, (shape, pixels)) in chart.markers.iter().zip(&contents.markers) {
+        if !pixels.is_empty() {
+            add(Sample::Marker(*shape), &markers.label);
+        }
+    }
+    entries
+}

@@ -1,0 +1,220 @@
+//! The few elements of SVG that a chart needs, written as text.
+
+use std::fmt::{self, Display, Write};
+
+/// A point in pixels, y downwards.
+pub(super) type Pixel = [f64; 2];
+
+/// Colours of axes and text.
+pub(super) const INK: &str = "#222222";
+
+const FAMILY: &str = "Helvetica, Arial, 'DejaVu Sans', 'Liberation Sans', sans-serif";
+
+/// A document that grows.
+pub(super) struct Svg {
+    text: String,
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pen {
+    pub(super) colour: &'static str,
+    pub(super) width: f64,
+    /// Lengths of dashes and gaps in pixels; empty for a solid line.
+    pub(super) dashes: &'static str,
+}
+
+/// Where a text stands relative to its point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+    /// Centred, and read from below.
+    Upwards,
+}
+
+/// A rectangle in pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rectangle {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
+
+impl Rectangle {
+    pub(super) fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    pub(super) fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+
+    pub(super) fn contains(&self, [x, y]: Pixel) -> bool {
+        (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
+    }
+
+    /// Larger by a margin on every side.
+    pub(super) fn grown(&self, margin: f64) -> Self {
+        Self {
+            left: self.left - margin,
+            top: self.top - margin,
+            width: self.width + 2.0 * margin,
+            height: self.height + 2.0 * margin,
+        }
+    }
+}
+
+impl Svg {
+    /// A white page. The title is what a screen reader says.
+    pub(super) fn new(width: f64, height: f64, title: &str) -> Self {
+        let mut svg = Self {
+            text: String::new(),
+        };
+        svg.push(format_args!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" role=\"img\" font-family=\"{FAMILY}\">\n<title>{}</title>\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>",
+            Escaped(title)
+        ));
+        svg
+    }
+
+    pub(super) fn finish(mut self) -> String {
+        self.push(format_args!("</svg>"));
+        self.text
+    }
+
+    /// Polylines drawn with one pen.
+    pub(super) fn lines(&mut self, lines: &[Vec<Pixel>], pen: Pen) {
+        if lines.is_empty() {
+            return;
+        }
+        let path = Path(lines);
+        let Pen { colour, width, .. } = pen;
+        let dashes = Dashes(pen.dashes);
+        self.push(format_args!(
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+             stroke-linejoin=\"round\"{dashes}/>"
+        ));
+    }
+
+    /// A closed shape.
+    pub(super) fn polygon(&mut self, corners: &[Pixel], fill: &str, pen: Pen) {
+        let path = Path(&[corners.to_vec()]).to_string();
+        let Pen { colour, width, .. } = pen;
+        self.push(format_args!(
+            "<path d=\"{path}Z\" fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"{width}\"/>"
+        ));
+    }
+
+    pub(super) fn circle(&mut self, [x, y]: Pixel, radius: f64, fill: &str, pen: Pen) {
+        let (x, y) = (Number(x), Number(y));
+        let Pen { colour, width, .. } = pen;
+        self.push(format_args!(
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{fill}\" stroke=\"{colour}\" \
+             stroke-width=\"{width}\"/>"
+        ));
+    }
+
+    /// A line of text on its base line; nothing for no text.
+    pub(super) fn text(&mut self, [x, y]: Pixel, size: f64, anchor: Anchor, text: &str) {
+        if text.is_empty() {
+            return;
+        }
+        let (x, y, size) = (Number(x), Number(y), Number(size));
+        let text = Escaped(text);
+        let anchor = match anchor {
+            Anchor::Start => "start\"".to_string(),
+            Anchor::Middle => "middle\"".to_string(),
+            Anchor::End => "end\"".to_string(),
+            Anchor::Upwards => format!("middle\" transform=\"rotate(-90 {x} {y})\""),
+        };
+        self.push(format_args!(
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{INK}\" text-anchor=\"{anchor}>{text}</text>"
+        ));
+    }
+
+    fn push(&mut self, line: fmt::Arguments<'_>) {
+        // Writing to a string does not fail.
+        let _ = writeln!(self.text, "{line}");
+    }
+}
+
+/// An estimate of the width of a text, on the safe side: readers have different fonts.
+pub(super) fn width_of(text: &str, size: f64) -> f64 {
+    let em = |c: char| match c {
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.33,
+        ' ' | 'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '/' | '-' | '²' | '³' | '¹' | '⁰'..='₎' => {
+            0.42
+        }
+        'm' | 'w' | 'M' | 'W' | '@' | '%' => 0.98,
+        '−' | '+' | '=' | '<' | '>' | '×' | '≤' | '≥' | 'ω' => 0.84,
+        'A'..='Z' => 0.74,
+        '\u{0000}'..='\u{10ff}' => 0.63,
+        _ => 1.0,
+    };
+    size * text.chars().map(em).sum::<f64>()
+}
+
+/// The size at which a text is at most `width` wide, at most `size`.
+pub(super) fn fitted(text: &str, size: f64, width: f64) -> f64 {
+    size * (width / width_of(text, size).max(1.0)).min(1.0)
+}
+
+/// A coordinate to a hundredth of a pixel.
+#[derive(Clone, Copy)]
+struct Number(f64);
+
+impl Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Adding zero turns a negative zero into a positive one.
+        write!(f, "{}", (self.0 * 100.0).round() / 100.0 + 0.0)
+    }
+}
+
+struct Path<'a>(&'a [Vec<Pixel>]);
+
+impl Display for Path<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for line in self.0 {
+            for (index, &[x, y]) in line.iter().enumerate() {
+                let command = ["M", "L", " "][index.min(2)];
+                write!(f, "{command}{} {}", Number(x), Number(y))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+struct Dashes(&'static str);
+
+impl Display for Dashes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            return Ok(());
+        }
+        write!(f, " stroke-dasharray=\"{}\"", self.0)
+    }
+}
+
+/// Text without the characters that mean something to XML, or nothing at all to it.
+struct Escaped<'a>(&'a str);
+
+impl Display for Escaped<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in self.0.chars() {
+            match c {
+                '<' => f.write_str("&lt;")?,
+                '>' => f.write_str("&gt;")?,
+                '&' => f.write_str("&amp;")?,
+                '"' => f.write_str("&quot;")?,
+                c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => f.write_char(' ')?,
+                c => f.write_char(c)?,
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,137 @@
+//! Charts as text: what is in them, and that nothing is where it should not be.
+
+use super::*;
+
+fn run(line: Line, points: &[[f64; 2]]) -> Run {
+    Run {
+        line,
+        points: points.to_vec(),
+    }
+}
+
+/// A resonance that leans to the left, `w = sqrt(1 - y) +- c`, with its folds and a boundary.
+fn response() -> Chart {
+    let branch = |sign: f64, from: f64, to: f64| -> Vec<[f64; 2]> {
+        let at = |i: i32| from + (to - from) * f64::from(i) / 300.0;
+        let point = |y: f64| {
+            [
+                1.2 - 0.25 * y + sign * (0.05 / (y * y) - 0.012).max(0.0).sqrt(),
+                y,
+            ]
+        };
+        (0..=300).map(|i| point(at(i))).collect()
+    };
+    let lower = branch(-1.0, 0.3, 1.4);
+    let upper = branch(-1.0, 1.4, 2.0);
+    let unstable = branch(1.0, 2.0, 1.1);
+    let tail = branch(1.0, 1.1, 0.3);
+    let folds = vec![unstable[0], tail[0]];
+    Chart::new("One-sided contact, α = 3/2, ζ = 0.032, load 1, drive 0.1")
+        .x("excitation frequency ω")
+        .y("peak-to-peak displacement")
+        .curve(Curve {
+            label: String::new(),
+            runs: vec![
+                run(Line::Stable, &lower),
+                run(Line::Undecided, &upper),
+                run(Line::Unstable, &unstable),
+                run(Line::Stable, &tail),
+            ],
+        })
+        .reference(Reference {
+            label: "loss of contact".into(),
+            points: (0..50)
+                .map(|i| [0.3 + 0.04 * f64::from(i), 1.6 - 0.1 * f64::from(i)])
+                .collect(),
+        })
+        .markers(Markers {
+            label: "fold".into(),
+            points: folds,
+        })
+}
+
+/// All coordinates of paths.
+fn coordinates(svg: &str) -> impl Iterator<Item = f64> {
+    let paths = svg.split("<path d=\"").skip(1);
+    let paths = paths.filter_map(|rest| rest.split('"').next());
+    paths.flat_map(|path| {
+        path.split(['M', 'L', 'Z', ' '])
+            .filter(|token| !token.is_empty())
+            .map(|token| token.parse().expect("a number"))
+    })
+}
+
+#[test]
+fn a_response_has_all_its_parts() {
+    let svg = response().to_svg();
+    for part in [
+        "stable",
+        "unstable",
+        "undecided",
+        "loss of contact",
+        "fold",
+        "ω",
+        "12 4 2 4",
+        "8 4",
+    ] {
+        assert!(svg.contains(part), "{part}");
+    }
+    assert!(coordinates(&svg).count() > 200);
+    assert!(coordinates(&svg).all(|u| (0.0..=900.0).contains(&u)));
+}
+
+#[test]
+fn an_empty_chart_is_a_frame() {
+    let svg = Chart::default().to_svg();
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+}
+
+#[test]
+fn points_that_cannot_be_drawn_interrupt_the_line() {
+    let points = [
+        [0.0, 1.0],
+        [1.0, 2.0],
+        [2.0, f64::NAN],
+        [3.0, f64::INFINITY],
+        [4.0, 1.0],
+        [5.0, 2.0],
+    ];
+    let chart = Chart::new("").curve(Curve {
+        label: String::new(),
+        runs: vec![run(Line::Stable, &points)],
+    });
+    for (scale, parts) in [(Scale::Linear, 2), (Scale::Logarithmic, 1)] {
+        let svg = chart.clone().scales(scale, scale).to_svg();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        let curve = svg.lines().find(|line| line.contains("#0b4f8a"));
+        let curve = curve.expect("the curve");
+        assert_eq!(curve.matches('M').count(), parts);
+    }
+}
+
+#[test]
+fn text_is_escaped() {
+    let svg = Chart::new("a < b & \"c\"\u{0}").to_svg();
+    assert!(svg.contains("a &lt; b &amp; &quot;c&quot; "));
+}
+
+#[test]
+fn many_points_make_a_small_file() {
+    let points = (0..100_000)
+        .map(|i| f64::from(i) * 1e-5)
+        .map(|t| [t, (40.0 * t).sin()]);
+    let chart = Chart::new("").curve(Curve {
+        label: String::new(),
+        runs: vec![run(Line::Stable, &points.collect::<Vec<_>>())],
+    });
+    let length = chart.to_svg().len();
+    assert!(length < 40_000, "{length} bytes");
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_named() {
+    let error = Chart::default().write("no such folder/chart.svg");
+    let text = error.expect_err("the folder is missing").to_string();
+    assert!(text.contains("no such folder"), "{text}");
+}
