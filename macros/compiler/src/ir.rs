@@ -6,7 +6,7 @@
 use crate::dag::{Dag, Id};
 
 /// A declared model, checked.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Model {
     /// The graph that every [`Id`] below belongs to.
     pub dag: Dag,

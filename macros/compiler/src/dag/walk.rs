@@ -59,33 +59,34 @@ impl Dag {
             if rebuilt.contains_key(&current) {
                 continue;
             }
-            let new = |operand: &Id| rebuilt[operand];
-            let value = match self.node(current).clone() {
-                Node::Number(_) | Node::Pi | Node::Variable(_) => current,
-                Node::Sum(terms) => {
-                    let terms: Vec<Id> = terms.iter().map(new).collect();
-                    self.sum(&terms)
-                }
-                Node::Product(factors) => {
-                    let factors: Vec<Id> = factors.iter().map(new).collect();
-                    self.product(&factors)
-                }
-                Node::Power(base, exponent) => {
-                    let (base, exponent) = (new(&base), new(&exponent));
-                    self.power(base, exponent)
-                }
-                Node::PowerLog(base, exponent) => {
-                    let (base, exponent) = (new(&base), new(&exponent));
-                    self.power_log(base, exponent)
-                }
-                Node::Call(function, operand) => {
-                    let operand = new(&operand);
-                    self.call(function, operand)
-                }
-            };
+            let value = self.rebuild_node(current, &rebuilt);
             rebuilt.insert(current, value);
         }
         rebuilt[&id]
+    }
+
+    /// One node with its operands replaced; `new` has an entry for each of them.
+    pub(crate) fn rebuild_node(&mut self, id: Id, new: &HashMap<Id, Id>) -> Id {
+        let all = |operands: &[Id]| {
+            operands
+                .iter()
+                .map(|operand| new[operand])
+                .collect::<Vec<_>>()
+        };
+        match self.node(id) {
+            Node::Number(_) | Node::Pi | Node::Variable(_) => id,
+            Node::Sum(terms) => {
+                let terms = all(terms);
+                self.sum(&terms)
+            }
+            Node::Product(factors) => {
+                let factors = all(factors);
+                self.product(&factors)
+            }
+            Node::Power(base, exponent) => self.power(new[base], new[exponent]),
+            Node::PowerLog(base, exponent) => self.power_log(new[base], new[exponent]),
+            Node::Call(function, operand) => self.call(*function, new[operand]),
+        }
     }
 
     /// The value of an expression, with the guarded powers of the generated code.

@@ -1,0 +1,185 @@
+//! Straight-line operations as Rust expressions.
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::tape::{Operation, Tape};
+use crate::dag::{Function, Variable};
+
+/// An expression that is used once is written in place if it has no more operations than this; a longer one is named.
+const MAX_INLINE: usize = 6;
+
+/// How tightly the outermost operation of an expression binds.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Binding {
+    Sum,
+    Product,
+    Sign,
+    Atom,
+}
+
+/// An expression, how tightly it binds, and how many operations it holds.
+#[derive(Clone)]
+struct Expression {
+    tokens: TokenStream,
+    binding: Binding,
+    size: usize,
+}
+
+/// A tape as code.
+pub struct Code {
+    /// `let t0 = ...;` for what is used more than once, or long.
+    pub statements: TokenStream,
+    /// One expression per root.
+    pub roots: Vec<TokenStream>,
+    /// The variables it uses.
+    pub inputs: Vec<Variable>,
+}
+
+impl Code {
+    /// Writes a tape; `name` gives the identifier of a variable.
+    pub fn of(tape: &Tape, name: &dyn Fn(Variable) -> Ident) -> Self {
+        let uses = tape.uses();
+        let mut statements = TokenStream::new();
+        let mut inputs = Vec::new();
+        let mut written: Vec<Expression> = Vec::new();
+        let mut temporaries = 0;
+        for (position, &operation) in tape.operations.iter().enumerate() {
+            if let Operation::Input(variable) = operation {
+                inputs.push(variable);
+            }
+            let mut expression = write(operation, &written, name);
+            let short = expression.size <= MAX_INLINE;
+            if expression.size > 0 && !(short && uses[position] == 1) {
+                let temporary = format_ident!("t{temporaries}");
+                temporaries += 1;
+                let value = expression.tokens;
+                statements.extend(quote!(let #temporary = #value;));
+                expression = atom(quote!(#temporary), 0);
+            }
+            written.push(expression);
+        }
+        let roots = tape
+            .roots
+            .iter()
+            .map(|&root| written[root].tokens.clone())
+            .collect();
+        Self {
+            statements,
+            roots,
+            inputs,
+        }
+    }
+}
+
+fn atom(tokens: TokenStream, size: usize) -> Expression {
+    Expression {
+        tokens,
+        binding: Binding::Atom,
+        size,
+    }
+}
+
+fn write(
+    operation: Operation,
+    written: &[Expression],
+    name: &dyn Fn(Variable) -> Ident,
+) -> Expression {
+    let binary = |a: usize, b: usize, sign: TokenStream, binding: Binding| {
+        // The right operand needs brackets at equal binding: the order of operations is that of the tape.
+        let left = bracketed(&written[a], written[a].binding < binding);
+        let right = bracketed(&written[b], written[b].binding <= binding);
+        Expression {
+            tokens: quote!(#left #sign #right),
+            binding,
+            size: written[a].size + written[b].size + 1,
+        }
+    };
+    let call = |function: TokenStream, operands: &[usize]| {
+        let size = operands
+            .iter()
+            .map(|&operand| written[operand].size)
+            .sum::<usize>()
+            + 1;
+        let operands = operands.iter().map(|&operand| &written[operand].tokens);
+        atom(quote!(__emitted::#function(#(#operands),*)), size)
+    };
+    match operation {
+        Operation::Number(value) => atom(number(value), 0),
+        Operation::Input(variable) => {
+            let name = name(variable);
+            atom(quote!(#name), 0)
+        }
+        Operation::Add(a, b) => binary(a, b, quote!(+), Binding::Sum),
+        Operation::Subtract(a, b) => binary(a, b, quote!(-), Binding::Sum),
+        Operation::Multiply(a, b) => binary(a, b, quote!(*), Binding::Product),
+        Operation::Divide(a, b) => binary(a, b, quote!(/), Binding::Product),
+        Operation::Negate(a) => {
+            let operand = bracketed(&written[a], written[a].binding < Binding::Atom);
+            Expression {
+                tokens: quote!(-#operand),
+                binding: Binding::Sign,
+                size: written[a].size + 1,
+            }
+        }
+        Operation::Call(function, a) => match function {
+            Function::Sign => call(quote!(sign), &[a]),
+            Function::Step => call(quote!(step), &[a]),
+            Function::Absolute => call(quote!(absolute), &[a]),
+            Function::Sine => call(quote!(sine), &[a]),
+            Function::Cosine => call(quote!(cosine), &[a]),
+            Function::Exponential => call(quote!(exponential), &[a]),
+            Function::Tanh => call(quote!(tanh), &[a]),
+        },
+        Operation::Root(a) => call(quote!(root), &[a]),
+        Operation::CubeRoot(a) => call(quote!(cube_root), &[a]),
+        Operation::Reciprocal(a) => call(quote!(reciprocal), &[a]),
+        Operation::Logarithm(a) => call(quote!(logarithm), &[a]),
+        Operation::Raise(base, logarithm, exponent) => {
+            call(quote!(raise), &[base, logarithm, exponent])
+        }
+        Operation::Power(base, exponent) => call(quote!(power), &[base, exponent]),
+        Operation::PowerLog(base, exponent) => call(quote!(power_log), &[base, exponent]),
+        Operation::Integer(base, exponent) => {
+            let base = &written[base];
+            let (tokens, size) = (&base.tokens, base.size + 1);
+            let exponent = Literal::i32_unsuffixed(exponent);
+            atom(quote!(__emitted::integer_power(#tokens, #exponent)), size)
+        }
+    }
+}
+
+fn bracketed(expression: &Expression, needed: bool) -> TokenStream {
+    let tokens = &expression.tokens;
+    if needed {
+        quote!((#tokens))
+    } else {
+        quote!(#tokens)
+    }
+}
+
+/// A double as Rust source.
+pub fn number(value: f64) -> TokenStream {
+    if value.is_nan() {
+        quote!(::core::primitive::f64::NAN)
+    } else if value.is_infinite() {
+        let magnitude = quote!(::core::primitive::f64::INFINITY);
+        if value > 0.0 {
+            magnitude
+        } else {
+            quote!(-#magnitude)
+        }
+    } else {
+        let magnitude = Literal::f64_unsuffixed(value.abs());
+        if value.is_sign_negative() {
+            quote!((-#magnitude))
+        } else {
+            quote!(#magnitude)
+        }
+    }
+}
+
+/// A position or a length as Rust source.
+pub fn position(value: usize) -> Literal {
+    Literal::usize_unsuffixed(value)
+}

@@ -1,0 +1,24 @@
+//! Names of local variables.
+
+use proc_macro2::Ident;
+use quote::format_ident;
+
+/// An identifier for each name: the name itself where it is one, is not reserved for the code around it, and is not
+/// taken; a numbered one otherwise.
+pub fn locals(names: &[String], reserved: &[&str]) -> Vec<Ident> {
+    let mut taken: Vec<Ident> = Vec::new();
+    for (index, name) in names.iter().enumerate() {
+        let identifier = syn::parse_str::<Ident>(name)
+            .ok()
+            .filter(|identifier| !taken.contains(identifier))
+            .filter(|_| !reserved.contains(&name.as_str()) && !is_numbered(name));
+        taken.push(identifier.unwrap_or_else(|| format_ident!("a{index}")));
+    }
+    taken
+}
+
+/// `t0` and `a0` are names that the code itself makes up; a single `a` is the array of arguments.
+fn is_numbered(name: &str) -> bool {
+    let rest = name.strip_prefix(['t', 'a']);
+    rest.is_some_and(|digits| digits.chars().all(|c| c.is_ascii_digit()))
+}

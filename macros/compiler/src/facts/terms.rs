@@ -1,0 +1,148 @@
+//! The additive terms of a force and of its derivatives, with their exponents at the ends of a piece.
+
+use std::collections::HashMap;
+
+use super::Piece;
+use super::limit::shifted_argument;
+use crate::dag::{Dag, Id, Node, Rational, Variable};
+use crate::differentiate::differentiate;
+use crate::simplify::{addends_of, expand, factors_of};
+
+/// A base is tried for a zero of up to this order at a level.
+const MAX_ORDER: i32 = 4;
+
+/// A force or one of its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Quantity {
+    Force,
+    ByGap,
+    ByRate,
+    ByArgument(usize),
+}
+
+/// A number, plus an argument if there is one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Exponent {
+    /// The number.
+    pub number: Rational,
+    /// Position of the argument.
+    pub argument: Option<usize>,
+}
+
+/// One additive term: `|g - level|^exponent` times a smooth factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Term {
+    /// What the term belongs to.
+    pub of: Quantity,
+    /// Exponent at the lower end.
+    pub lower: Exponent,
+    /// Exponent at the upper end.
+    pub upper: Exponent,
+    /// Whether it carries a logarithm.
+    pub logarithm: bool,
+}
+
+impl Exponent {
+    /// Smooth.
+    pub const ZERO: Self = Self {
+        number: Rational::ZERO,
+        argument: None,
+    };
+}
+
+/// The terms of force and derivatives of a piece, equal ones once.
+pub fn of_piece(dag: &mut Dag, piece: &Piece, lower: Option<Id>, upper: Option<Id>) -> Vec<Term> {
+    let mut quantities = vec![
+        (Quantity::Force, piece.force),
+        (Quantity::ByGap, piece.by_gap),
+        (Quantity::ByRate, piece.by_rate),
+    ];
+    for (index, &id) in piece.by_argument.iter().enumerate() {
+        quantities.push((Quantity::ByArgument(index), id));
+    }
+    let mut terms = Vec::new();
+    for (of, id) in quantities {
+        let expanded = expand(dag, id);
+        for addend in addends_of(dag, expanded) {
+            let (at_lower, lower_logarithm) = behaviour(dag, addend, lower);
+            let (at_upper, upper_logarithm) = behaviour(dag, addend, upper);
+            let logarithm = lower_logarithm || upper_logarithm;
+            let term = Term {
+                of,
+                lower: at_lower,
+                upper: at_upper,
+                logarithm,
+            };
+            if !terms.contains(&term) {
+                terms.push(term);
+            }
+        }
+    }
+    terms
+}
+
+/// The exponent of a term at a level, and whether it carries a logarithm there.
+fn behaviour(dag: &mut Dag, term: Id, level: Option<Id>) -> (Exponent, bool) {
+    let Some(level) = level else {
+        return (Exponent::ZERO, false);
+    };
+    let mut exponents = Vec::new();
+    let mut logarithm = false;
+    for factor in factors_of(dag, term) {
+        let (base, exponent, is_logarithm) = match *dag.node(factor) {
+            Node::Power(base, exponent) => (base, exponent, false),
+            Node::PowerLog(base, exponent) => (base, exponent, true),
+            _ => (factor, dag.integer(1), false),
+        };
+        if !dag.depends_on(base, Variable::Gap) {
+            continue;
+        }
+        let order = order_of_zero(dag, base, level);
+        if order > 0 {
+            let order = dag.integer(order);
+            exponents.push(dag.product(&[order, exponent]));
+            logarithm |= is_logarithm;
+        }
+    }
+    let total = dag.sum(&exponents);
+    (as_exponent(dag, total), logarithm)
+}
+
+/// How many times an expression vanishes at a level; zero where it does not, or not as a power with a whole exponent.
+fn order_of_zero(dag: &mut Dag, base: Id, level: Id) -> i32 {
+    let zero = dag.integer(0);
+    let at_level = HashMap::from([(Variable::Gap, level)]);
+    let mut derivative = base;
+    for order in 0..=MAX_ORDER {
+        let value = dag.substitute(derivative, &at_level);
+        if expand(dag, value) != zero {
+            return order;
+        }
+        derivative = differentiate(dag, derivative, Variable::Gap);
+    }
+    0
+}
+
+/// A whole exponent that is not negative is smooth; one that is not an argument plus a number has no place in the
+/// contract, and lowering makes an argument of it.
+fn as_exponent(dag: &mut Dag, exponent: Id) -> Exponent {
+    if let Some(number) = dag.as_number(exponent) {
+        let smooth = number.is_integer() && !number.is_negative();
+        return if smooth {
+            Exponent::ZERO
+        } else {
+            Exponent {
+                number,
+                argument: None,
+            }
+        };
+    }
+    match shifted_argument(dag, exponent) {
+        Some((argument, number, true)) => Exponent {
+            number,
+            argument: Some(argument),
+        },
+        _ => Exponent::ZERO,
+    }
+}
