@@ -1,11 +1,61 @@
 //! Compiler of hertzian declarations: parse, check, lower, differentiate, simplify, emit.
 #![deny(missing_docs)]
 
+pub mod ast;
 pub mod dag;
 pub mod differentiate;
+pub mod emit;
+pub mod errors;
+pub mod facts;
 pub mod ir;
+pub mod primitive;
+pub mod simplify;
 
-/// Expands a declaration.
-pub fn oscillator(_declaration: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
-    proc_macro2::TokenStream::new()
+mod check;
+mod lower;
+mod parse;
+mod stub;
+
+use proc_macro2::TokenStream;
+
+use crate::ast::Declaration;
+use crate::errors::{Diagnostics, Errors};
+use crate::ir::Model;
+
+/// Expands a declaration. After errors the expansion holds all of them, and a stub of the type.
+pub fn oscillator(declaration: TokenStream) -> TokenStream {
+    let (declaration, model) = read(declaration);
+    match model {
+        Ok(_model) => TokenStream::new(),
+        Err(errors) => {
+            let mut expansion = errors.into_compile_error();
+            expansion.extend(declaration.as_ref().map(stub::stub));
+            expansion
+        }
+    }
+}
+
+/// Compiles a declaration as far as the checked model.
+///
+/// # Errors
+/// Everything that is wrong with the declaration.
+pub fn compile(declaration: TokenStream) -> Result<Model, Errors> {
+    read(declaration).1
+}
+
+/// Parses, checks and lowers. Each stage runs only if the one before found nothing, so that no fault is reported twice.
+fn read(tokens: TokenStream) -> (Option<Declaration>, Result<Model, Errors>) {
+    let mut diagnostics = Diagnostics::default();
+    let declaration = parse::parse(tokens, &mut diagnostics);
+    let mut model = None;
+    if let Some(declaration) = &declaration {
+        if diagnostics.is_clean() {
+            check::check(declaration, &mut diagnostics);
+        }
+        if diagnostics.is_clean() {
+            model = lower::lower(declaration, &mut diagnostics);
+        }
+    }
+    let model = diagnostics.finish().and_then(|()| model.ok_or_else(Errors::internal));
+    (declaration, model)
 }

@@ -1,0 +1,114 @@
+//! What a declaration must fulfil. One rule is one function, its sentence is its first line of documentation, and each has a
+//! case in `tests/tests/compile_fail`.
+//!
+//! Rules on what is written are here and in [`names`]; they run before lowering. The others need the lowered expressions and are
+//! called from there: [`powers`], [`pieces`], [`rates`], [`inertia`].
+
+mod names;
+
+pub(crate) mod forcing;
+pub(crate) mod inertia;
+pub(crate) mod pieces;
+pub(crate) mod powers;
+pub(crate) mod rates;
+
+use crate::ast::{Declaration, Expr, Kind};
+use crate::errors::{Diagnostics, Extent};
+
+/// Applies the rules on what is written.
+pub fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+    names::names_are_not_built_in(declaration, diagnostics);
+    names::names_are_distinct(declaration, diagnostics);
+    names::names_are_known(declaration, diagnostics);
+    names::calls_are_of_known_functions(declaration, diagnostics);
+    // A misspelt name would be reported a second time, as the right one not being used.
+    if diagnostics.is_clean() {
+        names::everything_is_used(declaration, diagnostics);
+    }
+    ranges_are_not_empty(declaration, diagnostics);
+    there_is_one_equation_per_coordinate(declaration, diagnostics);
+    every_equation_holds_an_acceleration(declaration, diagnostics);
+}
+
+/// A range admits at least one value.
+fn ranges_are_not_empty(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+    for parameter in &declaration.parameters {
+        let (Some(minimum), Some(maximum)) = (parameter.minimum, parameter.maximum) else {
+            continue;
+        };
+        let touching = minimum.value == maximum.value && minimum.included && maximum.included;
+        if minimum.value >= maximum.value && !touching {
+            let message = format!(
+                "no value of `{}` lies in this range: write the smaller end first, as in `{}..={}`",
+                parameter.name,
+                minimum.value.min(maximum.value),
+                minimum.value.max(maximum.value)
+            );
+            diagnostics.report(parameter.range, message);
+        }
+    }
+}
+
+/// There are as many equations as coordinates.
+fn there_is_one_equation_per_coordinate(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+    let (coordinates, equations) = (&declaration.coordinates, &declaration.equations);
+    if let Some(coordinate) = coordinates.get(equations.len()) {
+        let message = format!(
+            "coordinate `{coordinate}` has no equation: {} declared, {} given; add one such as `ddot({coordinate}) + {coordinate} = 0;`",
+            counted(coordinates.len(), "coordinate"),
+            counted(equations.len(), "equation"),
+        );
+        diagnostics.report(Extent::at(coordinate.span()), message);
+    }
+    if let Some(equation) = equations.get(coordinates.len()) {
+        let message = format!(
+            "one equation too many: the model has {}, and each has one equation",
+            counted(coordinates.len(), "coordinate"),
+        );
+        diagnostics.report(equation.left.extent.to(equation.right.extent), message);
+    }
+}
+
+/// Every equation of motion holds a second derivative.
+fn every_equation_holds_an_acceleration(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+    if declaration.equations.len() != declaration.coordinates.len() {
+        return;
+    }
+    let mut accelerations: Vec<String> = Vec::new();
+    for item in &declaration.lets {
+        if holds_acceleration(&item.value, &accelerations) {
+            accelerations.push(item.name.to_string());
+        }
+    }
+    for (equation, coordinate) in declaration.equations.iter().zip(&declaration.coordinates) {
+        let found = holds_acceleration(&equation.left, &accelerations)
+            || holds_acceleration(&equation.right, &accelerations);
+        if !found {
+            let message = format!(
+                "no second derivative in this equation: an equation of motion holds inertia, as in `ddot({coordinate}) + ... = ...`"
+            );
+            diagnostics.report(equation.left.extent.to(equation.right.extent), message);
+        }
+    }
+}
+
+fn holds_acceleration(expression: &Expr, accelerations: &[String]) -> bool {
+    let mut found = false;
+    expression.walk(&mut |part| {
+        found |= match &part.kind {
+            Kind::Call(name, _) => name == "ddot",
+            Kind::Name(name) => accelerations.contains(&name.to_string()),
+            _ => false,
+        };
+    });
+    found
+}
+
+/// A number of things, in words that fit it.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    if count == 1 {
+        format!("1 {thing}")
+    } else {
+        format!("{count} {thing}s")
+    }
+}

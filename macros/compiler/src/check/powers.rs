@@ -1,0 +1,173 @@
+//! Rules on powers and quotients: their bases, on the closed piece they stand in.
+
+use crate::dag::{Dag, Id, Node, Rational, Variable};
+use crate::errors::Extent;
+use crate::lower::expand::Expander;
+use crate::lower::interval::Stretch;
+
+/// Every power in a force exists on its closed piece. Faults are at the power where its place is known, else at `extent`.
+pub(crate) fn powers_are_defined(
+    context: &mut Expander,
+    force: Id,
+    stretch: Stretch,
+    places: &[(Id, Extent)],
+    extent: Extent,
+) -> syn::Result<()> {
+    for id in context.dag.reachable(&[force]) {
+        if let Node::Power(base, exponent) = *context.dag.node(id) {
+            let place = places
+                .iter()
+                .find(|(power, _)| *power == id)
+                .map_or(extent, |(_, place)| *place);
+            power_is_defined(context, base, exponent, stretch)
+                .map_err(|message| place.fault(message))?;
+        }
+    }
+    Ok(())
+}
+
+/// One power exists while the gap is in a stretch; the fault in words if not.
+pub(crate) fn power_is_defined(
+    context: &mut Expander,
+    base: Id,
+    exponent: Id,
+    stretch: Stretch,
+) -> Result<(), String> {
+    let [gap, rate] =
+        [Variable::Gap, Variable::Rate].map(|variable| context.dag.depends_on(exponent, variable));
+    if gap || rate {
+        return Err("an exponent must be made of numbers and parameters".to_owned());
+    }
+    if !context
+        .dag
+        .as_number(exponent)
+        .is_some_and(Rational::is_integer)
+    {
+        base_is_not_negative(context, base, exponent, stretch)?;
+        return exponent_is_positive_where_the_base_vanishes(context, base, exponent, stretch);
+    }
+    divisor_does_not_vanish(context, base, exponent, stretch)
+}
+
+/// The base of a power that is not whole is never negative on its piece.
+fn base_is_not_negative(
+    context: &mut Expander,
+    base: Id,
+    exponent: Id,
+    stretch: Stretch,
+) -> Result<(), String> {
+    let bounds = context.ranges.bounds(&mut context.dag, base, stretch);
+    if bounds.is_not_negative() {
+        return Ok(());
+    }
+    let (shown, exponent) = (context.show(base), context.show(exponent));
+    let place = where_it_holds(&context.dag, base);
+    let advice = if context
+        .dag
+        .variables(base)
+        .iter()
+        .any(|variable| matches!(variable, Variable::Gap | Variable::Rate))
+    {
+        format!(
+            "write `|{shown}|^{exponent}`, or `sgn({shown})*|{shown}|^{exponent}` for an odd force, or restrict the piece"
+        )
+    } else {
+        advice_on_ranges(context, base, ">=")
+    };
+    Err(format!(
+        "`{shown}` may be negative{place}, and a negative number has no power `{exponent}`: {advice}"
+    ))
+}
+
+/// Where the base of a power that is not whole can vanish, the exponent is positive.
+fn exponent_is_positive_where_the_base_vanishes(
+    context: &mut Expander,
+    base: Id,
+    exponent: Id,
+    stretch: Stretch,
+) -> Result<(), String> {
+    let positive = context
+        .ranges
+        .bounds(&mut context.dag, exponent, Stretch::ALL)
+        .is_positive();
+    if positive
+        || context
+            .ranges
+            .bounds(&mut context.dag, base, stretch)
+            .is_positive()
+    {
+        return Ok(());
+    }
+    let (shown, shown_exponent) = (context.show(base), context.show(exponent));
+    let advice = if context.dag.as_number(exponent).is_some() {
+        format!("add a positive distance to `{shown}`, as in `({shown} + a)^{shown_exponent}`")
+    } else {
+        advice_on_ranges(context, exponent, ">")
+    };
+    let place = where_it_holds(&context.dag, base);
+    Err(format!(
+        "`{shown}` vanishes{place}, so the exponent `{shown_exponent}` must be positive: {advice}"
+    ))
+}
+
+/// What is divided by never vanishes on its piece.
+fn divisor_does_not_vanish(
+    context: &mut Expander,
+    base: Id,
+    exponent: Id,
+    stretch: Stretch,
+) -> Result<(), String> {
+    let negative = context
+        .dag
+        .as_number(exponent)
+        .is_some_and(Rational::is_negative);
+    if !negative
+        || context
+            .ranges
+            .bounds(&mut context.dag, base, stretch)
+            .excludes_zero()
+    {
+        return Ok(());
+    }
+    let shown = context.show(base);
+    let moves = context
+        .dag
+        .variables(base)
+        .iter()
+        .any(|variable| matches!(variable, Variable::Gap | Variable::Rate));
+    if moves {
+        return Err(format!(
+            "division by `{shown}`, which may vanish on this piece: add a positive distance to it"
+        ));
+    }
+    Err(format!(
+        "division by `{shown}`, which may be zero: {}",
+        advice_on_ranges(context, base, ">")
+    ))
+}
+
+fn where_it_holds(dag: &Dag, base: Id) -> &'static str {
+    if dag.depends_on(base, Variable::Gap) {
+        " on this piece"
+    } else {
+        ""
+    }
+}
+
+/// Which range to declare so that an expression is bounded by zero.
+pub(crate) fn advice_on_ranges(context: &Expander, id: Id, relation: &str) -> String {
+    let names: Vec<String> = context
+        .dag
+        .variables(id)
+        .into_iter()
+        .filter(|variable| matches!(variable, Variable::Parameter(_) | Variable::Argument(_)))
+        .map(|variable| context.label(variable))
+        .collect();
+    match names.as_slice() {
+        [] => "change the numbers".to_owned(),
+        [name] if context.show(id) == *name => {
+            format!("declare the range, `param {name} {relation} 0;`")
+        }
+        names => format!("declare ranges that say so for `{}`", names.join("`, `")),
+    }
+}

@@ -1,0 +1,100 @@
+//! Rules on the rate of a gap.
+
+use std::collections::HashMap;
+
+use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
+use crate::errors::Extent;
+use crate::lower::algebra::{affine, put};
+use crate::lower::expand::Expander;
+use crate::lower::interval::Stretch;
+
+/// The force does not jump with the rate. (Across a level it may: the level is crossed at the same speed on both sides. A jump in the rate sticks and
+/// slides, which is another kind of mathematics.)
+pub(crate) fn force_does_not_jump_with_the_rate(
+    context: &mut Expander,
+    force: Id,
+    extent: Extent,
+) -> syn::Result<()> {
+    for switch in switches(&context.dag, force) {
+        let rate_alone = !context.dag.depends_on(switch, Variable::Gap);
+        let Some((slope, rest)) =
+            affine(&mut context.dag, switch, Variable::Rate).filter(|_| rate_alone)
+        else {
+            let message = format!(
+                "`{}` switches with gap and rate together, and a piece must be bounded by the gap alone",
+                context.show(switch)
+            );
+            return Err(extent.fault(message));
+        };
+        let quotient = context.dag.quotient(rest, slope);
+        let root = context.dag.negate(quotient);
+        let above = on_side(&mut context.dag, force, switch, true);
+        let below = on_side(&mut context.dag, force, switch, false);
+        let jump = context.dag.difference(above, below);
+        let jump = put(&mut context.dag, jump, Variable::Rate, root);
+        if !vanishes(context, jump) {
+            let rate = context.label(Variable::Rate);
+            return Err(extent.fault(format!(
+                "the force jumps with the rate: this is dry friction, which sticks and slides and is not supported; write a smooth law such as `tanh({rate}/0.01)`, or a continuous one such as `|{rate}|*{rate}`"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// What the rate enters through an absolute value, sign or step.
+fn switches(dag: &Dag, force: Id) -> Vec<Id> {
+    let mut found = Vec::new();
+    for id in dag.reachable(&[force]) {
+        if let Node::Call(Function::Absolute | Function::Sign | Function::Step, operand) =
+            *dag.node(id)
+            && dag.depends_on(operand, Variable::Rate)
+            && !found.contains(&operand)
+        {
+            found.push(operand);
+        }
+    }
+    found
+}
+
+fn on_side(dag: &mut Dag, force: Id, switch: Id, above: bool) -> Id {
+    let one = dag.integer(1);
+    let (absolute, sign, step) = if above {
+        (switch, one, one)
+    } else {
+        (dag.negate(switch), dag.integer(-1), dag.integer(0))
+    };
+    let replacements = [
+        (Function::Absolute, absolute),
+        (Function::Sign, sign),
+        (Function::Step, step),
+    ];
+    let replacements: HashMap<Id, Id> = replacements
+        .map(|(function, value)| (dag.intern(Node::Call(function, switch)), value))
+        .into();
+    dag.rebuild(force, replacements)
+}
+
+/// Whether an expression is zero, powers of zero with positive exponents included.
+fn vanishes(context: &mut Expander, id: Id) -> bool {
+    let mut known: HashMap<Id, bool> = HashMap::new();
+    for current in context.dag.reachable(&[id]) {
+        let zero = match context.dag.node(current).clone() {
+            Node::Number(number) => number == Rational::ZERO,
+            Node::Pi | Node::Variable(_) | Node::PowerLog(..) => false,
+            Node::Sum(terms) => terms.iter().all(|term| known[term]),
+            Node::Product(factors) => factors.iter().any(|factor| known[factor]),
+            Node::Power(base, exponent) => {
+                known[&base]
+                    && context
+                        .ranges
+                        .bounds(&mut context.dag, exponent, Stretch::ALL)
+                        .is_positive()
+            }
+            Node::Call(Function::Cosine | Function::Exponential, _) => false,
+            Node::Call(_, operand) => known[&operand],
+        };
+        known.insert(current, zero);
+    }
+    known[&id]
+}

@@ -1,0 +1,597 @@
+//! Expressions to sums of [`Term`]s: parameters, waves and linear motion are taken apart; what is nonlinear stays whole, as an expression in coordinates and velocities.
+
+use std::collections::HashMap;
+
+use crate::ast::{Expr, Kind};
+use crate::check::powers;
+use crate::dag::{Dag, Function, Id, Rational, Variable};
+use crate::errors::Extent;
+
+use super::interval::{Ranges, Stretch};
+use super::term::{Motion, Term, collect};
+use super::wave::Wave;
+
+/// More terms than any equation has, and few enough to be quick.
+const MOST_TERMS: usize = 1 << 14;
+
+/// A call of a law.
+#[derive(Debug, Clone)]
+pub struct Call {
+    /// Index of the law.
+    pub law: usize,
+    /// Its gap, affine in the coordinates.
+    pub gap: Vec<Term>,
+    /// Its arguments, functions of parameters and `omega`.
+    pub arguments: Vec<Id>,
+}
+
+/// What a name stands for.
+#[derive(Debug, Clone)]
+pub enum Meaning {
+    /// A variable that does not move: a parameter, an argument of a law.
+    Constant(Variable),
+    /// A coordinate.
+    Coordinate(usize),
+    /// An expression named by `let`.
+    Value(Vec<Term>),
+}
+
+/// Takes expressions apart.
+#[derive(Debug, Default)]
+pub struct Expander {
+    /// The graph.
+    pub dag: Dag,
+    /// What is known of parameters and arguments.
+    pub ranges: Ranges,
+    /// What names stand for.
+    pub names: HashMap<String, Meaning>,
+    /// Laws that can be called, by name.
+    pub laws: HashMap<String, usize>,
+    /// The calls found so far.
+    pub calls: Vec<Call>,
+    /// Where each power and quotient stands that depends on the motion.
+    pub powers: Vec<(Id, Extent)>,
+    /// Names of parameters, for messages.
+    pub parameters: Vec<String>,
+    /// Names of coordinates, for messages.
+    pub coordinates: Vec<String>,
+    /// Names of the arguments of the law at hand.
+    pub arguments: Vec<String>,
+    /// Name of the gap of the law at hand.
+    pub gap: String,
+    /// How many terms have been made.
+    spent: usize,
+}
+
+impl Expander {
+    /// An expression as one would write it.
+    pub fn show(&self, id: Id) -> String {
+        self.dag.display(id, &|variable| self.label(variable))
+    }
+
+    /// A variable as one would write it.
+    pub fn label(&self, variable: Variable) -> String {
+        let name = |names: &[String], index: usize| {
+            names
+                .get(index)
+                .cloned()
+                .unwrap_or_else(|| format!("#{index}"))
+        };
+        match variable {
+            Variable::Gap => self.gap.clone(),
+            Variable::Rate => format!("dot({})", self.gap),
+            Variable::Argument(index) => name(&self.arguments, index),
+            Variable::Parameter(index) => name(&self.parameters, index),
+            Variable::Omega => "omega".to_owned(),
+            Variable::Time => "t".to_owned(),
+            Variable::Coordinate(index) => name(&self.coordinates, index),
+            Variable::Velocity(index) => format!("dot({})", name(&self.coordinates, index)),
+            Variable::Acceleration(index) => format!("ddot({})", name(&self.coordinates, index)),
+        }
+    }
+
+    /// The terms of an expression.
+    ///
+    /// # Errors
+    /// What the language cannot express, at its place.
+    pub fn expand(&mut self, expression: &Expr) -> syn::Result<Vec<Term>> {
+        let extent = expression.extent;
+        let terms = match &expression.kind {
+            Kind::Number(value, _) => {
+                let value = self.dag.number(*value);
+                vec![Term::constant(value, extent)]
+            }
+            Kind::Name(name) => self.name(&name.to_string(), extent)?,
+            Kind::Sum(parts) => {
+                let mut terms = Vec::new();
+                for (minus, part) in parts {
+                    let part = self.expand(part)?;
+                    terms.extend(part.into_iter().map(|term| {
+                        if *minus {
+                            term.negated(&mut self.dag)
+                        } else {
+                            term
+                        }
+                    }));
+                }
+                terms
+            }
+            Kind::Product(parts) => self.product(parts, extent)?,
+            Kind::Power(base, exponent) => {
+                let base_terms = self.expand(base)?;
+                let exponent_terms = self.expand(exponent)?;
+                let exponent = self.constant(&exponent_terms, exponent.extent, "an exponent")?;
+                self.power(base_terms, exponent, extent)?
+            }
+            Kind::Absolute(operand) => {
+                let terms = self.expand(operand)?;
+                self.function(Function::Absolute, terms, extent)?
+            }
+            Kind::Call(name, arguments) => self.call(&name.to_string(), arguments, extent)?,
+        };
+        self.spend(terms.len(), extent)?;
+        Ok(terms)
+    }
+
+    fn spend(&mut self, terms: usize, extent: Extent) -> syn::Result<()> {
+        self.spent = self.spent.saturating_add(terms);
+        if self.spent > MOST_TERMS {
+            return Err(extent.fault("too much to multiply out: make it a law, or factor it"));
+        }
+        Ok(())
+    }
+
+    fn name(&mut self, name: &str, extent: Extent) -> syn::Result<Vec<Term>> {
+        let one = self.dag.integer(1);
+        let unit = Term::constant(one, extent);
+        let term = match (name, self.names.get(name)) {
+            (_, Some(Meaning::Constant(variable))) => Term {
+                coefficient: self.dag.variable(*variable),
+                ..unit
+            },
+            (_, Some(Meaning::Coordinate(index))) => Term {
+                motion: Motion::Linear(Variable::Coordinate(*index)),
+                ..unit
+            },
+            (_, Some(Meaning::Value(terms))) => {
+                return Ok(terms.iter().map(|term| Term { extent, ..*term }).collect());
+            }
+            ("omega", None) => Term {
+                coefficient: self.dag.variable(Variable::Omega),
+                ..unit
+            },
+            ("pi", None) => Term {
+                coefficient: self.dag.pi(),
+                ..unit
+            },
+            ("t", None) => Term { time: 1, ..unit },
+            _ => return Err(extent.fault(format!("`{name}` cannot be used here"))),
+        };
+        Ok(vec![term])
+    }
+
+    /// Several factors. At most one that moves is multiplied out; a product of two or more is nonlinear and stays whole.
+    fn product(&mut self, parts: &[(bool, Expr)], extent: Extent) -> syn::Result<Vec<Term>> {
+        let one = self.dag.integer(1);
+        let mut steady = vec![Term::constant(one, extent)];
+        let mut moving: Vec<Vec<Term>> = Vec::new();
+        for (divided, part) in parts {
+            let mut terms = self.expand(part)?;
+            if *divided {
+                let minus_one = self.dag.integer(-1);
+                terms = self.power(terms, minus_one, part.extent)?;
+            }
+            if terms.iter().any(Term::moves) {
+                moving.push(terms);
+            } else {
+                steady = self.multiply(&steady, &terms, extent)?;
+            }
+        }
+        match moving.len() {
+            0 => Ok(steady),
+            1 => self.multiply(&steady, &moving[0], extent),
+            _ => {
+                let product = self.nonlinear_product(&moving, extent)?;
+                self.multiply(&steady, &product, extent)
+            }
+        }
+    }
+
+    /// The product of two sums of which at most one moves.
+    ///
+    /// # Errors
+    /// If there would be too many terms.
+    pub fn multiply(
+        &mut self,
+        left: &[Term],
+        right: &[Term],
+        extent: Extent,
+    ) -> syn::Result<Vec<Term>> {
+        self.spend(left.len().saturating_mul(right.len()), extent)?;
+        let mut terms = Vec::new();
+        for (a, b) in left.iter().flat_map(|a| right.iter().map(move |b| (a, b))) {
+            let motion = if a.moves() { a.motion } else { b.motion };
+            let coefficient = self.dag.product(&[a.coefficient, b.coefficient]);
+            let time = a.time.saturating_add(b.time);
+            let waves = a
+                .wave
+                .times(b.wave)
+                .ok_or_else(|| extent.fault("this frequency is too fine a fraction of omega"))?;
+            for (weight, wave) in waves {
+                let weight = self.dag.number(weight);
+                let coefficient = self.dag.product(&[coefficient, weight]);
+                terms.push(Term {
+                    coefficient,
+                    wave,
+                    time,
+                    motion,
+                    extent,
+                });
+            }
+        }
+        Ok(collect(&mut self.dag, terms))
+    }
+
+    fn nonlinear_product(
+        &mut self,
+        factors: &[Vec<Term>],
+        extent: Extent,
+    ) -> syn::Result<Vec<Term>> {
+        let one = self.dag.integer(1);
+        let mut product = Vec::new();
+        let mut outside = vec![Term::constant(one, extent)];
+        for factor in factors {
+            if factor
+                .iter()
+                .any(|term| matches!(term.motion, Motion::Call(_)))
+            {
+                return Err(extent.fault(
+                    "a law multiplied by the motion: put the product inside the law, which knows its gap and `dot` of it",
+                ));
+            }
+            // A single term may bring a wave along, which stays outside: `x*cos(omega*t) * H(x)`.
+            if let [term] = factor[..] {
+                let inside = Term {
+                    coefficient: one,
+                    wave: Wave::CONSTANT,
+                    time: 0,
+                    ..term
+                };
+                product.push(self.value(&[inside], extent)?);
+                outside = self.multiply(
+                    &outside,
+                    &[Term {
+                        motion: Motion::None,
+                        ..term
+                    }],
+                    extent,
+                )?;
+            } else {
+                product.push(self.value(factor, extent)?);
+            }
+        }
+        let whole = self.dag.product(&product);
+        let inside = Term {
+            motion: self.motion_of(whole),
+            ..Term::constant(one, extent)
+        };
+        self.multiply(&outside, &[inside], extent)
+    }
+
+    /// An expression in coordinates and velocities as the motion of a term.
+    fn motion_of(&self, id: Id) -> Motion {
+        match *self.dag.node(id) {
+            crate::dag::Node::Variable(variable) => Motion::Linear(variable),
+            _ => Motion::Nonlinear(id),
+        }
+    }
+
+    /// A nonlinear function of coordinates and velocities as terms.
+    fn nonlinear(&mut self, id: Id, extent: Extent) -> Vec<Term> {
+        let one = self.dag.integer(1);
+        let term = Term::constant(one, extent);
+        if self
+            .dag
+            .variables(id)
+            .iter()
+            .any(|&variable| is_motion(variable))
+        {
+            vec![Term {
+                motion: self.motion_of(id),
+                ..term
+            }]
+        } else {
+            vec![Term {
+                coefficient: id,
+                ..term
+            }]
+        }
+    }
+
+    /// The sum of terms as one expression in coordinates and velocities.
+    ///
+    /// # Errors
+    /// If something in it depends on time by itself, is a law or an acceleration.
+    pub fn value(&mut self, terms: &[Term], extent: Extent) -> syn::Result<Id> {
+        let mut parts = Vec::new();
+        for term in terms {
+            if !term.is_steady() {
+                return Err(extent.fault(
+                    "time inside a nonlinear term: declare a law and call it with the moving gap, as in `contact(x - cos(omega*t))`",
+                ));
+            }
+            let motion = match term.motion {
+                Motion::None => self.dag.integer(1),
+                Motion::Linear(Variable::Acceleration(_)) => {
+                    return Err(extent.fault("the equation must be linear in `ddot`: bring this term to the form mass * ddot(x)"));
+                }
+                Motion::Linear(variable) => self.dag.variable(variable),
+                Motion::Nonlinear(id) => id,
+                Motion::Call(_) => {
+                    return Err(extent.fault(
+                        "a law inside a nonlinear expression: put the expression inside the law",
+                    ));
+                }
+            };
+            parts.push(self.dag.product(&[term.coefficient, motion]));
+        }
+        Ok(self.dag.sum(&parts))
+    }
+
+    /// The sum of terms that must be a function of parameters and `omega` alone.
+    ///
+    /// # Errors
+    /// If it moves or depends on time.
+    pub fn constant(&mut self, terms: &[Term], extent: Extent, what: &str) -> syn::Result<Id> {
+        if !terms.iter().all(Term::is_constant) {
+            return Err(extent.fault(format!("{what} must be made of numbers and parameters")));
+        }
+        let parts: Vec<Id> = terms.iter().map(|term| term.coefficient).collect();
+        Ok(self.dag.sum(&parts))
+    }
+
+    fn power(&mut self, base: Vec<Term>, exponent: Id, extent: Extent) -> syn::Result<Vec<Term>> {
+        let whole = self.dag.as_number(exponent).and_then(Rational::to_integer);
+        if base.iter().all(Term::is_constant) {
+            let base = self.constant(&base, extent, "the base")?;
+            let power = self.dag.power(base, exponent);
+            powers::power_is_defined(self, base, exponent, Stretch::ALL)
+                .map_err(|message| extent.fault(message))?;
+            return Ok(vec![Term::constant(power, extent)]);
+        }
+        if base.iter().any(Term::moves) {
+            if whole == Some(1) {
+                return Ok(base);
+            }
+            let base = self.value(&base, extent)?;
+            let power = self.dag.power(base, exponent);
+            self.powers.push((power, extent));
+            return Ok(self.nonlinear(power, extent));
+        }
+        let Some(whole @ 0..=8) = whole else {
+            return Err(extent.fault(
+                "not harmonic in omega*t: time may stand only in cos and sin, their sums, products and whole powers up to 8",
+            ));
+        };
+        let one = self.dag.integer(1);
+        let mut product = vec![Term::constant(one, extent)];
+        for _ in 0..whole {
+            product = self.multiply(&product, &base, extent)?;
+        }
+        Ok(product)
+    }
+
+    fn function(
+        &mut self,
+        function: Function,
+        operand: Vec<Term>,
+        extent: Extent,
+    ) -> syn::Result<Vec<Term>> {
+        let trigonometric = matches!(function, Function::Sine | Function::Cosine);
+        if operand.iter().any(Term::moves) {
+            let operand = self.value(&operand, extent)?;
+            let value = self.dag.call(function, operand);
+            return Ok(self.nonlinear(value, extent));
+        }
+        if trigonometric {
+            return self.oscillation(function == Function::Sine, &operand, extent);
+        }
+        if !operand.iter().all(Term::is_steady) {
+            return Err(extent.fault(
+                "not harmonic in omega*t: write a Fourier series, as in `drive*cos(omega*t) + drive/3*cos(3*omega*t)`",
+            ));
+        }
+        let operand = self.constant(&operand, extent, "the operand")?;
+        let value = self.without_step(function, operand);
+        Ok(vec![Term::constant(value, extent)])
+    }
+
+    /// A function of parameters; a step is written with the sign.
+    fn without_step(&mut self, function: Function, operand: Id) -> Id {
+        if function == Function::Step && self.dag.as_number(operand).is_none() {
+            return super::resolve::step_as_sign(&mut self.dag, operand);
+        }
+        self.dag.call(function, operand)
+    }
+
+    /// `cos(a omega t + phi)` as `cos phi cos(a omega t) - sin phi sin(a omega t)`, and the sine likewise.
+    fn oscillation(
+        &mut self,
+        sine: bool,
+        operand: &[Term],
+        extent: Extent,
+    ) -> syn::Result<Vec<Term>> {
+        let (mut phase, mut rate) = (Vec::new(), Vec::new());
+        for term in operand {
+            match (term.time, term.wave == Wave::CONSTANT) {
+                (0, true) => phase.push(term.coefficient),
+                (1, true) => rate.push(term.coefficient),
+                _ => return Err(extent.fault("not harmonic in omega*t: the argument must be a multiple of omega*t, plus a phase")),
+            }
+        }
+        let (phase, rate) = (self.dag.sum(&phase), self.dag.sum(&rate));
+        let multiple = self.multiple_of_omega(rate).ok_or_else(|| {
+            extent.fault(
+                "quasi-periodic: every frequency must be a rational multiple of omega, as in `cos(2/5*omega*t)`",
+            )
+        })?;
+        let (cosine_of, sine_of) = (
+            self.dag.call(Function::Cosine, phase),
+            self.dag.call(Function::Sine, phase),
+        );
+        let parts = if sine {
+            [(cosine_of, true), (sine_of, false)]
+        } else {
+            let minus = self.dag.negate(sine_of);
+            [(cosine_of, false), (minus, true)]
+        };
+        let mut terms = Vec::new();
+        for (coefficient, sine) in parts {
+            if let Some((sign, wave)) = Wave::new(multiple, sine) {
+                let sign = self.dag.number(sign);
+                let coefficient = self.dag.product(&[coefficient, sign]);
+                terms.push(Term {
+                    wave,
+                    ..Term::constant(coefficient, extent)
+                });
+            }
+        }
+        Ok(collect(&mut self.dag, terms))
+    }
+
+    fn multiple_of_omega(&mut self, rate: Id) -> Option<Rational> {
+        let omega = self.dag.variable(Variable::Omega);
+        let ratio = self.dag.quotient(rate, omega);
+        self.dag.as_number(ratio)
+    }
+
+    fn call(&mut self, name: &str, arguments: &[Expr], extent: Extent) -> syn::Result<Vec<Term>> {
+        if let Some(&law) = self.laws.get(name) {
+            return self.law(law, arguments, extent);
+        }
+        let [argument] = arguments else {
+            return Err(extent.fault(format!("`{name}` takes one argument")));
+        };
+        let operand = self.expand(argument)?;
+        match name {
+            "dot" => self.rate(&operand, argument.extent),
+            "ddot" => {
+                let first = self.rate(&operand, argument.extent)?;
+                self.rate(&first, argument.extent)
+            }
+            "sqrt" => {
+                let half = self.dag.integer(2);
+                let one = self.dag.integer(1);
+                let half = self.dag.quotient(one, half);
+                self.power(operand, half, extent)
+            }
+            "H" => self.function(Function::Step, operand, extent),
+            "sgn" => self.function(Function::Sign, operand, extent),
+            "abs" => self.function(Function::Absolute, operand, extent),
+            "cos" => self.function(Function::Cosine, operand, extent),
+            "sin" => self.function(Function::Sine, operand, extent),
+            "exp" => self.function(Function::Exponential, operand, extent),
+            "tanh" => self.function(Function::Tanh, operand, extent),
+            _ => Err(extent.fault(format!("unknown function `{name}`"))),
+        }
+    }
+
+    fn law(&mut self, law: usize, arguments: &[Expr], extent: Extent) -> syn::Result<Vec<Term>> {
+        let Some((gap, rest)) = arguments.split_first() else {
+            return Err(extent.fault("a law takes its gap as first argument"));
+        };
+        let place = gap.extent;
+        let gap = self.expand(gap)?;
+        let gap = collect(&mut self.dag, gap);
+        for term in &gap {
+            match term.motion {
+                Motion::None | Motion::Linear(Variable::Coordinate(_)) if term.time == 0 => {}
+                Motion::Nonlinear(_) | Motion::Call(_) => {
+                    return Err(place.fault(
+                        "the gap must be linear in the coordinates: put what is nonlinear inside the law",
+                    ));
+                }
+                _ => {
+                    return Err(place.fault(
+                        "the gap is made of coordinates, parameters and waves of omega*t alone",
+                    ));
+                }
+            }
+        }
+        if !gap.iter().any(Term::moves) {
+            return Err(place.fault(
+                "this gap holds no coordinate: it would be a force that depends on time alone",
+            ));
+        }
+        let mut values = Vec::new();
+        for argument in rest {
+            let terms = self.expand(argument)?;
+            values.push(self.constant(&terms, argument.extent, "an argument of a law")?);
+        }
+        self.calls.push(Call {
+            law,
+            gap,
+            arguments: values,
+        });
+        let one = self.dag.integer(1);
+        Ok(vec![Term {
+            motion: Motion::Call(self.calls.len() - 1),
+            ..Term::constant(one, extent)
+        }])
+    }
+
+    /// The derivative by time: of the wave, and of the motion.
+    ///
+    /// # Errors
+    /// For nonlinear motion, and third derivatives.
+    pub fn rate(&mut self, terms: &[Term], extent: Extent) -> syn::Result<Vec<Term>> {
+        let mut rates = Vec::new();
+        for term in terms {
+            if term.time > 0 {
+                return Err(extent.fault("`dot` of an expression with bare `t`"));
+            }
+            let moved = match term.motion {
+                Motion::None => None,
+                Motion::Linear(Variable::Coordinate(index)) => Some(Variable::Velocity(index)),
+                Motion::Linear(Variable::Velocity(index)) => Some(Variable::Acceleration(index)),
+                Motion::Linear(_) => {
+                    return Err(
+                        extent.fault("derivatives higher than the second have no place in (1)")
+                    );
+                }
+                Motion::Nonlinear(_) | Motion::Call(_) => {
+                    return Err(extent.fault("`dot` of a nonlinear expression: write its derivative out, as in `2*x*dot(x)`"));
+                }
+            };
+            rates.extend(moved.map(|variable| Term {
+                motion: Motion::Linear(variable),
+                ..*term
+            }));
+            let multiple = if term.wave.sine {
+                Some(term.wave.multiple)
+            } else {
+                term.wave.multiple.negate()
+            };
+            let omega = self.dag.variable(Variable::Omega);
+            let multiple = multiple.map_or(omega, |multiple| {
+                let number = self.dag.number(multiple);
+                self.dag.product(&[number, omega])
+            });
+            if let Some((_, wave)) = Wave::new(term.wave.multiple, !term.wave.sine) {
+                rates.push(Term {
+                    wave,
+                    ..term.scaled(&mut self.dag, multiple)
+                });
+            }
+        }
+        Ok(collect(&mut self.dag, rates))
+    }
+}
+
+/// Whether a variable is a coordinate or one of its derivatives.
+pub fn is_motion(variable: Variable) -> bool {
+    matches!(
+        variable,
+        Variable::Coordinate(_) | Variable::Velocity(_) | Variable::Acceleration(_)
+    )
+}

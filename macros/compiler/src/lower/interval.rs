@@ -1,0 +1,329 @@
+//! Interval reasoning: what ranges of parameters and the ends of a piece imply for an expression.
+
+use std::collections::HashMap;
+
+use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
+use crate::ir::Bound;
+
+/// All values an expression may have. An end may be reached or only approached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Lower end and whether it is only approached.
+    low: (f64, bool),
+    /// Upper end and whether it is only approached.
+    high: (f64, bool),
+}
+
+impl Interval {
+    /// Every finite number.
+    pub const ALL: Self = Self {
+        low: (f64::NEG_INFINITY, true),
+        high: (f64::INFINITY, true),
+    };
+
+    /// The range of a parameter.
+    pub fn of_range(minimum: Bound, maximum: Bound) -> Self {
+        let end = |bound, unbounded| match bound {
+            Bound::Unbounded => (unbounded, true),
+            Bound::Included(value) => (value, false),
+            Bound::Excluded(value) => (value, true),
+        };
+        Self {
+            low: end(minimum, f64::NEG_INFINITY),
+            high: end(maximum, f64::INFINITY),
+        }
+    }
+
+    /// The same as bounds.
+    pub fn to_range(self) -> (Bound, Bound) {
+        let bound = |(value, open): (f64, bool)| match (value.is_infinite(), open) {
+            (true, _) => Bound::Unbounded,
+            (false, true) => Bound::Excluded(value),
+            (false, false) => Bound::Included(value),
+        };
+        (bound(self.low), bound(self.high))
+    }
+
+    fn point(value: f64) -> Self {
+        Self {
+            low: (value, false),
+            high: (value, false),
+        }
+    }
+
+    fn between(low: f64, high: f64) -> Self {
+        Self {
+            low: (low, false),
+            high: (high, false),
+        }
+    }
+
+    /// A value inside, at a fraction of a bounded interval or near the end of an unbounded one.
+    pub fn inside(self, fraction: f64) -> f64 {
+        match (self.low.0.is_finite(), self.high.0.is_finite()) {
+            (true, true) => self.low.0 + fraction * (self.high.0 - self.low.0),
+            (true, false) => self.low.0 + 0.5 + fraction,
+            (false, true) => self.high.0 - 0.5 - fraction,
+            (false, false) => 0.5 + fraction,
+        }
+    }
+
+    /// The smallest interval around two.
+    pub fn hull(self, other: Self) -> Self {
+        Self {
+            low: lower(self.low, other.low),
+            high: upper(self.high, other.high),
+        }
+    }
+
+    /// Never below zero.
+    pub fn is_not_negative(self) -> bool {
+        self.low.0 >= 0.0
+    }
+
+    /// Never above zero.
+    pub fn is_not_positive(self) -> bool {
+        self.high.0 <= 0.0
+    }
+
+    /// Always above zero.
+    pub fn is_positive(self) -> bool {
+        self.low.0 > 0.0 || self.low == (0.0, true)
+    }
+
+    /// Always below zero.
+    pub fn is_negative(self) -> bool {
+        self.high.0 < 0.0 || self.high == (0.0, true)
+    }
+
+    /// Zero is not among the values.
+    pub fn excludes_zero(self) -> bool {
+        self.is_positive() || self.is_negative()
+    }
+
+    fn add(self, other: Self) -> Self {
+        let end = |a: (f64, bool), b: (f64, bool)| (a.0 + b.0, a.1 || b.1);
+        Self {
+            low: end(self.low, other.low),
+            high: end(self.high, other.high),
+        }
+    }
+
+    fn multiply(self, other: Self) -> Self {
+        let mut result: Option<Self> = None;
+        for a in [self.low, self.high] {
+            for b in [other.low, other.high] {
+                let corner = product(a, b);
+                let corner = Self {
+                    low: corner,
+                    high: corner,
+                };
+                result = Some(result.map_or(corner, |hull| hull.hull(corner)));
+            }
+        }
+        result.unwrap_or(Self::ALL)
+    }
+
+    fn negate(self) -> Self {
+        Self {
+            low: (-self.high.0, self.high.1),
+            high: (-self.low.0, self.low.1),
+        }
+    }
+
+    fn absolute(self) -> Self {
+        if self.is_not_negative() {
+            self
+        } else if self.is_not_positive() {
+            self.negate()
+        } else {
+            let high = upper((-self.low.0, self.low.1), self.high);
+            Self {
+                low: (0.0, false),
+                high,
+            }
+        }
+    }
+
+    /// An increasing function of every value.
+    fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        Self {
+            low: (function(self.low.0), self.low.1),
+            high: (function(self.high.0), self.high.1),
+        }
+    }
+}
+
+/// The lower of two lower ends; of equal ones the one that is reached.
+fn lower(a: (f64, bool), b: (f64, bool)) -> (f64, bool) {
+    if a.0 < b.0 || (a.0 == b.0 && !a.1) {
+        a
+    } else {
+        b
+    }
+}
+
+fn upper(a: (f64, bool), b: (f64, bool)) -> (f64, bool) {
+    if a.0 > b.0 || (a.0 == b.0 && !a.1) {
+        a
+    } else {
+        b
+    }
+}
+
+/// Product of two ends. A zero that is reached makes a zero that is reached, whatever the other end.
+fn product(a: (f64, bool), b: (f64, bool)) -> (f64, bool) {
+    if a == (0.0, false) || b == (0.0, false) {
+        (0.0, false)
+    } else if a.0 == 0.0 || b.0 == 0.0 {
+        (0.0, true)
+    } else {
+        (a.0 * b.0, a.1 || b.1)
+    }
+}
+
+/// A stretch of the gap, with ends that are functions of parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Lower end; `None` where unbounded.
+    pub low: Option<Id>,
+    /// Upper end; `None` where unbounded.
+    pub high: Option<Id>,
+}
+
+impl Stretch {
+    /// Every gap.
+    pub const ALL: Self = Self {
+        low: None,
+        high: None,
+    };
+}
+
+/// What is known of variables.
+#[derive(Debug, Clone, Default)]
+pub struct Ranges {
+    /// Of the parameters.
+    pub parameters: Vec<Interval>,
+    /// Of the arguments of the law at hand.
+    pub arguments: Vec<Interval>,
+}
+
+impl Ranges {
+    /// What is known of one variable.
+    pub fn of(&self, variable: Variable) -> Interval {
+        match variable {
+            Variable::Parameter(index) => {
+                self.parameters.get(index).copied().unwrap_or(Interval::ALL)
+            }
+            Variable::Argument(index) => {
+                self.arguments.get(index).copied().unwrap_or(Interval::ALL)
+            }
+            Variable::Omega => Interval {
+                low: (0.0, true),
+                high: (f64::INFINITY, true),
+            },
+            _ => Interval::ALL,
+        }
+    }
+
+    /// The values of an expression while the gap is in a stretch, its ends included.
+    ///
+    /// Sums that are affine in the gap are bounded by their values at the two ends, where parameters cancel exactly: on
+    /// `gap >= play` the base `gap - play` is not negative, whatever the play.
+    pub fn bounds(&self, dag: &mut Dag, id: Id, stretch: Stretch) -> Interval {
+        let mut known: HashMap<Id, Interval> = HashMap::new();
+        for current in dag.reachable(&[id]) {
+            let value = match dag.node(current).clone() {
+                Node::Number(number) => Interval::point(number.to_f64()),
+                Node::Pi => Interval::point(std::f64::consts::PI),
+                Node::Variable(variable) => self
+                    .affine_bounds(dag, current, stretch)
+                    .unwrap_or_else(|| self.of(variable)),
+                Node::Sum(terms) => {
+                    self.affine_bounds(dag, current, stretch)
+                        .unwrap_or_else(|| {
+                            terms
+                                .iter()
+                                .fold(Interval::point(0.0), |sum, term| sum.add(known[term]))
+                        })
+                }
+                Node::Product(factors) => factors
+                    .iter()
+                    .fold(Interval::point(1.0), |product, factor| {
+                        product.multiply(known[factor])
+                    }),
+                Node::Power(base, exponent) => {
+                    let whole = dag.as_number(exponent).and_then(Rational::to_integer);
+                    power(known[&base], known[&exponent], whole)
+                }
+                Node::PowerLog(..) => Interval::ALL,
+                Node::Call(function, operand) => call(function, known[&operand]),
+            };
+            known.insert(current, value);
+        }
+        known[&id]
+    }
+
+    fn affine_bounds(&self, dag: &mut Dag, id: Id, stretch: Stretch) -> Option<Interval> {
+        if stretch == Stretch::ALL || !dag.depends_on(id, Variable::Gap) {
+            return None;
+        }
+        let (slope, _) = super::algebra::affine(dag, id, Variable::Gap)?;
+        let slope = self.bounds(dag, slope, Stretch::ALL);
+        let mut end = |gap: Option<Id>, outward: f64| match gap {
+            Some(gap) => {
+                let value = super::algebra::put(dag, id, Variable::Gap, gap);
+                Some(self.bounds(dag, value, Stretch::ALL))
+            }
+            None if slope.is_positive() => Some(Interval {
+                low: (outward, true),
+                high: (outward, true),
+            }),
+            None if slope.is_negative() => Some(Interval {
+                low: (-outward, true),
+                high: (-outward, true),
+            }),
+            None => None,
+        };
+        Some(end(stretch.low, f64::NEG_INFINITY)?.hull(end(stretch.high, f64::INFINITY)?))
+    }
+}
+
+fn power(base: Interval, exponent: Interval, whole: Option<i32>) -> Interval {
+    let positive = Interval {
+        low: (0.0, true),
+        high: (f64::INFINITY, true),
+    };
+    match whole {
+        Some(exponent) if exponent > 0 && exponent % 2 == 1 => {
+            base.map(|value| value.powi(exponent))
+        }
+        Some(exponent) if exponent > 0 => base.absolute().map(|value| value.powi(exponent)),
+        Some(_) if base.is_positive() => positive,
+        Some(exponent) if base.is_negative() && exponent % 2 != 0 => positive.negate(),
+        Some(exponent) if exponent % 2 != 0 => Interval::ALL,
+        _ if base.is_positive() => positive,
+        _ if exponent.is_positive() && exponent == Interval::point(exponent.low.0) => {
+            base.absolute().map(|value| value.powf(exponent.low.0))
+        }
+        _ => Interval {
+            low: (0.0, false),
+            high: (f64::INFINITY, true),
+        },
+    }
+}
+
+fn call(function: Function, operand: Interval) -> Interval {
+    match function {
+        Function::Absolute => operand.absolute(),
+        Function::Sign => operand.map(|value| if value == 0.0 { 0.0 } else { value.signum() }),
+        Function::Step => operand.map(|value| f64::from(value > 0.0)),
+        Function::Sine | Function::Cosine => Interval::between(-1.0, 1.0),
+        Function::Exponential if operand.low.0 == f64::NEG_INFINITY => Interval {
+            low: (0.0, true),
+            high: (operand.high.0.exp(), operand.high.1),
+        },
+        Function::Exponential => operand.map(f64::exp),
+        Function::Tanh => operand.map(f64::tanh),
+    }
+}

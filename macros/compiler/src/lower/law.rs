@@ -1,0 +1,308 @@
+//! Laws: from a declaration's pieces to levels and forces.
+
+use std::collections::HashMap;
+
+use crate::ast::{Comparison, Condition, Law};
+use crate::check::pieces::{self, Piece};
+use crate::dag::{Dag, Id, Variable};
+use crate::errors::{Diagnostics, Extent};
+use crate::ir;
+
+use super::algebra::{addends, affine, split_factor};
+use super::expand::{Expander, Meaning};
+use super::interval::{Interval, Stretch};
+use super::resolve::{Segment, resolve};
+
+/// A law and what its arguments beyond the written ones stand for.
+#[derive(Debug, Clone)]
+pub struct Lowered {
+    /// The law.
+    pub law: ir::Law,
+    /// Parameters (and `omega`) that it uses, passed as further arguments.
+    pub captured: Vec<Variable>,
+}
+
+/// Lowers a declared law. `ranges` are those of its written arguments, from the calls.
+pub fn declared(
+    context: &mut Expander,
+    law: &Law,
+    ranges: Vec<Interval>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Lowered> {
+    let outer = enter(context, law, ranges);
+    let segments = segments(context, law, diagnostics);
+    let lowered = segments.map(|segments| finish(context, law.name.to_string(), segments));
+    context.names = outer;
+    context.arguments.clear();
+    context.ranges.arguments.clear();
+    lowered
+}
+
+/// Puts the names of a law in place of the coordinates; the names outside are returned.
+fn enter(context: &mut Expander, law: &Law, ranges: Vec<Interval>) -> HashMap<String, Meaning> {
+    let mut names = context.names.clone();
+    names.retain(|_, meaning| match meaning {
+        Meaning::Constant(_) => true,
+        Meaning::Coordinate(_) => false,
+        Meaning::Value(terms) => terms.iter().all(|term| !term.moves()),
+    });
+    names.insert(law.gap.to_string(), Meaning::Coordinate(0));
+    for (index, argument) in law.arguments.iter().enumerate() {
+        names.insert(
+            argument.to_string(),
+            Meaning::Constant(Variable::Argument(index)),
+        );
+    }
+    context.gap = law.gap.to_string();
+    context.arguments = law.arguments.iter().map(ToString::to_string).collect();
+    context.ranges.arguments = ranges;
+    std::mem::replace(&mut context.names, names)
+}
+
+fn segments(
+    context: &mut Expander,
+    law: &Law,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<Segment>> {
+    let mut sound = true;
+    let mut forces = Vec::new();
+    let mut bounded = Vec::new();
+    let mut rest = None;
+    for (index, piece) in law.pieces.iter().enumerate() {
+        let force = diagnostics.keep(force(context, &piece.force));
+        sound &= force.is_some();
+        forces.push(force);
+        match &piece.condition {
+            Condition::Else(extent) if rest.is_some() || index + 1 < law.pieces.len() => {
+                diagnostics.report(*extent, "`else` must be the last piece");
+                sound = false;
+            }
+            Condition::Else(extent) => rest = Some((index, *extent)),
+            Condition::Always => rest = Some((index, piece.force.extent)),
+            Condition::All(comparisons, extent) => {
+                match diagnostics.keep(ends(context, comparisons, index, *extent)) {
+                    Some(piece) => bounded.push(piece),
+                    None => sound = false,
+                }
+            }
+        }
+    }
+    if !sound {
+        return None;
+    }
+    let arranged = pieces::arranged(
+        context,
+        bounded,
+        rest,
+        Extent::at(law.name.span()),
+        diagnostics,
+    )?;
+    let mut segments = Vec::new();
+    for piece in arranged {
+        let (force, powers) = forces[piece.index].clone()?;
+        let stretch = Stretch {
+            low: piece.low.map(|low| low.0),
+            high: piece.high.map(|high| high.0),
+        };
+        let holds_low = piece.low.is_some_and(|low| low.1);
+        let extent = law.pieces[piece.index].force.extent;
+        let whole = Segment {
+            stretch,
+            holds_low,
+            force,
+            powers,
+        };
+        match diagnostics.keep(resolve(context, whole, extent)) {
+            Some(resolved) => segments.extend(resolved),
+            None => sound = false,
+        }
+    }
+    sound.then_some(segments)
+}
+
+type Force = (Id, Vec<(Id, Extent)>);
+
+/// The force of one piece as an expression in gap and rate, and where its powers stand.
+fn force(context: &mut Expander, expression: &crate::ast::Expr) -> syn::Result<Force> {
+    context.powers.clear();
+    let terms = context.expand(expression)?;
+    if let Some(term) = terms.iter().find(|term| !term.is_steady()) {
+        return Err(term.extent.fault(
+            "a law depends on its gap, not on time: multiply it in the equation, as in `(1 + e*cos(omega*t))*contact(x)`",
+        ));
+    }
+    let force = context.value(&terms, expression.extent)?;
+    let powers = std::mem::take(&mut context.powers);
+    let powers = powers
+        .into_iter()
+        .map(|(power, extent)| (in_gap(&mut context.dag, power), extent))
+        .collect();
+    Ok((in_gap(&mut context.dag, force), powers))
+}
+
+/// The only coordinate in a law is its gap.
+fn in_gap(dag: &mut Dag, id: Id) -> Id {
+    let (gap, rate) = (dag.variable(Variable::Gap), dag.variable(Variable::Rate));
+    dag.substitute(
+        id,
+        &HashMap::from([
+            (Variable::Coordinate(0), gap),
+            (Variable::Velocity(0), rate),
+        ]),
+    )
+}
+
+/// The ends that the comparisons of a condition set.
+fn ends(
+    context: &mut Expander,
+    comparisons: &[Comparison],
+    index: usize,
+    extent: Extent,
+) -> syn::Result<Piece> {
+    let mut piece = Piece {
+        low: None,
+        high: None,
+        index,
+        extent,
+    };
+    for comparison in comparisons {
+        let place = comparison.smaller.extent.to(comparison.larger.extent);
+        let place = if comparisons.len() == 1 {
+            extent
+        } else {
+            place
+        };
+        let (smaller, _) = force(context, &comparison.smaller)?;
+        let (larger, _) = force(context, &comparison.larger)?;
+        let difference = context.dag.difference(larger, smaller);
+        let (level, rising) = level(context, difference, place)?;
+        let end = (level, comparison.or_equal);
+        let known = if rising {
+            &mut piece.low
+        } else {
+            &mut piece.high
+        };
+        // Of two bounds on one side the tighter one counts.
+        let tighter = match *known {
+            None => true,
+            Some((other, _)) => {
+                let order = pieces::order_is_known(context, other, level, place)?;
+                if rising { order.is_lt() } else { order.is_gt() }
+            }
+        };
+        if tighter {
+            *known = Some(end);
+        }
+    }
+    Ok(piece)
+}
+
+/// The root of a condition `difference > 0`, and whether it holds above it.
+fn level(context: &mut Expander, difference: Id, extent: Extent) -> syn::Result<(Id, bool)> {
+    let gap = context.label(Variable::Gap);
+    if context.dag.depends_on(difference, Variable::Rate) {
+        return Err(extent.fault(format!(
+            "a piece is bounded by the gap, not by its rate: compare `{gap}` with numbers and parameters"
+        )));
+    }
+    let affine = affine(&mut context.dag, difference, Variable::Gap);
+    let Some((slope, rest)) = affine.filter(|_| context.dag.depends_on(difference, Variable::Gap))
+    else {
+        return Err(extent.fault(format!(
+            "compare `{gap}` with numbers and parameters, as in `{gap} > play`"
+        )));
+    };
+    let bounds = context.ranges.bounds(&mut context.dag, slope, Stretch::ALL);
+    if !bounds.excludes_zero() {
+        return Err(extent.fault(format!(
+            "divide this condition so that `{gap}` stands alone on one side"
+        )));
+    }
+    let quotient = context.dag.quotient(rest, slope);
+    Ok((context.dag.negate(quotient), bounds.is_positive()))
+}
+
+/// Makes the law of adjacent segments; those with one force are joined, and parameters become arguments.
+pub fn finish(context: &mut Expander, name: String, segments: Vec<Segment>) -> Lowered {
+    let mut forces: Vec<Id> = Vec::new();
+    let mut levels: Vec<ir::Level> = Vec::new();
+    for segment in segments {
+        if forces.last() == Some(&segment.force) {
+            continue;
+        }
+        if let (Some(value), false) = (segment.stretch.low, forces.is_empty()) {
+            levels.push(ir::Level {
+                value,
+                belongs_above: segment.holds_low,
+            });
+        }
+        forces.push(segment.force);
+    }
+    let mut captured: Vec<Variable> = Vec::new();
+    for id in forces
+        .iter()
+        .copied()
+        .chain(levels.iter().map(|level| level.value))
+    {
+        captured.extend(
+            context
+                .dag
+                .variables(id)
+                .into_iter()
+                .filter(|variable| matches!(variable, Variable::Parameter(_) | Variable::Omega)),
+        );
+    }
+    captured.sort_unstable();
+    captured.dedup();
+    let written = context.arguments.len();
+    let mut by = HashMap::new();
+    for (index, &variable) in captured.iter().enumerate() {
+        by.insert(
+            variable,
+            context.dag.variable(Variable::Argument(written + index)),
+        );
+    }
+    for force in &mut forces {
+        *force = context.dag.substitute(*force, &by);
+    }
+    for level in &mut levels {
+        level.value = context.dag.substitute(level.value, &by);
+    }
+    let mut arguments = context.arguments.clone();
+    arguments.extend(captured.iter().map(|&variable| context.label(variable)));
+    let mut ranges: Vec<_> = context
+        .ranges
+        .arguments
+        .iter()
+        .map(|range| range.to_range())
+        .collect();
+    ranges.extend(
+        captured
+            .iter()
+            .map(|&variable| context.ranges.of(variable).to_range()),
+    );
+    let law = ir::Law {
+        name,
+        arguments,
+        ranges,
+        levels,
+        pieces: forces,
+    };
+    Lowered { law, captured }
+}
+
+/// The coefficients of gap and rate and the constant of a law that is linear everywhere: a spring or damper that needs no contact.
+pub fn linear(dag: &mut Dag, law: &ir::Law) -> Option<[Id; 3]> {
+    let [force] = law.pieces[..] else { return None };
+    let (gap, rate) = (dag.variable(Variable::Gap), dag.variable(Variable::Rate));
+    let one = dag.integer(1);
+    let mut parts: [Vec<Id>; 3] = Default::default();
+    for term in addends(dag, force) {
+        let (coefficient, motion) = split_factor(dag, term, &[Variable::Gap, Variable::Rate]);
+        let position = [gap, rate, one]
+            .into_iter()
+            .position(|basis| basis == motion)?;
+        parts[position].push(coefficient);
+    }
+    Some(parts.map(|part| dag.sum(&part)))
+}

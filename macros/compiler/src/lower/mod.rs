@@ -1,0 +1,378 @@
+//! [`Declaration`] to [`Model`]: equations are multiplied out, linear terms become coefficients, the rest laws.
+
+mod assemble;
+mod found;
+mod law;
+mod resolve;
+
+pub(crate) mod algebra;
+pub(crate) mod expand;
+pub(crate) mod interval;
+pub(crate) mod term;
+pub(crate) mod wave;
+
+use std::collections::HashMap;
+
+use crate::ast::{Declaration, Equation, Expr, Kind, Limit};
+use crate::check::{forcing, inertia};
+use crate::dag::{Id, Variable};
+use crate::errors::{Diagnostics, Extent};
+use crate::ir::{self, Bound, Model};
+
+use self::assemble::{Action, Assembly};
+use self::expand::{Expander, Meaning};
+use self::found::{Found, Gatherer};
+use self::interval::{Interval, Stretch};
+use self::law::Lowered;
+use self::term::{Motion, Term, collect};
+use self::wave::Wave;
+
+/// Lowers a declaration that has passed [`check`](crate::check::check). `None` if something was reported.
+pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option<Model> {
+    let parameters = parameters(declaration);
+    let mut context = context(declaration, &parameters);
+    for item in &declaration.lets {
+        let terms = diagnostics.keep(context.expand(&item.value))?;
+        context
+            .names
+            .insert(item.name.to_string(), Meaning::Value(terms));
+    }
+    let mut gatherer = Gatherer::default();
+    let mut terms: Vec<(usize, Term)> = Vec::new();
+    for (row, equation) in declaration.equations.iter().enumerate() {
+        for term in equation_terms(&mut context, equation, diagnostics) {
+            let rest = gatherer.add(&mut context, row, &term);
+            terms.extend(
+                diagnostics
+                    .keep(rest)
+                    .into_iter()
+                    .flatten()
+                    .map(|term| (row, term)),
+            );
+        }
+    }
+    let laws = declared_laws(&mut context, declaration, diagnostics);
+    let found = gatherer.laws(&mut context, diagnostics);
+    if !diagnostics.is_clean() {
+        return None;
+    }
+    let mut builder = Builder {
+        context,
+        laws: Vec::new(),
+        actions: Vec::new(),
+        terms: Vec::new(),
+    };
+    for (row, term) in terms {
+        diagnostics.keep(builder.term(row, term, &laws));
+    }
+    for law in found {
+        builder.found(law);
+    }
+    let assembly = diagnostics.keep(builder.assemble(declaration))?;
+    let masses = assembly.masses();
+    let ranges = &builder.context.ranges.parameters;
+    diagnostics.keep(inertia::mass_is_regular(
+        declaration,
+        &builder.context.dag,
+        &masses,
+        ranges,
+    ))?;
+    let equations: Vec<String> = declaration
+        .equations
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    Some(Model {
+        dag: builder.context.dag,
+        visibility: declaration.visibility.clone(),
+        name: declaration.name.clone(),
+        documentation: declaration.documentation.clone(),
+        equation: equations.join("\n"),
+        coordinates: declaration.coordinates.clone(),
+        parameters,
+        divisor: assembly.divisor,
+        laws: builder.laws,
+        contacts: assembly.contacts,
+        coefficients: assembly.coefficients,
+    })
+}
+
+/// The declared parameters.
+pub fn parameters(declaration: &Declaration) -> Vec<ir::Parameter> {
+    let bound = |limit: Option<Limit>| match limit {
+        None => Bound::Unbounded,
+        Some(Limit {
+            value,
+            included: true,
+        }) => Bound::Included(value),
+        Some(Limit {
+            value,
+            included: false,
+        }) => Bound::Excluded(value),
+    };
+    let lowered = |parameter: &crate::ast::Parameter| ir::Parameter {
+        name: parameter.name.clone(),
+        documentation: parameter.documentation.clone(),
+        minimum: bound(parameter.minimum),
+        maximum: bound(parameter.maximum),
+    };
+    declaration.parameters.iter().map(lowered).collect()
+}
+
+fn context(declaration: &Declaration, parameters: &[ir::Parameter]) -> Expander {
+    let mut context = Expander::default();
+    for (index, parameter) in parameters.iter().enumerate() {
+        let name = parameter.name.to_string();
+        context
+            .names
+            .insert(name.clone(), Meaning::Constant(Variable::Parameter(index)));
+        context.parameters.push(name);
+        context
+            .ranges
+            .parameters
+            .push(Interval::of_range(parameter.minimum, parameter.maximum));
+    }
+    for (index, coordinate) in declaration.coordinates.iter().enumerate() {
+        context
+            .names
+            .insert(coordinate.to_string(), Meaning::Coordinate(index));
+        context.coordinates.push(coordinate.to_string());
+    }
+    context.laws = declaration
+        .laws
+        .iter()
+        .enumerate()
+        .map(|(index, law)| (law.name.to_string(), index))
+        .collect();
+    context
+}
+
+/// All terms of an equation, brought to the left.
+fn equation_terms(
+    context: &mut Expander,
+    equation: &Equation,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Term> {
+    let mut terms = Vec::new();
+    for (side, on_right) in [(&equation.left, false), (&equation.right, true)] {
+        for (minus, part) in addends(side) {
+            let Some(expanded) = diagnostics.keep(context.expand(part)) else {
+                continue;
+            };
+            for term in collect(&mut context.dag, expanded) {
+                let term = Term {
+                    extent: part.extent,
+                    ..term
+                };
+                diagnostics.keep(forcing::term_is_in_its_place(&term, on_right));
+                diagnostics.keep(forcing::term_is_harmonic(&term));
+                terms.push(if minus == on_right {
+                    term
+                } else {
+                    term.negated(&mut context.dag)
+                });
+            }
+        }
+    }
+    terms
+}
+
+/// The terms of one side as written, so that a fault in one does not hide a fault in another.
+fn addends(side: &Expr) -> Vec<(bool, &Expr)> {
+    match &side.kind {
+        Kind::Sum(parts) => parts.iter().map(|(minus, part)| (*minus, part)).collect(),
+        _ => vec![(false, side)],
+    }
+}
+
+fn declared_laws(
+    context: &mut Expander,
+    declaration: &Declaration,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Option<Lowered>> {
+    let mut laws = Vec::new();
+    for (index, law) in declaration.laws.iter().enumerate() {
+        let calls: Vec<Vec<Id>> = context
+            .calls
+            .iter()
+            .filter(|call| call.law == index)
+            .map(|call| call.arguments.clone())
+            .collect();
+        let mut ranges = Vec::new();
+        for argument in 0..law.arguments.len() {
+            let mut range: Option<Interval> = None;
+            for value in calls.iter().filter_map(|call| call.get(argument)) {
+                let bounds = context
+                    .ranges
+                    .bounds(&mut context.dag, *value, Stretch::ALL);
+                range = Some(range.map_or(bounds, |range| range.hull(bounds)));
+            }
+            ranges.push(range.unwrap_or(Interval::ALL));
+        }
+        laws.push(law::declared(context, law, ranges, diagnostics));
+    }
+    laws
+}
+
+/// Collects what [`Assembly`] is made of.
+struct Builder {
+    context: Expander,
+    laws: Vec<ir::Law>,
+    actions: Vec<(Action, Extent)>,
+    terms: Vec<(usize, Term)>,
+}
+
+impl Builder {
+    /// Adds a term that is a call of a law or linear.
+    fn term(&mut self, row: usize, term: Term, laws: &[Option<Lowered>]) -> syn::Result<()> {
+        let Motion::Call(call) = term.motion else {
+            self.linear(row, term);
+            return Ok(());
+        };
+        let call = self.context.calls[call].clone();
+        let Some(Some(lowered)) = laws.get(call.law) else {
+            return Ok(());
+        };
+        let mut arguments = call.arguments;
+        for &variable in &lowered.captured {
+            arguments.push(self.context.dag.variable(variable));
+        }
+        if let Some(parts) = law::linear(&mut self.context.dag, &lowered.law) {
+            return self.linear_law(row, &term, &call.gap, &arguments, parts);
+        }
+        let law = found::intern(&mut self.laws, lowered.law.clone());
+        let action = Action {
+            law,
+            gap: call.gap,
+            arguments,
+            row,
+            factor: term.coefficient,
+            wave: term.wave,
+        };
+        self.actions.push((action, term.extent));
+        Ok(())
+    }
+
+    /// A law that is linear everywhere is multiplied out.
+    fn linear_law(
+        &mut self,
+        row: usize,
+        term: &Term,
+        gap: &[Term],
+        arguments: &[Id],
+        parts: [Id; 3],
+    ) -> syn::Result<()> {
+        let by: HashMap<Variable, Id> = arguments
+            .iter()
+            .enumerate()
+            .map(|(index, &value)| (Variable::Argument(index), value))
+            .collect();
+        let one = self.context.dag.integer(1);
+        let rate = self.context.rate(gap, term.extent)?;
+        let unit = vec![Term::constant(one, term.extent)];
+        for (part, motion) in parts.into_iter().zip([gap.to_vec(), rate, unit]) {
+            let factor = self.context.dag.substitute(part, &by);
+            let factor = Term {
+                motion: Motion::None,
+                ..term.scaled(&mut self.context.dag, factor)
+            };
+            for product in self.context.multiply(&[factor], &motion, term.extent)? {
+                self.linear(row, product);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a linear term. Damping that varies with time has no matrix to stand in: it is a law, linear in its rate.
+    fn linear(&mut self, row: usize, term: Term) {
+        let Motion::Linear(Variable::Velocity(column)) = term.motion else {
+            self.terms.push((row, term));
+            return;
+        };
+        if term.is_steady() {
+            self.terms.push((row, term));
+            return;
+        }
+        let damper = ir::Law {
+            name: "damper".to_owned(),
+            arguments: Vec::new(),
+            ranges: Vec::new(),
+            levels: Vec::new(),
+            pieces: vec![self.context.dag.variable(Variable::Rate)],
+        };
+        let law = found::intern(&mut self.laws, damper);
+        let gap = self.coordinate(column, term.extent);
+        let action = Action {
+            law,
+            gap: vec![gap],
+            arguments: Vec::new(),
+            row,
+            factor: term.coefficient,
+            wave: term.wave,
+        };
+        self.actions.push((action, term.extent));
+    }
+
+    fn coordinate(&mut self, index: usize, extent: Extent) -> Term {
+        let one = self.context.dag.integer(1);
+        Term {
+            motion: Motion::Linear(Variable::Coordinate(index)),
+            ..Term::constant(one, extent)
+        }
+    }
+
+    fn found(&mut self, found: Found) {
+        let arguments: Vec<Id> = found
+            .lowered
+            .captured
+            .iter()
+            .map(|&variable| self.context.dag.variable(variable))
+            .collect();
+        let law = found::intern(&mut self.laws, found.lowered.law);
+        let extent = found.extent;
+        let gap: Vec<Term> = found
+            .direction
+            .iter()
+            .map(|&(index, factor)| Term {
+                coefficient: factor,
+                ..self.coordinate(index, extent)
+            })
+            .collect();
+        for (row, wave, factor) in found.rows {
+            let action = Action {
+                law,
+                gap: gap.clone(),
+                arguments: arguments.clone(),
+                row,
+                factor,
+                wave,
+            };
+            self.actions.push((action, extent));
+        }
+    }
+
+    fn assemble(&mut self, declaration: &Declaration) -> syn::Result<Assembly> {
+        let mut waves: Vec<Wave> = self.terms.iter().map(|(_, term)| term.wave).collect();
+        for (action, _) in &self.actions {
+            waves.push(action.wave);
+            waves.extend(action.gap.iter().map(|term| term.wave));
+        }
+        let equations = &declaration.equations;
+        let extent = equations[0]
+            .left
+            .extent
+            .to(equations[equations.len() - 1].right.extent);
+        let divisor = assemble::divisor(waves.iter()).map_err(|message| extent.fault(message))?;
+        let mut assembly = Assembly::new(divisor);
+        let dag = &mut self.context.dag;
+        for (row, term) in &self.terms {
+            forcing::mass_is_constant(term)?;
+            assembly.linear(dag, *row, term);
+        }
+        for (action, _) in &self.actions {
+            assembly.force(dag, action);
+        }
+        assembly.drop_zeros(dag);
+        Ok(assembly)
+    }
+}

@@ -1,0 +1,225 @@
+//! Pieces from expressions: absolute values, signs and steps of the gap are decided on stretches of it, so that none is left.
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use crate::check::{pieces, powers, rates};
+use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
+use crate::errors::Extent;
+
+use super::algebra::affine;
+use super::expand::Expander;
+use super::interval::Stretch;
+
+/// More levels than a law has.
+const MOST_SEGMENTS: usize = 64;
+
+/// A force on a stretch of the gap, smooth inside.
+#[derive(Debug, Clone)]
+pub struct Segment {
+    /// Where it holds.
+    pub stretch: Stretch,
+    /// Whether the lower end belongs to it rather than to the segment below.
+    pub holds_low: bool,
+    /// The force.
+    pub force: Id,
+    /// Where its powers stand in the declaration.
+    pub powers: Vec<(Id, Extent)>,
+}
+
+/// Splits a force into smooth segments, in increasing order of the gap.
+///
+/// Switches are decided from the inside out: `||g| - 1|` first splits at `g = 0`, then each side at its own root.
+///
+/// # Errors
+/// If a level cannot be found or ordered, or a rule on powers or rates is broken; at `extent`, or at the power.
+pub fn resolve(
+    context: &mut Expander,
+    whole: Segment,
+    extent: Extent,
+) -> syn::Result<Vec<Segment>> {
+    let mut smooth = Vec::new();
+    let mut pending = vec![whole];
+    while let Some(mut segment) = pending.pop() {
+        if smooth.len() + pending.len() > MOST_SEGMENTS {
+            return Err(extent.fault("more than 64 pieces in one law"));
+        }
+        let Some(switch) = innermost_switch(&context.dag, segment.force) else {
+            remove_steps(context, &mut segment);
+            rates::force_does_not_jump_with_the_rate(context, segment.force, extent)?;
+            powers::powers_are_defined(
+                context,
+                segment.force,
+                segment.stretch,
+                &segment.powers,
+                extent,
+            )?;
+            smooth.push(segment);
+            continue;
+        };
+        let bounds = context
+            .ranges
+            .bounds(&mut context.dag, switch, segment.stretch);
+        if bounds.is_not_negative() || bounds.is_not_positive() {
+            decide(
+                &mut context.dag,
+                &mut segment,
+                switch,
+                bounds.is_not_negative(),
+            );
+            pending.push(segment);
+        } else if take_apart(&mut context.dag, &mut segment, switch) {
+            pending.push(segment);
+        } else {
+            let [below, above] = split(context, segment, switch, extent)?;
+            pending.push(above);
+            pending.push(below);
+        }
+    }
+    Ok(smooth)
+}
+
+/// The operand of the first absolute value, sign or step of the gap whose own operand holds none.
+fn innermost_switch(dag: &Dag, force: Id) -> Option<Id> {
+    // Operands come before their use.
+    dag.reachable(&[force])
+        .into_iter()
+        .find_map(|id| match *dag.node(id) {
+            Node::Call(Function::Absolute | Function::Sign | Function::Step, operand)
+                if dag.depends_on(operand, Variable::Gap) && !is_mixed_with_rate(dag, operand) =>
+            {
+                Some(operand)
+            }
+            _ => None,
+        })
+}
+
+/// Left to the rule on rates, unless it is a product, whose factors can be looked at one by one.
+fn is_mixed_with_rate(dag: &Dag, operand: Id) -> bool {
+    dag.depends_on(operand, Variable::Rate)
+        && !matches!(dag.node(operand), Node::Product(_) | Node::Power(..))
+}
+
+/// Replaces the absolute value, sign and step of an operand whose sign is known.
+fn decide(dag: &mut Dag, segment: &mut Segment, switch: Id, positive: bool) {
+    let (zero, one) = (dag.integer(0), dag.integer(1));
+    let (absolute, sign, step) = if positive {
+        (switch, one, one)
+    } else {
+        (dag.negate(switch), dag.negate(one), zero)
+    };
+    substitute(dag, segment, switch, [absolute, sign, step]);
+}
+
+fn substitute(dag: &mut Dag, segment: &mut Segment, switch: Id, values: [Id; 3]) {
+    let functions = [Function::Absolute, Function::Sign, Function::Step];
+    let replacements: HashMap<Id, Id> = functions
+        .into_iter()
+        .zip(values)
+        .map(|(function, value)| (dag.intern(Node::Call(function, switch)), value))
+        .collect();
+    segment.force = dag.rebuild(segment.force, replacements.clone());
+    for (power, _) in &mut segment.powers {
+        *power = dag.rebuild(*power, replacements.clone());
+    }
+}
+
+/// `|a b| = |a| |b|`, `sgn(a b) = sgn(a) sgn(b)`, and the same for whole powers; false where the operand is neither.
+fn take_apart(dag: &mut Dag, segment: &mut Segment, switch: Id) -> bool {
+    let (absolute, sign) = match dag.node(switch).clone() {
+        Node::Product(factors) => {
+            let absolute: Vec<Id> = factors
+                .iter()
+                .map(|&factor| dag.call(Function::Absolute, factor))
+                .collect();
+            let sign: Vec<Id> = factors
+                .iter()
+                .map(|&factor| dag.call(Function::Sign, factor))
+                .collect();
+            (dag.product(&absolute), dag.product(&sign))
+        }
+        Node::Power(base, exponent)
+            if dag.as_number(exponent).is_some_and(Rational::is_integer) =>
+        {
+            let (absolute, sign) = (
+                dag.call(Function::Absolute, base),
+                dag.call(Function::Sign, base),
+            );
+            (dag.power(absolute, exponent), dag.power(sign, exponent))
+        }
+        _ => return false,
+    };
+    let one = dag.integer(1);
+    let sum = dag.sum(&[sign, one]);
+    let two = dag.integer(2);
+    let step = dag.quotient(sum, two);
+    substitute(dag, segment, switch, [absolute, sign, step]);
+    true
+}
+
+/// Splits a segment at the root of an operand that is affine in the gap.
+fn split(
+    context: &mut Expander,
+    segment: Segment,
+    switch: Id,
+    extent: Extent,
+) -> syn::Result<[Segment; 2]> {
+    let Some((slope, rest)) = affine(&mut context.dag, switch, Variable::Gap) else {
+        let shown = context.show(switch);
+        return Err(extent.fault(format!(
+            "where `{shown}` changes sign is not known: the operand of `| |`, `sgn` and `H` must be linear in the gap"
+        )));
+    };
+    let bounds = context.ranges.bounds(&mut context.dag, slope, Stretch::ALL);
+    if !bounds.excludes_zero() {
+        let (slope_shown, shown) = (context.show(slope), context.show(switch));
+        let advice = powers::advice_on_ranges(context, slope, ">");
+        return Err(extent.fault(format!(
+            "`{shown}` has a slope `{slope_shown}` of unknown sign: {advice}"
+        )));
+    }
+    let quotient = context.dag.quotient(rest, slope);
+    let root = context.dag.negate(quotient);
+    for (end, expected) in [
+        (segment.stretch.low, Ordering::Less),
+        (segment.stretch.high, Ordering::Greater),
+    ] {
+        if let Some(end) = end
+            && pieces::order_is_known(context, end, root, extent)? == expected.reverse()
+        {
+            return Err(extent.fault(
+                "the order of the levels is contradictory: check the ranges of the parameters",
+            ));
+        }
+    }
+    let rising = bounds.is_positive();
+    let is_step = context.dag.intern(Node::Call(Function::Step, switch));
+    let has_step = context.dag.reachable(&[segment.force]).contains(&is_step);
+    let mut below = segment.clone();
+    below.stretch.high = Some(root);
+    let mut above = segment;
+    above.stretch.low = Some(root);
+    // A step is zero at its root itself, which therefore belongs to the side where it is zero.
+    above.holds_low = has_step && !rising;
+    decide(&mut context.dag, &mut below, switch, !rising);
+    decide(&mut context.dag, &mut above, switch, rising);
+    Ok([below, above])
+}
+
+/// What is left are steps of the rate; the runtime knows only their sign.
+fn remove_steps(context: &mut Expander, segment: &mut Segment) {
+    for id in context.dag.reachable(&[segment.force]) {
+        if let Node::Call(Function::Step, operand) = *context.dag.node(id) {
+            let value = step_as_sign(&mut context.dag, operand);
+            segment.force = context.dag.replace(segment.force, id, value);
+        }
+    }
+}
+
+/// `H(u) = (1 + sgn u)/2`, which differs only at zero.
+pub fn step_as_sign(dag: &mut Dag, operand: Id) -> Id {
+    let sign = dag.call(Function::Sign, operand);
+    let (one, two) = (dag.integer(1), dag.integer(2));
+    let sum = dag.sum(&[one, sign]);
+    dag.quotient(sum, two)
+}
