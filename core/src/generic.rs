@@ -123,7 +123,7 @@ pub enum Node {
     Absolute(usize),
     /// `-1`, `0` or `1`.
     Sign(usize),
-    /// Integer power.
+    /// Integer power. One of zero to a negative exponent is zero, see [`crate::emitted`].
     Integer(usize, i32),
     /// Guarded power `base^exponent` of a base that is not negative where it is used, see [`crate::emitted::power`].
     Power(usize, usize),

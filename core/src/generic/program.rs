@@ -3,11 +3,14 @@
 //! A program holds the operations that its outputs need and no others. Those that depend on numbers and arguments
 //! alone are *hoisted*: they run once per call, on one value. The others run once per block, each over the whole block
 //! before the next starts, so that the cost of decoding an operation is shared by [`BLOCK`] samples.
+//!
+//! Powers are computed by the library's power function, one by one, except for exponents 1/2 and 3/2: the interpreter is
+//! what generated code is checked against, so it does not share the logarithm that generated code shares.
 
 use std::ops::Range;
 
 use super::Node;
-use crate::emitted::{power, sign};
+use crate::emitted::{power, reciprocal, sign};
 
 /// Samples per block. A slot takes 512 bytes, so programs of some sixty operations stay in the first level of the
 /// cache.
@@ -193,7 +196,8 @@ impl Operation {
             Self::Sign => each(left, result, sign),
             Self::Integer(2) => each(left, result, |a| a * a),
             Self::Integer(3) => each(left, result, |a| a * a * a),
-            Self::Integer(exponent) => each(left, result, |a| a.powi(exponent)),
+            Self::Integer(exponent @ 0..) => each(left, result, |a| a.powi(exponent)),
+            Self::Integer(exponent) => each(left, result, |a| reciprocal(a.powi(-exponent))),
             Self::Power => pairs(left, right, result, power),
             Self::Root => each(left, result, |a| if a > 0.0 { a.sqrt() } else { 0.0 }),
             Self::ThreeHalves => each(left, result, |a| if a > 0.0 { a * a.sqrt() } else { 0.0 }),
