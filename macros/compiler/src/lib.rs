@@ -14,7 +14,6 @@ pub mod simplify;
 mod check;
 mod lower;
 mod parse;
-mod stub;
 
 use proc_macro2::TokenStream;
 
@@ -26,13 +25,24 @@ use crate::ir::Model;
 pub fn oscillator(declaration: TokenStream) -> TokenStream {
     let (declaration, model) = read(declaration);
     match model {
-        Ok(_model) => TokenStream::new(),
+        Ok(model) => emit::emit(&model),
         Err(errors) => {
             let mut expansion = errors.into_compile_error();
-            expansion.extend(declaration.as_ref().map(stub::stub));
+            expansion.extend(declaration.as_ref().map(stub));
             expansion
         }
     }
+}
+
+/// The type without its meaning, so that the code which uses it does not fail too.
+fn stub(declaration: &Declaration) -> TokenStream {
+    let mut fields = Vec::new();
+    for parameter in &declaration.parameters {
+        if !fields.contains(&parameter.name) {
+            fields.push(parameter.name.clone());
+        }
+    }
+    emit::stub(&declaration.name, &declaration.visibility, &fields)
 }
 
 /// Compiles a declaration as far as the checked model.
@@ -56,6 +66,8 @@ fn read(tokens: TokenStream) -> (Option<Declaration>, Result<Model, Errors>) {
             model = lower::lower(declaration, &mut diagnostics);
         }
     }
-    let model = diagnostics.finish().and_then(|()| model.ok_or_else(Errors::internal));
+    let model = diagnostics
+        .finish()
+        .and_then(|()| model.ok_or_else(Errors::internal));
     (declaration, model)
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::ast::{Comparison, Condition, Law};
 use crate::check::pieces::{self, Piece};
-use crate::dag::{Dag, Id, Variable};
+use crate::dag::{Dag, Id, Node, Variable};
 use crate::errors::{Diagnostics, Extent};
 use crate::ir;
 
@@ -18,8 +18,9 @@ use super::resolve::{Segment, resolve};
 pub struct Lowered {
     /// The law.
     pub law: ir::Law,
-    /// Parameters (and `omega`) that it uses, passed as further arguments.
-    pub captured: Vec<Variable>,
+    /// What is passed beyond the written arguments: parameters, `omega`, and exponents that are expressions of them
+    /// and of the written arguments.
+    pub captured: Vec<Id>,
 }
 
 /// Lowers a declared law. `ranges` are those of its written arguments, from the calls.
@@ -238,29 +239,24 @@ pub fn finish(context: &mut Expander, name: String, segments: Vec<Segment>) -> L
         }
         forces.push(segment.force);
     }
-    let mut captured: Vec<Variable> = Vec::new();
+    let written = context.arguments.len();
+    let mut captured = capture_exponents(&mut context.dag, &mut forces, written);
+    let mut variables: Vec<Variable> = Vec::new();
     for id in forces
         .iter()
         .copied()
         .chain(levels.iter().map(|level| level.value))
     {
-        captured.extend(
-            context
-                .dag
-                .variables(id)
-                .into_iter()
-                .filter(|variable| matches!(variable, Variable::Parameter(_) | Variable::Omega)),
-        );
+        variables.extend(context.dag.variables(id));
     }
-    captured.sort_unstable();
-    captured.dedup();
-    let written = context.arguments.len();
+    variables.retain(|variable| matches!(variable, Variable::Parameter(_) | Variable::Omega));
+    variables.sort_unstable();
+    variables.dedup();
     let mut by = HashMap::new();
-    for (index, &variable) in captured.iter().enumerate() {
-        by.insert(
-            variable,
-            context.dag.variable(Variable::Argument(written + index)),
-        );
+    for variable in variables {
+        let argument = Variable::Argument(written + captured.len());
+        by.insert(variable, context.dag.variable(argument));
+        captured.push(context.dag.variable(variable));
     }
     for force in &mut forces {
         *force = context.dag.substitute(*force, &by);
@@ -269,18 +265,14 @@ pub fn finish(context: &mut Expander, name: String, segments: Vec<Segment>) -> L
         level.value = context.dag.substitute(level.value, &by);
     }
     let mut arguments = context.arguments.clone();
-    arguments.extend(captured.iter().map(|&variable| context.label(variable)));
-    let mut ranges: Vec<_> = context
-        .ranges
-        .arguments
-        .iter()
-        .map(|range| range.to_range())
-        .collect();
-    ranges.extend(
-        captured
-            .iter()
-            .map(|&variable| context.ranges.of(variable).to_range()),
-    );
+    let mut known = context.ranges.arguments.clone();
+    for &id in &captured {
+        let plain = matches!(context.dag.node(id), Node::Variable(_));
+        let shown = context.show(id);
+        arguments.push(if plain { shown } else { format!("({shown})") });
+        known.push(context.ranges.bounds(&mut context.dag, id, Stretch::ALL));
+    }
+    let ranges = known.into_iter().map(Interval::to_range).collect();
     let law = ir::Law {
         name,
         arguments,
@@ -289,6 +281,42 @@ pub fn finish(context: &mut Expander, name: String, segments: Vec<Segment>) -> L
         pieces: forces,
     };
     Lowered { law, captured }
+}
+
+/// Makes arguments of exponents that are neither a number nor a variable plus a number, which is all that the runtime's
+/// quadrature rules know. Returns what the new arguments stand for.
+fn capture_exponents(dag: &mut Dag, forces: &mut [Id], written: usize) -> Vec<Id> {
+    let mut captured = Vec::new();
+    for index in 0..forces.len() {
+        for id in dag.reachable(&[forces[index]]) {
+            let Node::Power(_, exponent) = *dag.node(id) else {
+                continue;
+            };
+            if !is_plain_exponent(dag, exponent) && !captured.contains(&exponent) {
+                captured.push(exponent);
+            }
+        }
+    }
+    for (index, &exponent) in captured.iter().enumerate() {
+        let argument = dag.variable(Variable::Argument(written + index));
+        for force in forces.iter_mut() {
+            *force = dag.replace(*force, exponent, argument);
+        }
+    }
+    captured
+}
+
+fn is_plain_exponent(dag: &Dag, exponent: Id) -> bool {
+    let is_variable = |id: Id| matches!(dag.node(id), Node::Variable(_));
+    match dag.node(exponent) {
+        Node::Number(_) | Node::Variable(_) => true,
+        Node::Sum(terms) => {
+            terms.len() == 2
+                && terms.iter().any(|&term| is_variable(term))
+                && terms.iter().any(|&term| dag.as_number(term).is_some())
+        }
+        _ => false,
+    }
 }
 
 /// The coefficients of gap and rate and the constant of a law that is linear everywhere: a spring or damper that needs no contact.

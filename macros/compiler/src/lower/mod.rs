@@ -234,8 +234,9 @@ impl Builder {
             return Ok(());
         };
         let mut arguments = call.arguments;
-        for &variable in &lowered.captured {
-            arguments.push(self.context.dag.variable(variable));
+        let written: HashMap<Variable, Id> = numbered(&arguments);
+        for &captured in &lowered.captured {
+            arguments.push(self.context.dag.substitute(captured, &written));
         }
         if let Some(parts) = law::linear(&mut self.context.dag, &lowered.law) {
             return self.linear_law(row, &term, &call.gap, &arguments, parts);
@@ -262,11 +263,7 @@ impl Builder {
         arguments: &[Id],
         parts: [Id; 3],
     ) -> syn::Result<()> {
-        let by: HashMap<Variable, Id> = arguments
-            .iter()
-            .enumerate()
-            .map(|(index, &value)| (Variable::Argument(index), value))
-            .collect();
+        let by = numbered(arguments);
         let one = self.context.dag.integer(1);
         let rate = self.context.rate(gap, term.extent)?;
         let unit = vec![Term::constant(one, term.extent)];
@@ -322,12 +319,7 @@ impl Builder {
     }
 
     fn found(&mut self, found: Found) {
-        let arguments: Vec<Id> = found
-            .lowered
-            .captured
-            .iter()
-            .map(|&variable| self.context.dag.variable(variable))
-            .collect();
+        let arguments = found.lowered.captured;
         let law = found::intern(&mut self.laws, found.lowered.law);
         let extent = found.extent;
         let gap: Vec<Term> = found
@@ -375,4 +367,10 @@ impl Builder {
         assembly.drop_zeros(dag);
         Ok(assembly)
     }
+}
+
+/// Values of the arguments of a law, by position.
+fn numbered(arguments: &[Id]) -> HashMap<Variable, Id> {
+    let numbered = |(index, &value): (usize, &Id)| (Variable::Argument(index), value);
+    arguments.iter().enumerate().map(numbered).collect()
 }
