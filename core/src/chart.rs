@@ -1,7 +1,8 @@
 //! Charts of response curves, as SVG.
 //!
 //! Stable parts of a curve are solid, unstable ones dashed, undecided ones dotted, so that a chart says the same in
-//! black and white; the colours are ones that colour-blind readers tell apart as well.
+//! black and white; the colours are ones that colour-blind readers tell apart as well, and the first four
+//! differ in lightness.
 //!
 //! The SVG is written here, by a small writer of its own, rather than through a plotting library. The library that
 //! was tried (plotters) rounds every point to a whole pixel, which puts steps into a smooth curve, draws each dash as

@@ -14,9 +14,9 @@ const TITLE: f64 = 19.0;
 const LABEL: f64 = 16.0;
 const TICK: f64 = 14.0;
 
-/// Dark blue, vermilion, sky blue, green, orange, purple, black: neighbours differ in lightness too.
+/// Dark blue, vermilion, sky blue, black, green, orange, purple: the first four differ in lightness too.
 const COLOURS: [&str; 7] = [
-    "#0b4f8a", "#d55e00", "#56b4e9", "#007a5a", "#e69f00", "#aa4f8c", "#000000",
+    "#0b4f8a", "#d55e00", "#56b4e9", "#000000", "#007a5a", "#e69f00", "#aa4f8c",
 ];
 const GRID: Pen = pen("#e6e6e6", 0.8, "");
 const AXIS: Pen = pen(INK, 1.1, "");
