@@ -4,9 +4,10 @@
 //! black and white; the colours are ones that colour-blind readers tell apart as well, and the first four
 //! differ in lightness.
 //!
-//! The SVG is written here, by a small writer of its own, rather than through a plotting library. The library that
-//! was tried (plotters) rounds every point to a whole pixel, which puts steps into a smooth curve, draws each dash as
-//! an element of its own, and measures text by its number of bytes, so that a label with a Greek letter is misplaced.
+//! The SVG is written here, by a small writer of its own, rather than through a plotting library. By its source, the
+//! one considered (plotters 0.3) would have rounded every point to a whole pixel, which puts steps into a smooth curve,
+//! written each dash as an element of its own, and estimated the width of text by its number of bytes, so that a label
+//! with a Greek letter is misplaced.
 //!
 //! ```
 //! use hertzian::chart::{Chart, Curve, Line, Run};
