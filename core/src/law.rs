@@ -59,7 +59,8 @@ pub trait Law: Send + Sync {
 
     /// Where the force is linear in the rate, `phi = f(g) + h(g) r`: the spring `f` and the primitive `G` with
     /// `G' = h`, continuous across levels, as laws of the gap alone with the same arguments and levels. Then
-    /// `h(g) dg/dt = dG(g)/dt`. `None` unless [`LawFacts::rate`] is [`RateDependence::Linear`].
+    /// `h(g) dg/dt = dG(g)/dt`. `None` unless [`LawFacts::rate`] is [`RateDependence::Linear`]; also where the
+    /// compiler knows no primitive of `h`.
     fn parts(&self) -> Option<Parts<'_>>;
 }
 
@@ -115,7 +116,7 @@ pub struct LawFacts {
 pub enum RateDependence {
     /// Not at all.
     None,
-    /// `f(g) + h(g) r`: the rate term has a primitive, see [`Law::parts`].
+    /// `f(g) + h(g) r`; see [`Law::parts`].
     Linear,
     /// In any other way.
     General,
@@ -201,7 +202,10 @@ pub struct Exponent {
 
 impl Exponent {
     /// No power: smooth.
-    pub const ZERO: Self = Self { number: 0.0, argument: None };
+    pub const ZERO: Self = Self {
+        number: 0.0,
+        argument: None,
+    };
 
     /// Its value for given arguments.
     pub fn value(self, arguments: &[f64]) -> f64 {

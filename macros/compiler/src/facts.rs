@@ -193,7 +193,8 @@ fn level_facts(
     }
 }
 
-fn rate_dependence(dag: &mut Dag, pieces: &[Piece]) -> RateDependence {
+/// How the force depends on the rate, decided on the expanded derivatives.
+pub fn rate_dependence(dag: &mut Dag, pieces: &[Piece]) -> RateDependence {
     let variations: Vec<Id> = pieces
         .iter()
         .map(|piece| expand(dag, piece.by_rate))

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
 use crate::differentiate::differentiate;
-use crate::facts::{Limit, Ranges, limit_at};
+use crate::facts::{Limit, Piece, Ranges, RateDependence, limit_at, rate_dependence};
 use crate::ir::Law;
 use crate::simplify::{addends_of, expand, factors_of};
 
@@ -14,6 +14,15 @@ const INNER: Variable = Variable::Rate;
 /// The spring and the primitive of a law that is linear in its rate, with the same arguments and levels; `None` where a
 /// rate term has no primitive among the functions known here.
 pub fn parts(dag: &mut Dag, law: &Law) -> Option<(Law, Law)> {
+    let arguments = law.arguments.len();
+    let pieces: Vec<Piece> = law
+        .pieces
+        .iter()
+        .map(|&force| Piece::of(dag, force, arguments))
+        .collect();
+    if rate_dependence(dag, &pieces) != RateDependence::Linear {
+        return None;
+    }
     let still = HashMap::from([(Variable::Rate, dag.integer(0))]);
     let spring: Vec<Id> = law
         .pieces
@@ -21,9 +30,8 @@ pub fn parts(dag: &mut Dag, law: &Law) -> Option<(Law, Law)> {
         .map(|&force| dag.substitute(force, &still))
         .collect();
     let mut primitive = Vec::new();
-    for &force in &law.pieces {
-        let by_rate = differentiate(dag, force, Variable::Rate);
-        primitive.push(integrate(dag, by_rate, Ranges(&law.ranges))?);
+    for piece in &pieces {
+        primitive.push(integrate(dag, piece.by_rate, Ranges(&law.ranges))?);
     }
     let primitive = join(dag, law, &primitive)?;
     let part = |name: &str, pieces| Law {
@@ -38,7 +46,6 @@ pub fn parts(dag: &mut Dag, law: &Law) -> Option<(Law, Law)> {
 /// which piece that belongs to, otherwise at the lowest level.
 fn join(dag: &mut Dag, law: &Law, raw: &[Id]) -> Option<Vec<Id>> {
     let ranges = Ranges(&law.ranges);
-    let zero = dag.integer(0);
     let (home, origin) = origin(dag, law);
     let mut joined = raw.to_vec();
     let value = finite(limit_at(dag, raw[home], origin, ranges))?;
@@ -61,11 +68,6 @@ fn join(dag: &mut Dag, law: &Law, raw: &[Id]) -> Option<Vec<Id>> {
             ranges,
         )?;
     }
-    debug_assert!(
-        joined
-            .iter()
-            .all(|&piece| piece == zero || !dag.depends_on(piece, INNER))
-    );
     Some(joined)
 }
 

@@ -116,21 +116,17 @@ fn factor_sum(dag: &mut Dag, id: Id) -> Id {
     if common.iter().all(|&factor| dag.as_number(factor).is_some()) {
         return id;
     }
-    let one = dag.integer(1);
-    let rests: Vec<Id> = terms
-        .iter()
-        .map(|&term| {
-            let rest: Vec<Id> = factors_of(dag, term)
-                .into_iter()
-                .filter(|factor| !common.contains(factor))
-                .collect();
-            if rest.is_empty() {
-                one
-            } else {
-                dag.product(&rest)
+    common.dedup();
+    let mut rests = Vec::new();
+    for &term in &terms {
+        let mut rest = factors_of(dag, term);
+        for factor in &common {
+            if let Some(position) = rest.iter().position(|other| other == factor) {
+                rest.remove(position);
             }
-        })
-        .collect();
+        }
+        rests.push(dag.product(&rest));
+    }
     let sum = dag.sum(&rests);
     common.push(sum);
     dag.product(&common)

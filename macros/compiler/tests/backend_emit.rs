@@ -23,6 +23,11 @@ fn expansions_are_as_expected() {
             std::fs::write(&path, &text).expect("the folder is writable");
         }
         let expected = std::fs::read_to_string(&path).unwrap_or_default();
-        assert!(text == expected, "{} differs from {}", model.name, path.display());
+        assert!(
+            text == expected,
+            "{} differs from {}",
+            model.name,
+            path.display()
+        );
     }
 }

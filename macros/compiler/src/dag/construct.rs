@@ -2,6 +2,9 @@
 
 use super::{Dag, Function, Id, Node, Rational, Variable};
 
+/// Powers of logarithms are merged up to this exponent.
+const MAX_LOGARITHMS: i32 = 64;
+
 /// A product taken apart: a number, powers (base and exponent), and factors that are not powers.
 #[derive(Default)]
 struct Factors {
@@ -102,11 +105,9 @@ impl Dag {
         if parts.numbers.iter().any(|number| number.is_zero()) {
             return self.integer(0);
         }
-        self.merge_logarithms(&mut parts);
+        let logarithms = self.merge_logarithms(&mut parts);
         let (mut rest, again) = self.merge_powers(parts.powers);
-        for (base, exponent) in parts.logarithms {
-            rest.push(self.power_log(base, exponent));
-        }
+        rest.extend(logarithms);
         if again {
             for number in parts.numbers {
                 rest.push(self.number(number));
@@ -163,7 +164,15 @@ impl Dag {
     fn take_factor(&mut self, parts: &mut Factors, factor: Id) {
         match *self.node(factor) {
             Node::Number(number) => parts.numbers.push(number),
-            Node::Power(base, exponent) => parts.powers.push((base, exponent)),
+            Node::Power(base, exponent) => {
+                if let Node::PowerLog(inner, own) = *self.node(base)
+                    && let Some(count @ 1..=MAX_LOGARITHMS) = self.whole(exponent)
+                {
+                    parts.logarithms.extend((0..count).map(|_| (inner, own)));
+                } else {
+                    parts.powers.push((base, exponent));
+                }
+            }
             Node::PowerLog(base, exponent) => parts.logarithms.push((base, exponent)),
             _ => {
                 let one = self.integer(1);
@@ -172,25 +181,43 @@ impl Dag {
         }
     }
 
-    /// `x^a (x^b ln x) = x^(a+b) ln x`, for the first logarithm of each base.
-    fn merge_logarithms(&mut self, parts: &mut Factors) {
-        for index in 0..parts.logarithms.len() {
-            let base = parts.logarithms[index].0;
-            if parts.logarithms[..index]
-                .iter()
-                .any(|&(other, _)| other == base)
-            {
-                continue;
-            }
-            let mut exponents = vec![parts.logarithms[index].1];
+    /// `x^a (x^b ln x) (x^c ln x)^n = x^(a+b+nc) ln x (ln x)^n`: one factor carries the power, and the other logarithms
+    /// are a power of the plain one.
+    fn merge_logarithms(&mut self, parts: &mut Factors) -> Vec<Id> {
+        let mut merged = Vec::new();
+        while let Some(&(base, _)) = parts.logarithms.first() {
+            let mut exponents = Vec::new();
+            parts.logarithms.retain(|&(other, exponent)| {
+                if other == base {
+                    exponents.push(exponent);
+                }
+                other != base
+            });
+            let count = exponents.len();
             parts.powers.retain(|&(other, exponent)| {
                 if other == base {
                     exponents.push(exponent);
                 }
                 other != base
             });
-            parts.logarithms[index].1 = self.sum(&exponents);
+            let total = self.sum(&exponents);
+            let carrier = self.power_log(base, total);
+            let plain = if self.as_number(total) == Some(Rational::ZERO) {
+                count
+            } else {
+                count - 1
+            };
+            if plain < count {
+                merged.push(carrier);
+            }
+            if plain > 0 {
+                let zero = self.integer(0);
+                let logarithm = self.power_log(base, zero);
+                let exponent = self.number(Rational::integer(plain as i128));
+                merged.push(self.power_as_is(logarithm, exponent));
+            }
         }
+        merged
     }
 
     /// Adds the exponents of equal bases. Also whether a merged power has become something else, as in
@@ -230,6 +257,10 @@ impl Dag {
         (merged, again)
     }
 
+    fn whole(&self, id: Id) -> Option<i32> {
+        self.as_number(id).and_then(Rational::to_integer)
+    }
+
     fn power_as_is(&mut self, base: Id, exponent: Id) -> Id {
         if self.as_number(exponent) == Some(Rational::ONE) {
             base
@@ -255,6 +286,10 @@ impl Dag {
                 return self.number(value);
             }
         }
+        let repeats = exact
+            .and_then(Rational::to_integer)
+            .filter(|count| (2..=MAX_LOGARITHMS).contains(count))
+            .and_then(|count| usize::try_from(count).ok());
         match self.node(base).clone() {
             Node::Power(inner, first) => self.power_of_power(base, inner, first, exponent),
             // `(a b)^n = a^n b^n` for whole n, whatever the signs.
@@ -264,6 +299,9 @@ impl Dag {
                     .map(|&factor| self.power(factor, exponent))
                     .collect();
                 self.product(&powers)
+            }
+            Node::PowerLog(..) if repeats.is_some() => {
+                self.product(&vec![base; repeats.unwrap_or(1)])
             }
             Node::Call(Function::Absolute, inner) if exact.is_some_and(Rational::is_even) => {
                 self.power(inner, exponent)

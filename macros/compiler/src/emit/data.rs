@@ -1,7 +1,7 @@
 //! Facts and the law as data, written as constants.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::code::{number, position};
 use super::tape::{Operation, Style, Tape};
@@ -26,7 +26,7 @@ pub fn text(text: &str) -> TokenStream {
 pub fn facts(law: &Law, facts: &LawFacts) -> TokenStream {
     let name = text(&law.name);
     let arguments = list(law.arguments.iter().map(|argument| text(argument)));
-    let levels = list(facts.levels.iter().map(level));
+    let levels = list(facts.levels.iter().copied().map(level));
     let pieces = list(facts.pieces.iter().map(piece));
     let rate = match facts.rate {
         RateDependence::None => quote!(None),
@@ -46,14 +46,14 @@ pub fn facts(law: &Law, facts: &LawFacts) -> TokenStream {
     }
 }
 
-fn level(facts: &LevelFacts) -> TokenStream {
+fn level(facts: LevelFacts) -> TokenStream {
     let LevelFacts {
         belongs_above,
         force_jumps,
         by_gap_jumps,
         by_rate_jumps,
         unbounded_by_gap,
-    } = *facts;
+    } = facts;
     quote! {
         __law::LevelFacts {
             belongs_above: #belongs_above,
@@ -112,14 +112,16 @@ fn exponent(exponent: Exponent) -> TokenStream {
         return quote!(__law::Exponent::ZERO);
     }
     let number = number(exponent.number.to_f64());
-    let argument = match exponent.argument {
-        Some(index) => {
-            let index = position(index);
-            quote!(::core::option::Option::Some(#index))
-        }
-        None => quote!(::core::option::Option::None),
-    };
+    let argument = option(exponent.argument.map(position));
     quote!(__law::Exponent { number: #number, argument: #argument })
+}
+
+/// An `Option` as Rust source.
+pub fn option(value: Option<impl ToTokens>) -> TokenStream {
+    value.map_or_else(
+        || quote!(::core::option::Option::None),
+        |value| quote!(::core::option::Option::Some(#value)),
+    )
 }
 
 /// `LawData` as a constant expression: one list of nodes for levels, pieces and all derivatives.

@@ -60,10 +60,8 @@ fn of_law(dag: &Dag, law: &Law) -> String {
         } else {
             condition.join(", ")
         };
-        text.push_str(&format!(
-            "    {condition} => {}\n",
-            dag.display(piece, &name)
-        ));
+        let force = dag.display(piece, &name);
+        text.extend(["    ", &condition, " => ", &force, "\n"]);
     }
     text
 }

@@ -37,12 +37,9 @@ pub fn law(dag: &mut Dag, law: &Law, name: &Ident, parts: Option<(&Ident, &Ident
         emitter.derivatives_and_by(),
     );
     let (levels, levels_by) = (emitter.copy_levels(), emitter.levels_by(dag));
-    let parts = match parts {
-        Some((spring, primitive)) => {
-            quote!(::core::option::Option::Some(__law::Parts { spring: &#spring, primitive: &#primitive }))
-        }
-        None => quote!(::core::option::Option::None),
-    };
+    let parts = data::option(parts.map(
+        |(spring, primitive)| quote!(__law::Parts { spring: &#spring, primitive: &#primitive }),
+    ));
     quote! {
         struct #name;
 
@@ -349,17 +346,14 @@ impl<'a> Emitter<'a> {
     }
 
     fn varies(&self, target: Option<usize>, output: usize) -> bool {
-        match target {
-            Some(piece) => self.variations[piece][output] == Variation::Varying,
-            None => {
-                let first = self.pieces[0].outputs()[output];
-                self.variations[0][output] == Variation::Varying
-                    || self
-                        .pieces
-                        .iter()
-                        .any(|piece| piece.outputs()[output] != first)
-            }
-        }
+        let varies_on = |piece: usize| self.variations[piece][output] == Variation::Varying;
+        let differs = || {
+            let first = self.pieces[0].outputs()[output];
+            self.pieces
+                .iter()
+                .any(|piece| piece.outputs()[output] != first)
+        };
+        target.map_or_else(|| varies_on(0) || differs(), varies_on)
     }
 
     /// Writes outputs: in one loop those that vary, by filling those that do not.
@@ -385,12 +379,11 @@ impl<'a> Emitter<'a> {
             });
         }
         for (output, slice) in constant {
-            let value = match self.variations[target.unwrap_or(0)][*output] {
-                Variation::Zero => quote!(0.0),
-                _ => {
-                    let output = position(*output);
-                    quote!(Self::#function(a, 0.0, 0.0)[#output])
-                }
+            let value = if self.variations[target.unwrap_or(0)][*output] == Variation::Zero {
+                quote!(0.0)
+            } else {
+                let output = position(*output);
+                quote!(Self::#function(a, 0.0, 0.0)[#output])
             };
             body.extend(quote!(#slice.fill(#value);));
         }
@@ -421,13 +414,13 @@ fn piece_name(index: usize) -> Ident {
 }
 
 fn on_pattern(target: Option<usize>) -> TokenStream {
-    match target {
-        Some(piece) => {
+    target.map_or_else(
+        || quote!(__law::On::AllPieces),
+        |piece| {
             let piece = position(piece);
             quote!(__law::On::Piece(#piece))
-        }
-        None => quote!(__law::On::AllPieces),
-    }
+        },
+    )
 }
 
 fn used(code: &Code, variable: Variable, name: &str) -> TokenStream {

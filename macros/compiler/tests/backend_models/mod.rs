@@ -20,7 +20,10 @@ impl Sketch {
     pub fn new(arguments: &[(&str, (Bound, Bound))]) -> Self {
         Self {
             dag: Dag::default(),
-            names: arguments.iter().map(|(name, _)| (*name).to_owned()).collect(),
+            names: arguments
+                .iter()
+                .map(|(name, _)| (*name).to_owned())
+                .collect(),
             ranges: arguments.iter().map(|&(_, range)| range).collect(),
         }
     }
@@ -38,7 +41,8 @@ impl Sketch {
     }
 
     pub fn number(&mut self, text: &str) -> Id {
-        self.dag.number(Rational::from_decimal(text).expect("a literal"))
+        self.dag
+            .number(Rational::from_decimal(text).expect("a literal"))
     }
 
     pub fn law(&self, name: &str, levels: &[(Id, bool)], pieces: &[Id]) -> Law {
@@ -48,7 +52,10 @@ impl Sketch {
             ranges: self.ranges.clone(),
             levels: levels
                 .iter()
-                .map(|&(value, belongs_above)| Level { value, belongs_above })
+                .map(|&(value, belongs_above)| Level {
+                    value,
+                    belongs_above,
+                })
                 .collect(),
             pieces: pieces.to_vec(),
         }
@@ -60,15 +67,41 @@ impl Sketch {
         let mut coefficients = Vec::new();
         let one = self.dag.integer(1);
         coefficients.push((Place::Mass { row: 0, column: 0 }, one));
-        let constant = Wave { harmonic: 0, sine: false };
-        coefficients.push((Place::ForceDirection { contact: 0, row: 0, wave: constant }, one));
-        coefficients.push((Place::GapDirection { contact: 0, column: 0, wave: constant }, one));
+        let constant = Wave {
+            harmonic: 0,
+            sine: false,
+        };
+        coefficients.push((
+            Place::ForceDirection {
+                contact: 0,
+                row: 0,
+                wave: constant,
+            },
+            one,
+        ));
+        coefficients.push((
+            Place::GapDirection {
+                contact: 0,
+                column: 0,
+                wave: constant,
+            },
+            one,
+        ));
         for (index, (argument, range)) in self.names.iter().zip(&self.ranges).enumerate() {
             parameters.push(parameter(argument, *range));
             let value = self.dag.variable(Variable::Parameter(index));
             coefficients.push((Place::Argument { contact: 0, index }, value));
         }
-        for (name, wave) in [("load", constant), ("drive", Wave { harmonic: 1, sine: false })] {
+        for (name, wave) in [
+            ("load", constant),
+            (
+                "drive",
+                Wave {
+                    harmonic: 1,
+                    sine: false,
+                },
+            ),
+        ] {
             let value = self.dag.variable(Variable::Parameter(parameters.len()));
             parameters.push(parameter(name, ANY));
             coefficients.push((Place::Load { row: 0, wave }, value));
@@ -90,7 +123,12 @@ impl Sketch {
 }
 
 fn parameter(name: &str, (minimum, maximum): (Bound, Bound)) -> Parameter {
-    Parameter { name: quote::format_ident!("{name}"), documentation: String::new(), minimum, maximum }
+    Parameter {
+        name: quote::format_ident!("{name}"),
+        documentation: String::new(),
+        minimum,
+        maximum,
+    }
 }
 
 /// `gap > 0 => 2*zeta*rate + gap^exponent`
@@ -133,7 +171,11 @@ pub fn backlash() -> Model {
     let (beyond, before) = (s.dag.difference(gap, b), s.dag.sum(&[gap, b]));
     let above = s.dag.product(&[k, beyond]);
     let below = s.dag.product(&[k, before]);
-    let law = s.law("backlash", &[(lower, true), (b, false)], &[below, zero, above]);
+    let law = s.law(
+        "backlash",
+        &[(lower, true), (b, false)],
+        &[below, zero, above],
+    );
     s.model("Backlash", law)
 }
 
