@@ -3,9 +3,11 @@
 //! Everything but the type itself stands inside one anonymous constant, so that no name leaks into the user's module;
 //! inside it, every path starts at a crate root or at an alias of one.
 
+mod batch;
 mod code;
 mod data;
 mod document;
+mod kernel;
 mod law;
 mod names;
 mod powers;

@@ -2,6 +2,7 @@
 //! once.
 
 use std::collections::HashMap;
+use std::mem::Discriminant;
 
 use super::powers::Exponents;
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
@@ -79,9 +80,12 @@ impl Tape {
             exponents,
             operations: Vec::new(),
             known: HashMap::new(),
+            dependence: HashMap::new(),
             at: HashMap::new(),
         };
         for id in builder.dag.reachable(roots) {
+            let dependence = builder.dependence_of(id);
+            builder.dependence.insert(id, dependence);
             let position = builder.lower(id);
             builder.at.insert(id, position);
         }
@@ -176,13 +180,40 @@ impl Operation {
         }
     }
 
-    /// Equal operations have equal keys; numbers are compared by their bits.
-    fn key(self) -> String {
-        match self {
-            Self::Number(value) => format!("{:x}", value.to_bits()),
-            _ => format!("{self:?}"),
-        }
+    /// Equal operations have equal keys: the kind, what distinguishes it, and the operands.
+    fn key(self) -> Key {
+        let distinction = match self {
+            Self::Number(value) => Distinction::Bits(value.to_bits()),
+            Self::Input(variable) => Distinction::Variable(variable),
+            Self::Call(function, _) => Distinction::Function(function),
+            Self::Integer(_, exponent) => Distinction::Exponent(exponent),
+            _ => Distinction::None,
+        };
+        (std::mem::discriminant(&self), distinction, self.operands())
     }
+}
+
+type Key = (Discriminant<Operation>, Distinction, Vec<usize>);
+
+/// What distinguishes operations of one kind, besides their operands.
+#[derive(PartialEq, Eq, Hash)]
+enum Distinction {
+    None,
+    Bits(u64),
+    Variable(Variable),
+    Function(Function),
+    Exponent(i32),
+}
+
+/// How an expression depends on its surroundings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Dependence {
+    /// A number.
+    None,
+    /// Something that is the same for all samples of a batch.
+    Batch,
+    /// Gap or rate.
+    Sample,
 }
 
 pub(super) struct Builder<'a> {
@@ -190,7 +221,8 @@ pub(super) struct Builder<'a> {
     style: Style,
     pub(super) exponents: Exponents,
     operations: Vec<Operation>,
-    known: HashMap<String, usize>,
+    known: HashMap<Key, usize>,
+    dependence: HashMap<Id, Dependence>,
     pub(super) at: HashMap<Id, usize>,
 }
 
@@ -211,14 +243,29 @@ impl Builder<'_> {
 
     /// Whether an expression changes from sample to sample.
     pub(super) fn varies(&self, id: Id) -> bool {
-        self.dag
-            .variables(id)
-            .iter()
-            .any(|v| matches!(v, Variable::Gap | Variable::Rate))
+        self.dependence_of(id) == Dependence::Sample
+    }
+
+    /// Of operands it is known already.
+    fn dependence_of(&self, id: Id) -> Dependence {
+        if let Some(&known) = self.dependence.get(&id) {
+            return known;
+        }
+        match self.dag.node(id) {
+            Node::Variable(Variable::Gap | Variable::Rate) => Dependence::Sample,
+            Node::Variable(_) => Dependence::Batch,
+            _ => {
+                let operands = self.dag.operands(id).into_iter();
+                operands
+                    .map(|operand| self.dependence_of(operand))
+                    .max()
+                    .unwrap_or(Dependence::None)
+            }
+        }
     }
 
     pub(super) fn lower(&mut self, id: Id) -> usize {
-        if self.dag.variables(id).is_empty() {
+        if self.dependence_of(id) == Dependence::None {
             let value = self.dag.evaluate(id, &|_| 0.0);
             return self.number(value);
         }
@@ -286,7 +333,7 @@ impl Builder<'_> {
                 let magnitude = self.number(number.to_f64().abs());
                 (number.is_negative(), magnitude)
             }
-            Node::Product(factors) if !self.dag.variables(term).is_empty() => {
+            Node::Product(factors) if self.dependence_of(term) != Dependence::None => {
                 self.product(&factors)
             }
             _ => (false, self.at[&term]),
