@@ -308,8 +308,12 @@ fn arguments_are_used(law: &Law, diagnostics: &mut Diagnostics) {
     }
     for (what, name) in local(law) {
         if !used.contains(&name.to_string()) {
+            let advice = match what {
+                "gap" => "a force without a gap is a load, which stands in the equation",
+                _ => "use it, or remove it",
+            };
             let message = format!(
-                "{what} `{name}` of law `{}` is never used: use it, or remove it",
+                "{what} `{name}` of law `{}` is never used: {advice}",
                 law.name
             );
             diagnostics.report(Extent::at(name.span()), message);

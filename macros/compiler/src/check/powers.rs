@@ -165,9 +165,7 @@ pub(crate) fn advice_on_ranges(context: &Expander, id: Id, relation: &str) -> St
         .collect();
     match names.as_slice() {
         [] => "change the numbers".to_owned(),
-        [name] if context.show(id) == *name => {
-            format!("declare the range, `param {name} {relation} 0;`")
-        }
+        [name] => format!("declare its range, as in `param {name} {relation} 0;`"),
         names => format!("declare ranges that say so for `{}`", names.join("`, `")),
     }
 }

@@ -86,7 +86,9 @@ impl Parser<'_> {
     fn item(&mut self, declaration: &mut Declaration) -> syn::Result<()> {
         let documentation = self.documentation()?;
         if self.tokens.take_word("param") {
-            declaration.parameters.push(self.parameter(documentation)?);
+            let (parameter, result) = self.parameter(documentation)?;
+            declaration.parameters.push(parameter);
+            return result;
         } else if self.tokens.take_word("law") {
             let law = self.law()?;
             declaration.laws.push(law);
@@ -108,39 +110,50 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `name range ;`, the range one of `in a..b`, `> a`, `>= a`, `< b`, `<= b`, or nothing.
-    fn parameter(&mut self, documentation: String) -> syn::Result<Parameter> {
+    /// `name range ;`. A parameter with a faulty range is kept, so that its field exists.
+    fn parameter(&mut self, documentation: String) -> syn::Result<(Parameter, syn::Result<()>)> {
         let name = self.name("the name of the parameter")?;
+        let mut parameter = Parameter {
+            documentation,
+            range: Extent::at(name.span()),
+            name,
+            minimum: None,
+            maximum: None,
+        };
+        let result = self
+            .range(&mut parameter)
+            .and_then(|()| self.expect(";", "`;`, or a range such as `in 0.0..` or `> 0`"));
+        Ok((parameter, result))
+    }
+
+    /// One of `in a..b`, `> a`, `>= a`, `< b`, `<= b`, or nothing.
+    fn range(&mut self, parameter: &mut Parameter) -> syn::Result<()> {
         let start = self.tokens.here();
-        let (mut minimum, mut maximum) = (None, None);
-        if self.tokens.take_word("in") {
-            minimum = self.limit(true)?;
+        let end = if self.tokens.take_word("in") {
+            parameter.minimum = self.limit(true)?;
             let inclusive = self.tokens.is("..=");
             if !inclusive && !self.tokens.is("..") {
                 return Err(self.unexpected("a range, as in `0.0..` or `-1..=1`"));
             }
             let _ = self.tokens.take("..=") || self.tokens.take("..");
-            maximum = self.limit(inclusive)?;
+            parameter.maximum = self.limit(inclusive)?;
+            self.tokens.before()
         } else if let Some((lower, or_equal)) = self.relation() {
-            let limit = self
-                .limit(or_equal)?
-                .ok_or_else(|| self.unexpected("a number"))?;
-            *(if lower { &mut minimum } else { &mut maximum }) = Some(limit);
-        }
-        let ranged = minimum.is_some() || maximum.is_some();
-        let range = if ranged {
-            start.to(self.tokens.before())
+            let limit = self.limit(or_equal)?;
+            if limit.is_none() {
+                return Err(self.unexpected("a number"));
+            }
+            *(if lower {
+                &mut parameter.minimum
+            } else {
+                &mut parameter.maximum
+            }) = limit;
+            self.tokens.before()
         } else {
-            Extent::at(name.span())
+            return Ok(());
         };
-        self.expect(";", "`;`, or a range such as `in 0.0..` or `> 0`")?;
-        Ok(Parameter {
-            documentation,
-            name,
-            minimum,
-            maximum,
-            range,
-        })
+        parameter.range = start.to(end);
+        Ok(())
     }
 
     /// A number that may carry a sign, if there is one.
@@ -191,11 +204,13 @@ impl Parser<'_> {
         };
         self.tokens.next();
         let mut pieces = Vec::new();
+        let mut sound = true;
         while self.tokens.position() < close {
             self.depth = 0;
             match self.piece(pieces.is_empty()) {
                 Ok(piece) => pieces.push(piece),
                 Err(fault) => {
+                    sound = false;
                     self.diagnostics.add(fault);
                     while self.tokens.position() < close && !self.tokens.take(",") {
                         self.tokens.skip();
@@ -203,7 +218,7 @@ impl Parser<'_> {
                 }
             }
         }
-        if pieces.is_empty() {
+        if pieces.is_empty() && sound {
             self.diagnostics.report(
                 self.tokens.here(),
                 "a law has at least one piece, as in `gap > 0 => gap^1.5`",

@@ -1,0 +1,11 @@
+hertzian::oscillator! {
+    pub Model(x) {
+        law contact(gap) {
+            1 < gap < 0 => gap,
+            else => 0,
+        }
+        ddot(x) + contact(x) = cos(omega*t);
+    }
+}
+
+fn main() {}

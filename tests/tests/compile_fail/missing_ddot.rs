@@ -1,0 +1,7 @@
+hertzian::oscillator! {
+    pub Model(x) {
+        dot(x) + x = cos(omega*t);
+    }
+}
+
+fn main() {}

@@ -1,0 +1,7 @@
+hertzian::oscillator! {
+    pub Model {
+        ddot(x) + x = 0;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,12 @@
+hertzian::oscillator! {
+    pub Model(x) {
+        law contact(gap) {
+            gap > 0 => gap^1.5,
+            gap <= 0 => 0,
+            else => 1,
+        }
+        ddot(x) + contact(x) = cos(omega*t);
+    }
+}
+
+fn main() {}

@@ -1,0 +1,268 @@
+//! Declarations that must compile, and what their types say of themselves.
+
+use hertzian::law::{Derivatives, On, RateDependence};
+use hertzian::system::{Bound, Place, System, Variable};
+
+hertzian::oscillator! {
+    /// One-sided contact with damping.
+    pub OneSided(x) {
+        /// damping ratio
+        param zeta in 0.0..;
+        /// normal load
+        param load;
+        /// excitation amplitude
+        param drive;
+
+        law contact(gap) {
+            gap > 0 => 2*zeta*dot(gap) + gap^1.5,
+            else    => 0,
+        }
+
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    pub(crate) AsInThePaper(x) {
+        param zeta in 0.0..;
+        param alpha > 0;
+        param load;
+        param drive;
+        ddot(x) + 2*zeta*H(x)*dot(x) + H(x)*sgn(x)*|x|^alpha = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    Continuous(x) {
+        param zeta in 0.0..1.0;
+        param alpha in 0.5..=3;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^alpha = cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    TwoWells(x) { ddot(x) + 0.1*dot(x) + ||x|-1|^1.5 = 0.2*cos(omega*t); }
+}
+
+hertzian::oscillator! {
+    Backlash(x) {
+        param play > 0;
+        param ζ in 0.0..;
+        law teeth(gap) {
+            gap > play => gap - play,
+            -play <= gap <= play => 0,
+            gap < -play => gap + play,
+        }
+        ddot(x) + 2*ζ*dot(x) + (1 + 0.2*cos(omega*t))*teeth(x) = 0.1;
+    }
+}
+
+hertzian::oscillator! {
+    /// A rotor with two moving contacts.
+    Bearing(x, y) {
+        param m > 0;
+        param eccentricity;
+        param clearance >= 0;
+        param k > 0;
+        law hertz(gap, stiffness) { gap >= 0 => stiffness*gap^1.5, else => 0 }
+        let speed = omega*t/3;
+        m*ddot(x) + 2*dot(x) + cos(speed)*hertz(x*cos(speed) + y*sin(speed) - clearance, k)
+            - cos(speed)*hertz(-x*cos(speed) - y*sin(speed) - clearance, k) = m*eccentricity*omega^2*cos(omega*t);
+        m*ddot(y) + 2*dot(y) + sin(speed)*hertz(x*cos(speed) + y*sin(speed) - clearance, k)
+            - sin(speed)*hertz(-x*cos(speed) - y*sin(speed) - clearance, k) = m*eccentricity*omega^2*sin(omega*t + pi/6);
+    }
+}
+
+hertzian::oscillator! {
+    Smooth(x) {
+        param mu;
+        ddot(x) + mu*(x^2 - 1)*dot(x) + x + x^3 + 0.1*|dot(x)|*dot(x) + tanh(x) + sqrt(1 + x^2) = 0;
+    }
+}
+
+hertzian::oscillator! {
+    Mathieu(x) { param e; ddot(x) + (1 + e*cos(2*omega*t))*x + 0.01*dot(x)/2 + (x^2)^alpha/4 = 0; param alpha > 0.5; }
+}
+
+hertzian::oscillator! {
+    TwoMasses(x1, x2) {
+        param m1 > 0;
+        ddot(x1) + (x1 - x2) + 100*(x1 - x2)^3/m1 = 0;
+        2*ddot(x2) + 2*(x2 - x1) + 100*(x2 - x1)^3 = cos(omega*t)^3;
+    }
+}
+
+fn coefficient(system: &dyn System, place: Place, omega: f64) -> f64 {
+    let facts = system.facts();
+    let mut parameters = vec![0.0; facts.parameters.len()];
+    system.values(&mut parameters);
+    let mut values = vec![0.0; facts.places.len()];
+    system.coefficients(&parameters, omega, &mut values);
+    facts
+        .places
+        .iter()
+        .zip(&values)
+        .filter(|(other, _)| **other == place)
+        .map(|(_, value)| value)
+        .sum()
+}
+
+fn force(system: &dyn System, law: usize, arguments: &[f64], gap: f64, rate: f64) -> f64 {
+    let mut force = [0.0];
+    system
+        .law(law)
+        .force(On::AllPieces, arguments, &[gap], &[rate], &mut force);
+    force[0]
+}
+
+#[test]
+fn a_law_keeps_its_pieces_and_its_damping() {
+    let model = OneSided {
+        zeta: 0.032,
+        load: 1.0,
+        drive: 0.1,
+    };
+    let facts = model.facts();
+    assert_eq!(facts.parameters[0].documentation, "damping ratio");
+    assert_eq!(facts.parameters[0].minimum, Bound::Included(0.0));
+    assert_eq!(
+        facts.equation,
+        "ddot(x) + contact(x) = drive*cos(omega*t) + load"
+    );
+    assert_eq!(model.law(0).facts().rate, RateDependence::Linear);
+    assert_eq!(force(&model, 0, &[0.032], -1.0, 3.0), 0.0);
+    let expected = 2.0 * 0.032 * 3.0 + 8.0;
+    assert!((force(&model, 0, &[0.032], 4.0, 3.0) - expected).abs() < 1e-14);
+}
+
+#[test]
+fn both_notations_are_one_model() {
+    let law = OneSided {
+        zeta: 0.1,
+        load: 0.0,
+        drive: 0.0,
+    };
+    let paper = AsInThePaper {
+        zeta: 0.1,
+        alpha: 1.5,
+        load: 0.0,
+        drive: 0.0,
+    };
+    assert_eq!(
+        law.law(0).facts().levels.len(),
+        paper.law(0).facts().levels.len()
+    );
+    for gap in [-1.0, 0.0, 1e-3, 2.0] {
+        let (a, b) = (
+            force(&law, 0, &[0.1], gap, 0.7),
+            force(&paper, 0, &[0.1, 1.5], gap, 0.7),
+        );
+        assert!((a - b).abs() <= 1e-15 * a.abs(), "{a} {b}");
+    }
+}
+
+#[test]
+fn linear_damping_is_no_force_of_the_law() {
+    let model = Continuous {
+        zeta: 0.3,
+        alpha: 0.7,
+    };
+    assert_eq!(
+        coefficient(&model, Place::Damping { row: 0, column: 0 }, 1.0),
+        0.6
+    );
+    assert_eq!(model.law(0).facts().rate, RateDependence::None);
+    assert!(model.law(0).facts().odd);
+    assert_eq!(force(&model, 0, &[0.7], -1.0, 5.0), -1.0);
+}
+
+#[test]
+fn nested_absolute_values_are_four_pieces() {
+    let model = TwoWells {};
+    let mut levels = [0.0; 3];
+    model.law(0).levels(&[], &mut levels);
+    assert_eq!(levels, [-1.0, 0.0, 1.0]);
+    for gap in [-2.5_f64, -0.4, 0.3, 1.7] {
+        let expected = (gap.abs() - 1.0).abs().powf(1.5);
+        assert!((force(&model, 0, &[], gap, 0.0) - expected).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn levels_follow_their_parameter() {
+    let model = Backlash {
+        play: 0.25,
+        ζ: 0.01,
+    };
+    let (mut levels, mut slopes) = ([0.0; 2], [0.0; 2]);
+    model.law(0).levels(&[0.25], &mut levels);
+    model.law(0).levels_by(&[0.25], 0, &mut slopes);
+    assert_eq!((levels, slopes), ([-0.25, 0.25], [-1.0, 1.0]));
+}
+
+#[test]
+fn moving_gaps_share_contacts_between_equations() {
+    let model = Bearing {
+        m: 2.0,
+        eccentricity: 0.1,
+        clearance: 0.5,
+        k: 10.0,
+    };
+    let facts = model.facts();
+    assert_eq!((facts.divisor, facts.laws, facts.contacts.len()), (3, 1, 2));
+    let mut derivatives = vec![0.0; facts.places.len()];
+    let mut parameters = vec![0.0; 4];
+    model.values(&mut parameters);
+    model.coefficients_by(Variable::Omega, &parameters, 3.0, &mut derivatives);
+    let load = facts
+        .places
+        .iter()
+        .position(|place| matches!(place, Place::Load { row: 0, .. }))
+        .unwrap();
+    assert!((derivatives[load] - 2.0 * 0.1 * 2.0 * 3.0).abs() < 1e-15);
+}
+
+#[test]
+fn smooth_forces_leave_their_linear_part_to_the_matrices() {
+    let model = Smooth { mu: 0.4 };
+    assert_eq!(
+        coefficient(&model, Place::Damping { row: 0, column: 0 }, 1.0),
+        -0.4
+    );
+    let (gap, rate) = ([0.5], [-2.0]);
+    let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
+    let out = Derivatives {
+        force: &mut force,
+        by_gap: &mut by_gap,
+        by_rate: &mut by_rate,
+    };
+    model
+        .law(0)
+        .derivatives(On::AllPieces, &[0.4], &gap, &rate, out);
+    let expected = 0.4 * 0.25 * -2.0 + 0.125 - 0.4 + 0.5_f64.tanh() + 1.25_f64.sqrt();
+    assert!((force[0] - expected).abs() < 1e-14);
+    assert!((by_rate[0] - (0.4 * 0.25 + 0.4)).abs() < 1e-14);
+}
+
+#[test]
+fn harmonic_stiffness_stands_in_the_stiffness_matrix() {
+    let model = Mathieu {
+        e: 0.3,
+        alpha: 0.75,
+    };
+    let facts = model.facts();
+    let waves = facts
+        .places
+        .iter()
+        .filter(|place| matches!(place, Place::Stiffness { .. }))
+        .count();
+    assert_eq!(waves, 2);
+    assert!((force(&model, 0, &[1.5], -2.0, 0.0) - 2.0_f64.powf(1.5)).abs() < 1e-14);
+}
+
+#[test]
+fn a_force_between_two_masses_is_one_contact() {
+    let model = TwoMasses { m1: 4.0 };
+    let facts = model.facts();
+    assert_eq!((facts.laws, facts.contacts.len()), (1, 1));
+}
