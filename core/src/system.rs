@@ -131,7 +131,31 @@ pub struct Wave {
 
 impl Wave {
     /// The constant function.
-    pub const CONSTANT: Self = Self { harmonic: 0, part: Part::Cosine };
+    pub const CONSTANT: Self = Self {
+        harmonic: 0,
+        part: Part::Cosine,
+    };
+
+    /// The wave that the phase derivative is `harmonic` times, and its sign: `-sin` for a cosine, `cos` for a sine.
+    pub const fn derivative(self) -> (Self, f64) {
+        let Self { harmonic, part } = self;
+        match part {
+            Part::Cosine => (
+                Self {
+                    harmonic,
+                    part: Part::Sine,
+                },
+                -1.0,
+            ),
+            Part::Sine => (
+                Self {
+                    harmonic,
+                    part: Part::Cosine,
+                },
+                1.0,
+            ),
+        }
+    }
 }
 
 /// Cosine or sine.

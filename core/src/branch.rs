@@ -1,0 +1,201 @@
+//! A computed branch of periodic orbits.
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::continuation::follow::Stop;
+use crate::error::Error;
+use crate::fourier::series;
+use crate::observe::{Motion, Observed};
+use crate::response::Follower;
+use crate::stability::Stability;
+use crate::statistics::Statistics;
+
+/// A periodic orbit as Fourier series of its coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orbit {
+    /// Coordinate by coordinate, each laid out as in [`series`].
+    pub(crate) series: Vec<f64>,
+    pub(crate) coordinates: usize,
+    /// Excitation frequency.
+    pub omega: f64,
+    /// Base frequency: the orbit repeats after `2 pi / base`.
+    pub base: f64,
+    /// Number of excitation periods in its period.
+    pub period: usize,
+}
+
+impl Orbit {
+    /// Fourier series of one coordinate, `[mean, cos 1, sin 1, ...]` in harmonics of the base frequency.
+    ///
+    /// # Panics
+    /// If there is no such coordinate.
+    pub fn series(&self, coordinate: usize) -> &[f64] {
+        assert!(
+            coordinate < self.coordinates,
+            "the orbit has {} coordinates",
+            self.coordinates
+        );
+        let length = self.series.len() / self.coordinates;
+        &self.series[coordinate * length..][..length]
+    }
+
+    /// Number of coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.coordinates
+    }
+
+    /// Number of harmonics.
+    pub fn harmonics(&self) -> usize {
+        series::harmonics(self.series(0))
+    }
+
+    /// Position and velocity of one coordinate at a time.
+    ///
+    /// # Panics
+    /// If there is no such coordinate.
+    pub fn state(&self, coordinate: usize, time: f64) -> (f64, f64) {
+        let (x, slope, _) =
+            series::value_and_derivatives(self.series(coordinate), self.base * time);
+        (x, self.base * slope)
+    }
+}
+
+/// One orbit of a branch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Value of what the branch varies: omega or a parameter.
+    pub value: f64,
+    /// Parameters of the system, in the order of its declaration.
+    pub parameters: Vec<f64>,
+    /// The orbit.
+    pub orbit: Orbit,
+    /// Its stability.
+    pub stability: Stability,
+    /// What is read off it.
+    pub observed: Observed,
+}
+
+impl Point {
+    /// Excitation frequency.
+    pub fn omega(&self) -> f64 {
+        self.orbit.omega
+    }
+
+    /// Motion of the first coordinate.
+    pub fn motion(&self) -> Motion {
+        self.observed.motions[0]
+    }
+
+    /// Peak-to-peak of the first coordinate.
+    pub fn peak_to_peak(&self) -> f64 {
+        self.motion().peak_to_peak()
+    }
+}
+
+/// What happens at an [`Event`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum EventKind {
+    /// The branch turns back in what it varies; a multiplier is one.
+    Fold,
+}
+
+impl fmt::Display for EventKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Fold => "fold",
+        })
+    }
+}
+
+/// A special orbit of a branch, located until its test function vanished.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// What happens there.
+    pub kind: EventKind,
+    /// The orbit.
+    pub point: Point,
+    /// Estimated error of [`Point::value`], from the harmonics and samples that were left out.
+    pub error: f64,
+    /// Value of the test function that was reached.
+    pub test: f64,
+    /// Number of points of the branch before it.
+    pub after: usize,
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            kind, point, error, ..
+        } = self;
+        let (value, size) = (point.value, point.peak_to_peak());
+        write!(
+            f,
+            "{kind} at {value:.9} (error {error:.0e}), peak-to-peak {size:.6}"
+        )
+    }
+}
+
+/// A place where the branch turned back, but not through a fold: the test function jumped.
+///
+/// A sampled balance of a force that jumps does this (see [`aft`](crate)), and so does an orbit that grazes a level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    /// What the branch varies, where the jump is.
+    pub value: f64,
+    /// Value of the test function beside the jump.
+    pub test: f64,
+    /// Number of points of the branch before it.
+    pub after: usize,
+}
+
+/// A branch of orbits in the order in which it was followed.
+#[derive(Debug)]
+pub struct Branch<'a> {
+    /// Name of what it varies.
+    pub varied: String,
+    /// The orbits.
+    pub points: Vec<Point>,
+    /// Special orbits.
+    pub events: Vec<Event>,
+    /// Turns that are not folds.
+    pub turns: Vec<Turn>,
+    /// Why it ended.
+    pub stopped: Stop,
+    /// What it cost.
+    pub statistics: Statistics,
+    /// Time of the computation.
+    pub elapsed: Duration,
+    pub(crate) follower: Follower<'a>,
+}
+
+impl Branch<'_> {
+    /// The folds.
+    pub fn folds(&self) -> impl Iterator<Item = &Event> {
+        self.events
+            .iter()
+            .filter(|event| event.kind == EventKind::Fold)
+    }
+
+    /// Every orbit of the branch at a value of what it varies, in branch order; empty where the branch does not pass.
+    ///
+    /// # Errors
+    /// If an orbit between two points cannot be computed.
+    pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
+        self.follower.at(&self.points, value)
+    }
+
+    /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    #[cfg(feature = "plot")]
+    pub fn plot(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        self.chart().write(path).map_err(|error| Error::File {
+            path: path.display().to_string(),
+            reason: error.to_string(),
+        })
+    }
+}

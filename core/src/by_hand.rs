@@ -1,0 +1,241 @@
+//! The paper's oscillator written out by hand: the naive end of the chain of oracles, for tests of the runtime.
+//!
+//! `x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = A cos(omega t) + W`, Wang et al. (2021), Eq. (1).
+
+use std::borrow::Cow;
+
+use crate::generic::LawData;
+use crate::law::{
+    Derivatives, Law, LawFacts, LevelFacts, On, Parts, PieceFacts, RateDependence, Variation,
+};
+use crate::system::{
+    Bound, ContactFacts, ParameterFacts, Part, Place, System, SystemFacts, Variable, Wave,
+};
+
+/// The oscillator, with all its parameters at run time.
+#[derive(Debug)]
+pub(crate) struct PowerForm {
+    pub(crate) values: [f64; 4],
+    facts: SystemFacts,
+    law: PowerLaw,
+}
+
+/// Its law: arguments `[zeta, alpha]`.
+#[derive(Debug)]
+struct PowerLaw {
+    one_sided: bool,
+    facts: LawFacts,
+    data: LawData,
+}
+
+const COSINE: Wave = Wave {
+    harmonic: 1,
+    part: Part::Cosine,
+};
+
+impl PowerForm {
+    pub(crate) fn new(one_sided: bool, alpha: f64, zeta: f64, load: f64, drive: f64) -> Self {
+        let parameter = |name: &'static str| ParameterFacts {
+            name: name.into(),
+            documentation: "".into(),
+            minimum: Bound::Unbounded,
+            maximum: Bound::Unbounded,
+        };
+        let facts = SystemFacts {
+            name: "PowerForm".into(),
+            equation: "".into(),
+            coordinates: vec!["x".into()].into(),
+            parameters: ["zeta", "alpha", "load", "drive"]
+                .map(parameter)
+                .to_vec()
+                .into(),
+            divisor: 1,
+            laws: 1,
+            contacts: vec![ContactFacts { law: 0 }].into(),
+            places: vec![
+                Place::Mass { row: 0, column: 0 },
+                Place::Load {
+                    row: 0,
+                    wave: Wave::CONSTANT,
+                },
+                Place::Load {
+                    row: 0,
+                    wave: COSINE,
+                },
+                Place::ForceDirection {
+                    contact: 0,
+                    row: 0,
+                    wave: Wave::CONSTANT,
+                },
+                Place::GapDirection {
+                    contact: 0,
+                    column: 0,
+                    wave: Wave::CONSTANT,
+                },
+                Place::Argument {
+                    contact: 0,
+                    index: 0,
+                },
+                Place::Argument {
+                    contact: 0,
+                    index: 1,
+                },
+            ]
+            .into(),
+        };
+        let law = PowerLaw::new(one_sided);
+        Self {
+            values: [zeta, alpha, load, drive],
+            facts,
+            law,
+        }
+    }
+}
+
+impl PowerLaw {
+    fn new(one_sided: bool) -> Self {
+        let piece = |zero: bool| {
+            let variation = |v| if zero { Variation::Zero } else { v };
+            PieceFacts {
+                affine: zero,
+                force: variation(Variation::Varying),
+                by_gap: variation(Variation::Varying),
+                by_rate: variation(Variation::Constant),
+                by_argument: vec![variation(Variation::Varying); 2].into(),
+                terms: Cow::Borrowed(&[]),
+            }
+        };
+        let facts = LawFacts {
+            name: "contact".into(),
+            arguments: vec!["zeta".into(), "alpha".into()].into(),
+            levels: vec![LevelFacts {
+                belongs_above: false,
+                force_jumps: false,
+                by_gap_jumps: true,
+                by_rate_jumps: one_sided,
+                unbounded_by_gap: true,
+            }]
+            .into(),
+            pieces: vec![piece(one_sided), piece(false)].into(),
+            rate: RateDependence::Linear,
+            odd: !one_sided,
+        };
+        let data = LawData {
+            nodes: Cow::Borrowed(&[]),
+            levels: Cow::Borrowed(&[]),
+            pieces: Cow::Borrowed(&[]),
+        };
+        Self {
+            one_sided,
+            facts,
+            data,
+        }
+    }
+
+    /// Force and derivatives by gap, rate and `alpha`.
+    fn point(&self, on: On, [zeta, alpha]: [f64; 2], g: f64, r: f64) -> [f64; 4] {
+        let above = match on {
+            On::AllPieces => g > 0.0,
+            On::Piece(piece) => piece == 1,
+        };
+        if self.one_sided && !above {
+            return [0.0; 4];
+        }
+        let sign = if above { 1.0 } else { -1.0 };
+        let size = (sign * g).max(0.0);
+        let power = size.powf(alpha);
+        let slope = if size > 0.0 {
+            alpha * size.powf(alpha - 1.0)
+        } else {
+            0.0
+        };
+        let log = if size > 0.0 { power * size.ln() } else { 0.0 };
+        [2.0 * zeta * r + sign * power, slope, 2.0 * zeta, sign * log]
+    }
+}
+
+impl Law for PowerLaw {
+    fn facts(&self) -> &LawFacts {
+        &self.facts
+    }
+
+    fn data(&self) -> &LawData {
+        &self.data
+    }
+
+    fn levels(&self, _arguments: &[f64], levels: &mut [f64]) {
+        levels[0] = 0.0;
+    }
+
+    fn levels_by(&self, _arguments: &[f64], _argument: usize, by_argument: &mut [f64]) {
+        by_argument[0] = 0.0;
+    }
+
+    fn force(&self, on: On, a: &[f64], gap: &[f64], rate: &[f64], force: &mut [f64]) {
+        for ((force, g), r) in force.iter_mut().zip(gap).zip(rate) {
+            *force = self.point(on, [a[0], a[1]], *g, *r)[0];
+        }
+    }
+
+    fn derivatives(&self, on: On, a: &[f64], gap: &[f64], rate: &[f64], out: Derivatives<'_>) {
+        for (i, (g, r)) in gap.iter().zip(rate).enumerate() {
+            let [force, by_gap, by_rate, _] = self.point(on, [a[0], a[1]], *g, *r);
+            (out.force[i], out.by_gap[i], out.by_rate[i]) = (force, by_gap, by_rate);
+        }
+    }
+
+    fn derivatives_and_by(
+        &self,
+        argument: usize,
+        on: On,
+        a: &[f64],
+        gap: &[f64],
+        rate: &[f64],
+        out: Derivatives<'_>,
+        by_argument: &mut [f64],
+    ) {
+        self.derivatives(on, a, gap, rate, out);
+        for (i, (g, r)) in gap.iter().zip(rate).enumerate() {
+            let [_, _, by_rate, by_alpha] = self.point(on, [a[0], a[1]], *g, *r);
+            let by_zeta = if by_rate == 0.0 && a[0] != 0.0 {
+                0.0
+            } else {
+                2.0 * r
+            };
+            by_argument[i] = if argument == 0 { by_zeta } else { by_alpha };
+        }
+    }
+
+    fn parts(&self) -> Option<Parts<'_>> {
+        None
+    }
+}
+
+impl System for PowerForm {
+    fn facts(&self) -> &SystemFacts {
+        &self.facts
+    }
+
+    fn values(&self, values: &mut [f64]) {
+        values.copy_from_slice(&self.values);
+    }
+
+    fn coefficients(&self, p: &[f64], _omega: f64, coefficients: &mut [f64]) {
+        coefficients.copy_from_slice(&[1.0, p[2], p[3], 1.0, 1.0, p[0], p[1]]);
+    }
+
+    fn coefficients_by(&self, variable: Variable, _p: &[f64], _omega: f64, out: &mut [f64]) {
+        out.fill(0.0);
+        match variable {
+            Variable::Parameter(0) => out[5] = 1.0,
+            Variable::Parameter(1) => out[6] = 1.0,
+            Variable::Parameter(2) => out[1] = 1.0,
+            Variable::Parameter(3) => out[2] = 1.0,
+            Variable::Parameter(_) | Variable::Omega => {}
+        }
+    }
+
+    fn law(&self, _index: usize) -> &dyn Law {
+        &self.law
+    }
+}

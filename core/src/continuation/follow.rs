@@ -1,0 +1,415 @@
+//! Pseudo-arclength continuation: tangent predictor, bordered corrector.
+//!
+//! From a solution `u_0` with unit tangent `t_0`, a step of length `s` solves
+//!
+//! ```text
+//! R(u) = 0,    <t_0, u - u_0> = s                                                                             (1)
+//! ```
+//!
+//! with Newton's method from `u_0 + s t_0`. The tangent at the solution follows from the last matrix of that iteration,
+//! `[R_u; t_0^T] t = [0; 1]`, which keeps its direction through folds. The product is the one of
+//! [`Scale`]: mean squares relative to the size of the orbit, and the parameter relative to its range.
+//!
+//! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems.
+
+use super::problem::{Problem, Scale};
+use super::step::StepControl;
+use crate::newton::{Border, Newton, NewtonError, NewtonOptions};
+
+/// What to follow, and how far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FollowOptions {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) points: usize,
+    pub(crate) steps: StepControl,
+    pub(crate) newton: NewtonOptions,
+}
+
+/// A solution and the direction of the curve there.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CurvePoint {
+    /// Extended unknowns.
+    pub(crate) u: Vec<f64>,
+    /// Unit tangent in the scale of this point.
+    pub(crate) tangent: Vec<f64>,
+    /// The scale.
+    pub(crate) scale: Scale,
+}
+
+impl CurvePoint {
+    /// The parameter.
+    pub(crate) fn parameter(&self) -> f64 {
+        self.u[self.u.len() - 1]
+    }
+
+    /// Component of the unit tangent along the parameter, in units of its scale: zero at a fold.
+    pub(crate) fn parameter_slope(&self) -> f64 {
+        self.tangent[self.tangent.len() - 1] / self.scale.parameter
+    }
+}
+
+/// Why following ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stop {
+    /// The parameter reached the end of its range.
+    ReachedEnd,
+    /// The branch turned back and left the range where it had begun.
+    LeftAtStart,
+    /// The branch closed upon itself.
+    Closed,
+    /// As many points as were allowed.
+    PointLimit {
+        /// The limit.
+        points: usize,
+    },
+    /// No step, however short, led to another solution.
+    StepTooShort {
+        /// Length of the last step tried.
+        step: f64,
+        /// Where.
+        parameter: f64,
+        /// What the last correction said.
+        reason: NewtonError,
+    },
+    /// The caller asked to stop.
+    Interrupted,
+}
+
+impl std::fmt::Display for Stop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::ReachedEnd => write!(f, "reached the end of the range"),
+            Self::LeftAtStart => write!(f, "turned back and left the range at its start"),
+            Self::Closed => write!(f, "closed upon itself"),
+            Self::PointLimit { points } => write!(f, "reached the limit of {points} points"),
+            Self::StepTooShort {
+                step,
+                parameter,
+                reason,
+            } => {
+                write!(
+                    f,
+                    "no further solution found at {parameter} with a step of {step:.1e}: {reason}"
+                )
+            }
+            Self::Interrupted => write!(f, "interrupted"),
+        }
+    }
+}
+
+/// What the visitor of a curve answers.
+pub(crate) type Continue = std::ops::ControlFlow<()>;
+
+/// Follows the curve through `u` until the parameter reaches `to`, calling `visit` at every point in order. The factors
+/// that Newton's method holds then are those of the point. Where the slope of the parameter changes its sign, `visit` is
+/// called once more with both points.
+pub(crate) fn follow<P: Problem>(
+    problem: &mut P,
+    newton: &mut Newton,
+    u: Vec<f64>,
+    options: FollowOptions,
+    visit: &mut dyn FnMut(&mut P, &mut Newton, Visit<'_>) -> Continue,
+) -> Result<Stop, NewtonError> {
+    let mut walk = Walk::new(problem, options, u);
+    let mut point = walk.first(problem, newton)?;
+    if visit(problem, newton, Visit::Point(&point)).is_break() {
+        return Ok(Stop::Interrupted);
+    }
+    let first = point.clone();
+    for count in 1.. {
+        if count >= options.points {
+            return Ok(Stop::PointLimit {
+                points: options.points,
+            });
+        }
+        let next = match walk.next(problem, newton, &point) {
+            Ok(next) => next,
+            Err(stop) => return Ok(stop),
+        };
+        let (next, stop) = walk.cut_at_range(problem, newton, &point, next);
+        if visit(problem, newton, Visit::Point(&next)).is_break() {
+            return Ok(Stop::Interrupted);
+        }
+        if next.parameter_slope() * point.parameter_slope() < 0.0
+            && visit(problem, newton, Visit::Turn(&point, &next)).is_break()
+        {
+            return Ok(Stop::Interrupted);
+        }
+        if let Some(stop) = stop {
+            return Ok(stop);
+        }
+        if count > 10 && walk.closes(newton, &first, &point, &next) {
+            return Ok(Stop::Closed);
+        }
+        point = next;
+    }
+    Ok(Stop::PointLimit {
+        points: options.points,
+    })
+}
+
+/// What a visitor sees.
+pub(crate) enum Visit<'a> {
+    /// The next point.
+    Point(&'a CurvePoint),
+    /// The parameter turns between these two points.
+    Turn(&'a CurvePoint, &'a CurvePoint),
+}
+
+/// State of a walk along a curve; its buffers are reused.
+struct Walk {
+    options: FollowOptions,
+    step: f64,
+    border: Vec<f64>,
+    trial: Vec<f64>,
+    scale: Scale,
+}
+
+impl Walk {
+    fn new(problem: &impl Problem, options: FollowOptions, u: Vec<f64>) -> Self {
+        let parameter = (options.to - options.from).abs();
+        Self {
+            options,
+            step: options.steps.initial,
+            border: vec![0.0; problem.unknowns() + 1],
+            trial: u,
+            scale: Scale {
+                state: 1.0,
+                parameter,
+            },
+        }
+    }
+
+    /// Solves at the first parameter and points the tangent towards the end of the range.
+    fn first<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+    ) -> Result<CurvePoint, NewtonError> {
+        self.scale = scale_of(newton.weights(), &self.trial, self.scale.parameter);
+        self.solve_at(problem, newton, self.options.from)?;
+        self.scale = scale_of(newton.weights(), &self.trial, self.scale.parameter);
+        let mut point = self.point(newton);
+        if point.parameter_slope() * (self.options.to - self.options.from) < 0.0 {
+            for t in &mut point.tangent {
+                *t = -*t;
+            }
+        }
+        Ok(point)
+    }
+
+    /// Solves from `trial` with the parameter held at a value.
+    fn solve_at<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        value: f64,
+    ) -> Result<(), NewtonError> {
+        let last = self.trial.len() - 1;
+        self.trial[last] = value;
+        self.border.fill(0.0);
+        self.border[last] = 1.0 / self.scale.parameter;
+        let border = Border {
+            row: &self.border,
+            value: value / self.scale.parameter,
+        };
+        newton.correct(
+            problem,
+            &mut self.trial,
+            border,
+            self.scale,
+            self.options.newton,
+        )?;
+        self.trial[last] = value;
+        Ok(())
+    }
+
+    /// The point at `trial`, with the tangent from the last matrix of the corrector.
+    fn point(&mut self, newton: &mut Newton) -> CurvePoint {
+        let mut tangent = vec![0.0; self.trial.len()];
+        newton.solve_border(&mut tangent, self.scale);
+        let scale = scale_of(newton.weights(), &self.trial, self.scale.parameter);
+        let norm = scale.norm(newton.weights(), &tangent);
+        for t in &mut tangent {
+            *t /= norm;
+        }
+        CurvePoint {
+            u: self.trial.clone(),
+            tangent,
+            scale,
+        }
+    }
+
+    /// One step, shortened until it succeeds.
+    fn next<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        from: &CurvePoint,
+    ) -> Result<CurvePoint, Stop> {
+        loop {
+            let result = self.corrected(problem, newton, from, self.step);
+            let reason = match result {
+                Ok((point, iterations)) => {
+                    let cosine =
+                        from.scale
+                            .product(newton.weights(), &from.tangent, &point.tangent)
+                            / from.scale.norm(newton.weights(), &point.tangent);
+                    let angle = cosine.clamp(-1.0, 1.0).acos();
+                    if !self.options.steps.turns_too_far(angle, self.step) {
+                        newton.statistics.accepted_steps += 1;
+                        self.step = self
+                            .options
+                            .steps
+                            .after_success(self.step, angle, iterations);
+                        return Ok(point);
+                    }
+                    None
+                }
+                Err(reason) => Some(reason),
+            };
+            newton.statistics.rejected_steps += 1;
+            match (self.options.steps.after_failure(self.step), reason) {
+                (Some(shorter), _) => self.step = shorter,
+                (None, reason) => {
+                    let parameter = from.parameter();
+                    let reason = reason.unwrap_or(NewtonError::NotConverged {
+                        iterations: 0,
+                        update: self.step,
+                        residual: 0.0,
+                    });
+                    return Err(Stop::StepTooShort {
+                        step: self.step,
+                        parameter,
+                        reason,
+                    });
+                }
+            }
+        }
+    }
+
+    /// The solution of (1) at arc length `step` from a point, and the updates it took.
+    fn corrected<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        from: &CurvePoint,
+        step: f64,
+    ) -> Result<(CurvePoint, usize), NewtonError> {
+        self.scale = from.scale;
+        for (i, x) in self.trial.iter_mut().enumerate() {
+            *x = from.u[i] + step * from.tangent[i];
+        }
+        border_of(newton.weights(), from, &mut self.border);
+        let value = crate::linear::dot(&self.border, &self.trial);
+        let border = Border {
+            row: &self.border,
+            value,
+        };
+        let converged = newton.correct(
+            problem,
+            &mut self.trial,
+            border,
+            self.scale,
+            self.options.newton,
+        )?;
+        Ok((self.point(newton), converged.iterations))
+    }
+
+    /// If the step went beyond an end of the range, replaces its point by the one at the end.
+    fn cut_at_range<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        from: &CurvePoint,
+        next: CurvePoint,
+    ) -> (CurvePoint, Option<Stop>) {
+        let FollowOptions {
+            from: start,
+            to: end,
+            ..
+        } = self.options;
+        let forwards = (end - start).signum();
+        let (limit, stop) = if (next.parameter() - end) * forwards >= 0.0 {
+            (end, Stop::ReachedEnd)
+        } else if (next.parameter() - start) * forwards < 0.0 {
+            (start, Stop::LeftAtStart)
+        } else {
+            return (next, None);
+        };
+        let part = (limit - from.parameter()) / (next.parameter() - from.parameter());
+        for (i, x) in self.trial.iter_mut().enumerate() {
+            *x = from.u[i] + part * (next.u[i] - from.u[i]);
+        }
+        self.scale = from.scale;
+        match self.solve_at(problem, newton, limit) {
+            Ok(()) => {
+                let mut point = self.point(newton);
+                if point
+                    .scale
+                    .product(newton.weights(), &point.tangent, &next.tangent)
+                    < 0.0
+                {
+                    for t in &mut point.tangent {
+                        *t = -*t;
+                    }
+                }
+                (point, Some(stop))
+            }
+            Err(_) => (next, Some(stop)),
+        }
+    }
+
+    /// Whether the last step passed the first point in the first direction.
+    fn closes(
+        &self,
+        newton: &Newton,
+        first: &CurvePoint,
+        from: &CurvePoint,
+        to: &CurvePoint,
+    ) -> bool {
+        let weights = newton.weights();
+        let along = |a: &CurvePoint| {
+            let difference: Vec<f64> = first.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
+            (
+                first.scale.product(weights, &difference, &first.tangent),
+                first.scale.norm(weights, &difference),
+            )
+        };
+        let ((ahead, far), (behind, near)) = (along(from), along(to));
+        let step = far + near;
+        ahead > 0.0
+            && behind <= 0.0
+            && step < 2.0 * self.options.steps.largest
+            && first.scale.product(weights, &from.tangent, &first.tangent) > 0.9
+    }
+}
+
+/// The row of (1): the product with a tangent as a linear form.
+pub(crate) fn border_of(weights: &[f64], point: &CurvePoint, border: &mut [f64]) {
+    let n = weights.len();
+    let Scale { state, parameter } = point.scale;
+    for i in 0..n {
+        border[i] = weights[i] * point.tangent[i] / (state * state);
+    }
+    border[n] = point.tangent[n] / (parameter * parameter);
+}
+
+/// The scale at a point: the size of the orbit there, or one where it is at rest.
+fn scale_of(weights: &[f64], u: &[f64], parameter: f64) -> Scale {
+    let size: f64 = weights
+        .iter()
+        .zip(u)
+        .map(|(w, x)| w * x * x)
+        .sum::<f64>()
+        .sqrt();
+    Scale {
+        state: if size > 0.0 && size.is_finite() {
+            size
+        } else {
+            1.0
+        },
+        parameter,
+    }
+}

@@ -1,0 +1,48 @@
+//! The length of the next step.
+//!
+//! Source: Allgower and Georg (1990), Introduction to Numerical Continuation Methods, chapter 6: the angle between
+//! tangents and the number of corrections are held near wanted values.
+
+/// Bounds and wishes of the step control, in units of arc length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StepControl {
+    pub(crate) initial: f64,
+    pub(crate) smallest: f64,
+    pub(crate) largest: f64,
+    /// Angle between successive tangents that is aimed at.
+    pub(crate) angle: f64,
+    /// Updates of the corrector that are aimed at.
+    pub(crate) iterations: usize,
+}
+
+impl Default for StepControl {
+    fn default() -> Self {
+        Self {
+            initial: 0.01,
+            smallest: 1e-9,
+            largest: 0.1,
+            angle: 0.2,
+            iterations: 4,
+        }
+    }
+}
+
+impl StepControl {
+    /// A step that turned by this angle is tried again, unless it is already short: a kink keeps its angle at any length.
+    pub(crate) fn turns_too_far(&self, angle: f64, step: f64) -> bool {
+        angle > 3.0 * self.angle && step > 1e-4
+    }
+
+    /// The step after one that converged.
+    pub(crate) fn after_success(&self, step: f64, angle: f64, iterations: usize) -> f64 {
+        let by_angle = self.angle / angle.max(1e-3 * self.angle);
+        let by_effort = (self.iterations as f64 / iterations.max(1) as f64).sqrt();
+        (step * by_angle.min(by_effort).clamp(0.5, 1.5)).clamp(self.smallest, self.largest)
+    }
+
+    /// The step after one that failed; `None` when it cannot be shortened further.
+    pub(crate) fn after_failure(&self, step: f64) -> Option<f64> {
+        let shorter = 0.4 * step;
+        (shorter >= self.smallest).then_some(shorter)
+    }
+}

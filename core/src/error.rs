@@ -1,0 +1,144 @@
+//! What can be wrong with a request, and why a computation has no answer.
+
+use crate::newton::NewtonError;
+
+/// Why there is no result.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// A parameter is outside its declared range, or not finite.
+    Parameter {
+        /// Its name.
+        name: String,
+        /// Its value.
+        value: f64,
+        /// The range, as declared.
+        range: String,
+    },
+    /// There is no parameter of this name.
+    UnknownParameter {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// An option of a computation is outside its range.
+    Option {
+        /// The option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// An end of the range has not been given.
+    MissingEnd {
+        /// `from` or `to`.
+        name: &'static str,
+    },
+    /// Both ends of the range are the same.
+    EmptyRange {
+        /// The value of both.
+        value: f64,
+    },
+    /// Too few samples for the harmonics.
+    Samples {
+        /// Samples asked for.
+        samples: usize,
+        /// The least that can be used.
+        least: usize,
+        /// Harmonics of the balance.
+        harmonics: usize,
+    },
+    /// The levels of a law are not in increasing order for these parameters.
+    Levels {
+        /// Name of the law.
+        law: String,
+        /// The levels.
+        levels: Vec<f64>,
+    },
+    /// The load has harmonics that the balance does not carry.
+    Harmonics {
+        /// Harmonics of the balance.
+        harmonics: usize,
+        /// The highest harmonic of the load, counted in the orbit's own period.
+        load: usize,
+    },
+    /// No orbit was found at the start of the range.
+    NoStart {
+        /// Where.
+        parameter: f64,
+        /// What the last attempt said.
+        reason: NewtonError,
+    },
+    /// Orbits were found, but none whose shortest period is the one asked for.
+    NoSuchPeriod {
+        /// The period asked for, in excitation periods.
+        period: usize,
+        /// Where.
+        parameter: f64,
+    },
+    /// A file could not be written.
+    File {
+        /// Its path.
+        path: String,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+impl std::fmt::Display for Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Parameter { name, value, range } => {
+                write!(f, "parameter {name} = {value} is outside its range {range}")
+            }
+            Self::UnknownParameter { name, known } => {
+                write!(
+                    f,
+                    "there is no parameter {name}; there are {}",
+                    known.join(", ")
+                )
+            }
+            Self::Option { name, value, must } => write!(f, "{name} = {value}: {must}"),
+            Self::MissingEnd { name } => write!(f, "the range has no end: call `{name}`"),
+            Self::EmptyRange { value } => {
+                write!(f, "the range is empty: from and to are both {value}")
+            }
+            Self::Samples {
+                samples,
+                least,
+                harmonics,
+            } => write!(
+                f,
+                "{samples} samples are too few for {harmonics} harmonics: take {least} or more"
+            ),
+            Self::Levels { law, levels } => {
+                write!(
+                    f,
+                    "the levels of law {law} are not in increasing order: {levels:?}"
+                )
+            }
+            Self::Harmonics { harmonics, load } => write!(
+                f,
+                "the load has harmonic {load} of the orbit, and the balance only {harmonics}: take more harmonics"
+            ),
+            Self::NoStart { parameter, reason } => {
+                write!(f, "no periodic orbit found at {parameter}: {reason}")
+            }
+            Self::NoSuchPeriod { period, parameter } => {
+                write!(f, "no orbit of period {period} found at {parameter}")
+            }
+            Self::File { path, reason } => write!(f, "cannot write {path}: {reason}"),
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::NoStart { reason, .. } => Some(reason),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! The coefficients of a system, sorted by where they stand.
+//!
+//! A [`System`] lists its coefficients in any order; the runtime walks them term by term. The lists are made once, so
+//! that the same walk serves the coefficients and their derivatives.
+
+use crate::system::{Place, System, Wave};
+
+/// An entry of a matrix or of the load, times a wave.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Entry {
+    pub(crate) row: usize,
+    /// Zero for a load.
+    pub(crate) column: usize,
+    pub(crate) wave: Wave,
+    /// Position of its coefficient.
+    pub(crate) coefficient: usize,
+}
+
+/// A component of a direction, or a term of an offset, times a wave.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Term {
+    /// Coordinate or equation; zero for an offset.
+    pub(crate) index: usize,
+    pub(crate) wave: Wave,
+    /// Position of its coefficient.
+    pub(crate) coefficient: usize,
+}
+
+/// What belongs to one contact.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ContactLayout {
+    pub(crate) law: usize,
+    pub(crate) force: Vec<Term>,
+    pub(crate) gap: Vec<Term>,
+    pub(crate) offset: Vec<Term>,
+    /// Argument and position of its coefficient.
+    pub(crate) arguments: Vec<(usize, usize)>,
+    pub(crate) argument_count: usize,
+}
+
+impl ContactLayout {
+    /// Highest harmonic of the force direction, in multiples of `omega / divisor`.
+    pub(crate) fn force_harmonic(&self) -> usize {
+        highest(&self.force)
+    }
+
+    /// Highest harmonic of the gap direction.
+    pub(crate) fn gap_harmonic(&self) -> usize {
+        highest(&self.gap)
+    }
+
+    /// Highest harmonic of the offset.
+    pub(crate) fn offset_harmonic(&self) -> usize {
+        highest(&self.offset)
+    }
+
+    /// Writes the arguments of the law.
+    pub(crate) fn arguments(&self, coefficients: &[f64], arguments: &mut [f64]) {
+        arguments.fill(0.0);
+        for &(index, coefficient) in &self.arguments {
+            arguments[index] += coefficients[coefficient];
+        }
+    }
+
+    /// Positions of all its coefficients.
+    pub(crate) fn coefficients(&self) -> impl Iterator<Item = usize> {
+        self.force
+            .iter()
+            .chain(&self.gap)
+            .chain(&self.offset)
+            .map(|term| term.coefficient)
+            .chain(self.arguments.iter().map(|&(_, coefficient)| coefficient))
+    }
+}
+
+fn highest(terms: &[Term]) -> usize {
+    terms
+        .iter()
+        .map(|term| term.wave.harmonic as usize)
+        .max()
+        .unwrap_or(0)
+}
+
+/// The coefficients of a system, sorted by where they stand.
+#[derive(Debug, Clone)]
+pub(crate) struct Layout {
+    pub(crate) coordinates: usize,
+    pub(crate) coefficients: usize,
+    pub(crate) mass: Vec<Entry>,
+    pub(crate) damping: Vec<Entry>,
+    pub(crate) stiffness: Vec<Entry>,
+    pub(crate) load: Vec<Entry>,
+    pub(crate) contacts: Vec<ContactLayout>,
+}
+
+impl Layout {
+    pub(crate) fn of(system: &dyn System) -> Self {
+        let facts = system.facts();
+        let contacts = facts.contacts.iter().map(|contact| ContactLayout {
+            law: contact.law,
+            argument_count: system.law(contact.law).facts().arguments.len(),
+            ..ContactLayout::default()
+        });
+        let mut layout = Self {
+            coordinates: facts.coordinates.len(),
+            coefficients: facts.places.len(),
+            mass: Vec::new(),
+            damping: Vec::new(),
+            stiffness: Vec::new(),
+            load: Vec::new(),
+            contacts: contacts.collect(),
+        };
+        for (coefficient, &place) in facts.places.iter().enumerate() {
+            layout.add(place, coefficient);
+        }
+        layout
+    }
+
+    fn add(&mut self, place: Place, coefficient: usize) {
+        let constant = Wave::CONSTANT;
+        match place {
+            Place::Mass { row, column } => {
+                self.mass.push(Entry {
+                    row,
+                    column,
+                    wave: constant,
+                    coefficient,
+                });
+            }
+            Place::Damping { row, column } => {
+                self.damping.push(Entry {
+                    row,
+                    column,
+                    wave: constant,
+                    coefficient,
+                });
+            }
+            Place::Stiffness { row, column, wave } => {
+                self.stiffness.push(Entry {
+                    row,
+                    column,
+                    wave,
+                    coefficient,
+                });
+            }
+            Place::Load { row, wave } => {
+                self.load.push(Entry {
+                    row,
+                    column: 0,
+                    wave,
+                    coefficient,
+                });
+            }
+            Place::ForceDirection { contact, row, wave } => {
+                self.contacts[contact].force.push(Term {
+                    index: row,
+                    wave,
+                    coefficient,
+                });
+            }
+            Place::GapDirection {
+                contact,
+                column,
+                wave,
+            } => {
+                self.contacts[contact].gap.push(Term {
+                    index: column,
+                    wave,
+                    coefficient,
+                });
+            }
+            Place::Offset { contact, wave } => {
+                self.contacts[contact].offset.push(Term {
+                    index: 0,
+                    wave,
+                    coefficient,
+                });
+            }
+            Place::Argument { contact, index } => {
+                self.contacts[contact].arguments.push((index, coefficient));
+            }
+        }
+    }
+
+    /// Highest harmonic of the load, in multiples of `omega / divisor`.
+    pub(crate) fn load_harmonic(&self) -> usize {
+        self.load
+            .iter()
+            .map(|entry| entry.wave.harmonic as usize)
+            .max()
+            .unwrap_or(0)
+    }
+}

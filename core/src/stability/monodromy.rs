@@ -1,0 +1,423 @@
+//! The monodromy matrix of an orbit, integrated from switch to switch.
+//!
+//! Perturbations of an orbit of the system (1) of [`system`](crate::system) obey, with phase derivatives and the state
+//! `(q, dq/dtau)`,
+//!
+//! ```text
+//! Y' = [        0                   I       ]
+//!      [ -M^-1 S / Omega^2   -M^-1 T / Omega ] Y                                                             (1)
+//! S = K + sum_c e_c (phi_g d_c + phi_r dd_c/dt),    T = C + sum_c e_c phi_r d_c                              (2)
+//! ```
+//!
+//! between the phases at which a gap crosses a level. At such a phase the field jumps by that of the force, `[phi]`, and
+//! perturbations by the saltation matrix
+//!
+//! ```text
+//! I - [ 0 ; M^-1 e_c [phi] / (Omega g') ] [ d_c^T  0 ]                                                       (3)
+//! ```
+//!
+//! where `g'` is the rate of the gap: positive or negative, but the same on both sides. On each panel the steps are those
+//! of [`magnus`](super::magnus), and are graded towards the ends where the stiffness is a broken power of the distance.
+//!
+//! Sources: Leine and Nijmeijer (2004), Dynamics and Bifurcations of Non-Smooth Mechanical Systems, chapter 7
+//! (saltation); Blanes et al. (2009) (steps).
+
+use std::f64::consts::TAU;
+
+use nalgebra::allocator::Allocator;
+use nalgebra::{Const, DMatrix, DefaultAllocator, Dim, Dyn, OMatrix};
+
+use super::grading::Grading;
+use super::magnus;
+use crate::balance::{gap_series, rate_series};
+use crate::fourier::crossings::{Crossing, crossings};
+use crate::fourier::series;
+use crate::law::{Derivatives, On, Variation};
+use crate::layout::{Layout, Term};
+use crate::system::{Part, System, Wave};
+
+/// An orbit: the system, its coefficients, and the series of its coordinates.
+#[derive(Clone, Copy)]
+pub(crate) struct Orbit<'a> {
+    pub(crate) system: &'a dyn System,
+    pub(crate) layout: &'a Layout,
+    pub(crate) coefficients: &'a [f64],
+    /// Base frequency.
+    pub(crate) base: f64,
+    /// Excitation periods per period of the orbit.
+    pub(crate) period: usize,
+    /// Coordinate by coordinate.
+    pub(crate) series: &'a [f64],
+}
+
+/// A gap crosses a level.
+#[derive(Debug, Clone, Copy)]
+struct Switch {
+    tau: f64,
+    contact: usize,
+    level: usize,
+    rising: bool,
+}
+
+/// What the integration needs of one contact.
+struct Contact<'a> {
+    layout: &'a crate::layout::ContactLayout,
+    arguments: Vec<f64>,
+    levels: Vec<f64>,
+    gap: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+/// An orbit cut into panels.
+pub(crate) struct Panels<'a> {
+    orbit: Orbit<'a>,
+    contacts: Vec<Contact<'a>>,
+    switches: Vec<Switch>,
+    inverse_mass: DMatrix<f64>,
+}
+
+impl<'a> Panels<'a> {
+    /// Cuts an orbit at its switches. `None` if the mass matrix is singular.
+    pub(crate) fn new(orbit: Orbit<'a>) -> Option<Self> {
+        let n = orbit.layout.coordinates;
+        let mut mass = DMatrix::zeros(n, n);
+        for entry in &orbit.layout.mass {
+            mass[(entry.row, entry.column)] += orbit.coefficients[entry.coefficient];
+        }
+        let contacts: Vec<_> = orbit
+            .layout
+            .contacts
+            .iter()
+            .map(|layout| Contact::new(&orbit, layout))
+            .collect();
+        let mut switches = Vec::new();
+        for (index, contact) in contacts.iter().enumerate() {
+            contact.switches(index, &mut switches);
+        }
+        switches.sort_by(|a, b| a.tau.total_cmp(&b.tau));
+        Some(Self {
+            orbit,
+            contacts,
+            switches,
+            inverse_mass: mass.try_inverse()?,
+        })
+    }
+
+    /// The monodromy matrix over one period of the orbit, with this many steps per period on panels that need steps.
+    pub(crate) fn monodromy(&self, density: f64) -> DMatrix<f64> {
+        let dense = |entries: Vec<f64>, order| DMatrix::from_vec(order, order, entries);
+        match self.orbit.layout.coordinates {
+            1 => dense(self.integrate(Const::<2>, density).as_slice().to_vec(), 2),
+            n => dense(
+                self.integrate(Dyn(2 * n), density).as_slice().to_vec(),
+                2 * n,
+            ),
+        }
+    }
+
+    fn integrate<D: Dim>(&self, order: D, density: f64) -> OMatrix<f64, D, D>
+    where
+        DefaultAllocator: Allocator<D, D>,
+    {
+        let mut product = OMatrix::identity_generic(order, order);
+        let mut start = (0.0, false);
+        for switch in &self.switches {
+            let end = (switch.tau, self.is_singular(switch));
+            product = self.panel(order, start, end, density, product);
+            product = self.saltation(order, switch) * product;
+            start = end;
+        }
+        self.panel(order, start, (TAU, false), density, product)
+    }
+
+    /// Whether the stiffness is not smooth up to this switch on one of its sides.
+    fn is_singular(&self, switch: &Switch) -> bool {
+        let law = self
+            .orbit
+            .system
+            .law(self.contacts[switch.contact].layout.law);
+        let pieces = &law.facts().pieces;
+        [switch.level, switch.level + 1]
+            .iter()
+            .any(|&piece| !pieces[piece].affine)
+    }
+
+    /// The solution at the end of a panel; the flags say which ends are singular.
+    fn panel<D: Dim>(
+        &self,
+        order: D,
+        (start, singular_start): (f64, bool),
+        (end, singular_end): (f64, bool),
+        density: f64,
+        mut product: OMatrix<f64, D, D>,
+    ) -> OMatrix<f64, D, D>
+    where
+        DefaultAllocator: Allocator<D, D>,
+    {
+        let width = end - start;
+        if width <= 0.0 {
+            return product;
+        }
+        let pieces: Vec<usize> = self
+            .contacts
+            .iter()
+            .map(|contact| contact.piece(0.5 * (start + end)))
+            .collect();
+        let steps = if self.is_constant(&pieces) {
+            1
+        } else {
+            ((density * width / TAU).ceil() as usize).max(4)
+        };
+        let grading = if steps == 1 {
+            Grading::None
+        } else {
+            Grading::new(singular_start, singular_end)
+        };
+        let h = 1.0 / steps as f64;
+        let nodes: Vec<_> = (0..steps)
+            .flat_map(|step| {
+                magnus::NODES.map(|node| grading.map((step as f64 + node) * h, start, end))
+            })
+            .collect();
+        let taus: Vec<f64> = nodes.iter().map(|node| node.tau).collect();
+        let slopes = self.slopes(&pieces, &taus);
+        for step in 0..steps {
+            let scaled = [0, 1, 2].map(|node| {
+                let index = 3 * step + node;
+                self.matrix(order, taus[index], &slopes, index) * (h * nodes[index].slope)
+            });
+            product = magnus::step(&scaled) * product;
+        }
+        product
+    }
+
+    /// Whether the matrix of (1) is the same everywhere on a panel.
+    fn is_constant(&self, pieces: &[usize]) -> bool {
+        let constant = |wave: Wave| wave.harmonic == 0;
+        let contacts = self.contacts.iter().zip(pieces).all(|(contact, &piece)| {
+            let facts = &self.orbit.system.law(contact.layout.law).facts().pieces[piece];
+            let waves = contact.layout.force.iter().chain(&contact.layout.gap);
+            let vanishes = facts.by_gap == Variation::Zero && facts.by_rate == Variation::Zero;
+            vanishes
+                || facts.by_gap != Variation::Varying
+                    && facts.by_rate != Variation::Varying
+                    && waves.into_iter().all(|term| constant(term.wave))
+        });
+        contacts
+            && self
+                .orbit
+                .layout
+                .stiffness
+                .iter()
+                .all(|entry| constant(entry.wave))
+    }
+
+    /// `(phi_g, phi_r)` of every contact at the phases.
+    fn slopes(&self, pieces: &[usize], taus: &[f64]) -> Vec<[Vec<f64>; 2]> {
+        let room = || vec![0.0; taus.len()];
+        let (mut gap, mut rate, mut force) = (room(), room(), room());
+        let contacts = self.contacts.iter().zip(pieces);
+        contacts
+            .map(|(contact, &piece)| {
+                for (index, &tau) in taus.iter().enumerate() {
+                    gap[index] = series::value(&contact.gap, tau);
+                    rate[index] = series::value(&contact.rate, tau);
+                }
+                let (mut by_gap, mut by_rate) = (room(), room());
+                let out = Derivatives {
+                    force: &mut force,
+                    by_gap: &mut by_gap,
+                    by_rate: &mut by_rate,
+                };
+                let law = self.orbit.system.law(contact.layout.law);
+                law.derivatives(On::Piece(piece), &contact.arguments, &gap, &rate, out);
+                [by_gap, by_rate]
+            })
+            .collect()
+    }
+
+    /// The matrix of (1) at a phase, with the contacts' derivatives taken from a batch.
+    fn matrix<D: Dim>(
+        &self,
+        order: D,
+        tau: f64,
+        slopes: &[[Vec<f64>; 2]],
+        index: usize,
+    ) -> OMatrix<f64, D, D>
+    where
+        DefaultAllocator: Allocator<D, D>,
+    {
+        let Orbit {
+            layout,
+            coefficients,
+            base,
+            period,
+            ..
+        } = self.orbit;
+        let n = layout.coordinates;
+        let mut matrix = OMatrix::zeros_generic(order, order);
+        for i in 0..n {
+            matrix[(i, n + i)] = 1.0;
+        }
+        for entry in &layout.stiffness {
+            let value = coefficients[entry.coefficient] * wave_at(entry.wave, period, tau);
+            self.subtract(&mut matrix, entry.row, entry.column, value / (base * base));
+        }
+        for entry in &layout.damping {
+            let value = coefficients[entry.coefficient];
+            self.subtract(&mut matrix, entry.row, n + entry.column, value / base);
+        }
+        for (contact, [by_gap, by_rate]) in self.contacts.iter().zip(slopes) {
+            let (by_gap, by_rate) = (by_gap[index], by_rate[index]);
+            for e in &contact.layout.force {
+                let e_value = self.direction(e, tau);
+                for d in &contact.layout.gap {
+                    let d_value = self.direction(d, tau);
+                    let d_slope = coefficients[d.coefficient] * slope_at(d.wave, period, tau);
+                    let stiffness = e_value * (by_gap * d_value / base + by_rate * d_slope) / base;
+                    self.subtract(&mut matrix, e.index, d.index, stiffness);
+                    let damping = e_value * by_rate * d_value / base;
+                    self.subtract(&mut matrix, e.index, n + d.index, damping);
+                }
+            }
+        }
+        matrix
+    }
+
+    /// Subtracts `M^-1` times a force `value` on equation `row` from a column of the lower half.
+    fn subtract<D: Dim>(
+        &self,
+        matrix: &mut OMatrix<f64, D, D>,
+        row: usize,
+        column: usize,
+        value: f64,
+    ) where
+        DefaultAllocator: Allocator<D, D>,
+    {
+        let n = self.orbit.layout.coordinates;
+        for i in 0..n {
+            matrix[(n + i, column)] -= self.inverse_mass[(i, row)] * value;
+        }
+    }
+
+    /// The saltation matrix (3).
+    fn saltation<D: Dim>(&self, order: D, switch: &Switch) -> OMatrix<f64, D, D>
+    where
+        DefaultAllocator: Allocator<D, D>,
+    {
+        let mut matrix = OMatrix::identity_generic(order, order);
+        let contact = &self.contacts[switch.contact];
+        let law = self.orbit.system.law(contact.layout.law);
+        let facts = law.facts().levels[switch.level];
+        let rate = series::value(&contact.rate, switch.tau);
+        if !(facts.force_jumps || facts.by_rate_jumps) || rate == 0.0 {
+            return matrix;
+        }
+        let force = |piece| {
+            let mut force = [0.0];
+            let level = contact.levels[switch.level];
+            law.force(
+                On::Piece(piece),
+                &contact.arguments,
+                &[level],
+                &[rate],
+                &mut force,
+            );
+            force[0]
+        };
+        let (below, above) = (force(switch.level), force(switch.level + 1));
+        let jump = if switch.rising {
+            above - below
+        } else {
+            below - above
+        };
+        for e in &contact.layout.force {
+            for d in &contact.layout.gap {
+                let value = self.direction(e, switch.tau) * jump * self.direction(d, switch.tau);
+                self.subtract(
+                    &mut matrix,
+                    e.index,
+                    d.index,
+                    value / (self.orbit.base * rate),
+                );
+            }
+        }
+        matrix
+    }
+
+    fn direction(&self, term: &Term, tau: f64) -> f64 {
+        self.orbit.coefficients[term.coefficient] * wave_at(term.wave, self.orbit.period, tau)
+    }
+}
+
+impl<'a> Contact<'a> {
+    fn new(orbit: &Orbit<'a>, layout: &'a crate::layout::ContactLayout) -> Self {
+        let law = orbit.system.law(layout.law);
+        let mut arguments = vec![0.0; layout.argument_count];
+        layout.arguments(orbit.coefficients, &mut arguments);
+        let mut levels = vec![0.0; law.facts().levels.len()];
+        law.levels(&arguments, &mut levels);
+        let length = orbit.series.len() / orbit.layout.coordinates;
+        let harmonics = series::harmonics(&orbit.series[..length]);
+        let highest = (harmonics + layout.gap_harmonic() * orbit.period)
+            .max(layout.offset_harmonic() * orbit.period);
+        let mut gap = vec![0.0; series::length(highest)];
+        gap_series(
+            layout,
+            orbit.coefficients,
+            orbit.period,
+            orbit.series,
+            length,
+            &mut gap,
+        );
+        let mut rate = gap.clone();
+        rate_series(&gap, orbit.base, &mut rate);
+        Self {
+            layout,
+            arguments,
+            levels,
+            gap,
+            rate,
+        }
+    }
+
+    fn switches(&self, contact: usize, switches: &mut Vec<Switch>) {
+        let mut found = Vec::new();
+        for (level, &value) in self.levels.iter().enumerate() {
+            found.clear();
+            crossings(&self.gap, value, &mut found);
+            switches.extend(found.iter().map(|&Crossing { tau, rising }| Switch {
+                tau,
+                contact,
+                level,
+                rising,
+            }));
+        }
+    }
+
+    fn piece(&self, tau: f64) -> usize {
+        let gap = series::value(&self.gap, tau);
+        self.levels.iter().filter(|&&level| gap > level).count()
+    }
+}
+
+/// Value of a wave at a phase of the orbit.
+fn wave_at(wave: Wave, period: usize, tau: f64) -> f64 {
+    if wave.harmonic == 0 {
+        return 1.0;
+    }
+    let angle = f64::from(wave.harmonic) * period as f64 * tau;
+    match wave.part {
+        Part::Cosine => angle.cos(),
+        Part::Sine => angle.sin(),
+    }
+}
+
+/// Its phase derivative.
+fn slope_at(wave: Wave, period: usize, tau: f64) -> f64 {
+    if wave.harmonic == 0 {
+        return 0.0;
+    }
+    let (slope, sign) = wave.derivative();
+    sign * f64::from(wave.harmonic) * period as f64 * wave_at(slope, period, tau)
+}

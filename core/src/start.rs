@@ -1,0 +1,492 @@
+//! The first orbit of a branch, without a guess from the user.
+//!
+//! 1. *At rest*: the balance with no harmonics is the static equilibrium under the mean load, switches and moving
+//!    contacts included.
+//! 2. *Linear response*: one step of Newton's method from rest is the response of the system linearised there; the
+//!    iteration goes on from it.
+//! 3. *Equivalent linearisation*: where the stiffness at rest is zero or unbounded (no load), the balance in the
+//!    harmonics of the load alone, from amplitudes in geometric sequence and both phases. Source: Krylov and
+//!    Bogoliubov (1943), Introduction to Non-Linear Mechanics. Of several solutions the one of smallest amplitude is
+//!    taken, which is the one that small drives lead to.
+//! 4. *Homotopy* in the drive, from the state at rest.
+//!
+//! An orbit of period `n` is found from the one of period one, disturbed in its lowest subharmonic.
+
+use crate::balance::{Balance, Resolution};
+use crate::continuation::follow::{FollowOptions, Visit, follow};
+use crate::continuation::problem::{Problem, Scale};
+use crate::continuation::step::StepControl;
+use crate::error::Error;
+use crate::fourier::series;
+use crate::linear::Matrix;
+use crate::newton::{Border, Newton, NewtonError, NewtonOptions};
+use crate::statistics::Statistics;
+use crate::system::{System, Variable};
+
+/// Where to start, and how finely.
+#[derive(Clone, Copy)]
+pub(crate) struct StartRequest<'a> {
+    pub(crate) system: &'a dyn System,
+    pub(crate) parameters: &'a [f64],
+    pub(crate) omega: f64,
+    pub(crate) variable: Variable,
+    pub(crate) value: f64,
+    pub(crate) resolution: Resolution,
+    pub(crate) newton: NewtonOptions,
+}
+
+const FAILED: NewtonError = NewtonError::NotConverged {
+    iterations: 0,
+    update: f64::INFINITY,
+    residual: f64::INFINITY,
+};
+
+/// Extended unknowns of an orbit at the requested value.
+pub(crate) fn start(
+    request: StartRequest<'_>,
+    statistics: &mut Statistics,
+) -> Result<Vec<f64>, Error> {
+    let period = request.resolution.period;
+    if period == 1 {
+        return first_orbit(request, statistics).map_err(|reason| Error::NoStart {
+            parameter: request.value,
+            reason,
+        });
+    }
+    let resolution = Resolution {
+        harmonics: (request.resolution.harmonics / period).max(1),
+        samples: request.resolution.samples,
+        period: 1,
+    };
+    let simple = first_orbit(
+        StartRequest {
+            resolution,
+            ..request
+        },
+        statistics,
+    )
+    .map_err(|reason| Error::NoStart {
+        parameter: request.value,
+        reason,
+    })?;
+    subharmonic_orbit(request, &simple, statistics).ok_or(Error::NoSuchPeriod {
+        period,
+        parameter: request.value,
+    })
+}
+
+/// One balance at a fixed value of the variable.
+struct Fixed<'a> {
+    balance: Balance<'a>,
+    newton: Newton,
+    border: Vec<f64>,
+    residual: Vec<f64>,
+    value: f64,
+}
+
+impl<'a> Fixed<'a> {
+    fn new(request: &StartRequest<'a>, harmonics: usize) -> Self {
+        let resolution = Resolution {
+            harmonics,
+            ..request.resolution
+        };
+        let balance = Balance::new(
+            request.system,
+            request.parameters,
+            request.omega,
+            request.variable,
+            resolution,
+        );
+        let n = balance.unknowns();
+        let mut border = vec![0.0; n + 1];
+        border[n] = 1.0;
+        Self {
+            newton: Newton::new(&balance),
+            balance,
+            border,
+            residual: vec![0.0; n],
+            value: request.value,
+        }
+    }
+
+    /// An extended vector of zeros at the value.
+    fn zeros(&self) -> Vec<f64> {
+        let mut u = vec![0.0; self.border.len()];
+        u[self.border.len() - 1] = self.value;
+        u
+    }
+
+    fn residual(&mut self, u: &[f64]) -> f64 {
+        self.balance.evaluate(u, &mut self.residual, None);
+        self.newton.statistics.residuals += 1;
+        crate::linear::dot(&self.residual, &self.residual).sqrt()
+    }
+
+    /// Newton's method at the fixed value.
+    fn solve(&mut self, u: &mut [f64], options: NewtonOptions) -> Result<(), NewtonError> {
+        let last = u.len() - 1;
+        let size = Scale {
+            state: 1.0,
+            parameter: 1.0,
+        }
+        .norm(self.newton.weights(), u);
+        let size = (size * size - self.value * self.value).max(0.0).sqrt();
+        let parameter = if self.value == 0.0 {
+            1.0
+        } else {
+            self.value.abs()
+        };
+        let scale = Scale {
+            state: if size > 0.0 { size } else { 1.0 },
+            parameter,
+        };
+        let border = Border {
+            row: &self.border,
+            value: self.value,
+        };
+        let done = self
+            .newton
+            .correct(&mut self.balance, u, border, scale, options)
+            .map(|_| ());
+        u[last] = self.value;
+        done
+    }
+}
+
+fn first_orbit(
+    request: StartRequest<'_>,
+    statistics: &mut Statistics,
+) -> Result<Vec<f64>, NewtonError> {
+    let mut full = Fixed::new(&request, request.resolution.harmonics);
+    let result = first_orbit_in(&request, &mut full, statistics);
+    *statistics += full.newton.statistics;
+    result
+}
+
+fn first_orbit_in(
+    request: &StartRequest<'_>,
+    full: &mut Fixed<'_>,
+    statistics: &mut Statistics,
+) -> Result<Vec<f64>, NewtonError> {
+    let rest = at_rest(request, statistics);
+    let undamped = NewtonOptions {
+        iterations: 8,
+        damped: false,
+        ..request.newton
+    };
+    if let Some(rest) = &rest {
+        let mut u = spread(rest, full);
+        if full.solve(&mut u, undamped).is_ok() {
+            return Ok(u);
+        }
+    }
+    let damped = NewtonOptions {
+        iterations: 40,
+        damped: true,
+        ..request.newton
+    };
+    let mut reason = FAILED;
+    for candidate in equivalent_linearisation(request, rest.as_deref(), statistics) {
+        let mut u = spread(&candidate, full);
+        match full.solve(&mut u, damped) {
+            Ok(()) => return Ok(u),
+            Err(error) => reason = error,
+        }
+    }
+    rest.map_or(Err(reason), |rest| {
+        homotopy(request, spread(&rest, full), statistics).ok_or(reason)
+    })
+}
+
+/// The static equilibrium, if one is found: a balance of no harmonics.
+fn at_rest(request: &StartRequest<'_>, statistics: &mut Statistics) -> Option<Vec<f64>> {
+    let mut fixed = Fixed::new(request, 0);
+    let n = fixed.border.len() - 1;
+    let origin = fixed.zeros();
+    let at_origin = fixed.residual(&origin);
+    let mut found = (at_origin == 0.0).then(|| origin.clone());
+    if found.is_none() {
+        let direction: Vec<f64> = fixed.residual.iter().map(|r| -r / at_origin).collect();
+        let mut along = |s: f64| {
+            let mut u = origin.clone();
+            for i in 0..n {
+                u[i] = s * direction[i];
+            }
+            (fixed.residual(&u), u)
+        };
+        let mut trials: Vec<_> = geometric()
+            .map(&mut along)
+            .filter(|(r, _)| r.is_finite())
+            .collect();
+        trials.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let options = NewtonOptions {
+            iterations: 60,
+            damped: true,
+            ..request.newton
+        };
+        found = trials
+            .into_iter()
+            .take(6)
+            .find_map(|(_, mut u)| fixed.solve(&mut u, options).is_ok().then_some(u));
+    }
+    *statistics += fixed.newton.statistics;
+    found
+}
+
+/// Amplitudes from tiny to huge, eight a decade.
+fn geometric() -> impl Iterator<Item = f64> {
+    (-96..=96).map(|i| 10_f64.powf(f64::from(i) / 8.0))
+}
+
+/// Solutions in the harmonics of the load alone, smallest amplitude first.
+fn equivalent_linearisation(
+    request: &StartRequest<'_>,
+    rest: Option<&[f64]>,
+    statistics: &mut Statistics,
+) -> Vec<Vec<f64>> {
+    let load = crate::layout::Layout::of(request.system).load_harmonic();
+    let harmonics = load.clamp(1, request.resolution.harmonics.max(1));
+    let mut fixed = Fixed::new(request, harmonics);
+    let origin = rest.map_or_else(|| fixed.zeros(), |rest| spread(rest, &fixed));
+    let mut pattern = load_pattern(&mut fixed);
+    if pattern.iter().all(|x| *x == 0.0) {
+        pattern[1] = 1.0;
+    }
+    let mut starts = Vec::new();
+    for sign in [1.0, -1.0] {
+        let along: Vec<_> = geometric()
+            .map(|a| {
+                let u: Vec<f64> = origin
+                    .iter()
+                    .zip(&pattern)
+                    .map(|(x, p)| x + sign * a * p)
+                    .collect();
+                (fixed.residual(&u), u)
+            })
+            .collect();
+        let valleys = along
+            .windows(3)
+            .filter(|w| w[1].0 <= w[0].0 && w[1].0 <= w[2].0);
+        starts.extend(valleys.map(|w| w[1].1.clone()));
+    }
+    let options = NewtonOptions {
+        iterations: 60,
+        damped: true,
+        ..request.newton
+    };
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    for mut u in starts {
+        if fixed.solve(&mut u, options).is_ok() {
+            found.push(u);
+        }
+    }
+    *statistics += fixed.newton.statistics;
+    let length = fixed.balance.length();
+    found.sort_by(|a, b| oscillation(a, length).total_cmp(&oscillation(b, length)));
+    found
+}
+
+/// The oscillating part of the load as a unit vector of the extended unknowns.
+fn load_pattern(fixed: &mut Fixed<'_>) -> Vec<f64> {
+    let mut pattern = vec![0.0; fixed.border.len()];
+    let n = pattern.len() - 1;
+    fixed.balance.set(fixed.value);
+    let coefficients = fixed.balance.coefficients();
+    fixed.balance.add_load(coefficients, 1.0, &mut pattern[..n]);
+    let length = fixed.balance.length();
+    for (index, x) in pattern[..n].iter_mut().enumerate() {
+        if index % length == 0 {
+            *x = 0.0;
+        }
+    }
+    let norm = crate::linear::dot(&pattern, &pattern).sqrt();
+    if norm > 0.0 {
+        for x in &mut pattern {
+            *x /= norm;
+        }
+    }
+    pattern
+}
+
+/// Sum of squares of all but the means.
+fn oscillation(u: &[f64], length: usize) -> f64 {
+    let n = u.len() - 1;
+    u[..n]
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| i % length != 0)
+        .map(|(_, x)| x * x)
+        .sum()
+}
+
+/// An orbit of fewer harmonics as unknowns of another balance of the same period.
+fn spread(u: &[f64], to: &Fixed<'_>) -> Vec<f64> {
+    let mut result = to.zeros();
+    let coordinates = to.balance.layout().coordinates;
+    let (from, length) = ((u.len() - 1) / coordinates, to.balance.length());
+    let shared = from.min(length);
+    for i in 0..coordinates {
+        result[i * length..][..shared].copy_from_slice(&u[i * from..][..shared]);
+    }
+    result
+}
+
+/// Follows the orbit from rest while the drive grows from nothing.
+fn homotopy(
+    request: &StartRequest<'_>,
+    mut rest: Vec<f64>,
+    statistics: &mut Statistics,
+) -> Option<Vec<f64>> {
+    let fixed = Fixed::new(request, request.resolution.harmonics);
+    let mut problem = Homotopy {
+        balance: fixed.balance,
+        value: request.value,
+        extended: rest.clone(),
+    };
+    let last = rest.len() - 1;
+    rest[last] = 0.0;
+    let mut newton = fixed.newton;
+    let options = FollowOptions {
+        from: 0.0,
+        to: 1.0,
+        points: 2000,
+        steps: StepControl::default(),
+        newton: NewtonOptions {
+            iterations: 12,
+            damped: false,
+            ..request.newton
+        },
+    };
+    let mut end = None;
+    let outcome = follow(
+        &mut problem,
+        &mut newton,
+        rest,
+        options,
+        &mut |_, _, visit| {
+            if let Visit::Point(point) = visit
+                && point.parameter() == 1.0
+            {
+                end = Some(point.u.clone());
+            }
+            std::ops::ControlFlow::Continue(())
+        },
+    );
+    *statistics += newton.statistics;
+    outcome.ok()?;
+    let mut u = end?;
+    u[last] = request.value;
+    Some(u)
+}
+
+/// The balance at a fixed value, as a function of the factor of its drive.
+struct Homotopy<'a> {
+    balance: Balance<'a>,
+    value: f64,
+    extended: Vec<f64>,
+}
+
+impl Problem for Homotopy<'_> {
+    fn unknowns(&self) -> usize {
+        self.balance.unknowns()
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Matrix>) {
+        let n = self.balance.unknowns();
+        self.extended[..n].copy_from_slice(&u[..n]);
+        self.extended[n] = self.value;
+        self.balance.set_drive_factor(u[n]);
+        let Some(jacobian) = jacobian else {
+            self.balance.evaluate(&self.extended, residual, None);
+            return;
+        };
+        self.balance
+            .evaluate(&self.extended, residual, Some(&mut *jacobian));
+        // The load is linear in its factor, so its derivative is the oscillating load itself.
+        let mut oscillating = vec![0.0; n];
+        self.balance.set_drive_factor(1.0);
+        self.balance
+            .add_load(self.balance.coefficients(), -1.0, &mut oscillating);
+        self.balance.set_drive_factor(0.0);
+        self.balance
+            .add_load(self.balance.coefficients(), 1.0, &mut oscillating);
+        for (row, value) in oscillating.into_iter().enumerate() {
+            jacobian.row_mut(row)[n] = value;
+        }
+    }
+
+    fn weights(&self, weights: &mut [f64]) {
+        self.balance.weights(weights);
+    }
+}
+
+/// An orbit whose shortest period is the one asked for, near a disturbed orbit of period one.
+fn subharmonic_orbit(
+    request: StartRequest<'_>,
+    simple: &[f64],
+    statistics: &mut Statistics,
+) -> Option<Vec<f64>> {
+    let mut fixed = Fixed::new(&request, request.resolution.harmonics);
+    let stretched = stretch(simple, &fixed, request.resolution.period);
+    let length = fixed.balance.length();
+    let coordinates = fixed.balance.layout().coordinates;
+    let size = oscillation(&stretched, length)
+        .sqrt()
+        .max(f64::MIN_POSITIVE);
+    let options = NewtonOptions {
+        iterations: 60,
+        damped: true,
+        ..request.newton
+    };
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    for step in 0..12 {
+        let amplitude = size * 0.1 * 10_f64.powf(f64::from(step) / 4.0);
+        for direction in 0..8 {
+            let (sine, cosine) = (f64::from(direction) * std::f64::consts::FRAC_PI_4).sin_cos();
+            let mut u = stretched.clone();
+            for i in 0..coordinates {
+                u[i * length + 1] += amplitude * cosine;
+                u[i * length + 2] += amplitude * sine;
+            }
+            let solved = fixed.solve(&mut u, options).is_ok();
+            if solved && has_shortest_period(&u, length, request.resolution.period) {
+                found.push(u);
+            }
+        }
+    }
+    *statistics += fixed.newton.statistics;
+    found
+        .into_iter()
+        .min_by(|a, b| oscillation(a, length).total_cmp(&oscillation(b, length)))
+}
+
+/// An orbit of period one as unknowns of a balance of period `n`: harmonic `k` becomes harmonic `n k`.
+fn stretch(u: &[f64], to: &Fixed<'_>, period: usize) -> Vec<f64> {
+    let mut result = to.zeros();
+    let coordinates = to.balance.layout().coordinates;
+    let (from, length) = ((u.len() - 1) / coordinates, to.balance.length());
+    for i in 0..coordinates {
+        result[i * length] = u[i * from];
+        for k in 1..=series::harmonics(&u[..from]) {
+            if k * period <= series::harmonics(&result[..length]) {
+                result[i * length + 2 * k * period - 1] = u[i * from + 2 * k - 1];
+                result[i * length + 2 * k * period] = u[i * from + 2 * k];
+            }
+        }
+    }
+    result
+}
+
+/// Whether no divisor of the period is a period of the orbit: for every prime divisor some harmonic is no multiple of it.
+fn has_shortest_period(u: &[f64], length: usize, period: usize) -> bool {
+    let n = u.len() - 1;
+    let total = oscillation(u, length);
+    let primes = (2..=period).filter(|p| period % p == 0 && (2..*p).all(|q| p % q != 0));
+    primes.into_iter().all(|prime| {
+        let other: f64 = (0..n)
+            .filter(|i| !(i % length).div_ceil(2).is_multiple_of(prime))
+            .map(|i| u[i] * u[i])
+            .sum();
+        other > 1e-6 * total
+    })
+}

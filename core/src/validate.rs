@@ -1,0 +1,132 @@
+//! Checks of what a user asks for, before any work.
+
+use std::ops::RangeInclusive;
+
+use crate::error::Error;
+use crate::layout::Layout;
+use crate::system::{Bound, ParameterFacts, System, SystemFacts, Variable};
+
+/// The variable of this name; the excitation frequency without a name.
+pub(crate) fn variable(facts: &SystemFacts, name: Option<&str>) -> Result<Variable, Error> {
+    let Some(name) = name.filter(|name| *name != "omega") else {
+        return Ok(Variable::Omega);
+    };
+    let found = facts
+        .parameters
+        .iter()
+        .position(|parameter| parameter.name == name);
+    found
+        .map(Variable::Parameter)
+        .ok_or_else(|| Error::UnknownParameter {
+            name: name.to_owned(),
+            known: facts
+                .parameters
+                .iter()
+                .map(|parameter| parameter.name.to_string())
+                .collect(),
+        })
+}
+
+/// Both ends of a range are usable and differ.
+pub(crate) fn range(
+    facts: &SystemFacts,
+    variable: Variable,
+    from: f64,
+    to: f64,
+) -> Result<(), Error> {
+    for value in [from, to] {
+        match variable {
+            Variable::Omega => {
+                omega(value)?;
+            }
+            Variable::Parameter(index) => parameter(&facts.parameters[index], value)?,
+        }
+    }
+    if from == to {
+        return Err(Error::EmptyRange { value: from });
+    }
+    Ok(())
+}
+
+/// A frequency is positive and finite.
+pub(crate) fn omega(value: f64) -> Result<f64, Error> {
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Error::Option {
+            name: "omega",
+            value,
+            must: "must be positive and finite",
+        })
+    }
+}
+
+/// Every parameter is finite and within its declared range.
+pub(crate) fn parameters(facts: &SystemFacts, values: &[f64]) -> Result<(), Error> {
+    facts
+        .parameters
+        .iter()
+        .zip(values)
+        .try_for_each(|(facts, &value)| parameter(facts, value))
+}
+
+fn parameter(facts: &ParameterFacts, value: f64) -> Result<(), Error> {
+    if facts.admits(value) {
+        return Ok(());
+    }
+    Err(Error::Parameter {
+        name: facts.name.to_string(),
+        value,
+        range: describe(facts),
+    })
+}
+
+fn describe(facts: &ParameterFacts) -> String {
+    let lower = match facts.minimum {
+        Bound::Unbounded => "(-inf".to_owned(),
+        Bound::Included(bound) => format!("[{bound}"),
+        Bound::Excluded(bound) => format!("({bound}"),
+    };
+    let upper = match facts.maximum {
+        Bound::Unbounded => "inf)".to_owned(),
+        Bound::Included(bound) => format!("{bound}]"),
+        Bound::Excluded(bound) => format!("{bound})"),
+    };
+    format!("{lower}, {upper}")
+}
+
+/// An option is a number in its range.
+pub(crate) fn option(
+    name: &'static str,
+    value: f64,
+    range: RangeInclusive<f64>,
+    must: &'static str,
+) -> Result<(), Error> {
+    if range.contains(&value) {
+        Ok(())
+    } else {
+        Err(Error::Option { name, value, must })
+    }
+}
+
+/// The levels of every contact's law are in increasing order.
+pub(crate) fn levels(system: &dyn System, parameters: &[f64], omega: f64) -> Result<(), Error> {
+    let layout = Layout::of(system);
+    let mut coefficients = vec![0.0; layout.coefficients];
+    system.coefficients(parameters, omega, &mut coefficients);
+    for contact in &layout.contacts {
+        let law = system.law(contact.law);
+        let mut arguments = vec![0.0; contact.argument_count];
+        contact.arguments(&coefficients, &mut arguments);
+        let mut levels = vec![0.0; law.facts().levels.len()];
+        law.levels(&arguments, &mut levels);
+        let ordered = levels.windows(2).all(|pair| pair[0] <= pair[1]);
+        if !ordered || levels.iter().any(|level| !level.is_finite()) {
+            return Err(Error::Levels {
+                law: law.facts().name.to_string(),
+                levels,
+            });
+        }
+    }
+    Ok(())
+}
