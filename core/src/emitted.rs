@@ -22,6 +22,8 @@
 // Short functions that are meaningless unless merged into the loop that calls them.
 #![allow(clippy::inline_always)]
 
+use crate::law::{Exponent, Quantity, TermFacts};
+
 /// Guarded power `base^exponent` for a base that the declaration proves is not negative.
 #[inline(always)]
 pub fn power(base: f64, exponent: f64) -> f64 {
@@ -141,20 +143,20 @@ pub fn arguments<const N: usize>(slice: &[f64]) -> [f64; N] {
         .unwrap_or_else(|_| panic!("{N} arguments are needed, {} were given", slice.len()))
 }
 
-/// Declares a loop with a given number of outputs. Every output is a parameter of its own, so that the compiler knows
-/// that they do not overlap.
+/// Declares a loop with a given number of outputs, at given positions among the values of a kernel. Every output is a
+/// parameter of its own, so that the compiler knows that they do not overlap.
 macro_rules! loops {
-    ($($name:ident: $count:literal, $($out:ident $index:literal),+;)+) => {$(
-        /// Writes the outputs of a kernel for every sample.
+    ($($name:ident: $($out:ident $index:ident),+;)+) => {$(
+        /// Writes some of the values of a kernel for every sample.
         ///
         /// # Panics
         /// If the slices differ in length.
         #[inline(always)]
-        pub fn $name(
+        pub fn $name<$(const $index: usize,)+ const N: usize>(
             gap: &[f64],
             rate: &[f64],
             $($out: &mut [f64],)+
-            kernel: impl Fn(f64, f64) -> [f64; $count],
+            kernel: impl Fn(f64, f64) -> [f64; N],
         ) {
             let count = gap.len();
             assert_eq!(rate.len(), count, "gap and rate differ in length");
@@ -168,10 +170,36 @@ macro_rules! loops {
 }
 
 loops! {
-    write_1: 1, first 0;
-    write_2: 2, first 0, second 1;
-    write_3: 3, first 0, second 1, third 2;
-    write_4: 4, first 0, second 1, third 2, fourth 3;
+    write_1: first A;
+    write_2: first A, second B;
+    write_3: first A, second B, third C;
+    write_4: first A, second B, third C, fourth D;
+}
+
+/// A term of the facts of a piece.
+pub const fn term(of: Quantity, lower: Exponent, upper: Exponent, logarithm: bool) -> TermFacts {
+    TermFacts {
+        of,
+        lower,
+        upper,
+        logarithm,
+    }
+}
+
+/// An exponent known at compile time.
+pub const fn exponent(number: f64) -> Exponent {
+    Exponent {
+        number,
+        argument: None,
+    }
+}
+
+/// A number plus the argument at a position.
+pub const fn exponent_of(number: f64, argument: usize) -> Exponent {
+    Exponent {
+        number,
+        argument: Some(argument),
+    }
 }
 
 /// A piece was asked for that a law does not have.
@@ -217,4 +245,57 @@ pub fn no_such_law(index: usize) -> ! {
 #[cold]
 pub fn refused() -> ! {
     panic!("the declaration was refused")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn guarded_functions_are_finite_at_and_below_zero() {
+        for base in [0.0, -0.0, -1e-300, -2.0, -1e300] {
+            for exponent in [-3.0, -0.4, 0.0, 0.6, 1.0, 2.5] {
+                let expected = if exponent == 0.0 { 1.0 } else { 0.0 };
+                assert_eq!(power(base, exponent), expected);
+                assert_eq!(raise(base, logarithm(base), exponent), expected);
+                assert_eq!(power_log(base, exponent), 0.0);
+            }
+            assert_eq!(root(base), 0.0);
+            assert_eq!(cube_root(base), 0.0);
+            assert_eq!(logarithm(base), 0.0);
+        }
+        assert_eq!(reciprocal(0.0), 0.0);
+        assert_eq!(reciprocal(-4.0), -0.25);
+    }
+
+    #[test]
+    fn powers_by_one_logarithm_are_as_good_as_their_own() {
+        for base in [1e-300, 1e-12, 0.3, 1.0, 7.0, 1e6_f64] {
+            for exponent in [-0.4, 0.6, 1.4, 2.2] {
+                let (shared, own) = (raise(base, logarithm(base), exponent), base.powf(exponent));
+                let bound = 4.0 * f64::EPSILON * (1.0 + (exponent * base.ln()).abs());
+                assert!((shared - own).abs() <= bound * own, "{base}^{exponent}");
+            }
+        }
+    }
+
+    #[test]
+    fn sign_and_step_are_zero_at_zero() {
+        assert_eq!([-2.0, 0.0, 3.0].map(sign), [-1.0, 0.0, 1.0]);
+        assert_eq!([-2.0, 0.0, 3.0].map(step), [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn a_loop_writes_the_values_asked_for() {
+        let (gap, rate) = ([1.0, 2.0], [0.5, 0.25]);
+        let (mut first, mut second) = ([0.0; 2], [0.0; 2]);
+        write_2::<2, 0, 3>(&gap, &rate, &mut first, &mut second, |g, r| [g, r, g * r]);
+        assert_eq!((first, second), ([0.5, 0.5], [1.0, 2.0]));
+    }
+
+    #[test]
+    #[should_panic(expected = "gap and rate differ in length")]
+    fn a_loop_refuses_slices_of_different_length() {
+        write_1::<0, 1>(&[1.0], &[], &mut [0.0], |g, _| [g]);
+    }
 }

@@ -170,11 +170,11 @@ fn display_reads_as_written() {
     let damping = dag.product(&[two, zeta, rate]);
     let spring = dag.power(x, exponent);
     let force = dag.difference(spring, damping);
-    assert_eq!(dag.display(force, &name), "gap^1.5 - 2*rate*argument(0)");
+    assert_eq!(dag.display(force, &name), "gap^1.5 - 2*argument(0)*rate");
     let inverse = dag.quotient(zeta, force);
     assert_eq!(
         dag.display(inverse, &name),
-        "argument(0)/(gap^1.5 - 2*rate*argument(0))"
+        "argument(0)/(gap^1.5 - 2*argument(0)*rate)"
     );
 }
 

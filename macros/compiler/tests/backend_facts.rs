@@ -86,7 +86,7 @@ fn one_sided_damping_jumps_only_in_the_rate() {
     let force = lower(&facts, 1, Quantity::Force);
     assert!(force.contains(&(number(3, 2), false)) && force.contains(&(Exponent::ZERO, false)));
     assert_eq!(lower(&facts, 1, Quantity::ByGap), [(number(1, 2), false)]);
-    assert_eq!(primitive_of(model), ["0", "2*gap*zeta"]);
+    assert_eq!(primitive_of(model), ["0", "2*zeta*gap"]);
 }
 
 #[test]

@@ -96,7 +96,9 @@ impl Dag {
         let mut above = Vec::new();
         let mut below = Vec::new();
         let mut sign = "";
-        for factor in factors {
+        let mut factors = factors.to_vec();
+        factors.sort_by_key(|&factor| self.rank(factor));
+        for factor in &factors {
             match self.node(*factor) {
                 Node::Number(number) if number.is_negative() => {
                     sign = "-";
@@ -121,6 +123,18 @@ impl Dag {
             text.push_str(&divisor);
         }
         format!("{sign}{text}")
+    }
+
+    /// Where a factor stands in a product: numbers, parameters, time and frequency, coordinates, everything else.
+    fn rank(&self, factor: Id) -> usize {
+        match *self.node(factor) {
+            Node::Number(_) | Node::Pi => 0,
+            Node::Variable(Variable::Argument(_) | Variable::Parameter(_)) => 1,
+            Node::Variable(Variable::Omega | Variable::Time) => 2,
+            Node::Variable(_) => 3,
+            Node::Power(base, _) => self.rank(base),
+            _ => 4,
+        }
     }
 
     fn is_minus_one(&self, id: Id) -> bool {

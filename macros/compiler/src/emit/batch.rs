@@ -122,11 +122,11 @@ impl Emitter<'_> {
             let write = format_ident!("write_{}", varying.len());
             let indices = varying.iter().map(|(output, _)| position(*output));
             let slices = varying.iter().map(|(_, slice)| slice);
+            let outputs = position(3 + self.count());
             body.extend(quote! {
-                __emitted::#write(gap, rate, #(#slices,)* |g, r| {
-                    let v = Self::#function(a, g, r);
-                    [#(v[#indices]),*]
-                });
+                __emitted::#write::<#(#indices,)* #outputs>(
+                    gap, rate, #(#slices,)* |g, r| Self::#function(a, g, r),
+                );
             });
         }
         for (output, slice) in constant {

@@ -35,13 +35,17 @@ pub fn facts(law: &Law, facts: &LawFacts) -> TokenStream {
     };
     let odd = facts.odd;
     quote! {
-        __law::LawFacts {
-            name: #name,
-            arguments: #arguments,
-            levels: #levels,
-            pieces: #pieces,
-            rate: __law::RateDependence::#rate,
-            odd: #odd,
+        {
+            use __emitted::{exponent, exponent_of, term};
+            use __law::{Exponent, LevelFacts, PieceFacts, Quantity::*, Variation::*};
+            __law::LawFacts {
+                name: #name,
+                arguments: #arguments,
+                levels: #levels,
+                pieces: #pieces,
+                rate: __law::RateDependence::#rate,
+                odd: #odd,
+            }
         }
     }
 }
@@ -55,7 +59,7 @@ fn level(facts: LevelFacts) -> TokenStream {
         unbounded_by_gap,
     } = facts;
     quote! {
-        __law::LevelFacts {
+        LevelFacts {
             belongs_above: #belongs_above,
             force_jumps: #force_jumps,
             by_gap_jumps: #by_gap_jumps,
@@ -71,7 +75,7 @@ fn piece(facts: &PieceFacts) -> TokenStream {
     let by_argument = list(facts.by_argument.iter().copied().map(variation));
     let terms = list(facts.terms.iter().map(term));
     quote! {
-        __law::PieceFacts {
+        PieceFacts {
             affine: #affine,
             force: #force,
             by_gap: #by_gap,
@@ -84,9 +88,9 @@ fn piece(facts: &PieceFacts) -> TokenStream {
 
 fn variation(variation: Variation) -> TokenStream {
     match variation {
-        Variation::Zero => quote!(__law::Variation::Zero),
-        Variation::Constant => quote!(__law::Variation::Constant),
-        Variation::Varying => quote!(__law::Variation::Varying),
+        Variation::Zero => quote!(Zero),
+        Variation::Constant => quote!(Constant),
+        Variation::Varying => quote!(Varying),
     }
 }
 
@@ -102,18 +106,19 @@ fn term(term: &Term) -> TokenStream {
     };
     let [lower, upper] = [term.lower, term.upper].map(exponent);
     let logarithm = term.logarithm;
-    quote! {
-        __law::TermFacts { of: __law::Quantity::#of, lower: #lower, upper: #upper, logarithm: #logarithm }
-    }
+    quote!(term(#of, #lower, #upper, #logarithm))
 }
 
 fn exponent(exponent: Exponent) -> TokenStream {
     if exponent == Exponent::ZERO {
-        return quote!(__law::Exponent::ZERO);
+        return quote!(Exponent::ZERO);
     }
     let number = number(exponent.number.to_f64());
-    let argument = option(exponent.argument.map(position));
-    quote!(__law::Exponent { number: #number, argument: #argument })
+    if let Some(argument) = exponent.argument.map(position) {
+        quote!(exponent_of(#number, #argument))
+    } else {
+        quote!(exponent(#number))
+    }
 }
 
 /// An `Option` as Rust source.
@@ -143,7 +148,7 @@ pub fn data(dag: &mut Dag, levels: &[(Id, Vec<Id>)], pieces: &[Piece]) -> TokenS
             .map(|(_, by_argument)| {
                 let value = next();
                 let by_argument = list(by_argument.iter().map(|_| next()).map(|at| quote!(#at)));
-                quote!(__generic::LevelData { value: #value, by_argument: #by_argument })
+                quote!(LevelData { value: #value, by_argument: #by_argument })
             })
             .collect::<Vec<_>>(),
     );
@@ -154,7 +159,7 @@ pub fn data(dag: &mut Dag, levels: &[(Id, Vec<Id>)], pieces: &[Piece]) -> TokenS
                 let (force, by_gap, by_rate) = (next(), next(), next());
                 let by_argument = list(piece.by_argument.iter().map(|_| next()).map(|at| quote!(#at)));
                 quote! {
-                    __generic::PieceData {
+                    PieceData {
                         force: #force, by_gap: #by_gap, by_rate: #by_rate, by_argument: #by_argument,
                     }
                 }
@@ -162,7 +167,12 @@ pub fn data(dag: &mut Dag, levels: &[(Id, Vec<Id>)], pieces: &[Piece]) -> TokenS
             .collect::<Vec<_>>(),
     );
     let nodes = list(tape.operations.iter().map(|&operation| node(operation)));
-    quote!(__generic::LawData { nodes: #nodes, levels: #levels, pieces: #pieces })
+    quote! {
+        {
+            use __generic::{LevelData, Node::*, PieceData};
+            __generic::LawData { nodes: #nodes, levels: #levels, pieces: #pieces }
+        }
+    }
 }
 
 fn node(operation: Operation) -> TokenStream {
@@ -174,7 +184,7 @@ fn node(operation: Operation) -> TokenStream {
         let (a, b) = (position(a), position(b));
         quote!(#name(#a, #b))
     };
-    let node = match operation {
+    match operation {
         Operation::Number(value) => {
             let value = number(value);
             quote!(Number(#value))
@@ -208,6 +218,5 @@ fn node(operation: Operation) -> TokenStream {
         | Operation::Reciprocal(_)
         | Operation::Logarithm(_)
         | Operation::Raise(..) => unreachable!("not an operation of laws as data"),
-    };
-    quote!(__generic::Node::#node)
+    }
 }
