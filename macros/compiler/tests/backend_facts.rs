@@ -2,11 +2,11 @@
 
 mod backend_models;
 
-use hertzian_compiler::dag::{Rational, Variable};
+use hertzian_compiler::dag::{Function, Rational, Variable};
 use hertzian_compiler::facts::{
     Exponent, LawFacts, Piece, Quantity, RateDependence, Term, Variation, derive,
 };
-use hertzian_compiler::ir::{Law, Model};
+use hertzian_compiler::ir::{Bound, Law, Model};
 use hertzian_compiler::primitive;
 
 fn facts(model: &mut Model) -> LawFacts {
@@ -180,4 +180,61 @@ fn rate_term_at_a_runtime_level_is_integrated_in_its_base() {
     assert!(!facts.levels[0].force_jumps && !facts.levels[0].by_gap_jumps);
     let by_gap = lower(&facts, 1, Quantity::ByGap);
     assert!(by_gap.contains(&(argument(2, 0), false)), "{by_gap:?}");
+}
+
+#[test]
+fn a_power_inside_a_smooth_function_shows_among_the_terms() {
+    let mut s = backend_models::Sketch::new(&[]);
+    let (gap, zero, exponent) = (s.gap(), s.number("0"), s.number("1.5"));
+    let power = s.dag.power(gap, exponent);
+    let force = s.dag.call(Function::Tanh, power);
+    let law = s.law("soft", &[(zero, false)], &[zero, force]);
+    let facts = facts(&mut s.model("Nested", law));
+    assert!(lower(&facts, 1, Quantity::Force).contains(&(number(3, 2), false)));
+    assert!(lower(&facts, 1, Quantity::ByGap).contains(&(number(1, 2), false)));
+    assert!(!facts.levels[0].by_gap_jumps);
+}
+
+#[test]
+fn an_exponent_that_may_be_negative_is_not_taken_to_vanish() {
+    let any = (Bound::Unbounded, Bound::Unbounded);
+    let mut s = backend_models::Sketch::new(&[("alpha", any)]);
+    let (gap, zero, alpha) = (s.gap(), s.number("0"), s.argument(0));
+    let force = s.dag.power(gap, alpha);
+    let law = s.law("any", &[(zero, false)], &[zero, force]);
+    let facts = facts(&mut s.model("Any", law));
+    assert!(facts.levels[0].force_jumps && facts.levels[0].unbounded_by_gap);
+}
+
+#[test]
+fn what_has_no_known_primitive_is_left_to_the_caller() {
+    let mut s = backend_models::Sketch::new(&[]);
+    let (gap, rate, one) = (s.gap(), s.rate(), s.number("1"));
+    let square = s.dag.product(&[gap, gap]);
+    let base = s.dag.sum(&[one, square]);
+    let resistance = s.dag.quotient(rate, base);
+    let law = s.law("odd one", &[], &[resistance]);
+    let model = &mut s.model("Resistance", law);
+    assert_eq!(facts(model).rate, RateDependence::Linear);
+    let law = model.laws[0].clone();
+    assert!(primitive::parts(&mut model.dag, &law).is_none());
+}
+
+#[test]
+fn primitives_are_continuous_across_levels() {
+    // Resistance c beyond gaps of -b and b, none between: G is -c (gap + b), 0, c (gap - b), up to a constant.
+    let mut s = backend_models::Sketch::new(&[
+        ("c", (Bound::Unbounded, Bound::Unbounded)),
+        ("b", (Bound::Excluded(0.0), Bound::Unbounded)),
+    ]);
+    let (rate, c, b, zero) = (s.rate(), s.argument(0), s.argument(1), s.number("0"));
+    let lower = s.dag.negate(b);
+    let damping = s.dag.product(&[c, rate]);
+    let law = s.law(
+        "walls",
+        &[(lower, true), (b, false)],
+        &[damping, zero, damping],
+    );
+    let model = &mut s.model("Walls", law);
+    assert_eq!(primitive_of(model), ["c*gap + c*b", "0", "c*gap - c*b"]);
 }

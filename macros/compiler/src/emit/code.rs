@@ -105,7 +105,15 @@ fn write(
         atom(quote!(__emitted::#function(#(#operands),*)), size)
     };
     match operation {
-        Operation::Number(value) => atom(number(value), 0),
+        Operation::Number(value) => Expression {
+            tokens: number(value),
+            binding: if value.is_sign_negative() {
+                Binding::Sign
+            } else {
+                Binding::Atom
+            },
+            size: 0,
+        },
         Operation::Input(variable) => {
             let name = name(variable);
             atom(quote!(#name), 0)
@@ -172,7 +180,7 @@ pub fn number(value: f64) -> TokenStream {
     } else {
         let magnitude = Literal::f64_unsuffixed(value.abs());
         if value.is_sign_negative() {
-            quote!((-#magnitude))
+            quote!(-#magnitude)
         } else {
             quote!(#magnitude)
         }

@@ -210,7 +210,7 @@ fn node(operation: Operation) -> TokenStream {
             Function::Cosine => unary(quote!(Cosine), a),
             Function::Exponential => unary(quote!(Exponential), a),
             Function::Tanh => unary(quote!(Tanh), a),
-            Function::Step => unreachable!("lowered before data are written"),
+            Function::Step => unreachable!("data have no step"),
         },
         Operation::Input(_)
         | Operation::Root(_)

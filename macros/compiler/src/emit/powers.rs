@@ -125,6 +125,11 @@ impl Builder<'_> {
         let whole = magnitude.numerator() / magnitude.denominator();
         let part = magnitude.numerator() % magnitude.denominator();
         let position = self.at[&base];
+        if part == 0 && exponent.is_negative() && self.varies(base) {
+            // The negative powers of one base share its reciprocal.
+            let reciprocal = self.push(Operation::Reciprocal(position));
+            return self.whole_power(reciprocal, whole);
+        }
         let mut power = None;
         if whole > 0 {
             power = Some(self.whole_power(position, whole));

@@ -294,7 +294,10 @@ impl Builder<'_> {
             },
             Node::Call(function, operand) => {
                 let operand = self.at[&operand];
-                self.push(Operation::Call(function, operand))
+                match (function, self.style) {
+                    (Function::Step, Style::Data) => self.data_step(operand),
+                    _ => self.push(Operation::Call(function, operand)),
+                }
             }
         }
     }
@@ -389,6 +392,15 @@ impl Builder<'_> {
             }
             _ => None,
         }
+    }
+
+    /// `H(x) = (sgn x + |sgn x|) / 2`: the interpreter knows no step.
+    fn data_step(&mut self, operand: usize) -> usize {
+        let sign = self.push(Operation::Call(Function::Sign, operand));
+        let magnitude = self.push(Operation::Call(Function::Absolute, sign));
+        let sum = self.push(Operation::Add(sign, magnitude));
+        let half = self.number(0.5);
+        self.push(Operation::Multiply(half, sum))
     }
 
     fn data_power(&mut self, base: Id, exponent: Id) -> usize {

@@ -65,30 +65,35 @@ pub fn of_piece(dag: &mut Dag, piece: &Piece, lower: Option<Id>, upper: Option<I
     for (of, id) in quantities {
         let expanded = expand(dag, id);
         for addend in addends_of(dag, expanded) {
-            let (at_lower, lower_logarithm) = behaviour(dag, addend, lower);
-            let (at_upper, upper_logarithm) = behaviour(dag, addend, upper);
-            let logarithm = lower_logarithm || upper_logarithm;
-            let term = Term {
-                of,
-                lower: at_lower,
-                upper: at_upper,
-                logarithm,
-            };
-            if !terms.contains(&term) {
-                terms.push(term);
+            let at_upper = behaviours(dag, addend, upper);
+            for (lower, lower_logarithm) in behaviours(dag, addend, lower) {
+                for &(upper, upper_logarithm) in &at_upper {
+                    let logarithm = lower_logarithm || upper_logarithm;
+                    let term = Term {
+                        of,
+                        lower,
+                        upper,
+                        logarithm,
+                    };
+                    if !terms.contains(&term) {
+                        terms.push(term);
+                    }
+                }
             }
         }
     }
     terms
 }
 
-/// The exponent of a term at a level, and whether it carries a logarithm there.
-fn behaviour(dag: &mut Dag, term: Id, level: Option<Id>) -> (Exponent, bool) {
+/// The exponent of a term at a level, and whether it carries a logarithm there. A factor that is regular itself but
+/// contains a power that is not, as `exp(-g^1.5)`, adds the term that its expansion begins with.
+fn behaviours(dag: &mut Dag, term: Id, level: Option<Id>) -> Vec<(Exponent, bool)> {
     let Some(level) = level else {
-        return (Exponent::ZERO, false);
+        return vec![(Exponent::ZERO, false)];
     };
     let mut exponents = Vec::new();
     let mut logarithm = false;
+    let mut nested = Vec::new();
     for factor in factors_of(dag, term) {
         let (base, exponent, is_logarithm) = match *dag.node(factor) {
             Node::Power(base, exponent) => (base, exponent, false),
@@ -98,15 +103,53 @@ fn behaviour(dag: &mut Dag, term: Id, level: Option<Id>) -> (Exponent, bool) {
         if !dag.depends_on(base, Variable::Gap) {
             continue;
         }
-        let order = order_of_zero(dag, base, level);
+        let inner = nested_powers(dag, base, level);
+        // A base that is not smooth has no order; what it contains says how it behaves.
+        let order = if inner.is_empty() {
+            order_of_zero(dag, base, level)
+        } else {
+            0
+        };
         if order > 0 {
             let order = dag.integer(order);
             exponents.push(dag.product(&[order, exponent]));
             logarithm |= is_logarithm;
         }
+        nested.extend(inner);
     }
     let total = dag.sum(&exponents);
-    (as_exponent(dag, total), logarithm)
+    let mut behaviours = vec![(as_exponent(dag, total), logarithm)];
+    for (exponent, is_logarithm) in nested {
+        let sum = dag.sum(&[total, exponent]);
+        let behaviour = (as_exponent(dag, sum), logarithm || is_logarithm);
+        if behaviour.0 != Exponent::ZERO && !behaviours.contains(&behaviour) {
+            behaviours.push(behaviour);
+        }
+    }
+    behaviours
+}
+
+/// The exponents of powers inside an expression that are not smooth at a level.
+fn nested_powers(dag: &mut Dag, id: Id, level: Id) -> Vec<(Id, bool)> {
+    let mut found = Vec::new();
+    for inner in dag.reachable(&[id]) {
+        let (base, exponent, is_logarithm) = match *dag.node(inner) {
+            Node::Power(base, exponent) => (base, exponent, false),
+            Node::PowerLog(base, exponent) => (base, exponent, true),
+            _ => continue,
+        };
+        if dag.depends_on(base, Variable::Gap) {
+            let order = order_of_zero(dag, base, level);
+            if order > 0 {
+                let order = dag.integer(order);
+                let exponent = dag.product(&[order, exponent]);
+                if is_logarithm || as_exponent(dag, exponent) != Exponent::ZERO {
+                    found.push((exponent, is_logarithm));
+                }
+            }
+        }
+    }
+    found
 }
 
 /// How many times an expression vanishes at a level; zero where it does not, or not as a power with a whole exponent.
