@@ -14,6 +14,9 @@ use super::wave::Wave;
 /// More terms than any equation has, and few enough to be quick.
 const MOST_TERMS: usize = 1 << 14;
 
+/// Operations in one coefficient.
+const LARGEST_COEFFICIENT: usize = 1000;
+
 /// A call of a law.
 #[derive(Debug, Clone)]
 pub struct Call {
@@ -229,7 +232,24 @@ impl Expander {
                 });
             }
         }
-        Ok(collect(&mut self.dag, terms))
+        let terms = collect(&mut self.dag, terms);
+        self.coefficients_are_small(&terms, extent)?;
+        Ok(terms)
+    }
+
+    /// Numbers that do not fit stay unevaluated, and coefficients could then grow without end.
+    fn coefficients_are_small(&self, terms: &[Term], extent: Extent) -> syn::Result<()> {
+        let size = |term: &Term| -> usize {
+            let parts = self.dag.reachable(&[term.coefficient]);
+            parts
+                .into_iter()
+                .map(|id| 1 + self.dag.operands(id).len())
+                .sum()
+        };
+        if terms.iter().any(|term| size(term) > LARGEST_COEFFICIENT) {
+            return Err(extent.fault("too much to multiply out: make it a law, or factor it"));
+        }
+        Ok(())
     }
 
     fn nonlinear_product(

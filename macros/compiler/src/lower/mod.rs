@@ -40,16 +40,8 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
     let mut gatherer = Gatherer::default();
     let mut terms: Vec<(usize, Term)> = Vec::new();
     for (row, equation) in declaration.equations.iter().enumerate() {
-        for term in equation_terms(&mut context, equation, diagnostics) {
-            let rest = gatherer.add(&mut context, row, &term);
-            terms.extend(
-                diagnostics
-                    .keep(rest)
-                    .into_iter()
-                    .flatten()
-                    .map(|term| (row, term)),
-            );
-        }
+        let rest = equation_terms(&mut context, row, equation, &mut gatherer, diagnostics);
+        terms.extend(rest.into_iter().map(|term| (row, term)));
     }
     let laws = declared_laws(&mut context, declaration, diagnostics);
     let found = gatherer.laws(&mut context, diagnostics);
@@ -147,30 +139,39 @@ fn context(declaration: &Declaration, parameters: &[ir::Parameter]) -> Expander 
     context
 }
 
-/// All terms of an equation, brought to the left.
+/// All terms of an equation, brought to the left, except for nonlinear ones, which are gathered.
 fn equation_terms(
     context: &mut Expander,
+    row: usize,
     equation: &Equation,
+    gatherer: &mut Gatherer,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Term> {
     let mut terms = Vec::new();
+    // Places of powers in `let` items are kept, those in the terms before are not.
+    let known = context.powers.len();
     for (side, on_right) in [(&equation.left, false), (&equation.right, true)] {
         for (minus, part) in addends(side) {
+            context.powers.truncate(known);
             let Some(expanded) = diagnostics.keep(context.expand(part)) else {
                 continue;
             };
             for term in collect(&mut context.dag, expanded) {
-                let term = Term {
-                    extent: part.extent,
-                    ..term
-                };
+                let extent = part.extent;
+                let term = Term { extent, ..term };
                 diagnostics.keep(forcing::term_is_in_its_place(&term, on_right));
                 diagnostics.keep(forcing::term_is_harmonic(&term));
-                terms.push(if minus == on_right {
+                let term = if minus == on_right {
                     term
                 } else {
                     term.negated(&mut context.dag)
-                });
+                };
+                terms.extend(
+                    diagnostics
+                        .keep(gatherer.add(context, row, &term))
+                        .into_iter()
+                        .flatten(),
+                );
             }
         }
     }

@@ -1,0 +1,201 @@
+//! No panic and no runaway, whatever the tokens: valid declarations with tokens exchanged, dropped, doubled or nested.
+
+use std::str::FromStr;
+use std::time::{Duration, Instant};
+
+use proc_macro2::TokenStream;
+
+const DECLARATIONS: [&str; 5] = [
+    "pub A ( x ) { param zeta in 0.0 .. ; param alpha > 0 ; param load ; law contact ( gap ) { gap > 0 => 2 * zeta * dot ( gap ) + gap ^ alpha , else => 0 } ddot ( x ) + contact ( x ) = cos ( omega * t ) + load ; }",
+    "B ( x , y ) { param m > 0 ; param k ; let s = 2 / 5 * omega * t ; law h ( g , c ) { 0 < g <= 1 => c * g , g > 1 => c , else => 0 } m * ddot ( x ) + h ( x * cos ( s ) + y * sin ( s ) - 1 , k ) * sin ( s ) = 0 ; m * ddot ( y ) + 3 * y = m * omega ^ 2 * cos ( omega * t + pi ) ; }",
+    "C ( x ) { param a > 0 ; ddot ( x ) + | | x | - 1 | ^ a + ( x ^ 2 - 1 ) * dot ( x ) + sgn ( x ) * x ^ 2 = cos ( omega * t ) ^ 3 ; }",
+    "D ( x ) { param play > 0 ; law b ( g ) { g > play => ( g - play ) ^ 1.5 , g < - play => - ( - g - play ) ^ 1.5 , - play <= g && g <= play => 0 } ddot ( x ) + ( 1 + 0.2 * cos ( omega * t ) ) * b ( x ) = 0 ; }",
+    "E ( u , v ) { param e ; ddot ( u ) + ( u - v ) ^ 3 / 2 + H ( u - v ) * sqrt ( | u - v | ) + tanh ( v ) = exp ( e ) ; ddot ( v ) + ( v - u ) ^ 3 + abs ( dot ( v ) ) * dot ( v ) = 0 ; }",
+];
+
+const EXTRAS: [&str; 44] = [
+    "+",
+    "-",
+    "*",
+    "/",
+    "^",
+    "|",
+    "(",
+    ")",
+    "{",
+    "}",
+    "[",
+    "]",
+    ",",
+    ";",
+    "=",
+    "=>",
+    ">",
+    "<",
+    ">=",
+    "..",
+    "&&",
+    "#",
+    "0",
+    "1",
+    "2zeta",
+    "1e30",
+    "1.5",
+    "-1",
+    "x",
+    "gap",
+    "t",
+    "omega",
+    "pi",
+    "dot",
+    "ddot",
+    "H",
+    "sgn",
+    "param",
+    "law",
+    "let",
+    "else",
+    "170141183460469231731687303715884105727",
+    "sin",
+    "0.000000000001",
+];
+
+/// A small generator of numbers (xorshift), so that every run is the same.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        usize::try_from(self.0 % bound as u64).unwrap_or(0)
+    }
+}
+
+fn mutated(random: &mut Random) -> String {
+    let mut words: Vec<&str> = DECLARATIONS[random.below(DECLARATIONS.len())]
+        .split(' ')
+        .collect();
+    for _ in 0..=random.below(4) {
+        let position = random.below(words.len());
+        let other = random.below(words.len());
+        match random.below(5) {
+            0 => words[position] = EXTRAS[random.below(EXTRAS.len())],
+            1 => drop(words.remove(position)),
+            2 => words.insert(position, EXTRAS[random.below(EXTRAS.len())]),
+            3 => words.swap(position, other),
+            _ => {
+                let (start, end) = (
+                    position.min(other),
+                    position.max(other).min(position.min(other) + 12),
+                );
+                let copy: Vec<&str> = words[start..end].to_vec();
+                words.splice(end..end, copy);
+            }
+        }
+    }
+    words.join(" ")
+}
+
+/// Compiles and expands; the time it took, if the text lexes at all.
+fn compile(text: &str) -> Option<Duration> {
+    let tokens = TokenStream::from_str(text).ok()?;
+    let start = Instant::now();
+    let _ = hertzian_compiler::compile(tokens.clone());
+    let _ = hertzian_compiler::oscillator(tokens);
+    Some(start.elapsed())
+}
+
+#[test]
+fn mutated_declarations_do_not_panic() {
+    let count = std::env::var("HERTZIAN_FUZZ")
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(4000);
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let mut lexed = 0;
+    for _ in 0..count {
+        let text = mutated(&mut random);
+        if let Some(elapsed) = compile(&text) {
+            lexed += 1;
+            assert!(elapsed < Duration::from_secs(2), "took {elapsed:?}: {text}");
+        }
+    }
+    assert!(lexed > count / 4);
+}
+
+#[test]
+fn random_tokens_do_not_panic() {
+    let mut random = Random(0x2545_f491_4f6c_dd1d);
+    for _ in 0..4000 {
+        let length = 1 + random.below(40);
+        let words: Vec<&str> = (0..length)
+            .map(|_| EXTRAS[random.below(EXTRAS.len())])
+            .collect();
+        compile(&words.join(" "));
+        compile(&format!("M(x) {{ {} }}", words.join(" ")));
+        compile(&format!("M(x) {{ ddot(x) + {} = 0; }}", words.join(" ")));
+        compile(&format!(
+            "M(x) {{ law f(gap) {{ {} }} ddot(x) + f(x) = 0; }}",
+            words.join(" ")
+        ));
+    }
+}
+
+#[test]
+fn deep_and_long_declarations_end() {
+    for depth in [30, 45, 3000] {
+        for (open, close) in [
+            ("(", ")"),
+            ("|", "|"),
+            ("abs(", ")"),
+            ("-", ""),
+            ("2^", ""),
+            ("sin(", ")"),
+        ] {
+            let text = format!(
+                "M(x) {{ ddot(x) + {}x{} = 0; }}",
+                open.repeat(depth),
+                close.repeat(depth)
+            );
+            let _ = compile(&text);
+        }
+    }
+    let doubled: String = (0..400)
+        .map(|i| format!("let a{} = a{i} + |a{i}|*a{i};", i + 1))
+        .collect();
+    let texts = [
+        format!(
+            "M(x) {{ ddot(x) + {} = 0; }}",
+            vec!["x^3"; 5000].join(" + ")
+        ),
+        format!(
+            "M(x) {{ ddot(x) + {} = 0; }}",
+            vec!["(1 + cos(omega*t))"; 60].join("*")
+        ),
+        format!("M(x) {{ ddot(x) + {}x = 0; }}", "(x + 1)*".repeat(2000)),
+        format!("M(x) {{ let a0 = x; {doubled} ddot(x) + a400 = 0; }}"),
+        format!(
+            "M(x) {{ ddot(x) + {} = 0; }}",
+            (0..200)
+                .map(|i| format!("|x - {i}|"))
+                .collect::<Vec<_>>()
+                .join("+")
+        ),
+        format!(
+            "M(x) {{ ddot(x) + x = {}; }}",
+            (1..500)
+                .map(|i| format!("cos(1/{i}*omega*t)"))
+                .collect::<Vec<_>>()
+                .join("+")
+        ),
+    ];
+    for text in texts {
+        let elapsed = compile(&text).expect("lexes");
+        assert!(
+            elapsed < Duration::from_secs(10),
+            "took {elapsed:?}: {}",
+            &text[..80]
+        );
+    }
+}
