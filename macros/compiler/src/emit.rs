@@ -14,6 +14,8 @@ mod powers;
 mod stub;
 mod system;
 mod tape;
+#[cfg(test)]
+mod tests;
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};

@@ -1,7 +1,12 @@
 //! Derivatives and rewriting, tried on random expressions against numbers.
 
+mod backend_models;
+
+use backend_models::Sketch;
 use hertzian_compiler::dag::{Dag, Function, Id, Rational, Variable};
 use hertzian_compiler::differentiate::differentiate;
+use hertzian_compiler::emit::emit;
+use hertzian_compiler::ir::Bound;
 use hertzian_compiler::simplify::{expand, factor, is_zero};
 use proptest::prelude::*;
 
@@ -111,6 +116,8 @@ fn direct(tree: &Tree, at: &[f64; 3]) -> f64 {
         Tree::Call(function, operand) => {
             let x = direct(operand, at);
             match function {
+                // Of so large an angle rounding leaves nothing; such a case is passed over.
+                Function::Sine | Function::Cosine if x.abs() > 1e3 => f64::NAN,
                 Function::Sine => x.sin(),
                 Function::Cosine => x.cos(),
                 Function::Tanh => x.tanh(),
@@ -143,11 +150,13 @@ fn difference(tree: &Tree, at: &[f64; 3], index: usize) -> Option<f64> {
         (8.0 * (shifted(1.0) - shifted(-1.0)) - (shifted(2.0) - shifted(-2.0))) / (12.0 * step)
     };
     let (coarse, fine) = (central(4e-4), central(2e-4));
-    close(coarse, fine, 1e-7).then_some(fine)
+    // Beside a large constant the difference is lost to rounding.
+    let small = direct(tree, at).abs() < 1e4;
+    (small && close(coarse, fine, 1e-7)).then_some(fine)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn canonical_forms_keep_the_value(tree in trees(), at in [0.2..1.5_f64, 0.2..1.5, 0.2..1.5]) {
@@ -174,6 +183,21 @@ proptest! {
                 prop_assert!(close(exact, expected, 1e-5), "{} against {}", exact, expected);
             }
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_law_can_be_emitted(below in trees(), above in trees()) {
+        let any = (Bound::Unbounded, Bound::Unbounded);
+        let mut sketch = Sketch::new(&[("a", any)]);
+        let pieces = [build(&mut sketch.dag, &below), build(&mut sketch.dag, &above)];
+        let level = sketch.argument(0);
+        let law = sketch.law("any", &[(level, false)], &pieces);
+        let tokens = emit(&sketch.model("Any", law));
+        prop_assert!(syn::parse2::<syn::File>(tokens).is_ok());
     }
 }
 
