@@ -123,6 +123,13 @@ impl Chart {
         }
     }
 
+    /// Changes the title.
+    #[must_use]
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.title = title.into();
+        self
+    }
+
     /// Labels the horizontal axis; a unit belongs to the label.
     #[must_use]
     pub fn x(mut self, label: impl Into<String>) -> Self {

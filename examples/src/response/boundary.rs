@@ -1,0 +1,82 @@
+//! Where contact is lost: the largest response of a loaded one-sided contact that never opens.
+
+use std::ops::{ControlFlow, RangeInclusive};
+
+use hertzian::{FrequencyResponse, Point};
+
+use super::models::model;
+use super::options::Options;
+
+/// Frequencies at which the boundary is computed.
+const FREQUENCIES: usize = 41;
+/// The orbit never leaves one piece of the law, so a few harmonics are as good as many.
+const HARMONICS: usize = 6;
+const SAMPLES: usize = 64;
+/// More points than this at one frequency are not worth a reference line.
+const POINTS: usize = 200;
+
+/// Points `[omega, peak-to-peak]` on which the smallest displacement is zero; not a number where none was found, and
+/// nothing at all for a contact that cannot open or is not loaded.
+///
+/// At each frequency the amplitude of the excitation is raised from nearly nothing until the orbit touches zero.
+pub fn loss_of_contact(
+    options: &Options,
+    frequencies: RangeInclusive<f64>,
+    interrupted: impl Fn() -> bool,
+) -> Vec<[f64; 2]> {
+    if !options.loses_contact() || options.load <= 0.0 {
+        return Vec::new();
+    }
+    let (first, last) = frequencies.into_inner();
+    (0..FREQUENCIES)
+        .map(|index| first + (last - first) * index as f64 / (FREQUENCIES - 1) as f64)
+        .take_while(|_| !interrupted())
+        .map(|omega| [omega, at_frequency(options, omega).unwrap_or(f64::NAN)])
+        .collect()
+}
+
+/// Peak-to-peak of the orbit that touches zero at one frequency.
+fn at_frequency(options: &Options, omega: f64) -> Option<f64> {
+    let model = model(options);
+    let highest = highest_drive(options, omega);
+    let mut touches = None;
+    let mut previous: Option<Point> = None;
+    FrequencyResponse::of(&*model)
+        .vary("drive")
+        .omega(omega)
+        .from(1e-3 * highest)
+        .to(highest)
+        .harmonics(HARMONICS)
+        .samples(SAMPLES)
+        .tolerance(1e-3)
+        .max_points(POINTS)
+        .run_with(|point| {
+            if point.motion().minimum > 0.0 {
+                previous = Some(point.clone());
+                return ControlFlow::Continue(());
+            }
+            touches = previous
+                .as_ref()
+                .map(|previous| where_minimum_is_zero(previous, point));
+            ControlFlow::Break(())
+        })
+        .ok()?;
+    touches
+}
+
+/// More than it takes to open the contact: four times what a linear spring of the stiffness at rest would need.
+///
+/// At rest `x^alpha = W`, so `x_0 = W^(1/alpha)` and the stiffness is `alpha W / x_0`.
+fn highest_drive(options: &Options, omega: f64) -> f64 {
+    let rest = options.load.powf(1.0 / options.alpha);
+    let stiffness = options.alpha * options.load / rest;
+    let dynamic = (stiffness - omega * omega).hypot(2.0 * options.zeta * omega);
+    4.0 * rest * (dynamic + stiffness)
+}
+
+/// Peak-to-peak where the minimum vanishes, on the straight line between two points.
+fn where_minimum_is_zero(above: &Point, below: &Point) -> f64 {
+    let (a, b) = (above.motion(), below.motion());
+    let part = a.minimum / (a.minimum - b.minimum);
+    a.peak_to_peak() + part * (b.peak_to_peak() - a.peak_to_peak())
+}

@@ -1,0 +1,99 @@
+//! Writing the results to files.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use super::records::{PointRecord, Record};
+
+/// Columns of the CSV file; each multiplier has two.
+pub const COLUMNS: [&str; 16] = [
+    "omega",
+    "drive",
+    "peak_to_peak",
+    "max",
+    "min",
+    "mean",
+    "rms",
+    "stability",
+    "multiplier_1_re",
+    "multiplier_1_im",
+    "multiplier_2_re",
+    "multiplier_2_im",
+    "contact_fraction",
+    "contacts",
+    "peak_force",
+    "dissipated_power",
+];
+
+/// Whether a file can be written there, as far as can be told without touching it.
+///
+/// # Errors
+/// If the path is a folder, or its folder does not exist.
+pub fn check(path: &Path) -> io::Result<()> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    if path.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if folder.is_some_and(|folder| !folder.is_dir()) {
+        return Err(io::Error::new(
+            io::ErrorKind::NotFound,
+            "its folder does not exist",
+        ));
+    }
+    Ok(())
+}
+
+/// Writes everything as JSON. A number that is not finite becomes `null`.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_json(path: &Path, record: &Record) -> io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    serde_json::to_writer(&mut file, record)?;
+    writeln!(file)?;
+    file.flush()
+}
+
+/// Writes one row per point.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_csv(path: &Path, points: &[PointRecord]) -> io::Result<()> {
+    let mut writer = csv::Writer::from_path(path)?;
+    writer.write_record(COLUMNS)?;
+    for point in points {
+        writer.write_record(row(point))?;
+    }
+    writer.flush()
+}
+
+/// A point as the texts of [`COLUMNS`]; a multiplier that is not known is empty.
+fn row(point: &PointRecord) -> Vec<String> {
+    // As short as reads back to the same number.
+    let number = |value: f64| format!("{value:?}");
+    let part = |index: usize, part: usize| {
+        let multiplier = point.multipliers.get(index);
+        multiplier.map_or(String::new(), |multiplier| number(multiplier[part]))
+    };
+    vec![
+        number(point.omega),
+        number(point.drive),
+        number(point.peak_to_peak),
+        number(point.max),
+        number(point.min),
+        number(point.mean),
+        number(point.rms),
+        point.stability.clone(),
+        part(0, 0),
+        part(0, 1),
+        part(1, 0),
+        part(1, 1),
+        number(point.contact_fraction),
+        point.contacts.to_string(),
+        number(point.peak_force),
+        number(point.dissipated_power),
+    ]
+}

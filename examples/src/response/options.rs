@@ -1,0 +1,135 @@
+//! What can be asked for on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+
+/// Traces the periodic response of one mass on a power-law contact, says what is stable, and draws it.
+///
+/// x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = drive cos(omega t) + load
+///
+/// H(x) is 1 for x > 0 and 0 otherwise (--one-sided), or 1 everywhere (--continuous). Without options: figure 5b of
+/// Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722.
+#[derive(Debug, Clone, PartialEq, Parser)]
+#[command(
+    name = "response",
+    version,
+    allow_negative_numbers = true,
+    after_help = "Exit codes: 0 the end of the range was reached; 2 bad input; 3 the branch ended before (what was computed is written)."
+)]
+pub struct Options {
+    /// Exponent of the force, positive
+    #[arg(long, value_name = "VALUE", default_value_t = 1.5)]
+    pub alpha: f64,
+
+    /// Contact that can be lost: force and damping act for x > 0 only (the default)
+    #[arg(long, conflicts_with = "continuous")]
+    pub one_sided: bool,
+
+    /// Contact that cannot be lost: force and damping act everywhere
+    #[arg(long)]
+    pub continuous: bool,
+
+    /// Damping ratio, not negative
+    #[arg(long, value_name = "VALUE", default_value_t = 0.032)]
+    pub zeta: f64,
+
+    /// Constant load W
+    #[arg(long, value_name = "VALUE", default_value_t = 1.0)]
+    pub load: f64,
+
+    /// Amplitude A of the excitation; with --sweep drive, the range takes its place
+    #[arg(long, value_name = "VALUE", default_value_t = 0.1)]
+    pub drive: f64,
+
+    /// Frequency of the excitation, positive; used with --sweep drive
+    #[arg(long, value_name = "VALUE", default_value_t = 1.0)]
+    pub omega: f64,
+
+    /// What varies along the branch
+    #[arg(long, value_enum, default_value_t = Sweep::Omega)]
+    pub sweep: Sweep,
+
+    /// Where the branch starts
+    #[arg(long, value_name = "VALUE", default_value_t = 0.6)]
+    pub from: f64,
+
+    /// Where it ends; may be below the start
+    #[arg(long, value_name = "VALUE", default_value_t = 1.6)]
+    pub to: f64,
+
+    /// Period of the orbit, in periods of the excitation
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    pub period: usize,
+
+    /// Harmonics per period of the excitation [default: from the tolerance, 20 at 1e-6]
+    #[arg(long, value_name = "COUNT")]
+    pub harmonics: Option<usize>,
+
+    /// Samples per period of the excitation [default: from the harmonics, 512 for 20]
+    #[arg(long, value_name = "COUNT")]
+    pub samples: Option<usize>,
+
+    /// How the harmonics of the contact force are computed
+    #[arg(long, value_enum, default_value_t = Aft::Sampled)]
+    pub aft: Aft,
+
+    /// Relative accuracy asked of peak-to-peak
+    #[arg(long, value_name = "VALUE", default_value_t = 1e-6)]
+    pub tolerance: f64,
+
+    /// Stop after this many points
+    #[arg(long, value_name = "COUNT", default_value_t = 20_000)]
+    pub max_points: usize,
+
+    /// Also compute every solution at exactly these values of what varies
+    #[arg(long, value_name = "VALUE", num_args = 1..)]
+    pub at: Vec<f64>,
+
+    /// The picture
+    #[arg(long, value_name = "FILE", default_value = "response.svg")]
+    pub svg: PathBuf,
+
+    /// Write one row per point to this file
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+
+    /// Write everything to this file
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Say nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// What varies along a branch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Sweep {
+    /// The frequency of the excitation
+    Omega,
+    /// The amplitude of the excitation
+    Drive,
+}
+
+/// How the harmonics of the contact force are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Aft {
+    /// From samples over the period (Cameron and Griffin 1989)
+    Sampled,
+}
+
+impl Options {
+    /// Whether contact can be lost.
+    pub fn loses_contact(&self) -> bool {
+        !self.continuous
+    }
+
+    /// Name of what varies, as the models call it.
+    pub fn varied(&self) -> &'static str {
+        match self.sweep {
+            Sweep::Omega => "omega",
+            Sweep::Drive => "drive",
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! What is written to JSON and CSV: plain numbers with stable names.
+
+use hertzian::observe::{amplitudes, phases};
+use hertzian::system::SystemFacts;
+use hertzian::{Branch, Event, Point, Statistics};
+use serde::Serialize;
+
+use super::options::Sweep;
+
+/// Everything about a branch.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Record {
+    /// The points in branch order.
+    pub points: Vec<PointRecord>,
+    /// Special orbits.
+    pub events: Vec<EventRecord>,
+    /// Places where the branch turned, but not through a fold.
+    pub turns: Vec<TurnRecord>,
+    /// Every solution at the values that were asked for.
+    pub at: Vec<PointRecord>,
+    /// Why the branch ended.
+    pub stopped: String,
+    /// What it cost.
+    pub statistics: StatisticsRecord,
+    /// Time of the computation alone.
+    pub elapsed_seconds: f64,
+}
+
+/// One orbit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PointRecord {
+    /// Frequency of the excitation.
+    pub omega: f64,
+    /// Amplitude of the excitation.
+    pub drive: f64,
+    /// Largest less smallest displacement.
+    pub peak_to_peak: f64,
+    /// Largest displacement.
+    pub max: f64,
+    /// Smallest displacement.
+    pub min: f64,
+    /// Mean displacement.
+    pub mean: f64,
+    /// Root of the mean square of the displacement, mean included.
+    pub rms: f64,
+    /// `stable`, `unstable` or `undecided`.
+    pub stability: String,
+    /// Floquet multipliers, real and imaginary part.
+    pub multipliers: Vec<[f64; 2]>,
+    /// Number of harmonics of the orbit.
+    pub harmonics: usize,
+    /// Amplitudes of the harmonics, the mean first.
+    pub amplitudes: Vec<f64>,
+    /// Phase lags of the harmonics, the mean's zero first.
+    pub phases: Vec<f64>,
+    /// Fraction of the period in contact.
+    pub contact_fraction: f64,
+    /// Contacts per period.
+    pub contacts: usize,
+    /// Largest contact force.
+    pub peak_force: f64,
+    /// Mean power that is dissipated.
+    pub dissipated_power: f64,
+}
+
+/// A special orbit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EventRecord {
+    /// What happens there.
+    pub kind: String,
+    /// Frequency of the excitation.
+    pub omega: f64,
+    /// Amplitude of the excitation.
+    pub drive: f64,
+    /// Largest less smallest displacement.
+    pub peak_to_peak: f64,
+    /// Estimated error of what the branch varies.
+    pub error: f64,
+}
+
+/// A place where the branch turned, but not through a fold.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TurnRecord {
+    /// Frequency of the excitation.
+    pub omega: f64,
+    /// Amplitude of the excitation.
+    pub drive: f64,
+    /// Number of points of the branch before it.
+    pub after: usize,
+}
+
+/// Counts of the work done.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct StatisticsRecord {
+    /// Evaluations of the residual alone.
+    pub residuals: usize,
+    /// Evaluations of the residual together with its Jacobian.
+    pub jacobians: usize,
+    /// Factorisations of a dense matrix.
+    pub factorisations: usize,
+    /// Steps that gave a point.
+    pub accepted_steps: usize,
+    /// Steps that were tried again with a smaller length.
+    pub rejected_steps: usize,
+    /// Orbits whose multipliers were computed.
+    pub monodromies: usize,
+}
+
+impl Record {
+    /// Of a branch, and of solutions at values that were asked for.
+    pub fn of(branch: &Branch<'_>, facts: &SystemFacts, sweep: Sweep, at: &[Point]) -> Self {
+        let point = |point: &Point| PointRecord::of(point, facts);
+        // A turn has no orbit of its own; what the branch does not vary is the same at every point.
+        let fixed = branch.points.first().map(point);
+        let turn = |turn: &hertzian::branch::Turn| {
+            let (omega, drive) = fixed
+                .as_ref()
+                .map_or((f64::NAN, f64::NAN), |p| (p.omega, p.drive));
+            let (omega, drive) = match sweep {
+                Sweep::Omega => (turn.value, drive),
+                Sweep::Drive => (omega, turn.value),
+            };
+            TurnRecord {
+                omega,
+                drive,
+                after: turn.after,
+            }
+        };
+        Self {
+            points: branch.points.iter().map(point).collect(),
+            events: branch
+                .events
+                .iter()
+                .map(|event| EventRecord::of(event, facts))
+                .collect(),
+            turns: branch.turns.iter().map(turn).collect(),
+            at: at.iter().map(point).collect(),
+            stopped: branch.stopped.to_string(),
+            statistics: branch.statistics.into(),
+            elapsed_seconds: branch.elapsed.as_secs_f64(),
+        }
+    }
+}
+
+impl PointRecord {
+    /// Of a point.
+    pub fn of(point: &Point, facts: &SystemFacts) -> Self {
+        let motion = point.motion();
+        let series = point.orbit.series(0);
+        let multipliers = point.stability.multipliers.iter();
+        let contact = point.observed.contacts.first();
+        // A linear spring in both directions is no contact to the library: it never opens, and its force is x.
+        let linear = motion.maximum.abs().max(motion.minimum.abs());
+        Self {
+            omega: point.omega(),
+            drive: drive(point, facts),
+            peak_to_peak: motion.peak_to_peak(),
+            max: motion.maximum,
+            min: motion.minimum,
+            mean: motion.mean,
+            rms: motion.rms,
+            stability: point.stability.verdict.to_string(),
+            multipliers: multipliers.map(|m| [m.re, m.im]).collect(),
+            harmonics: point.orbit.harmonics(),
+            amplitudes: amplitudes(series),
+            phases: phases(series),
+            contact_fraction: contact.map_or(1.0, |contact| contact.fraction),
+            contacts: contact.map_or(1, |contact| contact.count),
+            peak_force: contact.map_or(linear, |contact| contact.peak_force),
+            dissipated_power: point.observed.dissipated_power,
+        }
+    }
+}
+
+impl EventRecord {
+    fn of(event: &Event, facts: &SystemFacts) -> Self {
+        Self {
+            kind: event.kind.to_string(),
+            omega: event.point.omega(),
+            drive: drive(&event.point, facts),
+            peak_to_peak: event.point.peak_to_peak(),
+            error: event.error,
+        }
+    }
+}
+
+impl From<Statistics> for StatisticsRecord {
+    fn from(statistics: Statistics) -> Self {
+        Self {
+            residuals: statistics.residuals,
+            jacobians: statistics.jacobians,
+            factorisations: statistics.factorisations,
+            accepted_steps: statistics.accepted_steps,
+            rejected_steps: statistics.rejected_steps,
+            monodromies: statistics.monodromies,
+        }
+    }
+}
+
+fn drive(point: &Point, facts: &SystemFacts) -> f64 {
+    let drive = facts.parameters.iter().position(|p| p.name == "drive");
+    drive.map_or(f64::NAN, |index| point.parameters[index])
+}

@@ -1,0 +1,196 @@
+//! From options to files and a summary.
+
+use std::io;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use hertzian::chart::{Chart, Reference};
+use hertzian::{Branch, Error, FrequencyResponse, Point, Stop, System};
+
+use super::boundary::loss_of_contact;
+use super::files;
+use super::models::model;
+use super::options::{Aft, Options, Sweep};
+use super::progress::Progress;
+use super::records::Record;
+use super::summary;
+
+/// What came of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// For people.
+    pub summary: String,
+    /// What could not be done, besides.
+    pub warnings: Vec<String>,
+    /// Whether the end of the range was reached.
+    pub complete: bool,
+}
+
+/// Why nothing came of a run.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Failure {
+    /// The library says no.
+    Library(Error),
+    /// A value of `--at` is not a number that could be reached.
+    At(f64),
+    /// A file cannot be written.
+    File(PathBuf, io::Error),
+}
+
+impl Failure {
+    /// 3 if the branch could not begin, 2 if what was asked for is at fault.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Library(Error::NoStart { .. } | Error::NoSuchPeriod { .. }) => 3,
+            _ => 2,
+        }
+    }
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Library(error) => error.fmt(f),
+            Self::At(value) => write!(f, "at = {value}: must be finite"),
+            Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Library(error)
+    }
+}
+
+/// Traces the branch, writes the files and sums up. Setting `interrupted` ends the branch where it is.
+///
+/// # Errors
+/// If the options are not usable, no orbit was found to start from, or a file cannot be written.
+pub fn run(
+    options: &Options,
+    interrupted: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Outcome, Failure> {
+    check(options)?;
+    let model = model(options);
+    let stop = || interrupted.load(Ordering::Relaxed);
+    let mut count = 0_usize;
+    let branch = request(options, &*model).run_with(|point| {
+        count += 1;
+        progress.update(|| format!("{count} points, {} = {:.6}", options.varied(), point.value));
+        if stop() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    })?;
+
+    let mut warnings = Vec::new();
+    let at = solutions_at(options, &branch, &mut warnings);
+    let record = Record::of(&branch, model.facts(), options.sweep, &at);
+    let chart = picture(options, &branch, stop);
+    let written = write(options, &record, &chart)?;
+    Ok(Outcome {
+        summary: summary::of(options, &branch, &at, &written),
+        warnings,
+        complete: branch.stopped == Stop::ReachedEnd,
+    })
+}
+
+/// What the library does not check: values to look at, and files.
+fn check(options: &Options) -> Result<(), Failure> {
+    if let Some(&value) = options.at.iter().find(|value| !value.is_finite()) {
+        return Err(Failure::At(value));
+    }
+    for path in paths(options) {
+        files::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
+    }
+    Ok(())
+}
+
+fn paths(options: &Options) -> impl Iterator<Item = &Path> {
+    let optional = options.csv.iter().chain(&options.json);
+    std::iter::once(&options.svg)
+        .chain(optional)
+        .map(PathBuf::as_path)
+}
+
+/// The options in the library's terms.
+fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a> {
+    // The only method there is needs no setting.
+    let Aft::Sampled = options.aft;
+    let mut request = FrequencyResponse::of(model)
+        .from(options.from)
+        .to(options.to)
+        .period(options.period)
+        .tolerance(options.tolerance)
+        .max_points(options.max_points);
+    if options.sweep == Sweep::Drive {
+        request = request.vary("drive").omega(options.omega);
+    }
+    if let Some(harmonics) = options.harmonics {
+        request = request.harmonics(harmonics);
+    }
+    if let Some(samples) = options.samples {
+        request = request.samples(samples);
+    }
+    request
+}
+
+/// Every solution at each value that was asked for.
+fn solutions_at(options: &Options, branch: &Branch<'_>, warnings: &mut Vec<String>) -> Vec<Point> {
+    let name = options.varied();
+    let mut solutions = Vec::new();
+    for &value in &options.at {
+        match branch.at(value) {
+            Ok(found) if found.is_empty() => {
+                warnings.push(format!("the branch does not pass {name} = {value}"));
+            }
+            Ok(found) => solutions.extend(found),
+            Err(error) => warnings.push(format!("at {name} = {value}: {error}")),
+        }
+    }
+    solutions
+}
+
+/// The library's picture of the branch, with the boundary of lost contact.
+fn picture(options: &Options, branch: &Branch<'_>, stop: impl Fn() -> bool) -> Chart {
+    let chart = branch.chart().title(summary::title(options));
+    if options.sweep == Sweep::Drive {
+        return chart;
+    }
+    let values = branch.points.iter().map(|point| point.value);
+    let (low, high) = values.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), value| {
+        (low.min(value), high.max(value))
+    });
+    chart.reference(Reference {
+        label: "loss of contact".to_owned(),
+        points: loss_of_contact(options, low..=high, stop),
+    })
+}
+
+/// Writes the files that were asked for; returns their paths.
+fn write<'a>(
+    options: &'a Options,
+    record: &Record,
+    chart: &Chart,
+) -> Result<Vec<&'a Path>, Failure> {
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |error| Failure::File(path, error)
+    };
+    let svg = &options.svg;
+    std::fs::write(svg, chart.to_svg()).map_err(failed(svg))?;
+    if let Some(path) = &options.csv {
+        files::write_csv(path, &record.points).map_err(failed(path))?;
+    }
+    if let Some(path) = &options.json {
+        files::write_json(path, record).map_err(failed(path))?;
+    }
+    Ok(paths(options).collect())
+}
