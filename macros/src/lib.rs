@@ -2,7 +2,103 @@
 
 use proc_macro::TokenStream;
 
-/// Declares a system of oscillators.
+/// Declares a system of oscillators: a type with one public `f64` field per parameter, which implements
+/// `hertzian::system::System`.
+///
+/// ```text
+/// hertzian::oscillator! {
+///     /// One-sided contact spring with damping, loaded and shaken.
+///     pub OneSided(x) {
+///         /// damping ratio
+///         param zeta in 0.0..;
+///         /// normal load
+///         param load;
+///         /// excitation amplitude
+///         param drive;
+///
+///         law contact(gap) {
+///             gap > 0 => 2*zeta*dot(gap) + gap^1.5,
+///             else    => 0,
+///         }
+///
+///         ddot(x) + contact(x) = drive*cos(omega*t) + load;
+///     }
+/// }
+///
+/// let model = OneSided { zeta: 0.032, load: 1.0, drive: 0.1 };
+/// ```
+///
+/// # Grammar
+///
+/// ```text
+/// model       = { doc } [ visibility ] name "(" name { "," name } ")" "{" { item } "}"
+/// item        = { doc } ( parameter | law | let | equation )
+/// parameter   = "param" name [ range ] ";"
+/// range       = "in" [ bound ] ( ".." | "..=" ) [ bound ] | ( ">" | ">=" | "<" | "<=" ) bound
+/// bound       = [ "-" ] number
+/// law         = "law" name "(" name { "," name } ")" "{" ( expression | piece { "," piece } [ "," ] ) "}"
+/// piece       = ( condition | "else" ) "=>" expression
+/// condition   = chain { "&&" chain }
+/// chain       = expression relation expression { relation expression }
+/// relation    = ">" | ">=" | "<" | "<="
+/// let         = "let" name "=" expression ";"
+/// equation    = expression "=" expression ";"
+/// expression  = product { ( "+" | "-" ) product }
+/// product     = signed { ( "*" | "/" ) signed }
+/// signed      = ( "-" | "+" ) signed | power
+/// power       = operand [ "^" signed ]
+/// operand     = number | name | name "(" expression { "," expression } ")"
+///             | "(" expression ")" | "|" expression "|"
+/// ```
+///
+/// A power binds tighter than a sign in front of it and to the right: `-x^2` is `-(x^2)`, `2^3^2` is `2^9`. Products need
+/// their star: `2*zeta`. Numbers are exact: `1.5` is three halves.
+///
+/// # Names
+///
+/// - `omega` is the frequency of excitation, `t` is time, `pi` is the number.
+/// - `dot` and `ddot` are the first and second derivative by time.
+/// - `H` is the step (one for a positive operand, zero otherwise), `sgn` the sign, `abs(x)` or `|x|` the absolute value.
+/// - `cos`, `sin`, `exp`, `tanh` and `sqrt` are what they are everywhere.
+///
+/// # Equations
+///
+/// Each coordinate has one equation. What depends on the motion stands on the left; constants and forcing may stand on
+/// either side. Forcing is a sum of products of `cos` and `sin` of rational multiples of `omega*t`, with phases
+/// (`cos(2/5*omega*t + phi)`) and coefficients that may depend on parameters and `omega`.
+///
+/// Terms that are linear in the coordinates become mass, damping and stiffness, the stiffness also with harmonic
+/// coefficients: `(1 + e*cos(2*omega*t))*x`. All others are forces of a *gap*, a fixed combination of coordinates. They may
+/// be written in place, and are grouped by gap:
+///
+/// ```text
+/// ddot(x) + 2*zeta*H(x)*dot(x) + H(x)*sgn(x)*|x|^alpha = drive*cos(omega*t) + load;
+/// ```
+///
+/// # Laws
+///
+/// A law is a force of its gap, of the rate `dot(gap)` and of arguments, in pieces or as one expression. It may use every
+/// parameter. Pieces are bounded by comparisons of the gap with numbers and parameters, and hold every gap once; which
+/// level is the higher one follows from the ranges of the parameters.
+///
+/// ```text
+/// param play > 0;
+/// law backlash(gap, k) {
+///     gap > play  => k*(gap - play),
+///     gap < -play => k*(gap + play),
+///     else        => 0,
+/// }
+/// ```
+///
+/// The gap of a call is linear in the coordinates and may move with time; a factor of the force may as well:
+///
+/// ```text
+/// ddot(x) + cos(omega*t)*contact(x*cos(omega*t) + y*sin(omega*t) - clearance) = 0;
+/// ```
+///
+/// The base of a power that is not whole must not be negative on its piece, and where it can vanish the exponent must be
+/// positive: declare `param alpha > 0;`. A force may jump where the gap crosses a level. It may not jump with the rate, as
+/// dry friction does.
 #[proc_macro]
 pub fn oscillator(declaration: TokenStream) -> TokenStream {
     hertzian_compiler::oscillator(declaration.into()).into()

@@ -21,6 +21,7 @@ impl Extent {
     }
 
     /// From the start of this one to the end of another.
+    #[must_use]
     pub fn to(self, last: Self) -> Self {
         Self {
             start: self.start,

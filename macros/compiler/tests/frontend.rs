@@ -69,7 +69,11 @@ fn summary(model: &Model) -> Vec<String> {
         let mut line = format!("{}: {}", law.name, show(law.pieces[0]));
         for (level, &piece) in law.levels.iter().zip(&law.pieces[1..]) {
             let relation = if level.belongs_above { ">=" } else { ">" };
-            line += &format!(" | {relation} {} | {}", show(level.value), show(piece));
+            line.push_str(&format!(
+                " | {relation} {} | {}",
+                show(level.value),
+                show(piece)
+            ));
         }
         lines.push(line);
     }
@@ -104,7 +108,7 @@ fn a_law_with_two_pieces() {
             "d0 column 0 = 1",
             "a0 0 = zeta",
             "e0 row 0 = 1",
-            "contact: 0 | > 0 | g^1.5 + 2*r*zeta",
+            "contact: 0 | > 0 | g^1.5 + 2*zeta*r",
         ],
     );
 }
@@ -122,7 +126,7 @@ fn the_form_of_the_paper() {
             "a0 0 = zeta",
             "a0 1 = alpha",
             "e0 row 0 = 1",
-            "force 1: 0 | > 0 | g^alpha + 2*r*zeta",
+            "force 1: 0 | > 0 | g^alpha + 2*zeta*r",
         ],
     );
 }

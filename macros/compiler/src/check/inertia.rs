@@ -64,8 +64,7 @@ fn is_regular(mut matrix: Vec<Vec<f64>>) -> bool {
         };
         matrix.swap(column, pivot);
         let head = matrix[column][column];
-        // Written so that NaN counts as singular.
-        if !(head.abs() > 1e-12 * scale) {
+        if head.is_nan() || head.abs() <= 1e-12 * scale {
             return false;
         }
         let above = matrix[column].clone();

@@ -74,28 +74,20 @@ pub(crate) fn arranged(
     for index in 0..=pieces.len() {
         let next = pieces.get(index).copied();
         let below = arranged.last().map(|piece| piece.high);
-        let hole = match diagnostics.keep(hole_between(context, below, next.as_ref())) {
-            Some(hole) => hole,
-            None => {
+        let hole = diagnostics.keep(hole_between(context, below, next.as_ref()));
+        sound &= hole.is_some();
+        if let Some((low, high)) = hole.flatten() {
+            if let Some((index, extent)) = rest {
+                filled = true;
+                arranged.push(Piece {
+                    low,
+                    high,
+                    index,
+                    extent,
+                });
+            } else {
                 sound = false;
-                None
-            }
-        };
-        if let Some((low, high)) = hole {
-            match rest {
-                Some((index, extent)) => {
-                    filled = true;
-                    arranged.push(Piece {
-                        low,
-                        high,
-                        index,
-                        extent,
-                    });
-                }
-                None => {
-                    sound = false;
-                    diagnostics.add(pieces_leave_no_gap(context, low, high, law));
-                }
+                diagnostics.add(pieces_leave_no_gap(context, low, high, law));
             }
         }
         arranged.extend(next);

@@ -81,7 +81,10 @@ fn vanishes(context: &mut Expander, id: Id) -> bool {
     for current in context.dag.reachable(&[id]) {
         let zero = match context.dag.node(current).clone() {
             Node::Number(number) => number == Rational::ZERO,
-            Node::Pi | Node::Variable(_) | Node::PowerLog(..) => false,
+            Node::Pi
+            | Node::Variable(_)
+            | Node::PowerLog(..)
+            | Node::Call(Function::Cosine | Function::Exponential, _) => false,
             Node::Sum(terms) => terms.iter().all(|term| known[term]),
             Node::Product(factors) => factors.iter().any(|factor| known[factor]),
             Node::Power(base, exponent) => {
@@ -91,7 +94,6 @@ fn vanishes(context: &mut Expander, id: Id) -> bool {
                         .bounds(&mut context.dag, exponent, Stretch::ALL)
                         .is_positive()
             }
-            Node::Call(Function::Cosine | Function::Exponential, _) => false,
             Node::Call(_, operand) => known[&operand],
         };
         known.insert(current, zero);

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 
 use crate::ast::{Expr, Kind};
-use crate::check::powers;
-use crate::dag::{Dag, Function, Id, Rational, Variable};
+
+use crate::dag::{Dag, Function, Id, Variable};
 use crate::errors::Extent;
 
-use super::interval::{Ranges, Stretch};
+use super::interval::Ranges;
 use super::term::{Motion, Term, collect};
 use super::wave::Wave;
 
@@ -128,7 +128,7 @@ impl Expander {
             }
             Kind::Absolute(operand) => {
                 let terms = self.expand(operand)?;
-                self.function(Function::Absolute, terms, extent)?
+                self.function(Function::Absolute, &terms, extent)?
             }
             Kind::Call(name, arguments) => self.call(&name.to_string(), arguments, extent)?,
         };
@@ -136,7 +136,7 @@ impl Expander {
         Ok(terms)
     }
 
-    fn spend(&mut self, terms: usize, extent: Extent) -> syn::Result<()> {
+    pub(super) fn spend(&mut self, terms: usize, extent: Extent) -> syn::Result<()> {
         self.spent = self.spent.saturating_add(terms);
         if self.spent > MOST_TERMS {
             return Err(extent.fault("too much to multiply out: make it a law, or factor it"));
@@ -307,7 +307,7 @@ impl Expander {
     }
 
     /// A nonlinear function of coordinates and velocities as terms.
-    fn nonlinear(&mut self, id: Id, extent: Extent) -> Vec<Term> {
+    pub(super) fn nonlinear(&mut self, id: Id, extent: Extent) -> Vec<Term> {
         let one = self.dag.integer(1);
         let term = Term::constant(one, extent);
         if self
@@ -368,243 +368,6 @@ impl Expander {
         }
         let parts: Vec<Id> = terms.iter().map(|term| term.coefficient).collect();
         Ok(self.dag.sum(&parts))
-    }
-
-    fn power(&mut self, base: Vec<Term>, exponent: Id, extent: Extent) -> syn::Result<Vec<Term>> {
-        let whole = self.dag.as_number(exponent).and_then(Rational::to_integer);
-        if base.iter().all(Term::is_constant) {
-            let base = self.constant(&base, extent, "the base")?;
-            let power = self.dag.power(base, exponent);
-            powers::power_is_defined(self, base, exponent, Stretch::ALL)
-                .map_err(|message| extent.fault(message))?;
-            return Ok(vec![Term::constant(power, extent)]);
-        }
-        if base.iter().any(Term::moves) {
-            if whole == Some(1) {
-                return Ok(base);
-            }
-            let base = self.value(&base, extent)?;
-            let power = self.dag.power(base, exponent);
-            self.powers.push((power, extent));
-            return Ok(self.nonlinear(power, extent));
-        }
-        let Some(whole @ 0..=8) = whole else {
-            return Err(extent.fault(
-                "not harmonic in omega*t: time may stand only in cos and sin, their sums, products and whole powers up to 8",
-            ));
-        };
-        let one = self.dag.integer(1);
-        let mut product = vec![Term::constant(one, extent)];
-        for _ in 0..whole {
-            product = self.multiply(&product, &base, extent)?;
-        }
-        Ok(product)
-    }
-
-    fn function(
-        &mut self,
-        function: Function,
-        operand: Vec<Term>,
-        extent: Extent,
-    ) -> syn::Result<Vec<Term>> {
-        let trigonometric = matches!(function, Function::Sine | Function::Cosine);
-        if operand.iter().any(Term::moves) {
-            let operand = self.value(&operand, extent)?;
-            let value = self.dag.call(function, operand);
-            return Ok(self.nonlinear(value, extent));
-        }
-        if trigonometric {
-            return self.oscillation(function == Function::Sine, &operand, extent);
-        }
-        if !operand.iter().all(Term::is_steady) {
-            return Err(extent.fault(
-                "not harmonic in omega*t: write a Fourier series, as in `drive*cos(omega*t) + drive/3*cos(3*omega*t)`",
-            ));
-        }
-        let operand = self.constant(&operand, extent, "the operand")?;
-        let value = self.without_step(function, operand);
-        Ok(vec![Term::constant(value, extent)])
-    }
-
-    /// A function of parameters; a step is written with the sign.
-    fn without_step(&mut self, function: Function, operand: Id) -> Id {
-        if function == Function::Step && self.dag.as_number(operand).is_none() {
-            return super::resolve::step_as_sign(&mut self.dag, operand);
-        }
-        self.dag.call(function, operand)
-    }
-
-    /// `cos(a omega t + phi)` as `cos phi cos(a omega t) - sin phi sin(a omega t)`, and the sine likewise.
-    fn oscillation(
-        &mut self,
-        sine: bool,
-        operand: &[Term],
-        extent: Extent,
-    ) -> syn::Result<Vec<Term>> {
-        let (mut phase, mut rate) = (Vec::new(), Vec::new());
-        for term in operand {
-            match (term.time, term.wave == Wave::CONSTANT) {
-                (0, true) => phase.push(term.coefficient),
-                (1, true) => rate.push(term.coefficient),
-                _ => return Err(extent.fault("not harmonic in omega*t: the argument must be a multiple of omega*t, plus a phase")),
-            }
-        }
-        let (phase, rate) = (self.dag.sum(&phase), self.dag.sum(&rate));
-        let multiple = self.multiple_of_omega(rate).ok_or_else(|| {
-            extent.fault(
-                "quasi-periodic: every frequency must be a rational multiple of omega, as in `cos(2/5*omega*t)`",
-            )
-        })?;
-        let (cosine_of, sine_of) = (
-            self.dag.call(Function::Cosine, phase),
-            self.dag.call(Function::Sine, phase),
-        );
-        let parts = if sine {
-            [(cosine_of, true), (sine_of, false)]
-        } else {
-            let minus = self.dag.negate(sine_of);
-            [(cosine_of, false), (minus, true)]
-        };
-        let mut terms = Vec::new();
-        for (coefficient, sine) in parts {
-            if let Some((sign, wave)) = Wave::new(multiple, sine) {
-                let sign = self.dag.number(sign);
-                let coefficient = self.dag.product(&[coefficient, sign]);
-                terms.push(Term {
-                    wave,
-                    ..Term::constant(coefficient, extent)
-                });
-            }
-        }
-        Ok(collect(&mut self.dag, terms))
-    }
-
-    fn multiple_of_omega(&mut self, rate: Id) -> Option<Rational> {
-        let omega = self.dag.variable(Variable::Omega);
-        let ratio = self.dag.quotient(rate, omega);
-        self.dag.as_number(ratio)
-    }
-
-    fn call(&mut self, name: &str, arguments: &[Expr], extent: Extent) -> syn::Result<Vec<Term>> {
-        if let Some(&law) = self.laws.get(name) {
-            return self.law(law, arguments, extent);
-        }
-        let [argument] = arguments else {
-            return Err(extent.fault(format!("`{name}` takes one argument")));
-        };
-        let operand = self.expand(argument)?;
-        match name {
-            "dot" => self.rate(&operand, argument.extent),
-            "ddot" => {
-                let first = self.rate(&operand, argument.extent)?;
-                self.rate(&first, argument.extent)
-            }
-            "sqrt" => {
-                let half = self.dag.integer(2);
-                let one = self.dag.integer(1);
-                let half = self.dag.quotient(one, half);
-                self.power(operand, half, extent)
-            }
-            "H" => self.function(Function::Step, operand, extent),
-            "sgn" => self.function(Function::Sign, operand, extent),
-            "abs" => self.function(Function::Absolute, operand, extent),
-            "cos" => self.function(Function::Cosine, operand, extent),
-            "sin" => self.function(Function::Sine, operand, extent),
-            "exp" => self.function(Function::Exponential, operand, extent),
-            "tanh" => self.function(Function::Tanh, operand, extent),
-            _ => Err(extent.fault(format!("unknown function `{name}`"))),
-        }
-    }
-
-    fn law(&mut self, law: usize, arguments: &[Expr], extent: Extent) -> syn::Result<Vec<Term>> {
-        let Some((gap, rest)) = arguments.split_first() else {
-            return Err(extent.fault("a law takes its gap as first argument"));
-        };
-        let place = gap.extent;
-        let gap = self.expand(gap)?;
-        let gap = collect(&mut self.dag, gap);
-        for term in &gap {
-            match term.motion {
-                Motion::None | Motion::Linear(Variable::Coordinate(_)) if term.time == 0 => {}
-                Motion::Nonlinear(_) | Motion::Call(_) => {
-                    return Err(place.fault(
-                        "the gap must be linear in the coordinates: put what is nonlinear inside the law",
-                    ));
-                }
-                _ => {
-                    return Err(place.fault(
-                        "the gap is made of coordinates, parameters and waves of omega*t alone",
-                    ));
-                }
-            }
-        }
-        if !gap.iter().any(Term::moves) {
-            return Err(place.fault(
-                "this gap holds no coordinate: it would be a force that depends on time alone",
-            ));
-        }
-        let mut values = Vec::new();
-        for argument in rest {
-            let terms = self.expand(argument)?;
-            values.push(self.constant(&terms, argument.extent, "an argument of a law")?);
-        }
-        self.calls.push(Call {
-            law,
-            gap,
-            arguments: values,
-        });
-        let one = self.dag.integer(1);
-        Ok(vec![Term {
-            motion: Motion::Call(self.calls.len() - 1),
-            ..Term::constant(one, extent)
-        }])
-    }
-
-    /// The derivative by time: of the wave, and of the motion.
-    ///
-    /// # Errors
-    /// For nonlinear motion, and third derivatives.
-    pub fn rate(&mut self, terms: &[Term], extent: Extent) -> syn::Result<Vec<Term>> {
-        let mut rates = Vec::new();
-        for term in terms {
-            if term.time > 0 {
-                return Err(extent.fault("`dot` of an expression with bare `t`"));
-            }
-            let moved = match term.motion {
-                Motion::None => None,
-                Motion::Linear(Variable::Coordinate(index)) => Some(Variable::Velocity(index)),
-                Motion::Linear(Variable::Velocity(index)) => Some(Variable::Acceleration(index)),
-                Motion::Linear(_) => {
-                    return Err(
-                        extent.fault("derivatives higher than the second have no place in (1)")
-                    );
-                }
-                Motion::Nonlinear(_) | Motion::Call(_) => {
-                    return Err(extent.fault("`dot` of a nonlinear expression: write its derivative out, as in `2*x*dot(x)`"));
-                }
-            };
-            rates.extend(moved.map(|variable| Term {
-                motion: Motion::Linear(variable),
-                ..*term
-            }));
-            let multiple = if term.wave.sine {
-                Some(term.wave.multiple)
-            } else {
-                term.wave.multiple.negate()
-            };
-            let omega = self.dag.variable(Variable::Omega);
-            let multiple = multiple.map_or(omega, |multiple| {
-                let number = self.dag.number(multiple);
-                self.dag.product(&[number, omega])
-            });
-            if let Some((_, wave)) = Wave::new(term.wave.multiple, !term.wave.sine) {
-                rates.push(Term {
-                    wave,
-                    ..term.scaled(&mut self.dag, multiple)
-                });
-            }
-        }
-        Ok(collect(&mut self.dag, rates))
     }
 }
 

@@ -1,7 +1,9 @@
 //! [`Declaration`] to [`Model`]: equations are multiplied out, linear terms become coefficients, the rest laws.
 
 mod assemble;
+mod calls;
 mod found;
+mod functions;
 mod law;
 mod resolve;
 

@@ -326,7 +326,10 @@ impl Parser<'_> {
         if let Token::Open(Delimiter::Parenthesis, close) = *self.tokens.peek() {
             while self.tokens.position() <= close {
                 match self.tokens.next() {
-                    Token::Name(name) => text += &format!(" {name}"),
+                    Token::Name(name) => {
+                        text.push(' ');
+                        text.push_str(&name.to_string());
+                    }
                     Token::Mark(mark, _) => text.push(mark),
                     Token::Open(..) => text.push('('),
                     Token::Close(_) => text.push(')'),

@@ -1,0 +1,132 @@
+//! Powers and functions of terms: of constants, of waves, and of the motion.
+
+use crate::check::powers;
+use crate::dag::{Function, Id, Rational, Variable};
+use crate::errors::Extent;
+
+use super::expand::Expander;
+use super::interval::Stretch;
+use super::term::{Term, collect};
+use super::wave::Wave;
+
+impl Expander {
+    pub(super) fn power(
+        &mut self,
+        base: Vec<Term>,
+        exponent: Id,
+        extent: Extent,
+    ) -> syn::Result<Vec<Term>> {
+        let whole = self.dag.as_number(exponent).and_then(Rational::to_integer);
+        if base.iter().all(Term::is_constant) {
+            let base = self.constant(&base, extent, "the base")?;
+            let power = self.dag.power(base, exponent);
+            powers::power_is_defined(self, base, exponent, Stretch::ALL)
+                .map_err(|message| extent.fault(message))?;
+            return Ok(vec![Term::constant(power, extent)]);
+        }
+        if base.iter().any(Term::moves) {
+            if whole == Some(1) {
+                return Ok(base);
+            }
+            let base = self.value(&base, extent)?;
+            let power = self.dag.power(base, exponent);
+            self.powers.push((power, extent));
+            return Ok(self.nonlinear(power, extent));
+        }
+        let Some(whole @ 0..=8) = whole else {
+            return Err(extent.fault(
+                "not harmonic in omega*t: time may stand only in cos and sin, their sums, products and whole powers up to 8",
+            ));
+        };
+        let one = self.dag.integer(1);
+        let mut product = vec![Term::constant(one, extent)];
+        for _ in 0..whole {
+            product = self.multiply(&product, &base, extent)?;
+        }
+        Ok(product)
+    }
+
+    pub(super) fn function(
+        &mut self,
+        function: Function,
+        operand: &[Term],
+        extent: Extent,
+    ) -> syn::Result<Vec<Term>> {
+        let trigonometric = matches!(function, Function::Sine | Function::Cosine);
+        if operand.iter().any(Term::moves) {
+            let operand = self.value(operand, extent)?;
+            let value = self.dag.call(function, operand);
+            return Ok(self.nonlinear(value, extent));
+        }
+        if trigonometric {
+            return self.oscillation(function == Function::Sine, operand, extent);
+        }
+        if !operand.iter().all(Term::is_steady) {
+            return Err(extent.fault(
+                "not harmonic in omega*t: write a Fourier series, as in `drive*cos(omega*t) + drive/3*cos(3*omega*t)`",
+            ));
+        }
+        let operand = self.constant(operand, extent, "the operand")?;
+        let value = self.without_step(function, operand);
+        Ok(vec![Term::constant(value, extent)])
+    }
+
+    /// A function of parameters; a step is written with the sign.
+    fn without_step(&mut self, function: Function, operand: Id) -> Id {
+        if function == Function::Step && self.dag.as_number(operand).is_none() {
+            return super::resolve::step_as_sign(&mut self.dag, operand);
+        }
+        self.dag.call(function, operand)
+    }
+
+    /// `cos(a omega t + phi)` as `cos phi cos(a omega t) - sin phi sin(a omega t)`, and the sine likewise.
+    fn oscillation(
+        &mut self,
+        sine: bool,
+        operand: &[Term],
+        extent: Extent,
+    ) -> syn::Result<Vec<Term>> {
+        let (mut phase, mut rate) = (Vec::new(), Vec::new());
+        for term in operand {
+            match (term.time, term.wave == Wave::CONSTANT) {
+                (0, true) => phase.push(term.coefficient),
+                (1, true) => rate.push(term.coefficient),
+                _ => return Err(extent.fault("not harmonic in omega*t: the argument must be a multiple of omega*t, plus a phase")),
+            }
+        }
+        let (phase, rate) = (self.dag.sum(&phase), self.dag.sum(&rate));
+        let multiple = self.multiple_of_omega(rate).ok_or_else(|| {
+            extent.fault(
+                "quasi-periodic: every frequency must be a rational multiple of omega, as in `cos(2/5*omega*t)`",
+            )
+        })?;
+        let (cosine_of, sine_of) = (
+            self.dag.call(Function::Cosine, phase),
+            self.dag.call(Function::Sine, phase),
+        );
+        let parts = if sine {
+            [(cosine_of, true), (sine_of, false)]
+        } else {
+            let minus = self.dag.negate(sine_of);
+            [(cosine_of, false), (minus, true)]
+        };
+        let mut terms = Vec::new();
+        for (coefficient, sine) in parts {
+            if let Some((sign, wave)) = Wave::new(multiple, sine) {
+                let sign = self.dag.number(sign);
+                let coefficient = self.dag.product(&[coefficient, sign]);
+                terms.push(Term {
+                    wave,
+                    ..Term::constant(coefficient, extent)
+                });
+            }
+        }
+        Ok(collect(&mut self.dag, terms))
+    }
+
+    fn multiple_of_omega(&mut self, rate: Id) -> Option<Rational> {
+        let omega = self.dag.variable(Variable::Omega);
+        let ratio = self.dag.quotient(rate, omega);
+        self.dag.as_number(ratio)
+    }
+}
