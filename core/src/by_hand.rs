@@ -132,14 +132,14 @@ impl PowerLaw {
         }
     }
 
-    /// Force and derivatives by gap, rate and `alpha`.
-    fn point(&self, on: On, [zeta, alpha]: [f64; 2], g: f64, r: f64) -> [f64; 4] {
+    /// Force and derivatives by gap, rate, `zeta` and `alpha`.
+    fn point(&self, on: On, [zeta, alpha]: [f64; 2], g: f64, r: f64) -> [f64; 5] {
         let above = match on {
             On::AllPieces => g > 0.0,
             On::Piece(piece) => piece == 1,
         };
         if self.one_sided && !above {
-            return [0.0; 4];
+            return [0.0; 5];
         }
         let sign = if above { 1.0 } else { -1.0 };
         let size = (sign * g).max(0.0);
@@ -150,7 +150,7 @@ impl PowerLaw {
             0.0
         };
         let log = if size > 0.0 { power * size.ln() } else { 0.0 };
-        [2.0 * zeta * r + sign * power, slope, 2.0 * zeta, sign * log]
+        [2.0 * zeta * r + sign * power, slope, 2.0 * zeta, 2.0 * r, sign * log]
     }
 }
 
@@ -179,7 +179,7 @@ impl Law for PowerLaw {
 
     fn derivatives(&self, on: On, a: &[f64], gap: &[f64], rate: &[f64], out: Derivatives<'_>) {
         for (i, (g, r)) in gap.iter().zip(rate).enumerate() {
-            let [force, by_gap, by_rate, _] = self.point(on, [a[0], a[1]], *g, *r);
+            let [force, by_gap, by_rate, ..] = self.point(on, [a[0], a[1]], *g, *r);
             (out.force[i], out.by_gap[i], out.by_rate[i]) = (force, by_gap, by_rate);
         }
     }
@@ -196,13 +196,7 @@ impl Law for PowerLaw {
     ) {
         self.derivatives(on, a, gap, rate, out);
         for (i, (g, r)) in gap.iter().zip(rate).enumerate() {
-            let [_, _, by_rate, by_alpha] = self.point(on, [a[0], a[1]], *g, *r);
-            let by_zeta = if by_rate == 0.0 && a[0] != 0.0 {
-                0.0
-            } else {
-                2.0 * r
-            };
-            by_argument[i] = if argument == 0 { by_zeta } else { by_alpha };
+            by_argument[i] = self.point(on, [a[0], a[1]], *g, *r)[3 + argument];
         }
     }
 

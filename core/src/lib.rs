@@ -5,6 +5,8 @@
 extern crate self as hertzian;
 
 mod aft;
+#[cfg(test)]
+mod allocations;
 mod balance;
 pub mod branch;
 #[cfg(test)]

@@ -119,7 +119,8 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
-    /// Samples per excitation period. Default: at least 24 per harmonic and 512, a power of two.
+    /// Samples per excitation period. Default: at least 200 per harmonic, a power of two. The derivative of a force like
+    /// `g^1.5` has a kink where contact begins; folds feel it as the power -1.5 of the samples.
     #[must_use]
     pub fn samples(mut self, samples: usize) -> Self {
         self.samples = Some(samples);
@@ -269,7 +270,7 @@ impl<'a> FrequencyResponse<'a> {
         }
         let samples_per_period = self
             .samples
-            .unwrap_or_else(|| (24 * per_period).next_power_of_two().max(512));
+            .unwrap_or_else(|| (200 * per_period).next_power_of_two());
         validate::option(
             "samples",
             samples_per_period as f64,

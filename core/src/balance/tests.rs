@@ -1,72 +1,261 @@
-//! quick look
+//! The balance against sums written out by hand, and its Jacobian against differences.
 
-use crate::FrequencyResponse;
+use std::f64::consts::TAU;
+
+use proptest::prelude::*;
+
+use super::*;
 use crate::by_hand::PowerForm;
+use crate::law::On;
 
-#[test]
-fn quick_look() {
-    for n in [512, 2048, 4096] {
-        for (os, alpha, zeta, load, from, to, k) in [
-            (false, 1.5, 0.01, 0.0, 0.6, 1.7, 20),
-            (false, 1.5, 0.01, 1.0, 0.7, 1.7, 20),
-            (false, 1.5, 0.01, 5.0, 1.0, 2.2, 20),
-            (true, 1.5, 0.032, 1.0, 0.6, 1.6, 20),
-            (true, 1.0, 0.032, 1.0, 0.6, 1.4, 20),
-            (true, 0.6, 0.032, 1.0, 0.5, 1.2, 20),
-            (false, 0.6, 0.01, 0.0, 0.66, 1.4, 20),
-        ] {
-            let system = PowerForm::new(os, alpha, zeta, load, 0.1);
-            let branch = FrequencyResponse::of(&system)
-                .from(from)
-                .to(to)
-                .harmonics(k)
-                .samples(n)
-                .max_points(5000)
-                .run();
-            let branch = match branch {
-                Ok(b) => b,
-                Err(e) => {
-                    eprintln!("{e}");
-                    continue;
-                }
-            };
-            eprintln!(
-                "{os} {alpha} {load} K{k}: {} points {:?} {} {}",
-                branch.points.len(),
-                branch.elapsed,
-                branch.stopped,
-                branch.statistics
-            );
-            for f in branch.folds().take(6) {
-                eprintln!(
-                    "    {f} {:?} {:.1e}",
-                    f.point.stability.multipliers, f.point.stability.error
-                );
+hertzian::oscillator! {
+    /// Two coordinates, contacts whose direction turns with the excitation, a parametric stiffness, an unbalance.
+    Rotor(x, y) {
+        param mass > 0;
+        param damping >= 0;
+        param clearance;
+        param stiffness > 0;
+        param unbalance;
+        // Smooth enough at its level that differences converge.
+        law contact(gap, k) { gap > 0 => k*gap^3 + 0.1*gap^2*dot(gap), else => 0 }
+        mass*ddot(x) + 0.1*ddot(y) + damping*dot(x) + (1 + 0.3*cos(2*omega*t))*x
+            + (1 + 0.2*sin(omega*t))*cos(omega*t)*contact(x*cos(omega*t) + y*sin(omega*t) - clearance, stiffness)
+            + contact(x - y - 0.1*cos(omega*t), 2*stiffness)
+            = unbalance*omega^2*cos(omega*t) + 0.3;
+        0.1*ddot(x) + mass*ddot(y) + damping*dot(y) + 2*y
+            + sin(omega*t)*contact(x*cos(omega*t) + y*sin(omega*t) - clearance, stiffness)
+            - contact(x - y - 0.1*cos(omega*t), 2*stiffness)
+            = unbalance*omega^2*sin(omega*t);
+    }
+}
+
+const ROTOR: Rotor = Rotor { mass: 1.3, damping: 0.2, clearance: 0.1, stiffness: 1.7, unbalance: 0.4 };
+
+fn values(system: &dyn System) -> Vec<f64> {
+    let mut values = vec![0.0; system.facts().parameters.len()];
+    system.values(&mut values);
+    values
+}
+
+fn wave_at(wave: crate::system::Wave, phase: f64) -> f64 {
+    let angle = f64::from(wave.harmonic) * phase;
+    match wave.part {
+        crate::system::Part::Cosine => angle.cos(),
+        crate::system::Part::Sine => angle.sin(),
+    }
+}
+
+/// The equations of motion at one phase of the excitation, straight from their definition.
+fn equations(system: &dyn System, omega: f64, phase: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
+    use crate::system::Place;
+    let facts = system.facts();
+    let mut coefficients = vec![0.0; facts.places.len()];
+    system.coefficients(&values(system), omega, &mut coefficients);
+    let contacts = facts.contacts.len();
+    let (mut gap, mut rate) = (vec![0.0; contacts], vec![0.0; contacts]);
+    let mut arguments: Vec<Vec<f64>> = (0..contacts)
+        .map(|c| vec![0.0; system.law(facts.contacts[c].law).facts().arguments.len()])
+        .collect();
+    let mut sum = vec![0.0; q.len()];
+    // The phase runs at the base frequency.
+    let speed = omega / f64::from(facts.divisor);
+    let slope = |wave: crate::system::Wave| {
+        let (derivative, sign) = wave.derivative();
+        sign * f64::from(wave.harmonic) * speed * wave_at(derivative, phase)
+    };
+    for (place, &value) in facts.places.iter().zip(&coefficients) {
+        match *place {
+            Place::Mass { row, column } => sum[row] += value * a[column],
+            Place::Damping { row, column } => sum[row] += value * v[column],
+            Place::Stiffness { row, column, wave } => sum[row] += value * wave_at(wave, phase) * q[column],
+            Place::Load { row, wave } => sum[row] -= value * wave_at(wave, phase),
+            Place::GapDirection { contact, column, wave } => {
+                gap[contact] += value * wave_at(wave, phase) * q[column];
+                rate[contact] += value * (wave_at(wave, phase) * v[column] + slope(wave) * q[column]);
             }
-            for f in branch.turns.iter().take(6) {
-                eprintln!("    {f:?}");
+            Place::Offset { contact, wave } => {
+                gap[contact] -= value * wave_at(wave, phase);
+                rate[contact] -= value * slope(wave);
             }
-            let mut last = None;
-            let mut runs = String::new();
-            for p in &branch.points {
-                if Some(p.stability.verdict) != last {
-                    last = Some(p.stability.verdict);
-                    runs += &format!("{} from {:.5}; ", p.stability.verdict, p.value)
-                }
-            }
-            if runs.len() < 2000 {
-                eprintln!("    {runs}");
-            }
-            let worst = branch
-                .points
-                .iter()
-                .map(|p| (p.observed.input_power - p.observed.dissipated_power).abs())
-                .fold(0.0, f64::max);
-            let p = &branch.points[branch.points.len() / 3];
-            eprintln!(
-                "    power {worst:.1e} {:?} {:?} {:?}",
-                p.value, p.observed, p.stability
-            );
+            Place::Argument { contact, index } => arguments[contact][index] += value,
+            Place::ForceDirection { .. } => {}
         }
     }
+    for (place, &value) in facts.places.iter().zip(&coefficients) {
+        if let Place::ForceDirection { contact, row, wave } = *place {
+            let law = system.law(facts.contacts[contact].law);
+            let mut force = [0.0];
+            law.force(On::AllPieces, &arguments[contact], &[gap[contact]], &[rate[contact]], &mut force);
+            sum[row] += value * wave_at(wave, phase) * force[0];
+        }
+    }
+    sum
+}
+
+/// The residual as plain sums over samples.
+fn naive_residual(system: &dyn System, resolution: Resolution, u: &[f64], omega: f64) -> Vec<f64> {
+    let length = series::length(resolution.harmonics);
+    let n = u.len() / length;
+    let base = omega / (f64::from(system.facts().divisor) * resolution.period as f64);
+    let mut residual = vec![0.0; u.len()];
+    for j in 0..resolution.samples {
+        let tau = TAU * j as f64 / resolution.samples as f64;
+        let states = u.chunks_exact(length).map(|s| series::value_and_derivatives(s, tau));
+        let (mut q, mut v, mut a) = (vec![], vec![], vec![]);
+        for (x, x1, x2) in states {
+            q.push(x);
+            v.push(base * x1);
+            a.push(base * base * x2);
+        }
+        let phase = tau * resolution.period as f64;
+        let sum = equations(system, omega, phase, &q, &v, &a);
+        for row in 0..n {
+            for index in 0..length {
+                let k = index.div_ceil(2) as f64;
+                let weight = match index {
+                    0 => 1.0,
+                    odd if odd % 2 == 1 => 2.0 * (k * tau).cos(),
+                    _ => 2.0 * (k * tau).sin(),
+                };
+                residual[row * length + index] += weight * sum[row] / resolution.samples as f64;
+            }
+        }
+    }
+    residual
+}
+
+/// Largest difference between the Jacobian and extrapolated central differences, relative to the largest entry.
+fn jacobian_error(system: &dyn System, variable: Variable, resolution: Resolution, u: &[f64], omega: f64) -> f64 {
+    let mut balance = Balance::new(system, &values(system), omega, variable, resolution);
+    let n = balance.unknowns();
+    let mut jacobian = Matrix::zeros(n + 1);
+    let mut residual = vec![0.0; n];
+    balance.evaluate(u, &mut residual, Some(&mut jacobian));
+    let largest = (0..n).flat_map(|row| jacobian.row(row).to_vec()).fold(0.0, |m: f64, x| m.max(x.abs()));
+    let mut worst = 0.0_f64;
+    for column in 0..=n {
+        let mut difference = |h: f64| {
+            let mut at = |step: f64| {
+                let mut moved = u.to_vec();
+                moved[column] += step;
+                let mut residual = vec![0.0; n];
+                balance.evaluate(&moved, &mut residual, None);
+                residual
+            };
+            let (ahead, behind) = (at(h), at(-h));
+            ahead.iter().zip(behind).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<f64>>()
+        };
+        let (wide, narrow) = (difference(2e-3), difference(1e-3));
+        for row in 0..n {
+            let extrapolated = (4.0 * narrow[row] - wide[row]) / 3.0;
+            worst = worst.max((jacobian.row(row)[column] - extrapolated).abs());
+        }
+    }
+    worst / largest
+}
+
+fn state(n: usize, length: usize, parameter: f64) -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(-1.0..1.0_f64, n).prop_map(move |mut u| {
+        for (index, x) in u.iter_mut().enumerate() {
+            let k = (index % length).div_ceil(2) as f64;
+            *x /= 1.0 + k * k;
+        }
+        u.push(parameter);
+        u
+    })
+}
+
+const RESOLUTION: Resolution = Resolution { harmonics: 3, samples: 64, period: 2 };
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn residual_is_the_projected_equation(u in state(14, 7, 0.7)) {
+        let mut balance = Balance::new(&ROTOR, &values(&ROTOR), 0.7, Variable::Omega, RESOLUTION);
+        let mut residual = vec![0.0; 14];
+        balance.evaluate(&u, &mut residual, None);
+        let expected = naive_residual(&ROTOR, RESOLUTION, &u[..14], 0.7);
+        for (a, b) in residual.iter().zip(&expected) {
+            prop_assert!((a - b).abs() < 1e-12 * (1.0 + b.abs()), "{a} {b}");
+        }
+        let mut jacobian = Matrix::zeros(15);
+        let mut again = vec![0.0; 14];
+        balance.evaluate(&u, &mut again, Some(&mut jacobian));
+        for (a, b) in residual.iter().zip(&again) {
+            prop_assert!((a - b).abs() < 1e-13 * (1.0 + b.abs()));
+        }
+    }
+
+    /// The force of [`Rotor`] has a jump in its third derivative only, so differences extrapolate to about 1e-7.
+    #[test]
+    fn jacobian_is_the_derivative_for_moving_contacts(u in state(14, 7, 0.7)) {
+        let error = jacobian_error(&ROTOR, Variable::Omega, RESOLUTION, &u, 0.7);
+        prop_assert!(error < 1e-7, "{error:e}");
+    }
+
+    #[test]
+    fn jacobian_is_the_derivative_in_every_parameter(u in state(14, 7, 0.0), parameter in 0_usize..5) {
+        let mut u = u;
+        u[14] = values(&ROTOR)[parameter];
+        let error = jacobian_error(&ROTOR, Variable::Parameter(parameter), RESOLUTION, &u, 0.7);
+        prop_assert!(error < 1e-7, "{error:e}");
+    }
+
+    #[test]
+    fn jacobian_is_the_derivative_in_an_exponent(u in state(9, 9, 0.9)) {
+        let by_hand = PowerForm::new(false, 2.5, 0.05, 1.0, 0.3);
+        let resolution = Resolution { harmonics: 4, samples: 64, period: 1 };
+        let error = jacobian_error(&by_hand, Variable::Parameter(1), resolution, &{
+            let mut u = u;
+            u[9] = 2.5;
+            u
+        }, 0.9);
+        prop_assert!(error < 1e-5, "{error:e}");
+    }
+}
+
+#[test]
+fn generated_and_interpreted_balances_agree() {
+    let interpreted = ROTOR.generic();
+    let u: Vec<f64> = (0..15).map(|i| 0.3 / f64::from(i + 1)).collect();
+    let mut results = Vec::new();
+    for system in [&ROTOR as &dyn System, &interpreted] {
+        let mut balance = Balance::new(system, &values(system), 0.7, Variable::Omega, RESOLUTION);
+        let mut jacobian = Matrix::zeros(15);
+        let mut residual = vec![0.0; 14];
+        balance.evaluate(&u, &mut residual, Some(&mut jacobian));
+        residual.extend((0..14).flat_map(|row| jacobian.row(row).to_vec()));
+        results.push(residual);
+    }
+    for (a, b) in results[0].iter().zip(&results[1]) {
+        assert!((a - b).abs() < 1e-14 * (1.0 + a.abs()), "{a} {b}");
+    }
+}
+
+/// From the second correction on, Newton's method and everything below it reuse what they have.
+#[test]
+fn iterations_do_not_allocate() {
+    use crate::allocations::count;
+    use crate::continuation::problem::Scale;
+    use crate::newton::{Border, Newton, NewtonOptions};
+    let mut balance = Balance::new(&ROTOR, &values(&ROTOR), 0.7, Variable::Omega, RESOLUTION);
+    let mut newton = Newton::new(&balance);
+    let mut row = [0.0; 15];
+    row[14] = 1.0;
+    let border = Border { row: &row, value: 0.7 };
+    let scale = Scale { state: 1.0, parameter: 1.0 };
+    let options = NewtonOptions { tolerance: 1e-10, iterations: 20, damped: true };
+    let mut u = vec![0.0; 15];
+    u[14] = 0.7;
+    let mut tangent = vec![0.0; 15];
+    newton.correct(&mut balance, &mut u, border, scale, options).unwrap();
+    u[1] += 0.1;
+    let allocated = count(|| {
+        newton.correct(&mut balance, &mut u, border, scale, options).unwrap();
+        newton.solve_border(&mut tangent, scale);
+    });
+    assert!(newton.statistics.jacobians > 4);
+    assert_eq!(allocated, 0);
+    assert!(count(|| drop(std::hint::black_box(vec![1]))) > 0, "the counter works");
 }

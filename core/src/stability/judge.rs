@@ -2,7 +2,7 @@
 //!
 //! Two errors are estimated. That of the integration is the change of the multipliers when the steps are halved. That of
 //! the orbit is their change when the orbit is corrected for what its harmonics and samples leave out
-//! ([`truncation`](crate::truncation)).
+//! ([`truncation`](crate::truncation)); the multipliers given are those of the corrected orbit.
 
 use nalgebra::Complex;
 
@@ -50,58 +50,57 @@ impl<'a> Judge<'a> {
     ) -> Stability {
         self.computed += 1;
         let series = &u[..u.len() - 1];
-        let Some(panels) = Panels::new(orbit_of(balance, balance.layout(), series)) else {
+        let plain = Panels::new(orbit_of(balance, balance.layout(), series))
+            .map(|panels| eigenvalues(&panels.monodromy(self.density)))
+            .filter(|multipliers| !multipliers.is_empty());
+        let Some(plain) = plain else {
             return Stability::unknown();
         };
-        let first = eigenvalues(&panels.monodromy(self.density));
-        if first.is_empty() {
-            return Stability::unknown();
-        }
-        let by_truncation = self.truncation(newton, u, scale, &first);
-        let (multipliers, by_steps) = self.integrate(&panels, first, by_truncation);
-        Stability::of(multipliers, by_steps + by_truncation)
-    }
-
-    /// Multipliers, and their change when the steps are halved; these are refined until that is small, or small compared
-    /// with the error of the orbit.
-    fn integrate(
-        &mut self,
-        panels: &Panels<'_>,
-        mut fine: Vec<Complex<f64>>,
-        by_truncation: f64,
-    ) -> (Vec<Complex<f64>>, f64) {
-        let mut coarse = eigenvalues(&panels.monodromy(0.5 * self.density));
-        let wanted = INTEGRATION_TOLERANCE.max(0.05 * by_truncation.min(1.0));
-        loop {
-            let change = distance(&coarse, &fine);
-            if change <= wanted || self.density >= LARGEST_DENSITY {
-                // Steps that are far shorter than needed are lengthened for the next orbit.
-                if change < 1e-3 * wanted && self.density > FIRST_DENSITY {
-                    self.density *= 0.5;
-                }
-                return (fine, change);
-            }
-            self.density *= 2.0;
-            coarse = std::mem::replace(&mut fine, eigenvalues(&panels.monodromy(self.density)));
-        }
-    }
-
-    /// Change of the multipliers when the orbit is corrected.
-    fn truncation(
-        &mut self,
-        newton: &mut Newton,
-        u: &[f64],
-        scale: Scale,
-        multipliers: &[Complex<f64>],
-    ) -> f64 {
         if !self.finer.correct(u, newton, scale) {
-            return f64::INFINITY;
+            return Stability { multipliers: plain, ..Stability::unknown() };
         }
         let balance = self.finer.balance();
         let corrected = orbit_of(balance, balance.layout(), self.finer.series());
-        Panels::new(corrected).map_or(f64::INFINITY, |panels| {
-            distance(&eigenvalues(&panels.monodromy(self.density)), multipliers)
-        })
+        let Some(panels) = Panels::new(corrected) else {
+            return Stability { multipliers: plain, ..Stability::unknown() };
+        };
+        let first = eigenvalues(&panels.monodromy(self.density));
+        let by_truncation = distance(&plain, &first);
+        let density = self.density;
+        let refined = integrate(&panels, first, density, by_truncation);
+        self.density = refined.next_density;
+        Stability::of(refined.multipliers, refined.change + by_truncation)
+    }
+}
+
+/// Multipliers that were refined until they hardly changed.
+struct Refined {
+    multipliers: Vec<Complex<f64>>,
+    /// Their last change.
+    change: f64,
+    /// Steps per period to begin the next orbit with.
+    next_density: f64,
+}
+
+/// Refines multipliers until halving the steps changes them little, or little compared with the error of the orbit.
+fn integrate(
+    panels: &Panels<'_>,
+    mut fine: Vec<Complex<f64>>,
+    mut density: f64,
+    by_truncation: f64,
+) -> Refined {
+    let mut coarse = eigenvalues(&panels.monodromy(0.5 * density));
+    let wanted = INTEGRATION_TOLERANCE.max(0.05 * by_truncation.min(1.0));
+    loop {
+        let change = distance(&coarse, &fine);
+        if change <= wanted || density >= LARGEST_DENSITY {
+            // Steps that are far shorter than needed are lengthened for the next orbit.
+            let shorter = change < 1e-3 * wanted && density > FIRST_DENSITY;
+            let next_density = if shorter { 0.5 * density } else { density };
+            return Refined { multipliers: fine, change, next_density };
+        }
+        density *= 2.0;
+        coarse = std::mem::replace(&mut fine, eigenvalues(&panels.monodromy(density)));
     }
 }
 

@@ -12,7 +12,8 @@ use nalgebra::{Complex, DMatrix};
 pub struct Stability {
     /// The verdict.
     pub verdict: Verdict,
-    /// Floquet multipliers over the orbit's own period, largest modulus first.
+    /// Floquet multipliers over the orbit's own period, largest modulus first; those of the orbit corrected for the
+    /// harmonics and samples that were left out.
     pub multipliers: Vec<Complex<f64>>,
     /// Estimated error of the multipliers: of the integration, and of the orbit's own truncation.
     pub error: f64,
