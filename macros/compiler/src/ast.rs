@@ -1,4 +1,4 @@
-//! A declaration as written: what [`parse`](crate::parse) makes of tokens.
+//! A declaration as written: what parsing makes of tokens.
 
 use std::fmt;
 

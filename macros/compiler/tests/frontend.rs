@@ -69,11 +69,8 @@ fn summary(model: &Model) -> Vec<String> {
         let mut line = format!("{}: {}", law.name, show(law.pieces[0]));
         for (level, &piece) in law.levels.iter().zip(&law.pieces[1..]) {
             let relation = if level.belongs_above { ">=" } else { ">" };
-            line.push_str(&format!(
-                " | {relation} {} | {}",
-                show(level.value),
-                show(piece)
-            ));
+            let (value, force) = (show(level.value), show(piece));
+            line = format!("{line} | {relation} {value} | {force}");
         }
         lines.push(line);
     }

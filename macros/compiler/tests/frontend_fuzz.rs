@@ -161,9 +161,10 @@ fn deep_and_long_declarations_end() {
             let _ = compile(&text);
         }
     }
-    let doubled: String = (0..400)
+    let doubled: Vec<String> = (0..400)
         .map(|i| format!("let a{} = a{i} + |a{i}|*a{i};", i + 1))
         .collect();
+    let doubled = doubled.join(" ");
     let texts = [
         format!(
             "M(x) {{ ddot(x) + {} = 0; }}",
