@@ -1,4 +1,4 @@
-//! The checked model: what [`lower`](crate::lower) makes of a declaration, and what the later stages read.
+//! The checked model: what lowering makes of a declaration, and what the later stages read.
 //!
 //! It mirrors the runtime's contract (`hertzian::system` and `hertzian::law`): every scalar is an expression in one
 //! shared graph, and everything but the laws is a coefficient with a place.
@@ -104,12 +104,39 @@ pub struct Wave {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Place {
-    Mass { row: usize, column: usize },
-    Damping { row: usize, column: usize },
-    Stiffness { row: usize, column: usize, wave: Wave },
-    Load { row: usize, wave: Wave },
-    ForceDirection { contact: usize, row: usize, wave: Wave },
-    GapDirection { contact: usize, column: usize, wave: Wave },
-    Offset { contact: usize, wave: Wave },
-    Argument { contact: usize, index: usize },
+    Mass {
+        row: usize,
+        column: usize,
+    },
+    Damping {
+        row: usize,
+        column: usize,
+    },
+    Stiffness {
+        row: usize,
+        column: usize,
+        wave: Wave,
+    },
+    Load {
+        row: usize,
+        wave: Wave,
+    },
+    ForceDirection {
+        contact: usize,
+        row: usize,
+        wave: Wave,
+    },
+    GapDirection {
+        contact: usize,
+        column: usize,
+        wave: Wave,
+    },
+    Offset {
+        contact: usize,
+        wave: Wave,
+    },
+    Argument {
+        contact: usize,
+        index: usize,
+    },
 }
