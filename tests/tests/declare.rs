@@ -92,6 +92,22 @@ hertzian::oscillator! {
     }
 }
 
+hertzian::oscillator! {
+    /// Contacts of the literature, side by side.
+    Literature(x) {
+        param k > 0;
+        param c in 0.0..;
+        param n >= 1;
+        param a > 0;
+        param preload in 0.0..=2.0;
+        law hunt_crossley(gap) { gap > 0 => k*gap^n*(1 + c*dot(gap)), else => 0 }
+        law preloaded(gap) { gap >= 0 => preload + gap, else => 0 }
+        law bilinear(gap) { gap > 0 => k*gap, else => 0.5*gap }
+        law adhesive(gap) { gap > 0 => gap^1.5 - 1/a^2, else => -(a - gap)^-2 }
+        ddot(x) + hunt_crossley(x - 1) + preloaded(x) + bilinear(x) - adhesive(-x) + c*|dot(x)|^1.8*sgn(dot(x)) = cos(omega*t);
+    }
+}
+
 fn coefficient(system: &dyn System, place: Place, omega: f64) -> f64 {
     let facts = system.facts();
     let mut parameters = vec![0.0; facts.parameters.len()];
@@ -265,4 +281,36 @@ fn a_force_between_two_masses_is_one_contact() {
     let model = TwoMasses { m1: 4.0 };
     let facts = model.facts();
     assert_eq!((facts.laws, facts.contacts.len()), (1, 1));
+}
+
+#[test]
+fn contacts_of_the_literature_are_laws() {
+    let model = Literature {
+        k: 2.0,
+        c: 0.5,
+        n: 1.5,
+        a: 0.1,
+        preload: 0.3,
+    };
+    let facts = model.facts();
+    let names: Vec<String> = (0..facts.laws)
+        .map(|law| model.law(law).facts().name.to_string())
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "hunt_crossley",
+            "preloaded",
+            "bilinear",
+            "adhesive",
+            "force 1"
+        ]
+    );
+    assert_eq!(model.law(0).facts().rate, RateDependence::Linear);
+    assert!(
+        model.law(1).facts().levels[0].force_jumps && model.law(1).facts().levels[0].belongs_above
+    );
+    assert!(model.law(2).facts().pieces.iter().all(|piece| piece.affine));
+    assert!(!model.law(3).facts().levels[0].force_jumps);
+    assert_eq!(model.law(4).facts().rate, RateDependence::General);
 }
