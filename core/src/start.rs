@@ -477,6 +477,10 @@ fn stretch(u: &[f64], to: &Fixed<'_>, period: usize) -> Vec<f64> {
     result
 }
 
+/// Least share of the mean square that the harmonics of a longer period must have. Samples of a force that jumps disturb a
+/// simple orbit a little; that is not a longer period.
+const SUBHARMONIC_SHARE: f64 = 1e-4;
+
 /// Whether no divisor of the period is a period of the orbit: for every prime divisor some harmonic is no multiple of it.
 fn has_shortest_period(u: &[f64], length: usize, period: usize) -> bool {
     let n = u.len() - 1;
@@ -487,6 +491,6 @@ fn has_shortest_period(u: &[f64], length: usize, period: usize) -> bool {
             .filter(|i| !(i % length).div_ceil(2).is_multiple_of(prime))
             .map(|i| u[i] * u[i])
             .sum();
-        other > 1e-6 * total
+        other > SUBHARMONIC_SHARE * total
     })
 }

@@ -40,6 +40,9 @@ impl std::fmt::Display for Verdict {
     }
 }
 
+/// Relative error that rounding alone may have left in a multiplier.
+const ROUNDING: f64 = 1e-12;
+
 impl Stability {
     /// Nothing is known.
     pub(crate) fn unknown() -> Self {
@@ -53,6 +56,8 @@ impl Stability {
     /// The verdict that multipliers allow when they are known to this error.
     pub(crate) fn of(multipliers: Vec<Complex<f64>>, error: f64) -> Self {
         let largest = multipliers.first().map_or(f64::NAN, |m| m.norm());
+        // No product of step matrices is known better than to some rounding errors.
+        let error = error + ROUNDING * largest.max(1.0);
         let verdict = if largest + error < 1.0 {
             Verdict::Stable
         } else if largest - error > 1.0 {
