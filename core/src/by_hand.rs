@@ -6,7 +6,8 @@ use std::borrow::Cow;
 
 use crate::generic::LawData;
 use crate::law::{
-    Derivatives, Law, LawFacts, LevelFacts, On, Parts, PieceFacts, RateDependence, Variation,
+    Derivatives, Exponent, Law, LawFacts, LevelFacts, On, Parts, PieceFacts, Quantity,
+    RateDependence, TermFacts, Variation,
 };
 use crate::system::{
     Bound, ContactFacts, ParameterFacts, Part, Place, System, SystemFacts, Variable, Wave,
@@ -92,6 +93,20 @@ impl PowerForm {
     }
 }
 
+/// The stiffness is the power `alpha - 1` of the distance from the level.
+fn stiffness_term() -> Vec<TermFacts> {
+    let exponent = Exponent {
+        number: -1.0,
+        argument: Some(1),
+    };
+    vec![TermFacts {
+        of: Quantity::ByGap,
+        lower: exponent,
+        upper: exponent,
+        logarithm: false,
+    }]
+}
+
 impl PowerLaw {
     fn new(one_sided: bool) -> Self {
         let piece = |zero: bool| {
@@ -102,7 +117,11 @@ impl PowerLaw {
                 by_gap: variation(Variation::Varying),
                 by_rate: variation(Variation::Constant),
                 by_argument: vec![variation(Variation::Varying); 2].into(),
-                terms: Cow::Borrowed(&[]),
+                terms: if zero {
+                    Cow::Borrowed(&[])
+                } else {
+                    stiffness_term().into()
+                },
             }
         };
         let facts = LawFacts {
@@ -150,7 +169,13 @@ impl PowerLaw {
             0.0
         };
         let log = if size > 0.0 { power * size.ln() } else { 0.0 };
-        [2.0 * zeta * r + sign * power, slope, 2.0 * zeta, 2.0 * r, sign * log]
+        [
+            2.0 * zeta * r + sign * power,
+            slope,
+            2.0 * zeta,
+            2.0 * r,
+            sign * log,
+        ]
     }
 }
 

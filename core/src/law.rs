@@ -46,6 +46,10 @@ pub trait Law: Send + Sync {
     );
 
     /// As [`Law::derivatives`], and the derivative of the force with respect to one argument.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "a batch in, a batch out: a struct would only rename them"
+    )]
     fn derivatives_and_by(
         &self,
         argument: usize,
@@ -124,6 +128,10 @@ pub enum RateDependence {
 
 /// What happens to the force and its derivatives where two pieces meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "independent facts, not states"
+)]
 pub struct LevelFacts {
     /// The level itself belongs to the piece above it (`gap >= level`).
     pub belongs_above: bool,

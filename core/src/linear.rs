@@ -106,8 +106,8 @@ impl Lu {
         let mut best = (column, -1.0);
         for row in column..matrix.order {
             let size = matrix.entries[row * matrix.order + column].abs() * self.scales[row];
-            // Also true for NaN, which is then reported as the pivot.
-            if !(size <= best.1) {
+            // A NaN becomes the pivot too, and is then reported.
+            if size > best.1 || size.is_nan() {
                 best = (row, size);
             }
         }

@@ -6,7 +6,7 @@ use crate::stability::Verdict;
 
 impl Branch<'_> {
     /// Peak-to-peak of the first coordinate over what the branch varies: stable solid, unstable dashed, undecided
-    /// dotted; folds, and turns that are none, are marked. More can be added before it is written.
+    /// dotted; folds are marked, and so are turns that were not confirmed as folds. More can be added before it is written.
     pub fn chart(&self) -> Chart {
         let coordinate = &self.follower.system.facts().coordinates[0];
         let folds = self
@@ -33,7 +33,7 @@ impl Branch<'_> {
                 points: folds,
             })
             .markers(Markers {
-                label: "turn, no fold".to_owned(),
+                label: "turn, unconfirmed".to_owned(),
                 points: turns.collect(),
             })
     }

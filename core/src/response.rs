@@ -163,7 +163,7 @@ impl<'a> FrequencyResponse<'a> {
             &mut newton,
             first,
             options,
-            &mut |b, n, seen| run.visit(b, n, seen, options.newton, &mut visit),
+            &mut |b, n, seen| run.visit(b, n, &seen, options.newton, &mut visit),
         );
         let stopped = outcome.map_err(|reason| Error::NoStart {
             parameter: options.from,
@@ -438,7 +438,7 @@ impl<'a> Run<'a> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        seen: Visit<'_>,
+        seen: &Visit<'_>,
         options: NewtonOptions,
         visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
     ) -> ControlFlow<()> {

@@ -485,7 +485,8 @@ const SUBHARMONIC_SHARE: f64 = 1e-4;
 fn has_shortest_period(u: &[f64], length: usize, period: usize) -> bool {
     let n = u.len() - 1;
     let total = oscillation(u, length);
-    let primes = (2..=period).filter(|p| period % p == 0 && (2..*p).all(|q| p % q != 0));
+    let primes =
+        (2..=period).filter(|p| period.is_multiple_of(*p) && (2..*p).all(|q| !p.is_multiple_of(q)));
     primes.into_iter().all(|prime| {
         let other: f64 = (0..n)
             .filter(|i| !(i % length).div_ceil(2).is_multiple_of(prime))

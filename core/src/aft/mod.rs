@@ -27,6 +27,10 @@ pub(crate) struct Change<'a> {
 
 /// Series of the derivatives of the force of one contact; each has as many harmonics as it has room for.
 #[derive(Debug)]
+#[allow(
+    clippy::struct_field_names,
+    reason = "each is the derivative by something"
+)]
 pub(crate) struct ContactDerivatives<'a> {
     pub(crate) by_gap: &'a mut [f64],
     pub(crate) by_rate: &'a mut [f64],

@@ -64,7 +64,7 @@ impl SampledAft {
         input: ContactInput<'_>,
         change: Option<Change<'_>>,
         force: &mut [f64],
-        out: ContactDerivatives<'_>,
+        out: &mut ContactDerivatives<'_>,
     ) {
         self.sample_input(input);
         let mut varied = change.iter().flat_map(|change| nonzero(change.arguments));

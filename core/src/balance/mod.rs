@@ -365,7 +365,7 @@ impl<'a> Balance<'a> {
             rate: &s.change_rate,
             arguments: arguments_by,
         };
-        let out = ContactDerivatives {
+        let mut out = ContactDerivatives {
             by_gap: &mut s.by_gap,
             by_rate: &mut s.by_rate,
             by_parameter: &mut s.by_parameter,
@@ -377,7 +377,7 @@ impl<'a> Balance<'a> {
             rate: &s.rate,
         };
         self.aft
-            .derivatives(input, changes.then_some(change), &mut s.force, out);
+            .derivatives(input, changes.then_some(change), &mut s.force, &mut out);
         changes
     }
 

@@ -29,7 +29,13 @@ hertzian::oscillator! {
     }
 }
 
-const ROTOR: Rotor = Rotor { mass: 1.3, damping: 0.2, clearance: 0.1, stiffness: 1.7, unbalance: 0.4 };
+const ROTOR: Rotor = Rotor {
+    mass: 1.3,
+    damping: 0.2,
+    clearance: 0.1,
+    stiffness: 1.7,
+    unbalance: 0.4,
+};
 
 fn values(system: &dyn System) -> Vec<f64> {
     let mut values = vec![0.0; system.facts().parameters.len()];
@@ -46,7 +52,14 @@ fn wave_at(wave: crate::system::Wave, phase: f64) -> f64 {
 }
 
 /// The equations of motion at one phase of the excitation, straight from their definition.
-fn equations(system: &dyn System, omega: f64, phase: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
+fn equations(
+    system: &dyn System,
+    omega: f64,
+    phase: f64,
+    q: &[f64],
+    v: &[f64],
+    a: &[f64],
+) -> Vec<f64> {
     use crate::system::Place;
     let facts = system.facts();
     let mut coefficients = vec![0.0; facts.places.len()];
@@ -67,11 +80,18 @@ fn equations(system: &dyn System, omega: f64, phase: f64, q: &[f64], v: &[f64], 
         match *place {
             Place::Mass { row, column } => sum[row] += value * a[column],
             Place::Damping { row, column } => sum[row] += value * v[column],
-            Place::Stiffness { row, column, wave } => sum[row] += value * wave_at(wave, phase) * q[column],
+            Place::Stiffness { row, column, wave } => {
+                sum[row] += value * wave_at(wave, phase) * q[column]
+            }
             Place::Load { row, wave } => sum[row] -= value * wave_at(wave, phase),
-            Place::GapDirection { contact, column, wave } => {
+            Place::GapDirection {
+                contact,
+                column,
+                wave,
+            } => {
                 gap[contact] += value * wave_at(wave, phase) * q[column];
-                rate[contact] += value * (wave_at(wave, phase) * v[column] + slope(wave) * q[column]);
+                rate[contact] +=
+                    value * (wave_at(wave, phase) * v[column] + slope(wave) * q[column]);
             }
             Place::Offset { contact, wave } => {
                 gap[contact] -= value * wave_at(wave, phase);
@@ -85,7 +105,13 @@ fn equations(system: &dyn System, omega: f64, phase: f64, q: &[f64], v: &[f64], 
         if let Place::ForceDirection { contact, row, wave } = *place {
             let law = system.law(facts.contacts[contact].law);
             let mut force = [0.0];
-            law.force(On::AllPieces, &arguments[contact], &[gap[contact]], &[rate[contact]], &mut force);
+            law.force(
+                On::AllPieces,
+                &arguments[contact],
+                &[gap[contact]],
+                &[rate[contact]],
+                &mut force,
+            );
             sum[row] += value * wave_at(wave, phase) * force[0];
         }
     }
@@ -100,7 +126,9 @@ fn naive_residual(system: &dyn System, resolution: Resolution, u: &[f64], omega:
     let mut residual = vec![0.0; u.len()];
     for j in 0..resolution.samples {
         let tau = TAU * j as f64 / resolution.samples as f64;
-        let states = u.chunks_exact(length).map(|s| series::value_and_derivatives(s, tau));
+        let states = u
+            .chunks_exact(length)
+            .map(|s| series::value_and_derivatives(s, tau));
         let (mut q, mut v, mut a) = (vec![], vec![], vec![]);
         for (x, x1, x2) in states {
             q.push(x);
@@ -125,13 +153,21 @@ fn naive_residual(system: &dyn System, resolution: Resolution, u: &[f64], omega:
 }
 
 /// Largest difference between the Jacobian and extrapolated central differences, relative to the largest entry.
-fn jacobian_error(system: &dyn System, variable: Variable, resolution: Resolution, u: &[f64], omega: f64) -> f64 {
+fn jacobian_error(
+    system: &dyn System,
+    variable: Variable,
+    resolution: Resolution,
+    u: &[f64],
+    omega: f64,
+) -> f64 {
     let mut balance = Balance::new(system, &values(system), omega, variable, resolution);
     let n = balance.unknowns();
     let mut jacobian = Matrix::zeros(n + 1);
     let mut residual = vec![0.0; n];
     balance.evaluate(u, &mut residual, Some(&mut jacobian));
-    let largest = (0..n).flat_map(|row| jacobian.row(row).to_vec()).fold(0.0, |m: f64, x| m.max(x.abs()));
+    let largest = (0..n)
+        .flat_map(|row| jacobian.row(row).to_vec())
+        .fold(0.0, |m: f64, x| m.max(x.abs()));
     let mut worst = 0.0_f64;
     for column in 0..=n {
         let mut difference = |h: f64| {
@@ -143,7 +179,11 @@ fn jacobian_error(system: &dyn System, variable: Variable, resolution: Resolutio
                 residual
             };
             let (ahead, behind) = (at(h), at(-h));
-            ahead.iter().zip(behind).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<f64>>()
+            ahead
+                .iter()
+                .zip(behind)
+                .map(|(a, b)| (a - b) / (2.0 * h))
+                .collect::<Vec<f64>>()
         };
         let (wide, narrow) = (difference(2e-3), difference(1e-3));
         for row in 0..n {
@@ -165,7 +205,11 @@ fn state(n: usize, length: usize, parameter: f64) -> impl Strategy<Value = Vec<f
     })
 }
 
-const RESOLUTION: Resolution = Resolution { harmonics: 3, samples: 64, period: 2 };
+const RESOLUTION: Resolution = Resolution {
+    harmonics: 3,
+    samples: 64,
+    period: 2,
+};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
@@ -243,19 +287,36 @@ fn iterations_do_not_allocate() {
     let mut newton = Newton::new(&balance);
     let mut row = [0.0; 15];
     row[14] = 1.0;
-    let border = Border { row: &row, value: 0.7 };
-    let scale = Scale { state: 1.0, parameter: 1.0 };
-    let options = NewtonOptions { tolerance: 1e-10, iterations: 20, damped: true };
+    let border = Border {
+        row: &row,
+        value: 0.7,
+    };
+    let scale = Scale {
+        state: 1.0,
+        parameter: 1.0,
+    };
+    let options = NewtonOptions {
+        tolerance: 1e-10,
+        iterations: 20,
+        damped: true,
+    };
     let mut u = vec![0.0; 15];
     u[14] = 0.7;
     let mut tangent = vec![0.0; 15];
-    newton.correct(&mut balance, &mut u, border, scale, options).unwrap();
+    newton
+        .correct(&mut balance, &mut u, border, scale, options)
+        .unwrap();
     u[1] += 0.1;
     let allocated = count(|| {
-        newton.correct(&mut balance, &mut u, border, scale, options).unwrap();
+        newton
+            .correct(&mut balance, &mut u, border, scale, options)
+            .unwrap();
         newton.solve_border(&mut tangent, scale);
     });
     assert!(newton.statistics.jacobians > 4);
     assert_eq!(allocated, 0);
-    assert!(count(|| drop(std::hint::black_box(vec![1]))) > 0, "the counter works");
+    assert!(
+        count(|| drop(std::hint::black_box(vec![1]))) > 0,
+        "the counter works"
+    );
 }

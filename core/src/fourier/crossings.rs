@@ -161,7 +161,7 @@ mod tests {
             series in (1_usize..10).prop_flat_map(|k| prop::collection::vec(-1.0..1.0_f64, series::length(k))),
         ) {
             let found = all(&series, 0.2);
-            prop_assert!(found.len() % 2 == 0);
+            prop_assert!(found.len().is_multiple_of(2));
             let mut above = series::value(&series, 0.0) > 0.2;
             let mut last = 0.0;
             for crossing in &found {

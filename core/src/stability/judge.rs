@@ -57,12 +57,18 @@ impl<'a> Judge<'a> {
             return Stability::unknown();
         };
         if !self.finer.correct(u, newton, scale) {
-            return Stability { multipliers: plain, ..Stability::unknown() };
+            return Stability {
+                multipliers: plain,
+                ..Stability::unknown()
+            };
         }
         let balance = self.finer.balance();
         let corrected = orbit_of(balance, balance.layout(), self.finer.series());
         let Some(panels) = Panels::new(corrected) else {
-            return Stability { multipliers: plain, ..Stability::unknown() };
+            return Stability {
+                multipliers: plain,
+                ..Stability::unknown()
+            };
         };
         let first = eigenvalues(&panels.monodromy(self.density));
         let by_truncation = distance(&plain, &first);
@@ -97,7 +103,11 @@ fn integrate(
             // Steps that are far shorter than needed are lengthened for the next orbit.
             let shorter = change < 1e-3 * wanted && density > FIRST_DENSITY;
             let next_density = if shorter { 0.5 * density } else { density };
-            return Refined { multipliers: fine, change, next_density };
+            return Refined {
+                multipliers: fine,
+                change,
+                next_density,
+            };
         }
         density *= 2.0;
         coarse = std::mem::replace(&mut fine, eigenvalues(&panels.monodromy(density)));

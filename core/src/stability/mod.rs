@@ -131,6 +131,9 @@ pub(crate) fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
 }
 
 #[cfg(test)]
+mod monodromy_tests;
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -32,7 +32,7 @@ use super::magnus;
 use crate::balance::{gap_series, rate_series};
 use crate::fourier::crossings::{Crossing, crossings};
 use crate::fourier::series;
-use crate::law::{Derivatives, On, Variation};
+use crate::law::{Derivatives, On, Quantity, TermFacts, Variation};
 use crate::layout::{Layout, Term};
 use crate::system::{Part, System, Wave};
 
@@ -120,34 +120,52 @@ impl<'a> Panels<'a> {
         DefaultAllocator: Allocator<D, D>,
     {
         let mut product = OMatrix::identity_generic(order, order);
-        let mut start = (0.0, false);
-        for switch in &self.switches {
-            let end = (switch.tau, self.is_singular(switch));
-            product = self.panel(order, start, end, density, product);
-            product = self.saltation(order, switch) * product;
-            start = end;
+        let Some(first) = self.switches.first() else {
+            return self.panel(order, (0.0, TAU), Grading::NONE, density, product);
+        };
+        // The period begins at a switch, so that every panel lies between two of them.
+        let closing = Switch {
+            tau: first.tau + TAU,
+            ..*first
+        };
+        let ends = self.switches[1..].iter().chain(std::iter::once(&closing));
+        for (from, to) in self.switches.iter().zip(ends) {
+            let exponent = self.exponent(from).min(self.exponent(to));
+            let grading = Grading::for_exponent(exponent);
+            product = self.panel(order, (from.tau, to.tau), grading, density, product);
+            product = self.saltation(order, to) * product;
         }
-        self.panel(order, start, (TAU, false), density, product)
+        product
     }
 
-    /// Whether the stiffness is not smooth up to this switch on one of its sides.
-    fn is_singular(&self, switch: &Switch) -> bool {
-        let law = self
-            .orbit
-            .system
-            .law(self.contacts[switch.contact].layout.law);
-        let pieces = &law.facts().pieces;
-        [switch.level, switch.level + 1]
+    /// Smallest exponent with which a derivative of the force behaves at a switch, on either of its sides.
+    fn exponent(&self, switch: &Switch) -> f64 {
+        let contact = &self.contacts[switch.contact];
+        let facts = self.orbit.system.law(contact.layout.law).facts();
+        let derivative = |term: &&TermFacts| matches!(term.of, Quantity::ByGap | Quantity::ByRate);
+        let below = facts.pieces[switch.level]
+            .terms
             .iter()
-            .any(|&piece| !pieces[piece].affine)
+            .filter(derivative)
+            .map(|term| term.upper);
+        let above = facts.pieces[switch.level + 1]
+            .terms
+            .iter()
+            .filter(derivative)
+            .map(|term| term.lower);
+        below
+            .chain(above)
+            .map(|exponent| exponent.value(&contact.arguments))
+            .filter(|exponent| exponent.fract() != 0.0 || *exponent < 0.0)
+            .fold(f64::INFINITY, f64::min)
     }
 
-    /// The solution at the end of a panel; the flags say which ends are singular.
+    /// The solution at the end of a panel, from that at its start.
     fn panel<D: Dim>(
         &self,
         order: D,
-        (start, singular_start): (f64, bool),
-        (end, singular_end): (f64, bool),
+        (start, end): (f64, f64),
+        grading: Grading,
         density: f64,
         mut product: OMatrix<f64, D, D>,
     ) -> OMatrix<f64, D, D>
@@ -163,16 +181,13 @@ impl<'a> Panels<'a> {
             .iter()
             .map(|contact| contact.piece(0.5 * (start + end)))
             .collect();
-        let steps = if self.is_constant(&pieces) {
+        let constant = self.is_constant(&pieces);
+        let steps = if constant {
             1
         } else {
             ((density * width / TAU).ceil() as usize).max(4)
         };
-        let grading = if steps == 1 {
-            Grading::None
-        } else {
-            Grading::new(singular_start, singular_end)
-        };
+        let grading = if constant { Grading::NONE } else { grading };
         let h = 1.0 / steps as f64;
         let nodes: Vec<_> = (0..steps)
             .flat_map(|step| {
