@@ -18,8 +18,8 @@ pub struct Model {
     pub documentation: String,
     /// The equations as written, in one line each.
     pub equation: String,
-    /// Names of the coordinates.
-    pub coordinates: Vec<syn::Ident>,
+    /// Names of the coordinates; those of an array are `x[0]`, `x[1]`, and so on.
+    pub coordinates: Vec<String>,
     /// Parameters in order of declaration.
     pub parameters: Vec<Parameter>,
     /// Base frequency is `omega / divisor`.
@@ -43,6 +43,8 @@ pub struct Parameter {
     pub minimum: Bound,
     /// Range.
     pub maximum: Bound,
+    /// Its value where none is given.
+    pub default: Option<f64>,
 }
 
 /// One end of a range.

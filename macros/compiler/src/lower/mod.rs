@@ -82,7 +82,7 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
         name: declaration.name.clone(),
         documentation: declaration.documentation.clone(),
         equation: equations.join("\n"),
-        coordinates: declaration.coordinates.clone(),
+        coordinates: declaration.coordinates.iter().map(ToString::to_string).collect(),
         parameters,
         divisor: assembly.divisor,
         laws: builder.laws,
@@ -109,6 +109,7 @@ pub fn parameters(declaration: &Declaration) -> Vec<ir::Parameter> {
         documentation: parameter.documentation.clone(),
         minimum: bound(parameter.minimum),
         maximum: bound(parameter.maximum),
+        default: None,
     };
     declaration.parameters.iter().map(lowered).collect()
 }

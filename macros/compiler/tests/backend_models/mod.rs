@@ -112,7 +112,7 @@ impl Sketch {
             name: quote::format_ident!("{name}"),
             documentation: String::new(),
             equation: format!("ddot(x) + {}(x) = drive*cos(omega*t) + load", law.name),
-            coordinates: vec![quote::format_ident!("x")],
+            coordinates: vec!["x".to_owned()],
             parameters,
             divisor: 1,
             laws: vec![law],
@@ -128,6 +128,7 @@ fn parameter(name: &str, (minimum, maximum): (Bound, Bound)) -> Parameter {
         documentation: String::new(),
         minimum,
         maximum,
+        default: None,
     }
 }
 
