@@ -120,3 +120,78 @@ fn line_of(point: &Point) -> Line {
         Verdict::Undecided => Line::Undecided,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::FrequencyResponse;
+    use crate::chart::Line;
+
+    hertzian::oscillator! {
+        Spring(x) {
+            param zeta in 0.0..;
+            /// excitation amplitude
+            ///
+            /// in units of the static load
+            param drive;
+            param load;
+            ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^1.5 = drive*cos(omega*t) + load;
+        }
+    }
+
+    const SPRING: Spring = Spring {
+        zeta: 0.01,
+        drive: 0.1,
+        load: 5.0,
+    };
+
+    fn response(system: &Spring) -> FrequencyResponse<'_> {
+        FrequencyResponse::of(system).harmonics(5).samples(256)
+    }
+
+    #[test]
+    fn runs_join_at_the_folds() {
+        let branch = response(&SPRING).from(1.0).to(2.2).run().unwrap();
+        let runs = branch.runs();
+        for pair in runs.windows(2) {
+            assert_ne!(pair[0].line, pair[1].line);
+            assert_eq!(pair[0].points.last(), pair[1].points.first());
+        }
+        let folds: Vec<_> = branch
+            .folds()
+            .map(|fold| super::place(&fold.point))
+            .collect();
+        assert_eq!(folds.len(), 2);
+        let mut all = branch.points.iter().map(super::place).chain(folds);
+        assert!(all.all(|place| runs.iter().any(|run| run.points.contains(&place))));
+        assert_eq!(runs[0].line, Line::Stable);
+        assert!(runs.iter().any(|run| run.line == Line::Unstable));
+    }
+
+    #[test]
+    fn a_chart_says_what_it_shows() {
+        let branch = response(&SPRING).from(1.0).to(2.2).run().unwrap();
+        let svg = branch.chart().to_svg();
+        for part in [
+            "Spring: zeta = 0.01, drive = 0.1, load = 5",
+            "excitation frequency ω",
+            "peak-to-peak of x",
+            "stable",
+            "unstable",
+            "fold",
+        ] {
+            assert!(svg.contains(part), "{part}");
+        }
+        assert!(!svg.contains("unconfirmed"));
+    }
+
+    #[test]
+    fn a_parameter_is_named_by_its_documentation() {
+        let request = response(&SPRING).vary("drive").omega(2.5);
+        let chart = request.from(0.01).to(0.02).run().unwrap().chart().to_svg();
+        assert!(chart.contains(">drive (excitation amplitude)<"));
+        assert!(chart.contains("Spring: zeta = 0.01, load = 5, omega = 2.5<"));
+        let request = response(&SPRING).vary("load").omega(2.5);
+        let chart = request.from(5.0).to(5.1).run().unwrap().chart().to_svg();
+        assert!(chart.contains(">load<"));
+    }
+}

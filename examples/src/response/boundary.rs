@@ -2,13 +2,13 @@
 
 use std::ops::{ControlFlow, RangeInclusive};
 
-use hertzian::{FrequencyResponse, Point};
+use hertzian::{Branch, FrequencyResponse};
 
 use super::models::model;
 use super::options::Options;
 
 /// Frequencies at which the boundary is computed.
-const FREQUENCIES: usize = 41;
+const FREQUENCIES: usize = 61;
 /// The orbit never leaves one piece of the law, so a few harmonics are as good as many.
 const HARMONICS: usize = 6;
 const SAMPLES: usize = 64;
@@ -39,9 +39,7 @@ pub fn loss_of_contact(
 fn at_frequency(options: &Options, omega: f64) -> Option<f64> {
     let model = model(options);
     let highest = highest_drive(options, omega);
-    let mut touches = None;
-    let mut previous: Option<Point> = None;
-    FrequencyResponse::of(&*model)
+    let branch = FrequencyResponse::of(&*model)
         .vary("drive")
         .omega(omega)
         .from(1e-3 * highest)
@@ -52,16 +50,36 @@ fn at_frequency(options: &Options, omega: f64) -> Option<f64> {
         .max_points(POINTS)
         .run_with(|point| {
             if point.motion().minimum > 0.0 {
-                previous = Some(point.clone());
-                return ControlFlow::Continue(());
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
             }
-            touches = previous
-                .as_ref()
-                .map(|previous| where_minimum_is_zero(previous, point));
-            ControlFlow::Break(())
         })
         .ok()?;
-    touches
+    touching(&branch)
+}
+
+/// Peak-to-peak where the minimum vanishes, beyond the last orbits that stay in contact.
+///
+/// Those orbits depend smoothly on the amplitude, and for a linear spring in straight lines, while the first orbit that
+/// leaves contact may already be far off. So peak-to-peak is taken as a polynomial of the minimum through the last three.
+fn touching(branch: &Branch<'_>) -> Option<f64> {
+    let (touched, inside) = branch.points.split_last()?;
+    if touched.motion().minimum > 0.0 {
+        return None;
+    }
+    let nodes: Vec<[f64; 2]> = inside
+        .iter()
+        .rev()
+        .take(3)
+        .map(|point| [point.motion().minimum, point.peak_to_peak()])
+        .collect();
+    let lagrange = nodes.iter().map(|[here, size]| {
+        let others = nodes.iter().map(|[other, _]| other);
+        let factors = others.filter(|&other| other != here);
+        size * factors.map(|other| other / (other - here)).product::<f64>()
+    });
+    (!nodes.is_empty()).then(|| lagrange.sum())
 }
 
 /// More than it takes to open the contact: four times what a linear spring of the stiffness at rest would need.
@@ -72,11 +90,4 @@ fn highest_drive(options: &Options, omega: f64) -> f64 {
     let stiffness = options.alpha * options.load / rest;
     let dynamic = (stiffness - omega * omega).hypot(2.0 * options.zeta * omega);
     4.0 * rest * (dynamic + stiffness)
-}
-
-/// Peak-to-peak where the minimum vanishes, on the straight line between two points.
-fn where_minimum_is_zero(above: &Point, below: &Point) -> f64 {
-    let (a, b) = (above.motion(), below.motion());
-    let part = a.minimum / (a.minimum - b.minimum);
-    a.peak_to_peak() + part * (b.peak_to_peak() - a.peak_to_peak())
 }

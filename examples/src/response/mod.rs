@@ -4,7 +4,7 @@ pub mod boundary;
 pub mod files;
 pub mod models;
 pub mod options;
-mod progress;
+pub mod progress;
 pub mod records;
 pub mod run;
 pub mod summary;

@@ -19,7 +19,12 @@ use clap::{Parser, ValueEnum};
 )]
 pub struct Options {
     /// Exponent of the force, positive
-    #[arg(long, value_name = "VALUE", default_value_t = 1.5)]
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 1.5,
+        allow_hyphen_values = true
+    )]
     pub alpha: f64,
 
     /// Contact that can be lost: force and damping act for x > 0 only (the default)
@@ -31,19 +36,39 @@ pub struct Options {
     pub continuous: bool,
 
     /// Damping ratio, not negative
-    #[arg(long, value_name = "VALUE", default_value_t = 0.032)]
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 0.032,
+        allow_hyphen_values = true
+    )]
     pub zeta: f64,
 
     /// Constant load W
-    #[arg(long, value_name = "VALUE", default_value_t = 1.0)]
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 1.0,
+        allow_hyphen_values = true
+    )]
     pub load: f64,
 
     /// Amplitude A of the excitation; with --sweep drive, the range takes its place
-    #[arg(long, value_name = "VALUE", default_value_t = 0.1)]
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 0.1,
+        allow_hyphen_values = true
+    )]
     pub drive: f64,
 
     /// Frequency of the excitation, positive; used with --sweep drive
-    #[arg(long, value_name = "VALUE", default_value_t = 1.0)]
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 1.0,
+        allow_hyphen_values = true
+    )]
     pub omega: f64,
 
     /// What varies along the branch
@@ -51,22 +76,32 @@ pub struct Options {
     pub sweep: Sweep,
 
     /// Where the branch starts
-    #[arg(long, value_name = "VALUE", default_value_t = 0.6)]
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 0.6,
+        allow_hyphen_values = true
+    )]
     pub from: f64,
 
     /// Where it ends; may be below the start
-    #[arg(long, value_name = "VALUE", default_value_t = 1.6)]
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 1.6,
+        allow_hyphen_values = true
+    )]
     pub to: f64,
 
     /// Period of the orbit, in periods of the excitation
     #[arg(long, value_name = "COUNT", default_value_t = 1)]
     pub period: usize,
 
-    /// Harmonics per period of the excitation [default: from the tolerance, 20 at 1e-6]
+    /// Harmonics per period of the excitation [default: from the tolerance]
     #[arg(long, value_name = "COUNT")]
     pub harmonics: Option<usize>,
 
-    /// Samples per period of the excitation [default: from the harmonics, 512 for 20]
+    /// Samples per period of the excitation [default: from the harmonics]
     #[arg(long, value_name = "COUNT")]
     pub samples: Option<usize>,
 
@@ -75,7 +110,12 @@ pub struct Options {
     pub aft: Aft,
 
     /// Relative accuracy asked of peak-to-peak
-    #[arg(long, value_name = "VALUE", default_value_t = 1e-6)]
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 1e-6,
+        allow_hyphen_values = true
+    )]
     pub tolerance: f64,
 
     /// Stop after this many points

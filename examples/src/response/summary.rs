@@ -7,8 +7,8 @@ use hertzian::{Branch, Point, Verdict};
 
 use super::options::{Options, Sweep};
 
-/// Turns listed one by one; more of them are counted.
-const TURNS_LISTED: usize = 4;
+/// As many folds, turns and changes of stability are listed one by one; more of them are counted.
+const LISTED: usize = 6;
 
 /// Title of the picture.
 pub fn title(options: &Options) -> String {
@@ -49,18 +49,19 @@ fn write_all(
     equation(text, options)?;
     range(text, branch)?;
     folds(text, branch)?;
-    turns(text, branch)?;
     stability(text, branch)?;
-    for point in at {
-        writeln!(
-            text,
-            "at         {} = {}: peak-to-peak {:.6}, {}",
-            branch.varied,
-            point.value,
-            point.peak_to_peak(),
-            point.stability.verdict
-        )?;
+    let solutions = at.iter().map(|point| {
+        let (value, size) = (point.value, point.peak_to_peak());
+        let verdict = point.stability.verdict;
+        format!(
+            "{} {value}: peak-to-peak {size:.6}, {verdict}",
+            branch.varied
+        )
+    });
+    for solution in solutions {
+        writeln!(text, "at         {solution}")?;
     }
+    caution(text, options)?;
     let milliseconds = 1e3 * branch.elapsed.as_secs_f64();
     writeln!(
         text,
@@ -109,72 +110,89 @@ fn range(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
 }
 
 fn folds(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
-    if branch.folds().next().is_none() {
-        return writeln!(text, "folds      none");
-    }
-    for fold in branch.folds() {
-        writeln!(
-            text,
-            "fold       {} {:.9}, peak-to-peak {:.6}, error {:.0e}",
-            branch.varied,
-            fold.point.value,
-            fold.point.peak_to_peak(),
-            fold.error
-        )?;
-    }
-    Ok(())
-}
-
-fn turns(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
-    for turn in branch.turns.iter().take(TURNS_LISTED) {
-        writeln!(
-            text,
-            "turn       {} {:.9}, no fold: the slope of the branch jumps there",
+    let folds = branch.folds().map(|fold| {
+        let point = &fold.point;
+        let (value, size) = (point.value, point.peak_to_peak());
+        format!(
+            "{} {value:.9} (error {:.0e}), peak-to-peak {size:.6}",
+            branch.varied, fold.error
+        )
+    });
+    list(text, "fold", folds)?;
+    let turns = branch.turns.iter().map(|turn| {
+        format!(
+            "{} {:.6}, not confirmed as a fold: the slope jumps",
             branch.varied, turn.value
-        )?;
-    }
-    let more = branch.turns.len().saturating_sub(TURNS_LISTED);
-    if more > 0 {
-        writeln!(text, "           and {more} more turns that are no folds")?;
+        )
+    });
+    list(text, "turn", turns)?;
+    if branch.folds().next().is_none() && branch.turns.is_empty() {
+        writeln!(text, "folds      none")?;
     }
     Ok(())
 }
 
-/// Says of a one-sided contact what the method does to it.
+/// Between which points the verdict changes, and how often there is none.
 fn stability(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
-    let mut last: Option<&Point> = None;
-    let mut changes = 0;
-    for point in &branch.points {
-        let verdict = point.stability.verdict;
-        if verdict == Verdict::Undecided {
-            continue;
-        }
-        if let Some(before) = last.filter(|before| before.stability.verdict != verdict) {
-            changes += 1;
-            writeln!(
-                text,
-                "stability  {} until {} {:.6}, {verdict} from {:.6}",
-                before.stability.verdict, branch.varied, before.value, point.value
-            )?;
-        }
-        last = Some(point);
+    let undecided = |point: &&Point| point.stability.verdict == Verdict::Undecided;
+    let decided: Vec<&Point> = branch.points.iter().filter(|p| !undecided(p)).collect();
+    let changes: Vec<String> = decided
+        .windows(2)
+        .filter(|pair| pair[0].stability.verdict != pair[1].stability.verdict)
+        .map(|pair| {
+            let [before, behind] = [pair[0], pair[1]];
+            format!(
+                "{} until {} {:.6}, {} from {:.6}",
+                before.stability.verdict,
+                branch.varied,
+                before.value,
+                behind.stability.verdict,
+                behind.value
+            )
+        })
+        .collect();
+    if let (true, Some(point)) = (changes.is_empty(), decided.first()) {
+        writeln!(text, "stability  {} throughout", point.stability.verdict)?;
     }
-    match last {
-        Some(point) if changes == 0 => {
-            writeln!(text, "stability  {} throughout", point.stability.verdict)?;
-        }
-        _ => {}
-    }
-    let undecided = branch
-        .points
-        .iter()
-        .filter(|point| point.stability.verdict == Verdict::Undecided)
-        .count();
-    if undecided > 0 {
+    list(text, "stability", changes.into_iter())?;
+    let count = branch.points.iter().filter(undecided).count();
+    if count > 0 {
         writeln!(
             text,
-            "           undecided at {undecided} points: within the error of the multipliers"
+            "undecided  at {count} of the points: a multiplier is nearer to 1 in size than its error"
         )?;
     }
     Ok(())
+}
+
+/// A line each, and a count of what would be too much.
+fn list(text: &mut String, label: &str, entries: impl Iterator<Item = String>) -> fmt::Result {
+    let mut more = 0;
+    for (index, entry) in entries.enumerate() {
+        if index < LISTED {
+            writeln!(text, "{label:<10} {entry}")?;
+        } else {
+            more += 1;
+        }
+    }
+    if more > 0 {
+        writeln!(text, "{label:<10} and {more} more")?;
+    }
+    Ok(())
+}
+
+/// What sampling does to a force that is not smooth.
+fn caution(text: &mut String, options: &Options) -> fmt::Result {
+    let reason = if options.loses_contact() {
+        "damping switches with contact"
+    } else if options.alpha < 1.0 {
+        "the stiffness is unbounded at x = 0"
+    } else {
+        return Ok(());
+    };
+    writeln!(
+        text,
+        "caution    {reason}, and the force is sampled: folds and turns of orbits\n           \
+         that pass x = 0 can be displaced or false; compare with other --samples"
+    )
 }
