@@ -60,6 +60,39 @@ pub fn raise(base: f64, logarithm: f64, exponent: f64) -> f64 {
     }
 }
 
+/// The whole number between two others, added to an exponent, that makes it smallest in size: among the powers of one
+/// base whose exponents differ by whole numbers, the one to compute, because its error is within the bound of the others.
+#[inline(always)]
+pub fn nearest(exponent: f64, lowest: f64, highest: f64) -> f64 {
+    (-exponent).round().clamp(lowest, highest)
+}
+
+/// Guarded quotient of a power and its base, a lower power.
+#[inline(always)]
+pub fn over(power: f64, base: f64) -> f64 {
+    if base > 0.0 { power / base } else { 0.0 }
+}
+
+/// A power times its base to a whole number of `steps` between `-DOWN` and `UP`.
+#[inline(always)]
+pub fn shift<const UP: usize, const DOWN: usize>(mut power: f64, base: f64, steps: f64) -> f64 {
+    for step in 0..UP {
+        power = if steps > step as f64 {
+            power * base
+        } else {
+            power
+        };
+    }
+    for step in 0..DOWN {
+        power = if -steps > step as f64 {
+            over(power, base)
+        } else {
+            power
+        };
+    }
+    power
+}
+
 /// Guarded power of zero.
 #[inline(always)]
 fn at_zero(exponent: f64) -> f64 {
@@ -276,6 +309,35 @@ mod tests {
                 let bound = 4.0 * f64::EPSILON * (1.0 + (exponent * base.ln()).abs());
                 assert!((shared - own).abs() <= bound * own, "{base}^{exponent}");
             }
+        }
+    }
+
+    #[test]
+    fn powers_made_from_a_neighbour_keep_the_bound() {
+        for base in [1e-300, 1e-12, 0.3, 1.0, 7.0, 1e6_f64] {
+            for alpha in [0.05, 0.2, 0.5, 0.7, 1.0, 1.7, 2.0, 4.0_f64] {
+                let steps = nearest(alpha, -2.0, 0.0);
+                let shared = raise(base, logarithm(base), alpha + steps);
+                for (made, exponent) in [
+                    (shift::<2, 0>(shared, base, -steps), alpha),
+                    (shift::<1, 1>(shared, base, -1.0 - steps), alpha - 1.0),
+                    (shift::<0, 2>(shared, base, -2.0 - steps), alpha - 2.0),
+                ] {
+                    let own = base.powf(exponent);
+                    let bound = 4.0 * f64::EPSILON * (1.0 + (exponent * base.ln()).abs());
+                    let error = (made - own).abs();
+                    assert!(
+                        made == own || error <= bound * own + f64::MIN_POSITIVE,
+                        "{base}^{exponent}: {made:e}, not {own:e}"
+                    );
+                }
+            }
+        }
+        // At zero, and below, as the guarded power itself.
+        for base in [0.0, -1e-320, -3.0] {
+            assert_eq!(shift::<1, 1>(0.0, base, -1.0), 0.0);
+            assert_eq!(shift::<1, 1>(0.0, base, 1.0), 0.0);
+            assert_eq!(shift::<1, 1>(1.0, base, 0.0), 1.0);
         }
     }
 

@@ -9,6 +9,7 @@ mod data;
 mod document;
 mod kernel;
 mod law;
+mod magnitude;
 mod names;
 mod powers;
 mod stub;

@@ -146,6 +146,20 @@ fn write(
         Operation::Raise(base, logarithm, exponent) => {
             call(quote!(raise), &[base, logarithm, exponent])
         }
+        Operation::Nearest(exponent, lowest, highest) => {
+            call(quote!(nearest), &[exponent, lowest, highest])
+        }
+        Operation::Over(power, base) => call(quote!(over), &[power, base]),
+        Operation::Shift {
+            power,
+            base,
+            steps,
+            up,
+            down,
+        } => {
+            let (up, down) = (position(up), position(down));
+            call(quote!(shift::<#up, #down>), &[power, base, steps])
+        }
         Operation::Power(base, exponent) => call(quote!(power), &[base, exponent]),
         Operation::PowerLog(base, exponent) => call(quote!(power_log), &[base, exponent]),
         Operation::Integer(base, exponent) => {

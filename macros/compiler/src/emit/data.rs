@@ -139,7 +139,7 @@ pub fn data(dag: &mut Dag, levels: &[(Id, Vec<Id>)], pieces: &[Piece]) -> TokenS
     for piece in pieces {
         roots.extend(piece.outputs());
     }
-    let tape = Tape::of(dag, &roots, Style::Data, &|_, _| false);
+    let tape = Tape::of(dag, &roots, Style::Data);
     let mut positions = tape.roots.iter();
     let mut next = || position(*positions.next().expect("a position for every root"));
     let levels = list(
@@ -217,6 +217,9 @@ fn node(operation: Operation) -> TokenStream {
         | Operation::CubeRoot(_)
         | Operation::Reciprocal(_)
         | Operation::Logarithm(_)
-        | Operation::Raise(..) => unreachable!("not an operation of laws as data"),
+        | Operation::Raise(..)
+        | Operation::Nearest(..)
+        | Operation::Over(..)
+        | Operation::Shift { .. } => unreachable!("not an operation of laws as data"),
     }
 }

@@ -7,14 +7,13 @@ use super::code::{Code, position};
 use super::law::Emitter;
 use super::tape::{Style, Tape};
 use crate::dag::{Dag, Id, Variable};
-use crate::facts::Ranges;
 
 impl Emitter<'_> {
     /// Levels, each piece, and all pieces by selection, for one sample: force, by gap, by rate, by each argument. What a
     /// caller does not use of the outputs is not computed.
     pub(super) fn functions(&self, dag: &mut Dag) -> TokenStream {
         let mut functions = self.level_function(dag);
-        for (index, piece) in self.pieces.iter().enumerate() {
+        for (index, piece) in self.kernels.iter().enumerate() {
             let name = piece_name(index);
             let code = self.code(dag, &piece.outputs());
             let (pattern, statements, roots) = (self.pattern(&code), &code.statements, &code.roots);
@@ -34,10 +33,7 @@ impl Emitter<'_> {
     }
 
     fn code(&self, dag: &mut Dag, roots: &[Id]) -> Code {
-        let ranges = Ranges(&self.law.ranges);
-        let tape = Tape::of(dag, roots, Style::Code, &|dag, id| {
-            ranges.is_positive(dag, id)
-        });
+        let tape = Tape::of(dag, roots, Style::Code);
         Code::of(&tape, &|variable| self.name(variable))
     }
 

@@ -4,6 +4,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::data;
+use super::magnitude::share_magnitudes;
 use super::names::locals;
 use crate::dag::{Dag, Id, Variable};
 use crate::differentiate::differentiate;
@@ -15,6 +16,8 @@ use crate::simplify::{expand, factor};
 pub(super) struct Emitter<'a> {
     pub(super) law: &'a Law,
     pub(super) pieces: Vec<Piece>,
+    /// The pieces as they are computed.
+    pub(super) kernels: Vec<Piece>,
     /// How every output of every piece varies.
     pub(super) variations: Vec<Vec<Variation>>,
     /// Levels and their derivatives by each argument.
@@ -104,6 +107,7 @@ impl<'a> Emitter<'a> {
         for piece in &mut pieces {
             variations.push(simplify(dag, piece));
         }
+        let kernels = share_magnitudes(dag, &pieces);
         let levels = law
             .levels
             .iter()
@@ -116,6 +120,7 @@ impl<'a> Emitter<'a> {
         Self {
             law,
             pieces,
+            kernels,
             variations,
             levels,
             arguments,

@@ -63,7 +63,7 @@ fn coefficients(model: &mut Model, roots: &[Id], into: &TokenStream) -> TokenStr
     if roots.iter().all(|&root| root == zero) {
         return quote!(#into.fill(0.0););
     }
-    let tape = Tape::of(&mut model.dag, roots, Style::Code, &|_, _| false);
+    let tape = Tape::of(&mut model.dag, roots, Style::Code);
     let names: Vec<String> = model
         .parameters
         .iter()

@@ -42,6 +42,18 @@ pub enum Operation {
     Logarithm(usize),
     /// Guarded power `base^exponent` from base, logarithm of the base and exponent.
     Raise(usize, usize, usize),
+    /// The whole number between the second and the third operand that brings the first nearest to zero when added.
+    Nearest(usize, usize, usize),
+    /// A positive power divided once by its base; zero for a base that is not positive.
+    Over(usize, usize),
+    /// A power times its base to a whole number of steps, which lies between `-down` and `up`.
+    Shift {
+        power: usize,
+        base: usize,
+        steps: usize,
+        up: usize,
+        down: usize,
+    },
 }
 
 /// What the operations are for.
@@ -63,16 +75,11 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// Lowers expressions. `positive` says of an exponent whether it is certainly positive.
-    pub fn of(
-        dag: &mut Dag,
-        roots: &[Id],
-        style: Style,
-        positive: &dyn Fn(&mut Dag, Id) -> bool,
-    ) -> Self {
+    /// Lowers expressions.
+    pub fn of(dag: &mut Dag, roots: &[Id], style: Style) -> Self {
         let exponents = match style {
             Style::Data => Exponents::default(),
-            Style::Code => Exponents::of(dag, roots, positive),
+            Style::Code => Exponents::of(dag, roots),
         };
         let mut builder = Builder {
             dag,
@@ -148,7 +155,8 @@ impl Operation {
             | Self::Multiply(a, b)
             | Self::Divide(a, b)
             | Self::Power(a, b)
-            | Self::PowerLog(a, b) => vec![a, b],
+            | Self::PowerLog(a, b)
+            | Self::Over(a, b) => vec![a, b],
             Self::Negate(a)
             | Self::Call(_, a)
             | Self::Integer(a, _)
@@ -156,7 +164,10 @@ impl Operation {
             | Self::CubeRoot(a)
             | Self::Reciprocal(a)
             | Self::Logarithm(a) => vec![a],
-            Self::Raise(a, b, c) => vec![a, b, c],
+            Self::Raise(a, b, c) | Self::Nearest(a, b, c) => vec![a, b, c],
+            Self::Shift {
+                power, base, steps, ..
+            } => vec![power, base, steps],
         }
     }
 
@@ -177,6 +188,21 @@ impl Operation {
             Self::Reciprocal(a) => Self::Reciprocal(to(a)),
             Self::Logarithm(a) => Self::Logarithm(to(a)),
             Self::Raise(a, b, c) => Self::Raise(to(a), to(b), to(c)),
+            Self::Nearest(a, b, c) => Self::Nearest(to(a), to(b), to(c)),
+            Self::Over(a, b) => Self::Over(to(a), to(b)),
+            Self::Shift {
+                power,
+                base,
+                steps,
+                up,
+                down,
+            } => Self::Shift {
+                power: to(power),
+                base: to(base),
+                steps: to(steps),
+                up,
+                down,
+            },
         }
     }
 
@@ -187,6 +213,7 @@ impl Operation {
             Self::Input(variable) => Distinction::Variable(variable),
             Self::Call(function, _) => Distinction::Function(function),
             Self::Integer(_, exponent) => Distinction::Exponent(exponent),
+            Self::Shift { up, down, .. } => Distinction::Steps(up, down),
             _ => Distinction::None,
         };
         (std::mem::discriminant(&self), distinction, self.operands())
@@ -203,6 +230,7 @@ enum Distinction {
     Variable(Variable),
     Function(Function),
     Exponent(i32),
+    Steps(usize, usize),
 }
 
 /// How an expression depends on its surroundings.
