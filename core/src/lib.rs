@@ -45,3 +45,8 @@ pub use response::FrequencyResponse;
 pub use stability::{Stability, Verdict};
 pub use statistics::Statistics;
 pub use system::System;
+
+// The twenty lines of the README are run as a test.
+#[cfg(all(doctest, feature = "plot"))]
+#[doc = include_str!("../../README.md")]
+struct Readme;
