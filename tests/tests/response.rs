@@ -52,12 +52,25 @@ hertzian::oscillator! {
     }
 }
 
-const CONTACT: OneSided = OneSided { zeta: 0.032, alpha: 1.5, load: 1.0, drive: 0.1 };
+const CONTACT: OneSided = OneSided {
+    zeta: 0.032,
+    alpha: 1.5,
+    load: 1.0,
+    drive: 0.1,
+};
 
 #[test]
 fn a_linear_oscillator_has_its_closed_form() {
-    let model = Linear { zeta: 0.05, drive: 0.3 };
-    let branch = FrequencyResponse::of(&model).from(0.5).to(1.5).harmonics(3).run().unwrap();
+    let model = Linear {
+        zeta: 0.05,
+        drive: 0.3,
+    };
+    let branch = FrequencyResponse::of(&model)
+        .from(0.5)
+        .to(1.5)
+        .harmonics(3)
+        .run()
+        .unwrap();
     assert_eq!(branch.stopped, Stop::ReachedEnd);
     assert!(branch.events.is_empty() && branch.turns.is_empty());
     for point in &branch.points {
@@ -82,7 +95,12 @@ fn a_linear_oscillator_has_its_closed_form() {
 #[test]
 fn a_fraction_of_the_frequency_sets_the_base() {
     let model = Fractional {};
-    let branch = FrequencyResponse::of(&model).from(1.0).to(1.2).harmonics(4).run().unwrap();
+    let branch = FrequencyResponse::of(&model)
+        .from(1.0)
+        .to(1.2)
+        .harmonics(4)
+        .run()
+        .unwrap();
     let point = &branch.points[0];
     assert!((point.orbit.base - 1.0 / 3.0).abs() < 1e-15);
     let forced: f64 = 2.0 / 3.0;
@@ -93,8 +111,17 @@ fn a_fraction_of_the_frequency_sets_the_base() {
 /// Without drive the orbit is the state at rest: `x = W^(1/alpha)`, with multipliers of the linearised system.
 #[test]
 fn without_drive_the_orbit_rests() {
-    let model = OneSided { drive: 0.0, load: 2.0, ..CONTACT };
-    let branch = FrequencyResponse::of(&model).from(0.6).to(1.6).harmonics(3).run().unwrap();
+    let model = OneSided {
+        drive: 0.0,
+        load: 2.0,
+        ..CONTACT
+    };
+    let branch = FrequencyResponse::of(&model)
+        .from(0.6)
+        .to(1.6)
+        .harmonics(3)
+        .run()
+        .unwrap();
     let rest = 2.0_f64.powf(1.0 / 1.5);
     for point in &branch.points {
         let motion = point.motion();
@@ -103,15 +130,26 @@ fn without_drive_the_orbit_rests() {
         assert_eq!(point.observed.contacts[0].fraction, 1.0);
         assert_eq!(point.observed.contacts[0].count, 1);
         assert!((point.observed.contacts[0].peak_force - 2.0).abs() < 1e-11);
-        assert!((point.stability.multipliers[0].norm() - (-0.032 * TAU / point.omega()).exp()).abs() < 1e-9);
+        assert!(
+            (point.stability.multipliers[0].norm() - (-0.032 * TAU / point.omega()).exp()).abs()
+                < 1e-9
+        );
     }
 }
 
 /// Without damping the linear response has multipliers on the unit circle, so no verdict is possible.
 #[test]
 fn without_damping_there_is_no_verdict() {
-    let model = Linear { zeta: 0.0, drive: 0.1 };
-    let branch = FrequencyResponse::of(&model).from(0.3).to(0.8).harmonics(1).run().unwrap();
+    let model = Linear {
+        zeta: 0.0,
+        drive: 0.1,
+    };
+    let branch = FrequencyResponse::of(&model)
+        .from(0.3)
+        .to(0.8)
+        .harmonics(1)
+        .run()
+        .unwrap();
     for point in &branch.points {
         assert_eq!(point.stability.verdict, Verdict::Undecided);
         assert!((point.stability.multipliers[0].norm() - 1.0).abs() < 1e-14);
@@ -122,8 +160,17 @@ fn without_damping_there_is_no_verdict() {
 #[test]
 fn without_load_a_start_is_found() {
     for (alpha, omega) in [(1.5, 0.6), (1.5, 3.0), (0.6, 0.66), (0.6, 1.4), (3.0, 0.5)] {
-        let model = Continuous { zeta: 0.01, alpha, load: 0.0, drive: 0.1 };
-        let branch = FrequencyResponse::of(&model).from(omega).to(1.01 * omega).run().unwrap();
+        let model = Continuous {
+            zeta: 0.01,
+            alpha,
+            load: 0.0,
+            drive: 0.1,
+        };
+        let branch = FrequencyResponse::of(&model)
+            .from(omega)
+            .to(1.01 * omega)
+            .run()
+            .unwrap();
         let point = &branch.points[0];
         assert_eq!(point.omega(), omega, "{alpha}");
         assert!(point.peak_to_peak() > 1e-4);
@@ -139,22 +186,36 @@ fn tiny_and_huge_drives() {
     for exponent in -6..=6 {
         let drive = 10_f64.powi(exponent);
         let model = Duffing { zeta: 0.05, drive };
-        let branch = FrequencyResponse::of(&model).from(0.4).to(0.41).run().unwrap();
+        let branch = FrequencyResponse::of(&model)
+            .from(0.4)
+            .to(0.41)
+            .run()
+            .unwrap();
         let point = &branch.points[0];
         if exponent <= -4 {
             let amplitude = drive / (1.0 - 0.16_f64).hypot(0.04);
             assert!((point.peak_to_peak() / (2.0 * amplitude) - 1.0).abs() < 1e-6);
         }
         let (input, output) = (point.observed.input_power, point.observed.dissipated_power);
-        assert!((input - output).abs() < 1e-11 * input.abs().max(point.observed.contacts[0].peak_force));
+        assert!(
+            (input - output).abs() < 1e-11 * input.abs().max(point.observed.contacts[0].peak_force)
+        );
     }
 }
 
 /// One harmonic: for `x^3` the balance is `(1 - w^2) a + 3/4 a^3 = A` when there is no damping.
 #[test]
 fn one_harmonic_of_a_cubic_is_the_textbook_formula() {
-    let model = Duffing { zeta: 0.0, drive: 0.2 };
-    let branch = FrequencyResponse::of(&model).from(0.3).to(0.9).harmonics(1).run().unwrap();
+    let model = Duffing {
+        zeta: 0.0,
+        drive: 0.2,
+    };
+    let branch = FrequencyResponse::of(&model)
+        .from(0.3)
+        .to(0.9)
+        .harmonics(1)
+        .run()
+        .unwrap();
     for point in &branch.points {
         let a = point.orbit.series(0)[1];
         let omega = point.omega();
@@ -167,7 +228,11 @@ fn one_harmonic_of_a_cubic_is_the_textbook_formula() {
 /// flow between switches; a sampled balance of the jump in damping reaches three digits.
 #[test]
 fn an_orbit_of_period_two_is_found() {
-    let model = OneSided { alpha: 1.0, drive: 1.0, ..CONTACT };
+    let model = OneSided {
+        alpha: 1.0,
+        drive: 1.0,
+        ..CONTACT
+    };
     let branch = FrequencyResponse::of(&model)
         .vary("drive")
         .omega(1.0)
@@ -180,7 +245,11 @@ fn an_orbit_of_period_two_is_found() {
         .unwrap();
     let point = &branch.points[0];
     assert_eq!(point.orbit.base, 0.5);
-    assert!((point.peak_to_peak() - PERIOD_2_PEAK_TO_PEAK).abs() < 0.01, "{}", point.peak_to_peak());
+    assert!(
+        (point.peak_to_peak() - PERIOD_2_PEAK_TO_PEAK).abs() < 0.01,
+        "{}",
+        point.peak_to_peak()
+    );
     assert_eq!(point.observed.contacts[0].count, 1);
 }
 
@@ -188,10 +257,19 @@ const PERIOD_2_PEAK_TO_PEAK: f64 = 16.346_705_117_805_29;
 
 #[test]
 fn a_sweep_of_the_drive_is_the_same_curve() {
-    let by_omega = FrequencyResponse::of(&CONTACT).from(0.6).to(1.0).run().unwrap();
+    let by_omega = FrequencyResponse::of(&CONTACT)
+        .from(0.6)
+        .to(1.0)
+        .run()
+        .unwrap();
     let target = by_omega.at(0.8).unwrap();
-    let by_drive =
-        FrequencyResponse::of(&CONTACT).vary("drive").omega(0.8).from(0.01).to(0.2).run().unwrap();
+    let by_drive = FrequencyResponse::of(&CONTACT)
+        .vary("drive")
+        .omega(0.8)
+        .from(0.01)
+        .to(0.2)
+        .run()
+        .unwrap();
     let found = by_drive.at(0.1).unwrap();
     assert!((found[0].peak_to_peak() - target[0].peak_to_peak()).abs() < 1e-9);
     assert_eq!(by_drive.varied, "drive");
@@ -202,15 +280,26 @@ fn a_sweep_of_the_drive_is_the_same_curve() {
 
 #[test]
 fn every_solution_at_a_value_is_returned() {
-    let model = Continuous { zeta: 0.01, alpha: 1.5, load: 0.0, drive: 0.1 };
-    let branch = FrequencyResponse::of(&model).from(0.6).to(1.7).run().unwrap();
+    let model = Continuous {
+        zeta: 0.01,
+        alpha: 1.5,
+        load: 0.0,
+        drive: 0.1,
+    };
+    let branch = FrequencyResponse::of(&model)
+        .from(0.6)
+        .to(1.7)
+        .run()
+        .unwrap();
     let three = branch.at(1.1).unwrap();
     assert_eq!(three.len(), 3);
-    assert_eq!(three.iter().map(|p| p.stability.verdict).collect::<Vec<_>>(), [
-        Verdict::Stable,
-        Verdict::Unstable,
-        Verdict::Stable
-    ]);
+    assert_eq!(
+        three
+            .iter()
+            .map(|p| p.stability.verdict)
+            .collect::<Vec<_>>(),
+        [Verdict::Stable, Verdict::Unstable, Verdict::Stable]
+    );
     assert!(three.iter().all(|point| point.omega() == 1.1));
     assert_eq!(branch.at(1.5).unwrap().len(), 1);
     assert!(branch.at(2.0).unwrap().is_empty());
@@ -219,7 +308,12 @@ fn every_solution_at_a_value_is_returned() {
 
 #[test]
 fn what_was_computed_comes_back() {
-    let limited = FrequencyResponse::of(&CONTACT).from(0.6).to(1.6).max_points(5).run().unwrap();
+    let limited = FrequencyResponse::of(&CONTACT)
+        .from(0.6)
+        .to(1.6)
+        .max_points(5)
+        .run()
+        .unwrap();
     assert_eq!(limited.stopped, Stop::PointLimit { points: 5 });
     assert_eq!(limited.points.len(), 5);
     let mut seen = 0;
@@ -228,7 +322,11 @@ fn what_was_computed_comes_back() {
         .to(1.6)
         .run_with(|_| {
             seen += 1;
-            if seen == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if seen == 3 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         })
         .unwrap();
     assert_eq!(interrupted.stopped, Stop::Interrupted);
@@ -239,7 +337,14 @@ fn what_was_computed_comes_back() {
 /// The same request gives the same numbers, to the last bit.
 #[test]
 fn results_repeat() {
-    let run = || FrequencyResponse::of(&CONTACT).from(0.9).to(1.2).harmonics(5).run().unwrap();
+    let run = || {
+        FrequencyResponse::of(&CONTACT)
+            .from(0.9)
+            .to(1.2)
+            .harmonics(5)
+            .run()
+            .unwrap()
+    };
     assert_eq!(run().points, run().points);
 }
 
@@ -259,28 +364,96 @@ fn generated_and_interpreted_models_give_one_curve() {
 fn bad_requests_are_refused_before_any_work() {
     let good = || FrequencyResponse::of(&CONTACT).from(0.6).to(1.6);
     let refused = |request: FrequencyResponse<'_>| request.run().unwrap_err();
-    assert_eq!(refused(FrequencyResponse::of(&CONTACT)), Error::MissingEnd { name: "from" });
-    assert_eq!(refused(FrequencyResponse::of(&CONTACT).from(1.0)), Error::MissingEnd { name: "to" });
+    assert_eq!(
+        refused(FrequencyResponse::of(&CONTACT)),
+        Error::MissingEnd { name: "from" }
+    );
+    assert_eq!(
+        refused(FrequencyResponse::of(&CONTACT).from(1.0)),
+        Error::MissingEnd { name: "to" }
+    );
     assert_eq!(refused(good().to(0.6)), Error::EmptyRange { value: 0.6 });
-    assert!(matches!(refused(good().from(0.0)), Error::Option { name: "omega", value: 0.0, .. }));
-    assert!(matches!(refused(good().to(f64::NAN)), Error::Option { name: "omega", .. }));
-    assert!(matches!(refused(good().to(f64::INFINITY)), Error::Option { name: "omega", .. }));
-    assert!(matches!(refused(good().harmonics(0)), Error::Option { name: "harmonics", .. }));
-    assert!(matches!(refused(good().period(0)), Error::Option { name: "period", .. }));
-    assert!(matches!(refused(good().tolerance(f64::NAN)), Error::Option { name: "tolerance", .. }));
-    assert!(matches!(refused(good().tolerance(0.0)), Error::Option { name: "tolerance", .. }));
-    assert!(matches!(refused(good().max_points(0)), Error::Option { name: "max_points", .. }));
+    assert!(matches!(
+        refused(good().from(0.0)),
+        Error::Option {
+            name: "omega",
+            value: 0.0,
+            ..
+        }
+    ));
+    assert!(matches!(
+        refused(good().to(f64::NAN)),
+        Error::Option { name: "omega", .. }
+    ));
+    assert!(matches!(
+        refused(good().to(f64::INFINITY)),
+        Error::Option { name: "omega", .. }
+    ));
+    assert!(matches!(
+        refused(good().harmonics(0)),
+        Error::Option {
+            name: "harmonics",
+            ..
+        }
+    ));
+    assert!(matches!(
+        refused(good().period(0)),
+        Error::Option { name: "period", .. }
+    ));
+    assert!(matches!(
+        refused(good().tolerance(f64::NAN)),
+        Error::Option {
+            name: "tolerance",
+            ..
+        }
+    ));
+    assert!(matches!(
+        refused(good().tolerance(0.0)),
+        Error::Option {
+            name: "tolerance",
+            ..
+        }
+    ));
+    assert!(matches!(
+        refused(good().max_points(0)),
+        Error::Option {
+            name: "max_points",
+            ..
+        }
+    ));
     assert!(matches!(
         refused(good().harmonics(10).samples(16)),
-        Error::Samples { samples: 16, least: 42, harmonics: 10 }
+        Error::Samples {
+            samples: 16,
+            least: 42,
+            harmonics: 10
+        }
     ));
-    assert!(matches!(refused(good().vary("lode")), Error::UnknownParameter { .. }));
-    assert_eq!(refused(good().vary("drive")), Error::MissingEnd { name: "omega" });
-    assert!(matches!(refused(good().vary("zeta").omega(1.0).from(-1.0)), Error::Parameter { .. }));
-    let negative = OneSided { zeta: -0.1, ..CONTACT };
+    assert!(matches!(
+        refused(good().vary("lode")),
+        Error::UnknownParameter { .. }
+    ));
+    assert_eq!(
+        refused(good().vary("drive")),
+        Error::MissingEnd { name: "omega" }
+    );
+    assert!(matches!(
+        refused(good().vary("zeta").omega(1.0).from(-1.0)),
+        Error::Parameter { .. }
+    ));
+    let negative = OneSided {
+        zeta: -0.1,
+        ..CONTACT
+    };
     let error = refused(FrequencyResponse::of(&negative).from(0.6).to(1.6));
-    assert_eq!(error.to_string(), "parameter zeta = -0.1 is outside its range [0, inf)");
-    let nan = OneSided { load: f64::NAN, ..CONTACT };
+    assert_eq!(
+        error.to_string(),
+        "parameter zeta = -0.1 is outside its range [0, inf)"
+    );
+    let nan = OneSided {
+        load: f64::NAN,
+        ..CONTACT
+    };
     assert!(matches!(
         refused(FrequencyResponse::of(&nan).from(0.6).to(1.6)),
         Error::Parameter { .. }
@@ -288,15 +461,26 @@ fn bad_requests_are_refused_before_any_work() {
     let fast = Fractional {};
     assert!(matches!(
         refused(FrequencyResponse::of(&fast).from(0.6).to(1.6).harmonics(1)),
-        Error::Harmonics { harmonics: 1, load: 2 }
+        Error::Harmonics {
+            harmonics: 1,
+            load: 2
+        }
     ));
 }
 
 /// A frequency is an angle per time: a period of the excitation is `2 pi / omega`.
 #[test]
 fn states_are_those_of_time() {
-    let model = Linear { zeta: 0.05, drive: 0.3 };
-    let branch = FrequencyResponse::of(&model).from(0.5).to(0.6).harmonics(1).run().unwrap();
+    let model = Linear {
+        zeta: 0.05,
+        drive: 0.3,
+    };
+    let branch = FrequencyResponse::of(&model)
+        .from(0.5)
+        .to(0.6)
+        .harmonics(1)
+        .run()
+        .unwrap();
     let orbit = &branch.points[0].orbit;
     let (x0, v0) = orbit.state(0, 0.0);
     let (x1, v1) = orbit.state(0, PI / 0.5);

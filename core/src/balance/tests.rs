@@ -81,7 +81,7 @@ fn equations(
             Place::Mass { row, column } => sum[row] += value * a[column],
             Place::Damping { row, column } => sum[row] += value * v[column],
             Place::Stiffness { row, column, wave } => {
-                sum[row] += value * wave_at(wave, phase) * q[column]
+                sum[row] += value * wave_at(wave, phase) * q[column];
             }
             Place::Load { row, wave } => sum[row] -= value * wave_at(wave, phase),
             Place::GapDirection {
