@@ -1,4 +1,34 @@
-//! Vibration of oscillators with piecewise power-law forces.
+//! Vibration of oscillators with piecewise power-law forces: contacts that open, springs of any exponent, play, stops.
+//!
+//! [`oscillator!`] turns an equation of motion into a type with public parameters and into specialised code for its forces
+//! and their derivatives. [`FrequencyResponse`] follows its periodic orbits as the excitation frequency or a parameter
+//! varies, and returns a [`Branch`]: orbits, their [`Stability`], folds, and what it cost.
+//!
+//! ```
+//! use hertzian::FrequencyResponse;
+//!
+//! hertzian::oscillator! {
+//!     Duffing(x) {
+//!         /// damping ratio
+//!         param zeta in 0.0..;
+//!         /// excitation amplitude
+//!         param drive;
+//!         ddot(x) + 2*zeta*dot(x) + x + x^3 = drive*cos(omega*t);
+//!     }
+//! }
+//!
+//! let model = Duffing { zeta: 0.05, drive: 0.2 };
+//! let branch = FrequencyResponse::of(&model).from(0.5).to(2.0).harmonics(7).samples(64).run()?;
+//! assert_eq!(branch.folds().count(), 2);
+//! # Ok::<(), hertzian::Error>(())
+//! ```
+//!
+//! Time has the unit that the equation has it in; frequencies are angles per time. Orbits are Fourier series, laid out as
+//! [`fourier::series`] says. Nothing panics on the values of parameters or options: what is wrong comes back as an
+//! [`Error`] before any work, and a branch that ends early comes back with what was computed and with the reason.
+//!
+//! The modules [`system`] and [`law`] are the contract between generated code and the runtime; a system written by hand
+//! against them is as good as a declared one. [`generic`] interprets the same declarations.
 #![deny(missing_docs)]
 
 // Generated code names this crate `::hertzian`; inside the crate itself that name must exist too.
