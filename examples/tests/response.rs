@@ -289,6 +289,7 @@ fn a_branch_that_ends_early_is_written_all_the_same() {
     assert!(!outcome.complete);
     assert!(outcome.summary.contains("limit of 7 points"));
     assert!(outcome.warnings[0].contains("does not pass omega = 1.5"));
+    assert!(outcome.warnings[1].contains("ended early: reached the limit"));
     let text = std::fs::read_to_string(&json).expect("a file");
     let all: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(all["points"].as_array().map(Vec::len), Some(7));

@@ -95,10 +95,14 @@ pub fn run(
     let record = Record::of(&branch, model.facts(), options.sweep, &at);
     let chart = picture(options, &branch, stop);
     let written = write(options, &record, &chart)?;
+    let complete = branch.stopped == Stop::ReachedEnd;
+    if !complete {
+        warnings.push(format!("the branch ended early: {}", branch.stopped));
+    }
     Ok(Outcome {
         summary: summary::of(options, &branch, &at, &written),
         warnings,
-        complete: branch.stopped == Stop::ReachedEnd,
+        complete,
     })
 }
 
