@@ -50,6 +50,13 @@ pub enum Error {
         /// Harmonics of the balance.
         harmonics: usize,
     },
+    /// More unknowns than a dense matrix can be afforded for.
+    Unknowns {
+        /// Coordinates times harmonics, cosine and sine and mean.
+        unknowns: usize,
+        /// The most there may be.
+        most: usize,
+    },
     /// The levels of a law are not in increasing order for these parameters.
     Levels {
         /// Name of the law.
@@ -112,6 +119,10 @@ impl std::fmt::Display for Error {
             } => write!(
                 f,
                 "{samples} samples are too few for {harmonics} harmonics: take {least} or more"
+            ),
+            Self::Unknowns { unknowns, most } => write!(
+                f,
+                "{unknowns} unknowns are too many, at most {most}: take fewer harmonics or a shorter period"
             ),
             Self::Levels { law, levels } => {
                 write!(

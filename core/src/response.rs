@@ -10,7 +10,8 @@ use crate::continuation::locate::locate;
 use crate::continuation::problem::{Problem, Scale};
 use crate::continuation::step::StepControl;
 use crate::error::Error;
-use crate::layout::Layout;
+use crate::fourier::series;
+use crate::layout::{ContactLayout, Layout};
 use crate::newton::{Border, Newton, NewtonOptions};
 use crate::observe::observe;
 use crate::stability::judge::Judge;
@@ -22,6 +23,8 @@ use crate::validate;
 
 /// The test function of a fold is driven below this.
 const FOLD_TOLERANCE: f64 = 1e-10;
+/// The dense matrix of more unknowns would take more than 300 megabytes.
+const MOST_UNKNOWNS: usize = 6000;
 
 /// What to follow, set up step by step, then [run](FrequencyResponse::run).
 ///
@@ -264,6 +267,13 @@ impl<'a> FrequencyResponse<'a> {
         )?;
         let harmonics = per_period * self.period;
         let layout = Layout::of(self.system);
+        let unknowns = layout.coordinates * series::length(harmonics);
+        if unknowns > MOST_UNKNOWNS {
+            return Err(Error::Unknowns {
+                unknowns,
+                most: MOST_UNKNOWNS,
+            });
+        }
         let load = layout.load_harmonic() * self.period;
         if load > harmonics {
             return Err(Error::Harmonics { harmonics, load });
@@ -278,13 +288,13 @@ impl<'a> FrequencyResponse<'a> {
             "must be from 1 to 1e7",
         )?;
         let samples = samples_per_period * self.period;
-        // The derivatives are needed up to twice the harmonics of the balance, and the waves of the directions on top.
-        let waves = layout
-            .contacts
-            .iter()
-            .map(|c| c.force_harmonic() + c.gap_harmonic())
-            .max();
-        let least = 2 * (2 * harmonics + waves.unwrap_or(0) * self.period) + 2;
+        // The derivatives are needed up to twice the harmonics of the balance, and the waves of directions and offsets on top.
+        let contacts = layout.contacts.iter();
+        let wave = |contact: &ContactLayout| {
+            contact.offset_harmonic() + contact.force_harmonic() + contact.gap_harmonic()
+        };
+        let waves = contacts.map(wave).max().unwrap_or(0) * self.period;
+        let least = 2 * (2 * harmonics + waves) + 2;
         if samples < least {
             return Err(Error::Samples {
                 samples,

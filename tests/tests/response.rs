@@ -430,6 +430,13 @@ fn bad_requests_are_refused_before_any_work() {
         }
     ));
     assert!(matches!(
+        refused(good().harmonics(5000)),
+        Error::Unknowns {
+            unknowns: 10_001,
+            ..
+        }
+    ));
+    assert!(matches!(
         refused(good().vary("lode")),
         Error::UnknownParameter { .. }
     ));

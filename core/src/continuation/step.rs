@@ -20,8 +20,8 @@ impl Default for StepControl {
         Self {
             initial: 0.01,
             smallest: 1e-9,
-            largest: 0.1,
-            angle: 0.2,
+            largest: 0.05,
+            angle: 0.15,
             iterations: 4,
         }
     }
