@@ -13,16 +13,14 @@
 //! - A negative base is treated as zero.
 //!
 //! Each guard is a selection between two computed values, so that a loop of them has no branch.
-//!
-//! # Loops
-//!
-//! The loops take the kernel of one sample as a closure and are always inlined; together with the kernel they become
-//! one loop over slices of one length. What the kernel computes but the loop does not store is removed.
 
 // Short functions that are meaningless unless merged into the loop that calls them.
 #![allow(clippy::inline_always)]
 
-use crate::law::{Exponent, Quantity, TermFacts};
+pub mod constants;
+mod law;
+
+pub use law::{Batch, ByArgument, Generated, Kernels, Primitive, Spring};
 
 /// Guarded power `base^exponent` for a base that the declaration proves is not negative.
 #[inline(always)]
@@ -159,10 +157,18 @@ pub fn tanh(x: f64) -> f64 {
     x.tanh()
 }
 
-/// `yes` where the condition holds, `no` elsewhere, value by value.
+/// Replaces values where a condition holds, by selection.
 #[inline(always)]
-pub fn select<const N: usize>(condition: bool, yes: [f64; N], no: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|index| if condition { yes[index] } else { no[index] })
+pub fn select<const V: usize>(values: &mut [f64; V], condition: bool, others: [f64; V]) {
+    for (value, other) in values.iter_mut().zip(others) {
+        *value = if condition { other } else { *value };
+    }
+}
+
+/// The kernel of a piece without force.
+#[inline(always)]
+pub fn nothing<const A: usize, const V: usize>(_: [f64; A], _: f64, _: f64) -> [f64; V] {
+    [0.0; V]
 }
 
 /// A slice of arguments or parameters as an array.
@@ -174,65 +180,6 @@ pub fn arguments<const N: usize>(slice: &[f64]) -> [f64; N] {
     slice
         .try_into()
         .unwrap_or_else(|_| panic!("{N} arguments are needed, {} were given", slice.len()))
-}
-
-/// Declares a loop with a given number of outputs, at given positions among the values of a kernel. Every output is a
-/// parameter of its own, so that the compiler knows that they do not overlap.
-macro_rules! loops {
-    ($($name:ident: $($out:ident $index:ident),+;)+) => {$(
-        /// Writes some of the values of a kernel for every sample.
-        ///
-        /// # Panics
-        /// If the slices differ in length.
-        #[inline(always)]
-        pub fn $name<$(const $index: usize,)+ const N: usize>(
-            gap: &[f64],
-            rate: &[f64],
-            $($out: &mut [f64],)+
-            kernel: impl Fn(f64, f64) -> [f64; N],
-        ) {
-            let count = gap.len();
-            assert_eq!(rate.len(), count, "gap and rate differ in length");
-            $(assert_eq!($out.len(), count, "an output differs in length from the samples");)+
-            for i in 0..count {
-                let values = kernel(gap[i], rate[i]);
-                $($out[i] = values[$index];)+
-            }
-        }
-    )+};
-}
-
-loops! {
-    write_1: first A;
-    write_2: first A, second B;
-    write_3: first A, second B, third C;
-    write_4: first A, second B, third C, fourth D;
-}
-
-/// A term of the facts of a piece.
-pub const fn term(of: Quantity, lower: Exponent, upper: Exponent, logarithm: bool) -> TermFacts {
-    TermFacts {
-        of,
-        lower,
-        upper,
-        logarithm,
-    }
-}
-
-/// An exponent known at compile time.
-pub const fn exponent(number: f64) -> Exponent {
-    Exponent {
-        number,
-        argument: None,
-    }
-}
-
-/// A number plus the argument at a position.
-pub const fn exponent_of(number: f64, argument: usize) -> Exponent {
-    Exponent {
-        number,
-        argument: Some(argument),
-    }
 }
 
 /// A piece was asked for that a law does not have.
@@ -345,19 +292,5 @@ mod tests {
     fn sign_and_step_are_zero_at_zero() {
         assert_eq!([-2.0, 0.0, 3.0].map(sign), [-1.0, 0.0, 1.0]);
         assert_eq!([-2.0, 0.0, 3.0].map(step), [0.0, 0.0, 1.0]);
-    }
-
-    #[test]
-    fn a_loop_writes_the_values_asked_for() {
-        let (gap, rate) = ([1.0, 2.0], [0.5, 0.25]);
-        let (mut first, mut second) = ([0.0; 2], [0.0; 2]);
-        write_2::<2, 0, 3>(&gap, &rate, &mut first, &mut second, |g, r| [g, r, g * r]);
-        assert_eq!((first, second), ([0.5, 0.5], [1.0, 2.0]));
-    }
-
-    #[test]
-    #[should_panic(expected = "gap and rate differ in length")]
-    fn a_loop_refuses_slices_of_different_length() {
-        write_1::<0, 1>(&[1.0], &[], &mut [0.0], |g, _| [g]);
     }
 }

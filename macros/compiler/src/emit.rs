@@ -3,7 +3,6 @@
 //! Everything but the type itself stands inside one anonymous constant, so that no name leaks into the user's module;
 //! inside it, every path starts at a crate root or at an alias of one.
 
-mod batch;
 mod code;
 mod data;
 mod document;
@@ -14,49 +13,30 @@ mod names;
 mod powers;
 mod stub;
 mod system;
-mod tape;
+pub(crate) mod tape;
 #[cfg(test)]
 mod tests;
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
 use crate::ir::{Model, Parameter};
-use crate::primitive;
 
 pub use stub::stub;
 
 /// Writes a model as Rust code.
 pub fn emit(model: &Model) -> TokenStream {
     let mut model = model.clone();
-    let mut types = TokenStream::new();
-    let mut names = Vec::new();
-    for index in 0..model.laws.len() {
-        let name = format_ident!("__Law{index}");
-        types.extend(with_parts(&mut model, index, &name));
-        names.push(name);
-    }
-    let system = system::system(&mut model, &names);
+    let laws: TokenStream = (0..model.laws.len())
+        .map(|index| {
+            let law = model.laws[index].clone();
+            law::family(&mut model.dag, &law, index)
+        })
+        .collect();
+    let system = system::system(&mut model);
     let structure = structure(&model);
-    let implementation = wrap(&model.name, &quote!(#types #system));
+    let implementation = wrap(&model.name, &quote!(#laws #system));
     quote!(#structure #implementation)
-}
-
-/// A law, and the spring and the primitive it consists of where it is linear in its rate.
-fn with_parts(model: &mut Model, index: usize, name: &Ident) -> TokenStream {
-    let law = model.laws[index].clone();
-    let dag = &mut model.dag;
-    let Some((spring, primitive)) = primitive::parts(dag, &law) else {
-        return law::law(dag, &law, name, None);
-    };
-    let (spring_name, primitive_name) = (
-        format_ident!("{name}Spring"),
-        format_ident!("{name}Primitive"),
-    );
-    let spring = law::law(dag, &spring, &spring_name, None);
-    let primitive = law::law(dag, &primitive, &primitive_name, None);
-    let whole = law::law(dag, &law, name, Some((&spring_name, &primitive_name)));
-    quote!(#whole #spring #primitive)
 }
 
 /// The type: one public field per parameter.
@@ -83,16 +63,8 @@ fn structure(model: &Model) -> TokenStream {
 /// Puts implementations into an anonymous constant, with the aliases they use.
 fn wrap(name: &Ident, items: &TokenStream) -> TokenStream {
     quote! {
-        #[allow(
-            clippy::all,
-            clippy::pedantic,
-            clippy::nursery,
-            clippy::restriction,
-            missing_docs,
-            nonstandard_style,
-            unused,
-            unused_qualifications,
-        )]
+        #[allow(clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)]
+        #[allow(missing_docs, nonstandard_style, unused, unused_qualifications)]
         const _: () = {
             use ::core::primitive::{f64, usize};
             use ::hertzian::{emitted as __emitted, generic as __generic, law as __law, system as __system};

@@ -7,6 +7,7 @@ pub mod differentiate;
 pub mod emit;
 pub mod errors;
 pub mod facts;
+pub mod interpret;
 pub mod ir;
 pub mod primitive;
 pub mod simplify;

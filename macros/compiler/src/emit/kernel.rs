@@ -9,27 +9,105 @@ use super::tape::{Style, Tape};
 use crate::dag::{Dag, Id, Variable};
 
 impl Emitter<'_> {
-    /// Levels, each piece, and all pieces by selection, for one sample: force, by gap, by rate, by each argument. What a
-    /// caller does not use of the outputs is not computed.
-    pub(super) fn functions(&self, dag: &mut Dag) -> TokenStream {
-        let mut functions = self.level_function(dag);
-        for (index, piece) in self.kernels.iter().enumerate() {
-            let name = piece_name(index);
-            let code = self.code(dag, &piece.outputs());
-            let (pattern, statements, roots) = (self.pattern(&code), &code.statements, &code.roots);
-            let gap = used(&code, Variable::Gap, "g");
-            let rate = used(&code, Variable::Rate, "r");
-            let (arguments, outputs) = (position(self.count()), position(3 + self.count()));
-            functions.extend(quote! {
-                #[inline(always)]
-                fn #name(#pattern: [f64; #arguments], #gap: f64, #rate: f64) -> [f64; #outputs] {
-                    #statements
-                    [#(#roots),*]
-                }
-            });
+    /// The type of the kernels. What a caller does not use of the values of a piece is not computed.
+    pub(super) fn kernels(&self, dag: &mut Dag, name: &Ident) -> TokenStream {
+        let pieces: TokenStream = (0..self.pieces.len())
+            .map(|index| self.piece(dag, index))
+            .collect();
+        let all_pieces = self.all_pieces(dag);
+        let [arguments, levels_count, values] = self.sizes();
+        let levels = self.levels(dag);
+        let levels_by = self.levels_by(dag);
+        let (on, by_argument) = (self.on(), self.by_argument());
+        quote! {
+            struct #name;
+
+            impl #name { #pieces #all_pieces }
+
+            impl __emitted::Kernels<#arguments, #levels_count, #values> for #name {
+                #levels
+                #levels_by
+                #on
+                #by_argument
+            }
         }
-        functions.extend(self.selection());
-        functions
+    }
+
+    /// The function of a piece, unless all of its values are zero.
+    fn piece(&self, dag: &mut Dag, index: usize) -> TokenStream {
+        if self.is_zero(index) {
+            return TokenStream::new();
+        }
+        let name = piece_name(index);
+        let code = self.code(dag, &self.pieces[index]);
+        let (pattern, statements, values) = (self.pattern(&code), &code.statements, &code.roots);
+        let gap = used(&code, Variable::Gap, "g");
+        let rate = used(&code, Variable::Rate, "r");
+        let [arguments, _, outputs] = self.sizes();
+        quote! {
+            #[inline(always)]
+            fn #name(#pattern: [f64; #arguments], #gap: f64, #rate: f64) -> [f64; #outputs] {
+                #statements
+                [#(#values),*]
+            }
+        }
+    }
+
+    fn is_zero(&self, index: usize) -> bool {
+        self.pieces[index].iter().all(|&value| value == self.zero)
+    }
+
+    /// The path of the function of a piece.
+    fn path(&self, index: usize) -> TokenStream {
+        if self.is_zero(index) {
+            return quote!(__emitted::nothing);
+        }
+        let name = piece_name(index);
+        quote!(Self::#name)
+    }
+
+    /// Every piece is computed, and one is selected by comparison: no branch.
+    fn all_pieces(&self, dag: &mut Dag) -> TokenStream {
+        if self.member.levels.is_empty() {
+            return TokenStream::new();
+        }
+        let [arguments, _, outputs] = self.sizes();
+        let mut values: Vec<TokenStream> = (0..self.pieces.len())
+            .map(|index| {
+                let piece = self.path(index);
+                quote!(#piece(a, g, r))
+            })
+            .collect();
+        let mut statements = TokenStream::new();
+        if let Some(pieces) = &self.together {
+            let code = self.code(dag, &pieces.concat());
+            let pattern = self.pattern(&code);
+            statements = code.statements;
+            statements = quote!(let #pattern = a; #statements);
+            let pieces = code.roots.chunks(pieces[0].len());
+            values = pieces.map(|values| quote!([#(#values),*])).collect();
+        }
+        let first = &values[0];
+        let levels = self.member.law.levels.iter().enumerate();
+        let selections = levels.zip(&values[1..]).map(|((index, level), value)| {
+            let index = position(index);
+            let above = if level.belongs_above {
+                quote!(>=)
+            } else {
+                quote!(>)
+            };
+            quote!(__emitted::select(&mut v, g #above level[#index], #value);)
+        });
+        quote! {
+            #[inline(always)]
+            fn all_pieces(a: [f64; #arguments], g: f64, r: f64) -> [f64; #outputs] {
+                let level = <Self as __emitted::Kernels<_, _, _>>::levels(a);
+                #statements
+                let mut v = #first;
+                #(#selections)*
+                v
+            }
+        }
     }
 
     fn code(&self, dag: &mut Dag, roots: &[Id]) -> Code {
@@ -49,87 +127,89 @@ impl Emitter<'_> {
         quote!([#(#names),*])
     }
 
-    fn level_function(&self, dag: &mut Dag) -> TokenStream {
-        if self.levels.is_empty() {
-            return TokenStream::new();
-        }
-        let values: Vec<Id> = self.levels.iter().map(|(value, _)| *value).collect();
+    fn levels(&self, dag: &mut Dag) -> TokenStream {
+        let values: Vec<Id> = self.member.levels.iter().map(|(value, _)| *value).collect();
         let code = self.code(dag, &values);
         let (pattern, statements, roots) = (self.pattern(&code), &code.statements, &code.roots);
-        let (arguments, levels) = (position(self.count()), position(self.levels.len()));
+        let [arguments, levels, _] = self.sizes();
         quote! {
             #[inline(always)]
-            fn level(#pattern: [f64; #arguments]) -> [f64; #levels] {
+            fn levels(#pattern: [f64; #arguments]) -> [f64; #levels] {
                 #statements
                 [#(#roots),*]
             }
         }
     }
 
-    /// Every piece is computed, and one is selected by comparison: no branch.
-    fn selection(&self) -> TokenStream {
-        if self.levels.is_empty() {
-            return TokenStream::new();
-        }
-        let (arguments, outputs) = (position(self.count()), position(3 + self.count()));
-        let selections = self.law.levels.iter().enumerate().map(|(index, level)| {
-            let piece = piece_name(index + 1);
-            let index = position(index);
-            let above = if level.belongs_above {
-                quote!(>=)
-            } else {
-                quote!(>)
-            };
-            quote!(v = __emitted::select(g #above level[#index], Self::#piece(a, g, r), v);)
-        });
-        quote! {
-            #[inline(always)]
-            fn all_pieces(a: [f64; #arguments], g: f64, r: f64) -> [f64; #outputs] {
-                let level = Self::level(a);
-                let mut v = Self::piece_0(a, g, r);
-                #(#selections)*
-                v
-            }
-        }
-    }
-
-    pub(super) fn copy_levels(&self) -> TokenStream {
-        if self.levels.is_empty() {
-            return TokenStream::new();
-        }
-        quote!(levels.copy_from_slice(&Self::level(__emitted::arguments(arguments)));)
-    }
-
-    pub(super) fn levels_by(&self, dag: &mut Dag) -> TokenStream {
+    /// Where no level depends on an argument, the provided method says so.
+    fn levels_by(&self, dag: &mut Dag) -> TokenStream {
         let zero = dag.integer(0);
         let mut arms = TokenStream::new();
         for argument in 0..self.count() {
-            let roots: Vec<Id> = self.levels.iter().map(|(_, by)| by[argument]).collect();
+            let levels = self.member.levels.iter();
+            let roots: Vec<Id> = levels.map(|(_, by)| by[argument]).collect();
             if roots.iter().all(|&root| root == zero) {
                 continue;
             }
             let code = self.code(dag, &roots);
             let (pattern, statements, values) =
                 (self.pattern(&code), &code.statements, &code.roots);
-            let (argument, count) = (position(argument), position(self.count()));
-            arms.extend(quote! {
-                #argument => {
-                    let #pattern: [f64; #count] = __emitted::arguments(arguments);
-                    #statements
-                    by_argument.copy_from_slice(&[#(#values),*]);
-                }
-            });
+            let argument = position(argument);
+            let bind = (!code.inputs.is_empty()).then(|| quote!(let #pattern = a;));
+            arms.extend(quote!(#argument => { #bind #statements [#(#values),*] }));
         }
         if arms.is_empty() {
-            quote!(by_argument.fill(0.0);)
+            return arms;
+        }
+        let [arguments, levels, _] = self.sizes();
+        quote! {
+            fn levels_by(argument: usize, a: [f64; #arguments]) -> [f64; #levels] {
+                match argument { #arms _ => [0.0; #levels] }
+            }
+        }
+    }
+
+    /// Hands over the kernel of what a batch is evaluated on.
+    fn on(&self) -> TokenStream {
+        let all_pieces = if self.member.levels.is_empty() {
+            self.path(0)
         } else {
-            quote!(match argument { #arms _ => by_argument.fill(0.0), })
+            quote!(Self::all_pieces)
+        };
+        let arms = (0..self.pieces.len()).map(|index| {
+            let (path, index) = (self.path(index), position(index));
+            quote!(__law::On::Piece(#index) => batch.run(#path),)
+        });
+        let [arguments, _, outputs] = self.sizes();
+        quote! {
+            fn on(on: __law::On, batch: impl __emitted::Batch<#arguments, #outputs>) {
+                match on {
+                    __law::On::AllPieces => batch.run(#all_pieces),
+                    #(#arms)*
+                    __law::On::Piece(index) => __emitted::no_such_piece(index),
+                }
+            }
+        }
+    }
+
+    /// Hands over the position of a derivative by an argument among the values of a kernel.
+    fn by_argument(&self) -> TokenStream {
+        let arms = (0..self.count()).map(|argument| {
+            let (at, argument) = (position(3 + argument), position(argument));
+            quote!(#argument => call.run::<#at>(),)
+        });
+        quote! {
+            fn by_argument(argument: usize, call: impl __emitted::ByArgument) {
+                match argument {
+                    #(#arms)*
+                    _ => __emitted::no_such_argument(argument),
+                }
+            }
         }
     }
 }
 
-/// The function of a piece.
-pub fn piece_name(index: usize) -> Ident {
+fn piece_name(index: usize) -> Ident {
     format_ident!("piece_{index}")
 }
 

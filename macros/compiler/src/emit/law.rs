@@ -1,134 +1,91 @@
-//! One law: a unit type that implements `hertzian::law::Law`.
+//! One law: kernels on a type of its own, and a constant that makes a `hertzian::law::Law` of them.
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::code::position;
 use super::data;
 use super::magnitude::share_magnitudes;
 use super::names::locals;
 use crate::dag::{Dag, Id, Variable};
-use crate::differentiate::differentiate;
-use crate::facts::{Piece, Variation, derive, variation};
+use crate::facts::Piece;
+use crate::interpret::{Family, Member};
 use crate::ir::Law;
-use crate::simplify::{expand, factor};
 
 /// A law being written.
 pub(super) struct Emitter<'a> {
-    pub(super) law: &'a Law,
-    pub(super) pieces: Vec<Piece>,
-    /// The pieces as they are computed.
-    pub(super) kernels: Vec<Piece>,
-    /// How every output of every piece varies.
-    pub(super) variations: Vec<Vec<Variation>>,
-    /// Levels and their derivatives by each argument.
-    pub(super) levels: Vec<(Id, Vec<Id>)>,
+    pub(super) member: &'a Member,
+    /// The values of every piece: force, by gap, by rate, by each argument; of a law that is linear in its rate then the
+    /// primitive, and its derivatives by each argument.
+    pub(super) pieces: Vec<Vec<Id>>,
+    /// The same as they are computed together, where that differs from one by one.
+    pub(super) together: Option<Vec<Vec<Id>>>,
+    /// The number zero.
+    pub(super) zero: Id,
     /// Identifiers of the arguments.
     pub(super) arguments: Vec<Ident>,
 }
 
-/// The type of a law and its implementation; `parts` are the types of its spring and primitive.
-pub fn law(dag: &mut Dag, law: &Law, name: &Ident, parts: Option<(&Ident, &Ident)>) -> TokenStream {
-    let emitter = Emitter::of(dag, law);
-    let facts = data::facts(law, &derive(dag, law, &emitter.pieces));
-    let data = data::data(dag, &emitter.levels, &emitter.pieces);
-    let functions = emitter.functions(dag);
-    let (force, derivatives, derivatives_and_by) = (
-        emitter.force(),
-        emitter.derivatives(),
-        emitter.derivatives_and_by(),
+/// A law and, where it is linear in its rate, its parts: they are other views of its kernels.
+pub fn family(dag: &mut Dag, law: &Law, index: usize) -> TokenStream {
+    let family = Family::of(dag, law);
+    let (kernels, whole) = (
+        format_ident!("__Law{index}"),
+        format_ident!("__LAW_{index}"),
     );
-    let (levels, levels_by) = (emitter.copy_levels(), emitter.levels_by(dag));
-    let parts = data::option(parts.map(
-        |(spring, primitive)| quote!(__law::Parts { spring: &#spring, primitive: &#primitive }),
-    ));
+    let emitter = Emitter::of(dag, &family);
+    let [arguments, levels, values] = emitter.sizes();
+    let functions = emitter.kernels(dag, &kernels);
+    let nodes = data::nodes(&family.nodes, &family.whole.level_data, &law.arguments);
+    let mut of_whole = data::description(&family.whole);
+    let mut of_parts = TokenStream::new();
+    if let Some([spring, primitive]) = &family.parts {
+        let (spring, primitive) = (data::description(spring), data::description(primitive));
+        of_parts.extend(quote! {
+            static SPRING: __emitted::Generated<__emitted::Spring<#kernels>, #arguments, #levels, #values> = { #spring };
+            static PRIMITIVE: __emitted::Generated<__emitted::Primitive<#kernels>, #arguments, #levels, #values> =
+                { #primitive };
+        });
+        of_whole.extend(quote!(.with_parts(&SPRING, &PRIMITIVE)));
+    }
     quote! {
-        struct #name;
+        #functions
 
-        impl #name { #functions }
-
-        #[automatically_derived]
-        impl __law::Law for #name {
-            fn facts(&self) -> &__law::LawFacts {
-                static FACTS: __law::LawFacts = #facts;
-                &FACTS
-            }
-
-            fn data(&self) -> &__generic::LawData {
-                static DATA: __generic::LawData = #data;
-                &DATA
-            }
-
-            fn levels(&self, arguments: &[f64], levels: &mut [f64]) { #levels }
-
-            fn levels_by(&self, arguments: &[f64], argument: usize, by_argument: &mut [f64]) { #levels_by }
-
-            fn force(&self, on: __law::On, arguments: &[f64], gap: &[f64], rate: &[f64], force: &mut [f64]) {
-                #force
-            }
-
-            fn derivatives(
-                &self,
-                on: __law::On,
-                arguments: &[f64],
-                gap: &[f64],
-                rate: &[f64],
-                out: __law::Derivatives<'_>,
-            ) {
-                #derivatives
-            }
-
-            fn derivatives_and_by(
-                &self,
-                argument: usize,
-                on: __law::On,
-                arguments: &[f64],
-                gap: &[f64],
-                rate: &[f64],
-                out: __law::Derivatives<'_>,
-                by_argument: &mut [f64],
-            ) {
-                #derivatives_and_by
-            }
-
-            fn parts(&self) -> ::core::option::Option<__law::Parts<'_>> { #parts }
-        }
+        static #whole: __emitted::Generated<#kernels, #arguments, #levels, #values> = {
+            use __emitted::constants::*;
+            #nodes
+            #of_parts
+            #of_whole
+        };
     }
 }
 
 impl<'a> Emitter<'a> {
-    fn of(dag: &mut Dag, law: &'a Law) -> Self {
-        let count = law.arguments.len();
-        let mut pieces: Vec<Piece> = law
-            .pieces
-            .iter()
-            .map(|&force| Piece::of(dag, force, count))
-            .collect();
-        let mut variations = Vec::new();
-        for piece in &mut pieces {
-            variations.push(simplify(dag, piece));
+    fn of(dag: &mut Dag, family: &'a Family) -> Self {
+        let member = &family.whole;
+        let mut pieces: Vec<Vec<Id>> = member.pieces.iter().map(Piece::outputs).collect();
+        if let Some([_, primitive]) = &family.parts {
+            for (values, piece) in pieces.iter_mut().zip(&primitive.pieces) {
+                values.push(piece.force);
+                values.extend(&piece.by_argument);
+            }
         }
-        let kernels = share_magnitudes(dag, &pieces);
-        let levels = law
-            .levels
-            .iter()
-            .map(|level| {
-                let by = |index| differentiate(dag, level.value, Variable::Argument(index));
-                (level.value, (0..count).map(by).collect())
-            })
-            .collect();
-        let arguments = locals(&law.arguments, &["g", "r", "level", "v"]);
         Self {
-            law,
+            member,
+            together: share_magnitudes(dag, &pieces),
             pieces,
-            kernels,
-            variations,
-            levels,
-            arguments,
+            zero: dag.integer(0),
+            arguments: locals(&member.law.arguments, &["g", "r", "level", "v"]),
         }
     }
 
     pub(super) fn count(&self) -> usize {
         self.arguments.len()
+    }
+
+    /// Counts of arguments, levels and values of a kernel.
+    pub(super) fn sizes(&self) -> [Literal; 3] {
+        [self.count(), self.member.levels.len(), self.pieces[0].len()].map(position)
     }
 
     pub(super) fn name(&self, variable: Variable) -> Ident {
@@ -139,22 +96,4 @@ impl<'a> Emitter<'a> {
             other => unreachable!("a law depends on gap, rate and arguments, not on {other:?}"),
         }
     }
-}
-
-/// Puts every output of a piece into the form to be computed, and says how each varies.
-fn simplify(dag: &mut Dag, piece: &mut Piece) -> Vec<Variation> {
-    let mut variations = Vec::new();
-    let outputs = [&mut piece.force, &mut piece.by_gap, &mut piece.by_rate];
-    for output in outputs.into_iter().chain(piece.by_argument.iter_mut()) {
-        let how = variation(dag, *output);
-        // What does not vary is written without gap and rate, even where that takes multiplying out.
-        *output = if how == Variation::Varying {
-            *output
-        } else {
-            expand(dag, *output)
-        };
-        *output = factor(dag, *output);
-        variations.push(how);
-    }
-    variations
 }

@@ -1,16 +1,15 @@
 //! One logarithm for both sides: where one piece raises `g` and another `-g`, each on its own side of zero, both raise
-//! `|g|`, so that the powers of all pieces are computed once when every piece is.
+//! `|g|` where all pieces are computed together, so that their powers are computed once.
 //!
 //! On its own piece either base is not negative, so `|g|` is the base; elsewhere the result means nothing either way.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::dag::{Dag, Function, Id, Node, Rational};
-use crate::facts::Piece;
 
-/// The pieces with bases that occur with both signs replaced by their magnitude.
-pub fn share_magnitudes(dag: &mut Dag, pieces: &[Piece]) -> Vec<Piece> {
-    let roots: Vec<Id> = pieces.iter().flat_map(Piece::outputs).collect();
+/// The values of pieces with bases that occur with both signs replaced by their magnitude; `None` where there is no such base.
+pub fn share_magnitudes(dag: &mut Dag, pieces: &[Vec<Id>]) -> Option<Vec<Vec<Id>>> {
+    let roots = pieces.concat();
     let reachable = dag.reachable(&roots);
     let bases: HashSet<Id> = reachable.iter().filter_map(|&id| base(dag, id)).collect();
     let mut magnitudes = HashMap::new();
@@ -22,7 +21,7 @@ pub fn share_magnitudes(dag: &mut Dag, pieces: &[Piece]) -> Vec<Piece> {
         }
     }
     if magnitudes.is_empty() {
-        return pieces.to_vec();
+        return None;
     }
     let mut new: HashMap<Id, Id> = HashMap::new();
     for id in reachable {
@@ -35,14 +34,11 @@ pub fn share_magnitudes(dag: &mut Dag, pieces: &[Piece]) -> Vec<Piece> {
         new.insert(id, rebuilt);
     }
     let pieces = pieces.iter();
-    pieces
-        .map(|piece| Piece {
-            force: new[&piece.force],
-            by_gap: new[&piece.by_gap],
-            by_rate: new[&piece.by_rate],
-            by_argument: piece.by_argument.iter().map(|by| new[by]).collect(),
-        })
-        .collect()
+    Some(
+        pieces
+            .map(|values| values.iter().map(|value| new[value]).collect())
+            .collect(),
+    )
 }
 
 /// The base of a guarded power, which is not negative where it is used. Of a whole power it may be.

@@ -11,8 +11,8 @@ use crate::dag::{Id, Variable};
 use crate::differentiate::differentiate;
 use crate::ir::{Bound, Model, Place, Wave};
 
-/// The implementation for a model whose laws have the given types.
-pub fn system(model: &mut Model, laws: &[Ident]) -> TokenStream {
+/// The implementation for a model.
+pub fn system(model: &mut Model) -> TokenStream {
     let name = model.name.clone();
     let facts = facts(model);
     let fields: Vec<&Ident> = model
@@ -24,7 +24,8 @@ pub fn system(model: &mut Model, laws: &[Ident]) -> TokenStream {
     let roots: Vec<Id> = model.coefficients.iter().map(|&(_, id)| id).collect();
     let coefficients = coefficients(model, &roots, &quote!(coefficients));
     let coefficients_by = coefficients_by(model, &roots);
-    let indices = (0..laws.len()).map(position);
+    let indices = (0..model.laws.len()).map(position);
+    let laws = (0..model.laws.len()).map(|index| format_ident!("__LAW_{index}"));
     quote! {
         #[automatically_derived]
         impl __system::System for #name {
@@ -57,11 +58,11 @@ pub fn system(model: &mut Model, laws: &[Ident]) -> TokenStream {
     }
 }
 
-/// Straight-line code that writes expressions in parameters and frequency.
+/// Code that writes expressions in parameters and frequency.
 fn coefficients(model: &mut Model, roots: &[Id], into: &TokenStream) -> TokenStream {
     let zero = model.dag.integer(0);
     if roots.iter().all(|&root| root == zero) {
-        return quote!(#into.fill(0.0););
+        return quote!(#into.fill(0.0));
     }
     let tape = Tape::of(&mut model.dag, roots, Style::Code);
     let names: Vec<String> = model
@@ -97,11 +98,8 @@ fn coefficients(model: &mut Model, roots: &[Id], into: &TokenStream) -> TokenStr
         .any(used)
         .then(|| quote!(let [#(#pattern),*]: [f64; #length] = __emitted::arguments(parameters);));
     let (statements, values) = (&code.statements, &code.roots);
-    quote! {
-        #bind
-        #statements
-        #into.copy_from_slice(&[#(#values),*]);
-    }
+    let write = quote!(#into.copy_from_slice(&[#(#values),*]));
+    quote!(#bind #statements #write)
 }
 
 fn coefficients_by(model: &mut Model, roots: &[Id]) -> TokenStream {
@@ -135,111 +133,82 @@ fn facts(model: &Model) -> TokenStream {
     let equation = text(&model.equation);
     let coordinates = list(model.coordinates.iter().map(|name| text(&name.to_string())));
     let parameters = list(model.parameters.iter().map(|parameter| {
-        let name = text(&parameter.name.to_string());
-        let documentation = text(&parameter.documentation);
+        let (name, documentation) = (parameter.name.to_string(), &parameter.documentation);
         let [minimum, maximum] = [parameter.minimum, parameter.maximum].map(bound);
-        quote! {
-            __system::ParameterFacts {
-                name: #name, documentation: #documentation, minimum: #minimum, maximum: #maximum,
-            }
-        }
+        quote!(parameter(#name, #documentation, #minimum, #maximum))
     }));
     let divisor = Literal::u32_unsuffixed(model.divisor);
     let laws = position(model.laws.len());
     let contacts = list(model.contacts.iter().map(|contact| {
         let law = position(contact.law);
-        quote!(__system::ContactFacts { law: #law })
+        quote!(contact(#law))
     }));
     let places = list(model.coefficients.iter().map(|&(at, _)| place(at)));
     quote! {
-        __system::SystemFacts {
-            name: #name,
-            equation: #equation,
-            coordinates: #coordinates,
-            parameters: #parameters,
-            divisor: #divisor,
-            laws: #laws,
-            contacts: #contacts,
-            places: #places,
+        {
+            use __emitted::constants::*;
+            const PARAMETERS: &[__system::ParameterFacts] = #parameters;
+            __system::SystemFacts {
+                name: #name,
+                equation: #equation,
+                coordinates: __Cow::Borrowed(#coordinates),
+                parameters: __Cow::Borrowed(PARAMETERS),
+                divisor: #divisor,
+                laws: #laws,
+                contacts: __Cow::Borrowed(#contacts),
+                places: __Cow::Borrowed(#places),
+            }
         }
     }
 }
 
 fn bound(bound: Bound) -> TokenStream {
     match bound {
-        Bound::Unbounded => quote!(__system::Bound::Unbounded),
+        Bound::Unbounded => quote!(Unbounded),
         Bound::Included(value) => {
             let value = number(value);
-            quote!(__system::Bound::Included(#value))
+            quote!(Included(#value))
         }
         Bound::Excluded(value) => {
             let value = number(value);
-            quote!(__system::Bound::Excluded(#value))
+            quote!(Excluded(#value))
         }
     }
 }
 
 fn place(place: Place) -> TokenStream {
-    let field = |name: &str, value: usize| {
-        let (name, value) = (format_ident!("{name}"), position(value));
-        quote!(#name: #value,)
-    };
-    let phase = |phase: Wave| {
-        let wave = wave(phase);
-        quote!(wave: #wave)
-    };
-    let (name, first, second, wave) = match place {
-        Place::Mass { row, column } => ("Mass", field("row", row), field("column", column), None),
-        Place::Damping { row, column } => {
-            ("Damping", field("row", row), field("column", column), None)
+    let (name, positions, phase) = match place {
+        Place::Mass { row, column } => ("mass", vec![row, column], None),
+        Place::Damping { row, column } => ("damping", vec![row, column], None),
+        Place::Stiffness { row, column, wave } => ("stiffness", vec![row, column], Some(wave)),
+        Place::Load { row, wave } => ("load", vec![row], Some(wave)),
+        Place::ForceDirection { contact, row, wave } => {
+            ("force_direction", vec![contact, row], Some(wave))
         }
-        Place::Stiffness { row, column, wave } => (
-            "Stiffness",
-            field("row", row),
-            field("column", column),
-            Some(wave),
-        ),
-        Place::Load { row, wave } => ("Load", field("row", row), quote!(), Some(wave)),
-        Place::ForceDirection { contact, row, wave } => (
-            "ForceDirection",
-            field("contact", contact),
-            field("row", row),
-            Some(wave),
-        ),
         Place::GapDirection {
             contact,
             column,
             wave,
-        } => (
-            "GapDirection",
-            field("contact", contact),
-            field("column", column),
-            Some(wave),
-        ),
-        Place::Offset { contact, wave } => {
-            ("Offset", field("contact", contact), quote!(), Some(wave))
-        }
-        Place::Argument { contact, index } => (
-            "Argument",
-            field("contact", contact),
-            field("index", index),
-            None,
-        ),
+        } => ("gap_direction", vec![contact, column], Some(wave)),
+        Place::Offset { contact, wave } => ("offset", vec![contact], Some(wave)),
+        Place::Argument { contact, index } => ("argument", vec![contact, index], None),
     };
     let name = format_ident!("{name}");
-    let wave = wave.map(phase);
-    quote!(__system::Place::#name { #first #second #wave })
+    let operands = positions
+        .into_iter()
+        .map(|at| {
+            let at = position(at);
+            quote!(#at)
+        })
+        .chain(phase.map(wave));
+    quote!(#name(#(#operands),*))
 }
 
 fn wave(wave: Wave) -> TokenStream {
-    if wave.harmonic == 0 {
-        return quote!(__system::Wave::CONSTANT);
-    }
     let harmonic = Literal::u32_unsuffixed(wave.harmonic);
-    let part = if wave.sine {
-        quote!(Sine)
-    } else {
-        quote!(Cosine)
-    };
-    quote!(__system::Wave { harmonic: #harmonic, part: __system::Part::#part })
+    match (wave.harmonic, wave.sine) {
+        (0, _) => quote!(CONSTANT),
+        (_, false) => quote!(cos(#harmonic)),
+        (_, true) => quote!(sin(#harmonic)),
+    }
 }

@@ -1,0 +1,443 @@
+//! What every generated law has in common: its kernels of one sample become batches here.
+//!
+//! A batch takes the kernel that it is to run and merges
+//! with it into one loop over slices of one length; values that the loop does not store are not computed.
+
+use std::marker::PhantomData;
+
+use crate::generic::LawData;
+use crate::law::{Derivatives, Law, LawFacts, On, Parts};
+
+/// The kernels of a law with `A` arguments, `L` levels and `V` values: force, by gap, by rate, and by each argument; of a
+/// law that is linear in its rate then the primitive of its rate term, and the derivatives of that by each argument.
+pub trait Kernels<const A: usize, const L: usize, const V: usize>: 'static {
+    /// The levels.
+    fn levels(arguments: [f64; A]) -> [f64; L];
+
+    /// The derivatives of the levels by one argument: zero, unless a law says otherwise.
+    fn levels_by(_argument: usize, _arguments: [f64; A]) -> [f64; L] {
+        [0.0; L]
+    }
+
+    /// Runs a batch with the kernel of one piece, or of all pieces by selection.
+    fn on(on: On, batch: impl Batch<A, V>);
+
+    /// Makes a call with the position, among the values of a kernel, of the derivative by one argument.
+    fn by_argument(argument: usize, call: impl ByArgument);
+}
+
+/// Samples, and where to write values; runs a kernel on them.
+pub trait Batch<const A: usize, const V: usize> {
+    /// Runs a kernel, a function of arguments, gap and rate.
+    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]);
+}
+
+/// A call that needs the position of the derivative by an argument.
+pub trait ByArgument {
+    /// Makes the call.
+    fn run<const AT: usize>(self);
+}
+
+/// The law that kernels, facts and data make.
+pub struct Generated<K, const A: usize, const L: usize, const V: usize> {
+    facts: LawFacts,
+    data: LawData,
+    parts: Option<Parts<'static>>,
+    kernels: PhantomData<fn() -> K>,
+}
+
+impl<K, const A: usize, const L: usize, const V: usize> Generated<K, A, L, V> {
+    /// The law of given kernels, without [`parts`](Law::parts).
+    pub const fn new(facts: LawFacts, data: LawData) -> Self {
+        Self {
+            facts,
+            data,
+            parts: None,
+            kernels: PhantomData,
+        }
+    }
+
+    /// The same law with the spring and the primitive of [`Law::parts`].
+    #[must_use]
+    pub const fn with_parts(
+        mut self,
+        spring: &'static dyn Law,
+        primitive: &'static dyn Law,
+    ) -> Self {
+        self.parts = Some(Parts { spring, primitive });
+        self
+    }
+}
+
+impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> Law
+    for Generated<K, A, L, V>
+{
+    fn facts(&self) -> &LawFacts {
+        &self.facts
+    }
+
+    fn data(&self) -> &LawData {
+        &self.data
+    }
+
+    fn levels(&self, arguments: &[f64], levels: &mut [f64]) {
+        levels.copy_from_slice(&K::levels(super::arguments(arguments)));
+    }
+
+    fn levels_by(&self, arguments: &[f64], argument: usize, by_argument: &mut [f64]) {
+        by_argument.copy_from_slice(&K::levels_by(argument, super::arguments(arguments)));
+    }
+
+    fn force(&self, on: On, arguments: &[f64], gap: &[f64], rate: &[f64], force: &mut [f64]) {
+        let samples = Samples::new(arguments, gap, rate);
+        K::on(on, Force { samples, force });
+    }
+
+    fn derivatives(
+        &self,
+        on: On,
+        arguments: &[f64],
+        gap: &[f64],
+        rate: &[f64],
+        out: Derivatives<'_>,
+    ) {
+        let samples = Samples::new(arguments, gap, rate);
+        K::on(on, Slopes { samples, out });
+    }
+
+    fn derivatives_and_by(
+        &self,
+        argument: usize,
+        on: On,
+        arguments: &[f64],
+        gap: &[f64],
+        rate: &[f64],
+        out: Derivatives<'_>,
+        by_argument: &mut [f64],
+    ) {
+        let call = Call {
+            kernels: PhantomData::<K>,
+            on,
+            samples: Samples::new(arguments, gap, rate),
+            out,
+            by_argument,
+        };
+        K::by_argument(argument, call);
+    }
+
+    fn parts(&self) -> Option<Parts<'_>> {
+        self.parts
+    }
+}
+
+/// The spring `f` of a law: the law at zero rate.
+pub struct Spring<K>(PhantomData<fn() -> K>);
+
+/// The primitive `G` of the rate term of a law.
+pub struct Primitive<K>(PhantomData<fn() -> K>);
+
+/// Declares the kernels of a part: those of the whole law, run through a batch that changes their values.
+macro_rules! part {
+    ($name:ident, $batch:ident) => {
+        impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> Kernels<A, L, V>
+            for $name<K>
+        {
+            fn levels(arguments: [f64; A]) -> [f64; L] {
+                K::levels(arguments)
+            }
+
+            fn levels_by(argument: usize, arguments: [f64; A]) -> [f64; L] {
+                K::levels_by(argument, arguments)
+            }
+
+            fn on(on: On, batch: impl Batch<A, V>) {
+                K::on(on, $batch(batch));
+            }
+
+            fn by_argument(argument: usize, call: impl ByArgument) {
+                K::by_argument(argument, call);
+            }
+        }
+    };
+}
+
+part!(Spring, AtRest);
+part!(Primitive, Integrated);
+
+/// A batch whose kernel is run at zero rate.
+struct AtRest<B>(B);
+
+impl<B: Batch<A, V>, const A: usize, const V: usize> Batch<A, V> for AtRest<B> {
+    #[inline(always)]
+    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
+        self.0.run(|arguments, gap, _| {
+            let mut values = kernel(arguments, gap, 0.0);
+            values[2] = 0.0;
+            values
+        });
+    }
+}
+
+/// A batch that sees the primitive, its derivative by the gap, which is the law's by its rate, and those by arguments.
+struct Integrated<B>(B);
+
+impl<B: Batch<A, V>, const A: usize, const V: usize> Batch<A, V> for Integrated<B> {
+    #[inline(always)]
+    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
+        self.0.run(|arguments, gap, _| {
+            let whole = kernel(arguments, gap, 0.0);
+            let mut values = [0.0; V];
+            values[0] = whole[3 + A];
+            values[1] = whole[2];
+            for argument in 0..A {
+                values[3 + argument] = whole[4 + A + argument];
+            }
+            values
+        });
+    }
+}
+
+/// The inputs of a batch.
+struct Samples<'a, const A: usize> {
+    arguments: [f64; A],
+    gap: &'a [f64],
+    rate: &'a [f64],
+}
+
+impl<'a, const A: usize> Samples<'a, A> {
+    #[inline(always)]
+    fn new(arguments: &[f64], gap: &'a [f64], rate: &'a [f64]) -> Self {
+        let arguments = super::arguments(arguments);
+        assert_eq!(rate.len(), gap.len(), "gap and rate differ in length");
+        Self {
+            arguments,
+            gap,
+            rate,
+        }
+    }
+
+    /// An output, of which it is then known that it is as long as the samples.
+    #[inline(always)]
+    fn output<'b>(&self, output: &'b mut [f64]) -> &'b mut [f64] {
+        let count = self.gap.len();
+        assert_eq!(
+            output.len(),
+            count,
+            "an output differs in length from the samples"
+        );
+        &mut output[..count]
+    }
+}
+
+struct Force<'a, const A: usize> {
+    samples: Samples<'a, A>,
+    force: &'a mut [f64],
+}
+
+impl<const A: usize, const V: usize> Batch<A, V> for Force<'_, A> {
+    #[inline(always)]
+    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
+        let Self { samples, force } = self;
+        write_1(&samples, samples.output(force), kernel);
+    }
+}
+
+struct Slopes<'a, const A: usize> {
+    samples: Samples<'a, A>,
+    out: Derivatives<'a>,
+}
+
+impl<const A: usize, const V: usize> Batch<A, V> for Slopes<'_, A> {
+    #[inline(always)]
+    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
+        let Self { samples, out } = self;
+        write_3(
+            &samples,
+            samples.output(out.force),
+            samples.output(out.by_gap),
+            samples.output(out.by_rate),
+            kernel,
+        );
+    }
+}
+
+struct Call<'a, K, const A: usize, const L: usize, const V: usize> {
+    kernels: PhantomData<K>,
+    on: On,
+    samples: Samples<'a, A>,
+    out: Derivatives<'a>,
+    by_argument: &'a mut [f64],
+}
+
+impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> ByArgument
+    for Call<'_, K, A, L, V>
+{
+    #[inline(always)]
+    fn run<const AT: usize>(self) {
+        let batch = SlopesAndBy::<A, AT> {
+            samples: self.samples,
+            out: self.out,
+            by_argument: self.by_argument,
+        };
+        K::on(self.on, batch);
+    }
+}
+
+struct SlopesAndBy<'a, const A: usize, const AT: usize> {
+    samples: Samples<'a, A>,
+    out: Derivatives<'a>,
+    by_argument: &'a mut [f64],
+}
+
+impl<const A: usize, const V: usize, const AT: usize> Batch<A, V> for SlopesAndBy<'_, A, AT> {
+    #[inline(always)]
+    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
+        let Self {
+            samples,
+            out,
+            by_argument,
+        } = self;
+        write_4::<AT, A, V>(
+            &samples,
+            samples.output(out.force),
+            samples.output(out.by_gap),
+            samples.output(out.by_rate),
+            samples.output(by_argument),
+            kernel,
+        );
+    }
+}
+
+// Every output is a parameter of its own, so that the compiler knows that they do not overlap.
+
+#[inline(always)]
+fn write_1<const A: usize, const V: usize>(
+    samples: &Samples<'_, A>,
+    force: &mut [f64],
+    kernel: impl Fn([f64; A], f64, f64) -> [f64; V],
+) {
+    for i in 0..samples.gap.len() {
+        force[i] = kernel(samples.arguments, samples.gap[i], samples.rate[i])[0];
+    }
+}
+
+#[inline(always)]
+fn write_3<const A: usize, const V: usize>(
+    samples: &Samples<'_, A>,
+    force: &mut [f64],
+    by_gap: &mut [f64],
+    by_rate: &mut [f64],
+    kernel: impl Fn([f64; A], f64, f64) -> [f64; V],
+) {
+    for i in 0..samples.gap.len() {
+        let values = kernel(samples.arguments, samples.gap[i], samples.rate[i]);
+        force[i] = values[0];
+        by_gap[i] = values[1];
+        by_rate[i] = values[2];
+    }
+}
+
+#[inline(always)]
+fn write_4<const AT: usize, const A: usize, const V: usize>(
+    samples: &Samples<'_, A>,
+    force: &mut [f64],
+    by_gap: &mut [f64],
+    by_rate: &mut [f64],
+    by_argument: &mut [f64],
+    kernel: impl Fn([f64; A], f64, f64) -> [f64; V],
+) {
+    for i in 0..samples.gap.len() {
+        let values = kernel(samples.arguments, samples.gap[i], samples.rate[i]);
+        force[i] = values[0];
+        by_gap[i] = values[1];
+        by_rate[i] = values[2];
+        by_argument[i] = values[AT];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `phi = a g^2 + 3 g r` and its primitive `3 g^2 / 2`, on two pieces that meet at `a`.
+    struct Square;
+
+    impl Square {
+        fn value([a]: [f64; 1], g: f64, r: f64) -> [f64; 6] {
+            let by_gap = 2.0 * a * g + 3.0 * r;
+            [
+                a * g * g + 3.0 * g * r,
+                by_gap,
+                3.0 * g,
+                g * g,
+                1.5 * g * g,
+                0.0,
+            ]
+        }
+    }
+
+    impl Kernels<1, 1, 6> for Square {
+        fn levels(arguments: [f64; 1]) -> [f64; 1] {
+            arguments
+        }
+
+        fn on(on: On, batch: impl Batch<1, 6>) {
+            match on {
+                On::Piece(0) => batch.run(super::super::nothing),
+                _ => batch.run(Self::value),
+            }
+        }
+
+        fn by_argument(argument: usize, call: impl ByArgument) {
+            assert_eq!(argument, 0);
+            call.run::<3>();
+        }
+    }
+
+    fn law<K>() -> Generated<K, 1, 1, 6> {
+        use crate::emitted::constants::*;
+        Generated::new(
+            law_facts("square", &[], &[], &[], LINEAR, false),
+            data(&[], &[], &[]),
+        )
+    }
+
+    /// Force, by gap, by rate, by argument at gap 2, rate 5, argument 7.
+    fn values(law: &dyn Law, on: On) -> [f64; 4] {
+        let [mut force, mut by_gap, mut by_rate, mut by_argument] = [[f64::NAN]; 4];
+        let out = Derivatives {
+            force: &mut force,
+            by_gap: &mut by_gap,
+            by_rate: &mut by_rate,
+        };
+        law.derivatives_and_by(0, on, &[7.0], &[2.0], &[5.0], out, &mut by_argument);
+        let mut alone = [f64::NAN];
+        law.force(on, &[7.0], &[2.0], &[5.0], &mut alone);
+        assert_eq!(alone, force);
+        [force[0], by_gap[0], by_rate[0], by_argument[0]]
+    }
+
+    #[test]
+    fn a_law_and_its_parts_are_views_of_one_kernel() {
+        assert_eq!(
+            values(&law::<Square>(), On::AllPieces),
+            [58.0, 43.0, 6.0, 4.0]
+        );
+        assert_eq!(values(&law::<Square>(), On::Piece(0)), [0.0; 4]);
+        let spring = law::<Spring<Square>>();
+        assert_eq!(values(&spring, On::AllPieces), [28.0, 28.0, 0.0, 4.0]);
+        let primitive = law::<Primitive<Square>>();
+        assert_eq!(values(&primitive, On::AllPieces), [6.0, 6.0, 0.0, 0.0]);
+        let mut levels = [f64::NAN];
+        primitive.levels(&[7.0], &mut levels);
+        assert_eq!(levels, [7.0]);
+        primitive.levels_by(&[7.0], 0, &mut levels);
+        assert_eq!(levels, [0.0]);
+    }
+
+    #[test]
+    #[should_panic(expected = "gap and rate differ in length")]
+    fn slices_of_different_length_are_refused() {
+        law::<Square>().force(On::AllPieces, &[7.0], &[1.0], &[], &mut [0.0]);
+    }
+}
