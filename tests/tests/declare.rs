@@ -108,6 +108,41 @@ hertzian::oscillator! {
     }
 }
 
+hertzian::oscillator! {
+    /// Beads on a line between two walls.
+    Beads(x[64]) {
+        param k > 0;
+        param squeeze >= 0;
+        param drive;
+        law hertz(gap) { gap > 0 => k*gap^1.5, else => 0 }
+        ddot(x[0]) + hertz(x[0] - x[1] + squeeze) - hertz(drive*cos(omega*t) - x[0] + squeeze) = 0;
+        for j in 1..63 {
+            ddot(x[j]) + hertz(x[j] - x[j + 1] + squeeze) - hertz(x[j - 1] - x[j] + squeeze) = 0;
+        }
+        ddot(x[63]) + hertz(x[63] + squeeze) - hertz(x[62] - x[63] + squeeze) = 0;
+    }
+}
+
+hertzian::oscillator! {
+    /// A rotor on eight balls, which move with the cage.
+    Ring(x, y) {
+        param m > 0;
+        param k > 0;
+        param clearance;
+        param eccentricity;
+        let cage = 2/5*omega*t;
+        law ball(gap) { gap > 0 => k*gap^1.5, else => 0 }
+        m*ddot(x) + 0.1*dot(x) + for j in 0..8 {
+            let angle = cage + 2*pi*j/8;
+            cos(angle)*ball(x*cos(angle) + y*sin(angle) - clearance)
+        } = m*eccentricity*omega^2*cos(omega*t);
+        m*ddot(y) + 0.1*dot(y) + for j in 0..8 {
+            let angle = cage + 2*pi*j/8;
+            sin(angle)*ball(x*cos(angle) + y*sin(angle) - clearance)
+        } = m*eccentricity*omega^2*sin(omega*t);
+    }
+}
+
 fn coefficient(system: &dyn System, place: Place, omega: f64) -> f64 {
     let facts = system.facts();
     let mut parameters = vec![0.0; facts.parameters.len()];
@@ -313,4 +348,101 @@ fn contacts_of_the_literature_are_laws() {
     assert!(model.law(2).facts().pieces.iter().all(|piece| piece.affine));
     assert!(!model.law(3).facts().levels[0].force_jumps);
     assert_eq!(model.law(4).facts().rate, RateDependence::General);
+}
+
+#[test]
+fn an_array_is_written_out() {
+    let model = Beads {
+        k: 2.0,
+        squeeze: 0.1,
+        drive: 0.3,
+    };
+    let facts = model.facts();
+    assert_eq!(
+        (facts.coordinates.len(), facts.laws, facts.contacts.len()),
+        (64, 1, 65)
+    );
+    assert_eq!(facts.coordinates[63], "x[63]");
+    let direction = Place::GapDirection {
+        contact: 5,
+        column: 5,
+        wave: hertzian::system::Wave::CONSTANT,
+    };
+    assert_eq!(coefficient(&model, direction, 1.0).abs(), 1.0);
+}
+
+#[test]
+fn moving_contacts_are_declared_in_a_loop() {
+    let model = Ring {
+        m: 1.0,
+        k: 2.0,
+        clearance: 0.1,
+        eccentricity: 0.01,
+    };
+    let facts = model.facts();
+    assert_eq!((facts.divisor, facts.laws, facts.contacts.len()), (5, 1, 8));
+}
+
+hertzian::oscillator! {
+    /// A ball pressed on a plate, in newtons, millimetres and tonnes.
+    Ball(x: mm) {
+        /// mass
+        param m: t = 1e-3 > 0;
+        /// contact stiffness
+        param k: N/mm^1.5 = 4e4 in 0.0..;
+        /// damping of the contact
+        param c: s/mm = 1e-4 in 0.0..;
+        param drive: N = 10;
+        law contact(gap) {
+            gap > 0 => max(0, k*gap^1.5*(1 + c*dot(gap))),
+            else    => 0,
+        }
+        m*ddot(x) + contact(x) = drive*cos(omega*t);
+    }
+}
+
+#[test]
+fn defaults_make_a_model() {
+    let model = Ball::default();
+    assert_eq!(model.k, 4e4);
+    let facts = model.facts();
+    assert_eq!(
+        facts.parameters[1].documentation,
+        "contact stiffness [N/mm^1.5]"
+    );
+    assert_eq!(facts.parameters[3].documentation, "[N]");
+}
+
+#[test]
+fn a_contact_without_tension_lets_go() {
+    let model = Ball::default();
+    let arguments = [4e4, 1e-4];
+    assert_eq!(model.law(0).facts().rate, RateDependence::General);
+    for (gap, rate) in [
+        (0.25_f64, 100.0),
+        (0.25, -9000.0),
+        (0.25, -11000.0),
+        (-0.1, 5.0),
+    ] {
+        let pressed = if gap > 0.0 {
+            (4e4 * gap.powf(1.5) * (1.0 + 1e-4 * rate)).max(0.0)
+        } else {
+            0.0
+        };
+        let found = force(&model, 0, &arguments, gap, rate);
+        assert!(
+            (found - pressed).abs() <= 1e-12 * pressed,
+            "{found} {pressed}"
+        );
+    }
+    let (mut force, mut by_gap, mut by_rate) = ([9.0], [9.0], [9.0]);
+    let out = Derivatives {
+        force: &mut force,
+        by_gap: &mut by_gap,
+        by_rate: &mut by_rate,
+    };
+    model
+        .law(0)
+        .derivatives(On::AllPieces, &arguments, &[0.25], &[-11000.0], out);
+    assert_eq!((force, by_gap, by_rate), ([0.0], [0.0], [0.0]));
 }

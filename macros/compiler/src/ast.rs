@@ -16,19 +16,50 @@ pub struct Declaration {
     pub visibility: syn::Visibility,
     /// Name of the type.
     pub name: Ident,
-    /// Names of the coordinates.
-    pub coordinates: Vec<Ident>,
+    /// Coordinates, and arrays of them.
+    pub coordinates: Vec<Coordinate>,
     /// `param` items.
     pub parameters: Vec<Parameter>,
     /// `law` items.
     pub laws: Vec<Law>,
     /// `let` items.
     pub lets: Vec<Let>,
-    /// Equations of motion.
-    pub equations: Vec<Equation>,
+    /// Equations of motion, and loops of them.
+    pub equations: Vec<Statement>,
 }
 
-/// `param name range;`
+/// `name`, or `name[count]`
+#[derive(Debug, Clone)]
+pub struct Coordinate {
+    /// Its name.
+    pub name: Ident,
+    /// How many elements an array has; `None` for a single coordinate.
+    pub count: Option<usize>,
+    /// Its unit.
+    pub unit: Option<(Unit, Extent)>,
+}
+
+impl Coordinate {
+    /// How many equations of motion it needs.
+    pub fn size(&self) -> usize {
+        self.count.unwrap_or(1)
+    }
+}
+
+impl Declaration {
+    /// The names of all coordinates, those of arrays by element, with the name each stands in.
+    pub fn elements(&self) -> impl Iterator<Item = (String, &Ident)> {
+        self.coordinates.iter().flat_map(|coordinate| {
+            let name = &coordinate.name;
+            (0..coordinate.size()).map(move |index| match coordinate.count {
+                Some(_) => (format!("{name}[{index}]"), name),
+                None => (name.to_string(), name),
+            })
+        })
+    }
+}
+
+/// `param name: unit = default range;`
 #[derive(Debug, Clone)]
 pub struct Parameter {
     /// Text of the doc comments.
@@ -41,6 +72,19 @@ pub struct Parameter {
     pub maximum: Option<Limit>,
     /// The whole range, or the name where there is none.
     pub range: Extent,
+    /// Its value where none is given.
+    pub default: Option<(f64, Extent)>,
+    /// Its unit.
+    pub unit: Option<(Unit, Extent)>,
+}
+
+/// A unit as written: symbols, each to an exact power.
+#[derive(Debug, Clone, Default)]
+pub struct Unit {
+    /// The symbols with their places.
+    pub factors: Vec<(Ident, Rational)>,
+    /// All of it as written.
+    pub text: String,
 }
 
 /// One end of a range.
@@ -114,6 +158,32 @@ pub struct Equation {
     pub right: Expr,
 }
 
+/// An equation, or a loop of equations.
+#[derive(Debug, Clone)]
+pub enum Statement {
+    /// One equation.
+    Equation(Equation),
+    /// The same equations for every index.
+    Loop(Box<Loop<Vec<Statement>>>),
+}
+
+/// `for index in start..end { let name = value; body }`
+#[derive(Debug, Clone)]
+pub struct Loop<T> {
+    /// Name of the index.
+    pub index: Ident,
+    /// First index.
+    pub start: Expr,
+    /// Last index, or the one after it.
+    pub end: Expr,
+    /// Whether `end` itself is an index.
+    pub inclusive: bool,
+    /// `let` items, made anew for every index.
+    pub lets: Vec<Let>,
+    /// What is repeated.
+    pub body: T,
+}
+
 /// An expression and where it stands.
 #[derive(Debug, Clone)]
 pub struct Expr {
@@ -132,6 +202,10 @@ pub enum Kind {
     Name(Ident),
     /// `name(arguments)`
     Call(Ident, Vec<Expr>),
+    /// `name[index]`
+    Element(Ident, Box<Expr>),
+    /// `for index in range { term }`: the sum of the terms.
+    Sigma(Box<Loop<Expr>>),
     /// Terms, each added or (`true`) subtracted.
     Sum(Vec<(bool, Expr)>),
     /// Factors, each multiplied or (`true`) divided by.
@@ -148,6 +222,11 @@ impl Expr {
         match &self.kind {
             Kind::Number(..) | Kind::Name(_) => Vec::new(),
             Kind::Call(_, arguments) => arguments.iter().collect(),
+            Kind::Element(_, index) => vec![index],
+            Kind::Sigma(repeated) => repeated
+                .expressions()
+                .chain(std::iter::once(&repeated.body))
+                .collect(),
             Kind::Sum(parts) | Kind::Product(parts) => parts.iter().map(|(_, part)| part).collect(),
             Kind::Power(base, exponent) => vec![base, exponent],
             Kind::Absolute(operand) => vec![operand],
@@ -159,6 +238,19 @@ impl Expr {
         visit(self);
         for operand in self.operands() {
             operand.walk(visit);
+        }
+    }
+
+    /// Visits this expression and everything in it, with the loops around each part.
+    pub fn walk_in<'a>(&'a self, loops: &Scope<'a>, visit: &mut dyn FnMut(&'a Expr, &Scope<'a>)) {
+        visit(self, loops);
+        if let Kind::Sigma(repeated) = &self.kind {
+            let inner = repeated.walk_head(loops, visit);
+            repeated.body.walk_in(&inner, visit);
+        } else {
+            for operand in self.operands() {
+                operand.walk_in(loops, visit);
+            }
         }
     }
 
@@ -181,6 +273,90 @@ impl Expr {
     }
 }
 
+/// The names that loops around an expression declare, outermost first.
+pub type Scope<'a> = Vec<(&'static str, &'a Ident)>;
+
+impl<T> Loop<T> {
+    /// The expressions of its head: the two ends, and the values of its `let` items.
+    pub fn expressions(&self) -> impl Iterator<Item = &Expr> {
+        [&self.start, &self.end]
+            .into_iter()
+            .chain(self.lets.iter().map(|item| &item.value))
+    }
+
+    /// Visits the expressions of its head, each with the names it may use; the names for the body are returned.
+    pub fn walk_head<'a>(
+        &'a self,
+        loops: &Scope<'a>,
+        visit: &mut dyn FnMut(&'a Expr, &Scope<'a>),
+    ) -> Scope<'a> {
+        self.start.walk_in(loops, visit);
+        self.end.walk_in(loops, visit);
+        let mut inner = loops.clone();
+        inner.push(("index", &self.index));
+        for item in &self.lets {
+            item.value.walk_in(&inner, visit);
+            inner.push(("`let`", &item.name));
+        }
+        inner
+    }
+
+    /// Everything before the body.
+    fn write_head(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let dots = if self.inclusive { "..=" } else { ".." };
+        write!(
+            formatter,
+            "for {} in {}{dots}{} {{ ",
+            self.index, self.start, self.end
+        )?;
+        for item in &self.lets {
+            write!(formatter, "let {} = {}; ", item.name, item.value)?;
+        }
+        Ok(())
+    }
+}
+
+impl Statement {
+    /// Visits its expressions, each with the names of the loops around it.
+    pub fn walk_in<'a>(&'a self, loops: &Scope<'a>, visit: &mut dyn FnMut(&'a Expr, &Scope<'a>)) {
+        match self {
+            Self::Equation(equation) => {
+                equation.left.walk_in(loops, visit);
+                equation.right.walk_in(loops, visit);
+            }
+            Self::Loop(repeated) => {
+                let inner = repeated.walk_head(loops, visit);
+                for statement in &repeated.body {
+                    statement.walk_in(&inner, visit);
+                }
+            }
+        }
+    }
+
+    /// The equations as written, each once.
+    pub fn equations(&self) -> Vec<&Equation> {
+        match self {
+            Self::Equation(equation) => vec![equation],
+            Self::Loop(repeated) => repeated.body.iter().flat_map(Self::equations).collect(),
+        }
+    }
+}
+
+impl fmt::Display for Statement {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Equation(equation) => write!(formatter, "{equation}"),
+            Self::Loop(repeated) => {
+                repeated.write_head(formatter)?;
+                for statement in &repeated.body {
+                    write!(formatter, "{statement}; ")?;
+                }
+                formatter.write_str("}")
+            }
+        }
+    }
+}
+
 impl fmt::Display for Expr {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.kind {
@@ -189,6 +365,11 @@ impl fmt::Display for Expr {
             Kind::Call(name, arguments) => {
                 let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
                 write!(formatter, "{name}({})", arguments.join(", "))
+            }
+            Kind::Element(name, index) => write!(formatter, "{name}[{index}]"),
+            Kind::Sigma(repeated) => {
+                repeated.write_head(formatter)?;
+                write!(formatter, "{} }}", repeated.body)
             }
             Kind::Sum(terms) => {
                 for (index, (minus, term)) in terms.iter().enumerate() {

@@ -35,7 +35,8 @@ pub fn emit(model: &Model) -> TokenStream {
         .collect();
     let system = system::system(&mut model);
     let structure = structure(&model);
-    let implementation = wrap(&model.name, &quote!(#laws #system));
+    let defaults = defaults(&model);
+    let implementation = wrap(&model.name, &quote!(#laws #system #defaults));
     quote!(#structure #implementation)
 }
 
@@ -58,6 +59,27 @@ fn structure(model: &Model) -> TokenStream {
         #[derive(::core::fmt::Debug, ::core::clone::Clone, ::core::cmp::PartialEq)]
         #visibility struct #name { #(#fields),* }
     }
+}
+
+/// `Default`, where every parameter has one.
+fn defaults(model: &Model) -> Option<TokenStream> {
+    let name = &model.name;
+    let values = model
+        .parameters
+        .iter()
+        .map(|Parameter { name, default, .. }| {
+            let value = code::number((*default)?);
+            Some(quote!(#name: #value))
+        });
+    let values = values.collect::<Option<Vec<_>>>()?;
+    (!values.is_empty()).then(|| {
+        quote! {
+            #[automatically_derived]
+            impl ::core::default::Default for #name {
+                fn default() -> Self { Self { #(#values),* } }
+            }
+        }
+    })
 }
 
 /// Puts implementations into an anonymous constant, with the aliases they use.

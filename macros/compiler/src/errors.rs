@@ -49,6 +49,7 @@ impl Extent {
 #[must_use]
 pub struct Diagnostics {
     fault: Option<syn::Error>,
+    count: usize,
     asked: bool,
 }
 
@@ -60,6 +61,7 @@ impl Diagnostics {
 
     /// Adds a fault made elsewhere.
     pub fn add(&mut self, fault: syn::Error) {
+        self.count += 1;
         match &mut self.fault {
             Some(first) => first.combine(fault),
             None => self.fault = Some(fault),
@@ -69,6 +71,11 @@ impl Diagnostics {
     /// Keeps the value of a success, and the fault of a failure.
     pub fn keep<T>(&mut self, result: syn::Result<T>) -> Option<T> {
         result.map_err(|fault| self.add(fault)).ok()
+    }
+
+    /// How often something has been reported so far.
+    pub fn count(&self) -> usize {
+        self.count
     }
 
     /// Whether nothing has been reported so far.

@@ -13,6 +13,7 @@ pub mod primitive;
 pub mod simplify;
 
 mod check;
+mod index;
 mod lower;
 mod parse;
 

@@ -5,15 +5,16 @@ use std::time::{Duration, Instant};
 
 use proc_macro2::TokenStream;
 
-const DECLARATIONS: [&str; 5] = [
+const DECLARATIONS: [&str; 6] = [
     "pub A ( x ) { param zeta in 0.0 .. ; param alpha > 0 ; param load ; law contact ( gap ) { gap > 0 => 2 * zeta * dot ( gap ) + gap ^ alpha , else => 0 } ddot ( x ) + contact ( x ) = cos ( omega * t ) + load ; }",
     "B ( x , y ) { param m > 0 ; param k ; let s = 2 / 5 * omega * t ; law h ( g , c ) { 0 < g <= 1 => c * g , g > 1 => c , else => 0 } m * ddot ( x ) + h ( x * cos ( s ) + y * sin ( s ) - 1 , k ) * sin ( s ) = 0 ; m * ddot ( y ) + 3 * y = m * omega ^ 2 * cos ( omega * t + pi ) ; }",
     "C ( x ) { param a > 0 ; ddot ( x ) + | | x | - 1 | ^ a + ( x ^ 2 - 1 ) * dot ( x ) + sgn ( x ) * x ^ 2 = cos ( omega * t ) ^ 3 ; }",
     "D ( x ) { param play > 0 ; law b ( g ) { g > play => ( g - play ) ^ 1.5 , g < - play => - ( - g - play ) ^ 1.5 , - play <= g && g <= play => 0 } ddot ( x ) + ( 1 + 0.2 * cos ( omega * t ) ) * b ( x ) = 0 ; }",
     "E ( u , v ) { param e ; ddot ( u ) + ( u - v ) ^ 3 / 2 + H ( u - v ) * sqrt ( | u - v | ) + tanh ( v ) = exp ( e ) ; ddot ( v ) + ( v - u ) ^ 3 + abs ( dot ( v ) ) * dot ( v ) = 0 ; }",
+    "F ( x [ 5 ] , y ) { param k : N / m ^ 1.5 = 1e3 in 0.0 .. ; let n = 5 ; law c ( g ) { g > 0 => k * g ^ 1.5 , else => 0 } for j in 0 .. n - 1 { ddot ( x [ j ] ) + c ( x [ j ] - x [ j + 1 ] ) = 0 ; } ddot ( x [ 4 ] ) = 0 ; ddot ( y ) + for j in 0 ..= 7 { let a = 2 * pi * j / 8 ; cos ( omega * t + a ) * c ( y * cos ( a ) - j ) } = 0 ; }",
 ];
 
-const EXTRAS: [&str; 44] = [
+const EXTRAS: [&str; 52] = [
     "+",
     "-",
     "*",
@@ -58,6 +59,14 @@ const EXTRAS: [&str; 44] = [
     "170141183460469231731687303715884105727",
     "sin",
     "0.000000000001",
+    "for j in 0 .. 3 {",
+    "for",
+    "in",
+    "j",
+    ":",
+    "x [ j ]",
+    "N",
+    "max",
 ];
 
 /// A small generator of numbers (xorshift), so that every run is the same.

@@ -1,6 +1,6 @@
 hertzian::oscillator! {
     pub Model(x) {
-        ddot(x) + |x + dot(x)| = cos(omega*t);
+        ddot(x) + x + sgn(x + dot(x)) = cos(omega*t);
     }
 }
 

@@ -2,7 +2,7 @@ hertzian::oscillator! {
     pub Model(x) {
         param zeta in 0.0;
         param 2;
-        param load = 3;
+        param load 3;
         param range in ..a;
         ddot(x) + zeta*x = load*cos(omega*t);
     }

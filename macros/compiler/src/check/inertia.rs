@@ -14,13 +14,14 @@ pub(crate) fn mass_is_regular(
     masses: &[(usize, usize, Id)],
     ranges: &[Interval],
 ) -> syn::Result<()> {
-    let size = declaration.coordinates.len();
-    for (column, coordinate) in declaration.coordinates.iter().enumerate() {
+    let coordinates: Vec<_> = declaration.elements().collect();
+    let size = coordinates.len();
+    for (column, (coordinate, name)) in coordinates.iter().enumerate() {
         if !masses.iter().any(|&(_, other, _)| other == column) {
             let message = format!(
                 "`ddot({coordinate})` stands in no equation: without inertia `{coordinate}` has no equation of motion"
             );
-            return Err(Extent::at(coordinate.span()).fault(message));
+            return Err(Extent::at(name.span()).fault(message));
         }
     }
     let regular = (1..=3).any(|trial| {
@@ -42,9 +43,7 @@ pub(crate) fn mass_is_regular(
     if regular {
         return Ok(());
     }
-    let first = declaration.equations[0].left.extent;
-    let last = declaration.equations[size - 1].right.extent;
-    Err(first.to(last).fault(
+    Err(crate::lower::all_equations(declaration).fault(
         "the mass matrix is singular: the second derivatives in these equations are not independent; combine the equations so that each holds one of its own",
     ))
 }
@@ -70,6 +69,9 @@ fn is_regular(mut matrix: Vec<Vec<f64>>) -> bool {
         let above = matrix[column].clone();
         for row in &mut matrix[column + 1..] {
             let factor = row[column] / head;
+            if factor == 0.0 {
+                continue;
+            }
             for (entry, upper) in row.iter_mut().zip(&above) {
                 *entry -= factor * upper;
             }

@@ -4,7 +4,12 @@
 //! Rules on what is written are here and in [`names`]; they run before lowering. The others need the lowered expressions and are
 //! called from there: [`powers`], [`pieces`], [`rates`], [`inertia`].
 
+mod calls;
+mod expressions;
+mod loops;
 mod names;
+mod units;
+mod used;
 
 pub(crate) mod forcing;
 pub(crate) mod inertia;
@@ -12,7 +17,7 @@ pub(crate) mod pieces;
 pub(crate) mod powers;
 pub(crate) mod rates;
 
-use crate::ast::{Declaration, Expr, Kind};
+use crate::ast::{Declaration, Equation, Expr, Kind, Let, Statement};
 use crate::errors::{Diagnostics, Extent};
 
 /// Applies the rules on what is written.
@@ -20,14 +25,23 @@ pub fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     names::names_are_not_built_in(declaration, diagnostics);
     names::names_are_distinct(declaration, diagnostics);
     names::names_are_known(declaration, diagnostics);
-    names::calls_are_of_known_functions(declaration, diagnostics);
+    calls::calls_are_of_known_functions(declaration, diagnostics);
     // A misspelt name would be reported a second time, as the right one not being used.
     if diagnostics.is_clean() {
-        names::everything_is_used(declaration, diagnostics);
+        used::everything_is_used(declaration, diagnostics);
     }
     ranges_are_not_empty(declaration, diagnostics);
-    there_is_one_equation_per_coordinate(declaration, diagnostics);
-    every_equation_holds_an_acceleration(declaration, diagnostics);
+    defaults_are_in_range(declaration, diagnostics);
+    if !loops::coordinates_are_few(declaration, diagnostics) {
+        return;
+    }
+    if let Some(equations) = loops::loops_end_soon(declaration, diagnostics) {
+        there_is_one_equation_per_coordinate(declaration, &equations, diagnostics);
+        every_equation_holds_an_acceleration(declaration, &equations, diagnostics);
+    }
+    if diagnostics.is_clean() {
+        units::units_agree(declaration, diagnostics);
+    }
 }
 
 /// A range admits at least one value.
@@ -49,16 +63,42 @@ fn ranges_are_not_empty(declaration: &Declaration, diagnostics: &mut Diagnostics
     }
 }
 
+/// A default lies in its range.
+fn defaults_are_in_range(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+    for parameter in &declaration.parameters {
+        let Some((value, extent)) = parameter.default else {
+            continue;
+        };
+        let below = parameter
+            .minimum
+            .is_some_and(|end| value < end.value || (value == end.value && !end.included));
+        let above = parameter
+            .maximum
+            .is_some_and(|end| value > end.value || (value == end.value && !end.included));
+        if below || above {
+            let message = format!(
+                "the default of `{}` lies outside of its range: change one of them",
+                parameter.name
+            );
+            diagnostics.report(extent, message);
+        }
+    }
+}
+
 /// There are as many equations as coordinates.
-fn there_is_one_equation_per_coordinate(declaration: &Declaration, diagnostics: &mut Diagnostics) {
-    let (coordinates, equations) = (&declaration.coordinates, &declaration.equations);
-    if let Some(coordinate) = coordinates.get(equations.len()) {
+fn there_is_one_equation_per_coordinate(
+    declaration: &Declaration,
+    equations: &[&Equation],
+    diagnostics: &mut Diagnostics,
+) {
+    let coordinates: Vec<_> = declaration.elements().collect();
+    if let Some((coordinate, name)) = coordinates.get(equations.len()) {
         let message = format!(
             "coordinate `{coordinate}` has no equation: {} declared, {} given; add one such as `ddot({coordinate}) + {coordinate} = 0;`",
             counted(coordinates.len(), "coordinate"),
             counted(equations.len(), "equation"),
         );
-        diagnostics.report(Extent::at(coordinate.span()), message);
+        diagnostics.report(Extent::at(name.span()), message);
     }
     if let Some(equation) = equations.get(coordinates.len()) {
         let message = format!(
@@ -70,24 +110,45 @@ fn there_is_one_equation_per_coordinate(declaration: &Declaration, diagnostics: 
 }
 
 /// Every equation of motion holds a second derivative.
-fn every_equation_holds_an_acceleration(declaration: &Declaration, diagnostics: &mut Diagnostics) {
-    if declaration.equations.len() != declaration.coordinates.len() {
+fn every_equation_holds_an_acceleration(
+    declaration: &Declaration,
+    equations: &[&Equation],
+    diagnostics: &mut Diagnostics,
+) {
+    let coordinates: Vec<_> = declaration.elements().collect();
+    if equations.len() != coordinates.len() {
         return;
     }
     let mut accelerations: Vec<String> = Vec::new();
-    for item in &declaration.lets {
+    let mut note = |item: &Let| {
         if holds_acceleration(&item.value, &accelerations) {
             accelerations.push(item.name.to_string());
         }
+    };
+    declaration.lets.iter().for_each(&mut note);
+    for statement in &declaration.equations {
+        lets_of(statement, &mut note);
     }
-    for (equation, coordinate) in declaration.equations.iter().zip(&declaration.coordinates) {
+    let mut reported: Option<&Equation> = None;
+    for (&equation, (coordinate, _)) in equations.iter().zip(&coordinates) {
         let found = holds_acceleration(&equation.left, &accelerations)
             || holds_acceleration(&equation.right, &accelerations);
-        if !found {
+        if !found && !reported.is_some_and(|other| std::ptr::eq(other, equation)) {
             let message = format!(
                 "no second derivative in this equation: an equation of motion holds inertia, as in `ddot({coordinate}) + ... = ...`"
             );
             diagnostics.report(equation.left.extent.to(equation.right.extent), message);
+            reported = Some(equation);
+        }
+    }
+}
+
+/// The `let` items of loops of equations.
+fn lets_of(statement: &Statement, note: &mut dyn FnMut(&Let)) {
+    if let Statement::Loop(repeated) = statement {
+        repeated.lets.iter().for_each(&mut *note);
+        for statement in &repeated.body {
+            lets_of(statement, note);
         }
     }
 }

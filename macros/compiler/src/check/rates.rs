@@ -16,30 +16,44 @@ pub(crate) fn force_does_not_jump_with_the_rate(
     extent: Extent,
 ) -> syn::Result<()> {
     for switch in switches(&context.dag, force) {
-        let rate_alone = !context.dag.depends_on(switch, Variable::Gap);
-        let Some((slope, rest)) =
-            affine(&mut context.dag, switch, Variable::Rate).filter(|_| rate_alone)
-        else {
-            let message = format!(
-                "`{}` switches with gap and rate together, and a piece must be bounded by the gap alone",
-                context.show(switch)
-            );
-            return Err(extent.fault(message));
-        };
-        let quotient = context.dag.quotient(rest, slope);
-        let root = context.dag.negate(quotient);
         let above = on_side(&mut context.dag, force, switch, true);
         let below = on_side(&mut context.dag, force, switch, false);
         let jump = context.dag.difference(above, below);
-        let jump = put(&mut context.dag, jump, Variable::Rate, root);
-        if !vanishes(context, jump) {
-            let rate = context.label(Variable::Rate);
-            return Err(extent.fault(format!(
-                "the force jumps with the rate: this is dry friction, which sticks and slides and is not supported; write a smooth law such as `tanh({rate}/0.01)`, or a continuous one such as `|{rate}|*{rate}`"
-            )));
+        if vanishes_with(context, jump, switch) {
+            continue;
         }
+        let rate = context.label(Variable::Rate);
+        let message = if context.dag.depends_on(switch, Variable::Gap) {
+            format!(
+                "the force jumps where `{}` changes sign, which depends on gap and rate; a force may jump at a level of the gap alone: make it continuous there, as `max(0, ...)` is",
+                context.show(switch)
+            )
+        } else {
+            format!(
+                "the force jumps with the rate: this is dry friction, which sticks and slides and is not supported; write a smooth law such as `tanh({rate}/0.01)`, or a continuous one such as `|{rate}|*{rate}`"
+            )
+        };
+        return Err(extent.fault(message));
     }
     Ok(())
+}
+
+/// Whether a jump is zero wherever its switch is: the switch is solved for a variable in which it is affine, and the
+/// jump taken there.
+fn vanishes_with(context: &mut Expander, jump: Id, switch: Id) -> bool {
+    let mut variables = context.dag.variables(switch);
+    variables.sort_by_key(|&variable| variable != Variable::Rate);
+    let solved = variables.into_iter().find_map(|variable| {
+        let (slope, rest) = affine(&mut context.dag, switch, variable)?;
+        Some((variable, slope, rest))
+    });
+    let Some((variable, slope, rest)) = solved else {
+        return vanishes(context, jump);
+    };
+    let quotient = context.dag.quotient(rest, slope);
+    let root = context.dag.negate(quotient);
+    let jump = put(&mut context.dag, jump, variable, root);
+    vanishes(context, jump)
 }
 
 /// What the rate enters through an absolute value, sign or step.

@@ -131,7 +131,7 @@ fn derivatives_by(model: &mut Model, roots: &[Id], by: Variable) -> TokenStream 
 fn facts(model: &Model) -> TokenStream {
     let name = text(&model.name.to_string());
     let equation = text(&model.equation);
-    let coordinates = list(model.coordinates.iter().map(|name| text(&name.to_string())));
+    let coordinates = list(model.coordinates.iter().map(|name| text(name)));
     let parameters = list(model.parameters.iter().map(|parameter| {
         let (name, documentation) = (parameter.name.to_string(), &parameter.documentation);
         let [minimum, maximum] = [parameter.minimum, parameter.maximum].map(bound);

@@ -18,6 +18,10 @@ impl Expander {
         if let Some(&law) = self.laws.get(name) {
             return self.law(law, arguments, extent);
         }
+        if let ("max" | "min", [first, second]) = (name, arguments) {
+            let [first, second] = [self.expand(first)?, self.expand(second)?];
+            return self.extremum(name == "max", &first, &second, extent);
+        }
         let [argument] = arguments else {
             return Err(extent.fault(format!("`{name}` takes one argument")));
         };

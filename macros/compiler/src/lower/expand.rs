@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use crate::ast::{Expr, Kind};
-
 use crate::dag::{Dag, Function, Id, Variable};
 use crate::errors::Extent;
+use crate::index::Constants;
 
 use super::interval::Ranges;
 use super::term::{Motion, Term, collect};
@@ -35,6 +35,8 @@ pub enum Meaning {
     Constant(Variable),
     /// A coordinate.
     Coordinate(usize),
+    /// An array of coordinates: the first, and how many.
+    Array(usize, usize),
     /// An expression named by `let`.
     Value(Vec<Term>),
 }
@@ -48,6 +50,8 @@ pub struct Expander {
     pub ranges: Ranges,
     /// What names stand for.
     pub names: HashMap<String, Meaning>,
+    /// Names that stand for exact numbers, for indices.
+    pub constants: Constants,
     /// Laws that can be called, by name.
     pub laws: HashMap<String, usize>,
     /// The calls found so far.
@@ -64,6 +68,8 @@ pub struct Expander {
     pub gap: String,
     /// How many terms have been made.
     spent: usize,
+    /// How many terms may be made beyond those of one equation.
+    pub allowance: usize,
 }
 
 impl Expander {
@@ -131,6 +137,8 @@ impl Expander {
                 self.function(Function::Absolute, &terms, extent)?
             }
             Kind::Call(name, arguments) => self.call(&name.to_string(), arguments, extent)?,
+            Kind::Element(name, index) => self.element(&name.to_string(), index, extent)?,
+            Kind::Sigma(repeated) => self.sigma(repeated)?,
         };
         self.spend(terms.len(), extent)?;
         Ok(terms)
@@ -138,7 +146,7 @@ impl Expander {
 
     pub(super) fn spend(&mut self, terms: usize, extent: Extent) -> syn::Result<()> {
         self.spent = self.spent.saturating_add(terms);
-        if self.spent > MOST_TERMS {
+        if self.spent > MOST_TERMS + self.allowance {
             return Err(extent.fault("too much to multiply out: make it a law, or factor it"));
         }
         Ok(())

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::ast::Expr;
 use crate::dag::{Dag, Id, Node, Rational, Variable};
 use crate::errors::Extent;
 use crate::ir;
@@ -10,6 +11,7 @@ use super::algebra::{addends, split_factor};
 use super::expand::Expander;
 use super::interval::Stretch;
 use super::law::{Lowered, finish};
+use super::polynomial::powers_of_forms;
 use super::resolve::{Segment, resolve};
 use super::term::{Motion, Term};
 use super::wave::Wave;
@@ -26,8 +28,12 @@ struct Part {
     coefficient: Id,
     force: Id,
     extent: Extent,
+    origin: Origin,
     powers: Vec<(Id, Extent)>,
 }
+
+/// The term as written, which a loop repeats.
+pub type Origin = *const Expr;
 
 /// A law found in the equations and where its force acts.
 #[derive(Debug)]
@@ -58,6 +64,7 @@ impl Gatherer {
         context: &mut Expander,
         row: usize,
         term: &Term,
+        origin: Origin,
     ) -> syn::Result<Vec<Term>> {
         let Motion::Nonlinear(id) = term.motion else {
             return Ok(vec![*term]);
@@ -69,10 +76,19 @@ impl Gatherer {
         } else {
             addends(&mut context.dag, id)
         };
+        let is_of_one_gap = |dag: &mut Dag, id| single_direction(dag, id).is_some();
         for part in parts {
-            let direction = single_direction(&mut context.dag, part)
-                .ok_or_else(|| mixed(context, part, term.extent))?;
-            linear.extend(self.add_part(context, row, term, part, &direction));
+            let parts = if is_of_one_gap(&mut context.dag, part) {
+                vec![part]
+            } else {
+                powers_of_forms(&mut context.dag, part, is_of_one_gap)
+                    .ok_or_else(|| mixed(context, part, term.extent))?
+            };
+            for part in parts {
+                let direction = single_direction(&mut context.dag, part)
+                    .ok_or_else(|| mixed(context, part, term.extent))?;
+                linear.extend(self.add_part(context, (row, origin), term, part, &direction));
+            }
         }
         Ok(linear)
     }
@@ -80,7 +96,7 @@ impl Gatherer {
     fn add_part(
         &mut self,
         context: &mut Expander,
-        row: usize,
+        (row, origin): (usize, Origin),
         term: &Term,
         part: Id,
         direction: &Direction,
@@ -130,6 +146,7 @@ impl Gatherer {
                     coefficient: scaled.coefficient,
                     force: rest,
                     extent: term.extent,
+                    origin,
                     powers: powers.clone(),
                 });
             }
@@ -158,6 +175,7 @@ impl Gatherer {
         }
         let mut laws: Vec<Found> = Vec::new();
         let mut forces: Vec<Id> = Vec::new();
+        let mut faulty: Vec<Origin> = Vec::new();
         for group in groups {
             let (factor, force) = common_factor(&mut context.dag, &group);
             let row = (group[0].row, group[0].wave, factor);
@@ -167,6 +185,9 @@ impl Gatherer {
                 .find(|(other, law)| **other == force && law.direction == group[0].direction);
             if let Some((_, law)) = known {
                 law.rows.push(row);
+                continue;
+            }
+            if group.iter().any(|part| faulty.contains(&part.origin)) {
                 continue;
             }
             context.gap = show_gap(context, &group[0].direction);
@@ -180,6 +201,8 @@ impl Gatherer {
                     extent: group[0].extent,
                 });
                 forces.push(force);
+            } else {
+                faulty.extend(group.iter().map(|part| part.origin));
             }
         }
         laws
@@ -247,7 +270,7 @@ fn mixed(context: &mut Expander, part: Id, extent: Extent) -> syn::Error {
         .map(|direction| format!("`{}`", show_gap(context, &direction)))
         .collect();
     extent.fault(format!(
-        "this term mixes {} nonlinearly: a force depends on one gap, a fixed combination of coordinates, and on its rate",
+        "this term mixes {} nonlinearly: a force depends on one gap, a fixed combination of coordinates, and on its rate; only polynomials of coordinates, or of velocities, can be taken apart",
         if gaps.len() > 1 { gaps.join(" and ") } else { "several coordinates".to_owned() }
     ))
 }

@@ -61,14 +61,45 @@ impl Expander {
         if trigonometric {
             return self.oscillation(function == Function::Sine, operand, extent);
         }
-        if !operand.iter().all(Term::is_steady) {
-            return Err(extent.fault(
-                "not harmonic in omega*t: write a Fourier series, as in `drive*cos(omega*t) + drive/3*cos(3*omega*t)`",
-            ));
-        }
+        steady(operand, extent)?;
         let operand = self.constant(operand, extent, "the operand")?;
         let value = self.without_step(function, operand);
         Ok(vec![Term::constant(value, extent)])
+    }
+
+    /// The larger of two, or the smaller: `max(a, b) = a H(a - b) + b H(b - a)`, which is continuous.
+    pub(super) fn extremum(
+        &mut self,
+        larger: bool,
+        first: &[Term],
+        second: &[Term],
+        extent: Extent,
+    ) -> syn::Result<Vec<Term>> {
+        let moves = first.iter().chain(second).any(Term::moves);
+        if !moves {
+            steady(first, extent)?;
+            steady(second, extent)?;
+        }
+        let [first, second] = [self.value(first, extent)?, self.value(second, extent)?];
+        let mut parts = Vec::new();
+        for (own, other) in [(first, second), (second, first)] {
+            let excess = if larger {
+                self.dag.difference(own, other)
+            } else {
+                self.dag.difference(other, own)
+            };
+            let chosen = if moves {
+                self.dag.call(Function::Step, excess)
+            } else {
+                self.without_step(Function::Step, excess)
+            };
+            parts.push(self.dag.product(&[own, chosen]));
+        }
+        if first == second {
+            parts = vec![first];
+        }
+        let value = self.dag.sum(&parts);
+        Ok(self.nonlinear(value, extent))
     }
 
     /// A function of parameters; a step is written with the sign.
@@ -129,4 +160,13 @@ impl Expander {
         let ratio = self.dag.quotient(rate, omega);
         self.dag.as_number(ratio)
     }
+}
+
+fn steady(operand: &[Term], extent: Extent) -> syn::Result<()> {
+    if operand.iter().all(Term::is_steady) {
+        return Ok(());
+    }
+    Err(extent.fault(
+        "not harmonic in omega*t: write a Fourier series, as in `drive*cos(omega*t) + drive/3*cos(3*omega*t)`",
+    ))
 }

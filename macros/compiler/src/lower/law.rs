@@ -44,7 +44,7 @@ fn enter(context: &mut Expander, law: &Law, ranges: Vec<Interval>) -> HashMap<St
     let mut names = context.names.clone();
     names.retain(|_, meaning| match meaning {
         Meaning::Constant(_) => true,
-        Meaning::Coordinate(_) => false,
+        Meaning::Coordinate(_) | Meaning::Array(..) => false,
         Meaning::Value(terms) => terms.iter().all(|term| !term.moves()),
     });
     names.insert(law.gap.to_string(), Meaning::Coordinate(0));

@@ -5,6 +5,8 @@ mod calls;
 mod found;
 mod functions;
 mod law;
+mod polynomial;
+mod repeat;
 mod resolve;
 
 pub(crate) mod algebra;
@@ -15,10 +17,11 @@ pub(crate) mod wave;
 
 use std::collections::HashMap;
 
-use crate::ast::{Declaration, Equation, Expr, Kind, Limit};
+use crate::ast::{Declaration, Equation, Expr, Kind, Limit, Statement};
 use crate::check::{forcing, inertia};
 use crate::dag::{Id, Variable};
 use crate::errors::{Diagnostics, Extent};
+use crate::index::Constants;
 use crate::ir::{self, Bound, Model};
 
 use self::assemble::{Action, Assembly};
@@ -28,6 +31,9 @@ use self::interval::{Interval, Stretch};
 use self::law::Lowered;
 use self::term::{Motion, Term, collect};
 use self::wave::Wave;
+
+/// What an equation with a few contacts is multiplied out to.
+const TERMS_PER_COORDINATE: usize = 512;
 
 /// Lowers a declaration that has passed [`check`](crate::check::check). `None` if something was reported.
 pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option<Model> {
@@ -40,10 +46,9 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
             .insert(item.name.to_string(), Meaning::Value(terms));
     }
     let mut gatherer = Gatherer::default();
-    let mut terms: Vec<(usize, Term)> = Vec::new();
-    for (row, equation) in declaration.equations.iter().enumerate() {
-        let rest = equation_terms(&mut context, row, equation, &mut gatherer, diagnostics);
-        terms.extend(rest.into_iter().map(|term| (row, term)));
+    let mut rows = Rows::default();
+    for statement in &declaration.equations {
+        rows.statement(&mut context, statement, &mut gatherer, diagnostics);
     }
     let laws = declared_laws(&mut context, declaration, diagnostics);
     let found = gatherer.laws(&mut context, diagnostics);
@@ -56,7 +61,7 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
         actions: Vec::new(),
         terms: Vec::new(),
     };
-    for (row, term) in terms {
+    for (row, term) in rows.terms {
         diagnostics.keep(builder.term(row, term, &laws));
     }
     for law in found {
@@ -82,7 +87,7 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
         name: declaration.name.clone(),
         documentation: declaration.documentation.clone(),
         equation: equations.join("\n"),
-        coordinates: declaration.coordinates.iter().map(ToString::to_string).collect(),
+        coordinates: declaration.elements().map(|(name, _)| name).collect(),
         parameters,
         divisor: assembly.divisor,
         laws: builder.laws,
@@ -106,12 +111,23 @@ pub fn parameters(declaration: &Declaration) -> Vec<ir::Parameter> {
     };
     let lowered = |parameter: &crate::ast::Parameter| ir::Parameter {
         name: parameter.name.clone(),
-        documentation: parameter.documentation.clone(),
+        documentation: documentation(parameter),
         minimum: bound(parameter.minimum),
         maximum: bound(parameter.maximum),
-        default: None,
+        default: parameter.default.map(|(value, _)| value),
     };
     declaration.parameters.iter().map(lowered).collect()
+}
+
+/// The text of the doc comments, and the unit.
+fn documentation(parameter: &crate::ast::Parameter) -> String {
+    let own = parameter.documentation.trim_end();
+    match &parameter.unit {
+        Some((unit, _)) if unit.text != "1" => {
+            format!("{own} [{}]", unit.text).trim_start().to_owned()
+        }
+        _ => own.to_owned(),
+    }
 }
 
 fn context(declaration: &Declaration, parameters: &[ir::Parameter]) -> Expander {
@@ -127,12 +143,19 @@ fn context(declaration: &Declaration, parameters: &[ir::Parameter]) -> Expander 
             .parameters
             .push(Interval::of_range(parameter.minimum, parameter.maximum));
     }
-    for (index, coordinate) in declaration.coordinates.iter().enumerate() {
-        context
-            .names
-            .insert(coordinate.to_string(), Meaning::Coordinate(index));
-        context.coordinates.push(coordinate.to_string());
+    for coordinate in &declaration.coordinates {
+        let first = context.coordinates.len();
+        let meaning = match coordinate.count {
+            Some(count) => Meaning::Array(first, count),
+            None => Meaning::Coordinate(first),
+        };
+        context.names.insert(coordinate.name.to_string(), meaning);
+        let count = first + coordinate.size();
+        let names = declaration.elements().map(|(name, _)| name);
+        context.coordinates.extend(names.take(count).skip(first));
     }
+    context.constants = Constants::of(&declaration.lets);
+    context.allowance = TERMS_PER_COORDINATE * context.coordinates.len();
     context.laws = declaration
         .laws
         .iter()
@@ -140,6 +163,48 @@ fn context(declaration: &Declaration, parameters: &[ir::Parameter]) -> Expander 
         .map(|(index, law)| (law.name.to_string(), index))
         .collect();
     context
+}
+
+/// The terms of all equations, but for the nonlinear ones.
+#[derive(Default)]
+struct Rows {
+    count: usize,
+    terms: Vec<(usize, Term)>,
+}
+
+impl Rows {
+    /// Adds an equation, or a loop of them. A loop ends with the first index that is at fault, so that no fault is
+    /// reported once for each.
+    fn statement(
+        &mut self,
+        context: &mut Expander,
+        statement: &Statement,
+        gatherer: &mut Gatherer,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let repeated = match statement {
+            Statement::Equation(equation) => {
+                let row = self.count;
+                let terms = equation_terms(context, row, equation, gatherer, diagnostics);
+                self.terms.extend(terms.into_iter().map(|term| (row, term)));
+                self.count += 1;
+                return;
+            }
+            Statement::Loop(repeated) => repeated,
+        };
+        let faults = diagnostics.count();
+        let powers = context.powers.len();
+        let result = context.repeat(repeated, |context| {
+            for statement in &repeated.body {
+                if diagnostics.count() == faults {
+                    self.statement(context, statement, gatherer, diagnostics);
+                }
+            }
+            context.powers.truncate(powers);
+            Ok(())
+        });
+        diagnostics.keep(result);
+    }
 }
 
 /// All terms of an equation, brought to the left, except for nonlinear ones, which are gathered.
@@ -171,7 +236,7 @@ fn equation_terms(
                 };
                 terms.extend(
                     diagnostics
-                        .keep(gatherer.add(context, row, &term))
+                        .keep(gatherer.add(context, row, &term, part))
                         .into_iter()
                         .flatten(),
                 );
@@ -353,11 +418,7 @@ impl Builder {
             waves.push(action.wave);
             waves.extend(action.gap.iter().map(|term| term.wave));
         }
-        let equations = &declaration.equations;
-        let extent = equations[0]
-            .left
-            .extent
-            .to(equations[equations.len() - 1].right.extent);
+        let extent = all_equations(declaration);
         let divisor = assemble::divisor(waves.iter()).map_err(|message| extent.fault(message))?;
         let mut assembly = Assembly::new(divisor);
         let dag = &mut self.context.dag;
@@ -370,6 +431,19 @@ impl Builder {
         }
         assembly.drop_zeros(dag);
         Ok(assembly)
+    }
+}
+
+/// From the first equation to the last.
+pub fn all_equations(declaration: &Declaration) -> Extent {
+    let equations: Vec<&Equation> = declaration
+        .equations
+        .iter()
+        .flat_map(Statement::equations)
+        .collect();
+    match (equations.first(), equations.last()) {
+        (Some(first), Some(last)) => first.left.extent.to(last.right.extent),
+        _ => Extent::at(declaration.name.span()),
     }
 }
 

@@ -54,6 +54,7 @@ pub fn resolve(
                 &segment.powers,
                 extent,
             )?;
+            remove_powers_of_zero(&mut context.dag, &mut segment);
             smooth.push(segment);
             continue;
         };
@@ -68,7 +69,7 @@ pub fn resolve(
                 bounds.is_not_negative(),
             );
             pending.push(segment);
-        } else if take_apart(&mut context.dag, &mut segment, switch) {
+        } else if take_apart(context, &mut segment, switch) {
             pending.push(segment);
         } else {
             let [below, above] = split(context, segment, switch, extent)?;
@@ -125,36 +126,51 @@ fn substitute(dag: &mut Dag, segment: &mut Segment, switch: Id, values: [Id; 3])
 }
 
 /// `|a b| = |a| |b|`, `sgn(a b) = sgn(a) sgn(b)`, and the same for whole powers; false where the operand is neither.
-fn take_apart(dag: &mut Dag, segment: &mut Segment, switch: Id) -> bool {
-    let (absolute, sign) = match dag.node(switch).clone() {
+fn take_apart(context: &mut Expander, segment: &mut Segment, switch: Id) -> bool {
+    let (absolute, sign) = match context.dag.node(switch).clone() {
         Node::Product(factors) => {
-            let absolute: Vec<Id> = factors
-                .iter()
-                .map(|&factor| dag.call(Function::Absolute, factor))
-                .collect();
-            let sign: Vec<Id> = factors
-                .iter()
-                .map(|&factor| dag.call(Function::Sign, factor))
-                .collect();
-            (dag.product(&absolute), dag.product(&sign))
+            let (mut absolute, mut sign) = (Vec::new(), Vec::new());
+            for factor in factors {
+                let [magnitude, own] = magnitude_and_sign(context, factor, segment.stretch);
+                absolute.push(magnitude);
+                sign.push(own);
+            }
+            (context.dag.product(&absolute), context.dag.product(&sign))
         }
         Node::Power(base, exponent)
-            if dag.as_number(exponent).is_some_and(Rational::is_integer) =>
+            if context
+                .dag
+                .as_number(exponent)
+                .is_some_and(Rational::is_integer) =>
         {
-            let (absolute, sign) = (
-                dag.call(Function::Absolute, base),
-                dag.call(Function::Sign, base),
-            );
-            (dag.power(absolute, exponent), dag.power(sign, exponent))
+            let [magnitude, own] = magnitude_and_sign(context, base, segment.stretch);
+            (
+                context.dag.power(magnitude, exponent),
+                context.dag.power(own, exponent),
+            )
         }
         _ => return false,
     };
+    let dag = &mut context.dag;
     let one = dag.integer(1);
     let sum = dag.sum(&[sign, one]);
     let two = dag.integer(2);
     let step = dag.quotient(sum, two);
     substitute(dag, segment, switch, [absolute, sign, step]);
     true
+}
+
+/// `|u|` and `sgn u`, decided where the ranges do.
+fn magnitude_and_sign(context: &mut Expander, operand: Id, stretch: Stretch) -> [Id; 2] {
+    let bounds = context.ranges.bounds(&mut context.dag, operand, stretch);
+    let dag = &mut context.dag;
+    if bounds.is_not_negative() {
+        [operand, dag.integer(1)]
+    } else if bounds.is_not_positive() {
+        [dag.negate(operand), dag.integer(-1)]
+    } else {
+        [Function::Absolute, Function::Sign].map(|function| dag.call(function, operand))
+    }
 }
 
 /// Splits a segment at the root of an operand that is affine in the gap.
@@ -212,6 +228,16 @@ fn remove_steps(context: &mut Expander, segment: &mut Segment) {
         if let Node::Call(Function::Step, operand) = *context.dag.node(id) {
             let value = step_as_sign(&mut context.dag, operand);
             segment.force = context.dag.replace(segment.force, id, value);
+        }
+    }
+}
+
+/// `0^n` is zero, as an exponent that is not known has been found positive. (`max(0, x)^n` comes to that.)
+fn remove_powers_of_zero(dag: &mut Dag, segment: &mut Segment) {
+    let zero = dag.integer(0);
+    for id in dag.reachable(&[segment.force]) {
+        if matches!(*dag.node(id), Node::Power(base, _) if base == zero) {
+            segment.force = dag.replace(segment.force, id, zero);
         }
     }
 }

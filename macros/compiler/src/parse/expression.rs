@@ -118,11 +118,21 @@ impl Parser<'_> {
                 self.tokens.next();
                 return self.number(&text, start);
             }
+            Token::Name(name) if name == "for" => {
+                self.tokens.next();
+                Kind::Sigma(Box::new(self.nested(Self::sigma)?))
+            }
             Token::Name(name) => {
                 self.tokens.next();
                 match *self.tokens.peek() {
                     Token::Open(Delimiter::Parenthesis, _) => {
                         Kind::Call(name, self.nested(Self::arguments)?)
+                    }
+                    Token::Open(Delimiter::Bracket, _) => {
+                        self.tokens.next();
+                        let index = self.nested(Self::expression)?;
+                        self.close("an operator or `]`")?;
+                        Kind::Element(name, Box::new(index))
                     }
                     _ => Kind::Name(name),
                 }
@@ -180,7 +190,10 @@ impl Parser<'_> {
     }
 
     /// Reads one level deeper, down to a limit.
-    fn nested<T>(&mut self, read: impl FnOnce(&mut Self) -> syn::Result<T>) -> syn::Result<T> {
+    pub(super) fn nested<T>(
+        &mut self,
+        read: impl FnOnce(&mut Self) -> syn::Result<T>,
+    ) -> syn::Result<T> {
         if self.depth == DEEPEST {
             let message = format!("nested more than {DEEPEST} deep: name parts of it with `let`");
             return Err(self.tokens.here().fault(message));

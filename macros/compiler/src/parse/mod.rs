@@ -2,13 +2,18 @@
 
 mod expression;
 mod number;
+mod repeated;
 mod tokens;
+mod unit;
 
 use proc_macro2::{Delimiter, Ident, TokenStream};
 use syn::ext::IdentExt;
 
 use self::tokens::{Token, Tokens};
-use crate::ast::{Comparison, Condition, Declaration, Equation, Law, Let, Limit, Parameter, Piece};
+use crate::ast::{
+    Comparison, Condition, Coordinate, Declaration, Equation, Law, Let, Limit, Parameter, Piece,
+    Statement,
+};
 use crate::dag::Rational;
 use crate::errors::{Diagnostics, Extent};
 
@@ -44,7 +49,7 @@ impl Parser<'_> {
             lets: Vec::new(),
             equations: Vec::new(),
         };
-        match self.names("the coordinates in parentheses, as in `Oscillator(x)`") {
+        match self.coordinates() {
             Ok(coordinates) => declaration.coordinates = coordinates,
             Err(fault) => {
                 self.diagnostics.add(fault);
@@ -93,24 +98,39 @@ impl Parser<'_> {
             let law = self.law()?;
             declaration.laws.push(law);
         } else if self.tokens.take_word("let") {
-            let name = self.name("a name, as in `let k = 2*zeta;`")?;
-            self.expect("=", "`=`")?;
-            let value = self.expression()?;
-            self.expect(";", "an operator or `;`")?;
-            declaration.lets.push(Let { name, value });
+            let item = self.named()?;
+            declaration.lets.push(item);
         } else if matches!(self.tokens.peek(), Token::Close(_)) {
             return Err(self.unexpected("an item after the doc comment"));
         } else {
-            let left = self.expression()?;
-            self.expect("=", "an operator or `=`")?;
-            let right = self.expression()?;
-            self.expect(";", "an operator or `;`")?;
-            declaration.equations.push(Equation { left, right });
+            let statement = self.statement()?;
+            declaration.equations.push(statement);
         }
         Ok(())
     }
 
-    /// `name range ;`. A parameter with a faulty range is kept, so that its field exists.
+    /// `name = value ;`, after the word `let`.
+    fn named(&mut self) -> syn::Result<Let> {
+        let name = self.name("a name, as in `let k = 2*zeta;`")?;
+        self.expect("=", "`=`")?;
+        let value = self.expression()?;
+        self.expect(";", "an operator or `;`")?;
+        Ok(Let { name, value })
+    }
+
+    /// `left = right ;`, or a loop of such.
+    fn statement(&mut self) -> syn::Result<Statement> {
+        if self.is_loop_of_equations() {
+            return self.loop_of_equations();
+        }
+        let left = self.expression()?;
+        self.expect("=", "an operator or `=`")?;
+        let right = self.expression()?;
+        self.expect(";", "an operator or `;`")?;
+        Ok(Statement::Equation(Equation { left, right }))
+    }
+
+    /// `name : unit = default range ;`. A parameter with a faulty range is kept, so that its field exists.
     fn parameter(&mut self, documentation: String) -> syn::Result<(Parameter, syn::Result<()>)> {
         let name = self.name("the name of the parameter")?;
         let mut parameter = Parameter {
@@ -119,11 +139,56 @@ impl Parser<'_> {
             name,
             minimum: None,
             maximum: None,
+            default: None,
+            unit: None,
         };
         let result = self
-            .range(&mut parameter)
+            .details(&mut parameter)
             .and_then(|()| self.expect(";", "`;`, or a range such as `in 0.0..` or `> 0`"));
         Ok((parameter, result))
+    }
+
+    /// What follows the name of a parameter: unit, default and range, each if it is there.
+    fn details(&mut self, parameter: &mut Parameter) -> syn::Result<()> {
+        parameter.unit = self.unit()?;
+        if self.tokens.is("=") {
+            self.tokens.next();
+            let start = self.tokens.here();
+            let Some(Limit { value, .. }) = self.limit(true)? else {
+                return Err(self.unexpected("a number, as in `param k = 1.5e3;`"));
+            };
+            parameter.default = Some((value, start.to(self.tokens.before())));
+        }
+        self.range(parameter)
+    }
+
+    /// `(x, y[8], z: m)`, at least one.
+    fn coordinates(&mut self) -> syn::Result<Vec<Coordinate>> {
+        let example = "the coordinates in parentheses, as in `Oscillator(x)`";
+        self.list(example, |parser| {
+            let name = parser.name("a name")?;
+            let count = parser.count()?;
+            let unit = parser.unit()?;
+            Ok(Coordinate { name, count, unit })
+        })
+    }
+
+    /// `[8]`, if it is there.
+    fn count(&mut self) -> syn::Result<Option<usize>> {
+        let Token::Open(Delimiter::Bracket, _) = self.tokens.peek() else {
+            return Ok(None);
+        };
+        self.tokens.next();
+        let place = self.tokens.here();
+        let count = match self.tokens.next() {
+            Token::Literal(text) => text.parse().ok(),
+            _ => None,
+        };
+        let Some(count) = count.filter(|&count: &usize| count > 0) else {
+            return Err(place.fault("an array has a length of at least one, as in `Chain(x[64])`"));
+        };
+        self.close("`]`")?;
+        Ok(Some(count))
     }
 
     /// One of `in a..b`, `> a`, `>= a`, `< b`, `<= b`, or nothing.
@@ -343,16 +408,25 @@ impl Parser<'_> {
 
     /// `(a, b, ...)`, at least one.
     fn names(&mut self, expected: &str) -> syn::Result<Vec<Ident>> {
+        self.list(expected, |parser| parser.name("a name"))
+    }
+
+    /// Items in parentheses, with commas between them and perhaps after them; at least one.
+    fn list<T>(
+        &mut self,
+        expected: &str,
+        mut item: impl FnMut(&mut Self) -> syn::Result<T>,
+    ) -> syn::Result<Vec<T>> {
         if !matches!(self.tokens.peek(), Token::Open(Delimiter::Parenthesis, _)) {
             return Err(self.unexpected(expected));
         }
         self.tokens.next();
-        let mut names = vec![self.name("a name")?];
+        let mut items = vec![item(self)?];
         while self.tokens.take(",") && !matches!(self.tokens.peek(), Token::Close(_)) {
-            names.push(self.name("a name")?);
+            items.push(item(self)?);
         }
         self.close("`,` or `)`")?;
-        Ok(names)
+        Ok(items)
     }
 
     fn name(&mut self, expected: &str) -> syn::Result<Ident> {

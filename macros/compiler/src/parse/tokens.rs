@@ -145,6 +145,19 @@ impl Tokens {
         found
     }
 
+    /// Whether the group that closes at a position ends with `;`, or with a group that does.
+    pub fn ends_with_mark(&self, close: usize) -> bool {
+        let last = self.tokens[..close]
+            .iter()
+            .rev()
+            .map(|(token, _)| token)
+            .find(|token| !matches!(token, Token::Close(Delimiter::Brace)));
+        matches!(
+            last,
+            Some(Token::Mark(';', _) | Token::Open(Delimiter::Brace, _))
+        )
+    }
+
     /// The next token as a message names it.
     pub fn found(&self) -> String {
         match self.peek() {
