@@ -7,6 +7,8 @@ mod law;
 mod program;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "text")]
+mod text;
 
 use std::borrow::Cow;
 
@@ -14,6 +16,8 @@ use crate::law::Law;
 use crate::system::{System, SystemFacts, Variable};
 
 pub use law::InterpretedLaw;
+#[cfg(feature = "text")]
+pub use text::{Declaration, DeclarationError, Fault, UnknownParameter};
 
 /// A system whose laws are interpreted; everything else is the system's own.
 ///

@@ -321,7 +321,7 @@ fn select(values: Values<'_>, piece: usize, chosen: &[usize], out: &mut [f64]) {
 }
 
 /// A program whose outputs depend on arguments alone.
-fn constant(nodes: &[Node], outputs: &[usize]) -> Program {
+pub(super) fn constant(nodes: &[Node], outputs: &[usize]) -> Program {
     let program = Program::new(nodes, outputs);
     assert!(program.is_constant(), "a level depends on gap or rate");
     program
@@ -338,7 +338,8 @@ fn run_constant(program: &Program, inputs: Inputs<'_>, slots: &mut [Slot], out: 
     }
 }
 
-fn evaluate_constant(program: &Program, arguments: &[f64], out: &mut [f64]) {
+/// Runs a program made by [`constant`], in the working memory of the thread.
+pub(super) fn evaluate_constant(program: &Program, arguments: &[f64], out: &mut [f64]) {
     let inputs = Inputs {
         arguments,
         gap: &[],

@@ -114,13 +114,14 @@ impl Errors {
         Self(syn::Error::new(Span::call_site(), message))
     }
 
+    /// The faults one by one, in order.
+    pub(crate) fn faults(&self) -> Vec<syn::Error> {
+        self.0.clone().into_iter().collect()
+    }
+
     /// The messages, in order.
     pub fn messages(&self) -> Vec<String> {
-        self.0
-            .clone()
-            .into_iter()
-            .map(|fault| fault.to_string())
-            .collect()
+        self.faults().iter().map(ToString::to_string).collect()
     }
 
     /// What the macro emits: a `compile_error!` at each place.

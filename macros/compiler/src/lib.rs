@@ -11,6 +11,8 @@ pub mod interpret;
 pub mod ir;
 pub mod primitive;
 pub mod simplify;
+#[cfg(feature = "text")]
+pub mod text;
 
 mod check;
 mod index;
