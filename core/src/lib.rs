@@ -49,6 +49,8 @@ pub mod emitted;
 mod error;
 pub mod fourier;
 pub mod generic;
+#[cfg(doctest)]
+mod guide;
 pub mod law;
 mod layout;
 mod linear;

@@ -31,25 +31,32 @@ use proc_macro::TokenStream;
 /// # Grammar
 ///
 /// ```text
-/// model       = { doc } [ visibility ] name "(" name { "," name } ")" "{" { item } "}"
-/// item        = { doc } ( parameter | law | let | equation )
-/// parameter   = "param" name [ range ] ";"
+/// model       = { doc } [ visibility ] name "(" coordinate { "," coordinate } [ "," ] ")" "{" { item } "}"
+/// coordinate  = name [ "[" number "]" ] [ ":" unit ]
+/// item        = { doc } ( parameter | law | let | statement )
+/// parameter   = "param" name [ ":" unit ] [ "=" bound ] [ range ] ";"
 /// range       = "in" [ bound ] ( ".." | "..=" ) [ bound ] | ( ">" | ">=" | "<" | "<=" ) bound
 /// bound       = [ "-" ] number
-/// law         = "law" name "(" name { "," name } ")" "{" ( expression | piece { "," piece } [ "," ] ) "}"
+/// unit        = factor { ( "*" | "/" ) factor }
+/// factor      = ( symbol | "1" | "(" unit ")" ) [ "^" ( bound | "(" bound [ "/" bound ] ")" ) ]
+/// law         = "law" name "(" name { "," name } [ "," ] ")" "{" ( expression | piece { "," piece } [ "," ] ) "}"
 /// piece       = ( condition | "else" ) "=>" expression
 /// condition   = chain { "&&" chain }
 /// chain       = expression relation expression { relation expression }
 /// relation    = ">" | ">=" | "<" | "<="
 /// let         = "let" name "=" expression ";"
+/// statement   = equation | "for" head "{" { let } { statement } "}"
 /// equation    = expression "=" expression ";"
+/// head        = name "in" expression ( ".." | "..=" ) expression
 /// expression  = product { ( "+" | "-" ) product }
 /// product     = signed { ( "*" | "/" ) signed }
 /// signed      = ( "-" | "+" ) signed | power
 /// power       = operand [ "^" signed ]
-/// operand     = number | name | name "(" expression { "," expression } ")"
-///             | "(" expression ")" | "|" expression "|"
+/// operand     = number | name | name "[" expression "]" | name "(" expression { "," expression } ")"
+///             | "(" expression ")" | "|" expression "|" | "for" head "{" { let } expression "}"
 /// ```
+///
+/// The guide "Declaring contacts", `docs/book/src/declaring-contacts.md`, has an example of each production.
 ///
 /// A power binds tighter than a sign in front of it and to the right: `-x^2` is `-(x^2)`, `2^3^2` is `2^9`. Products need
 /// their star: `2*zeta`. Numbers are exact: `1.5` is three halves.
@@ -59,7 +66,25 @@ use proc_macro::TokenStream;
 /// - `omega` is the frequency of excitation, `t` is time, `pi` is the number.
 /// - `dot` and `ddot` are the first and second derivative by time.
 /// - `H` is the step (one for a positive operand, zero otherwise), `sgn` the sign, `abs(x)` or `|x|` the absolute value.
-/// - `cos`, `sin`, `exp`, `tanh` and `sqrt` are what they are everywhere.
+/// - `cos`, `sin`, `exp`, `tanh` and `sqrt` are what they are everywhere, and so are `max` and `min`, of two operands.
+///
+/// # Arrays and loops
+///
+/// `Chain(x[64])` has the coordinates `x[0]` to `x[63]`. A loop around equations repeats them, and a loop around a term
+/// is the sum of its repetitions. Both are written out while compiling, so the ends of a range and every index are made
+/// of whole numbers, indices of loops, and `let` items that are numbers.
+///
+/// ```text
+/// for j in 1..63 { ddot(x[j]) + contact(x[j] - x[j + 1]) - contact(x[j - 1] - x[j]) = 0; }
+/// m*ddot(y) + for j in 0..8 { cos(2*pi*j/8)*contact(y*cos(2*pi*j/8) - clearance) } = 0;
+/// ```
+///
+/// # Defaults and units
+///
+/// If every parameter has a default (`param k = 1e9;`), the type implements `Default`. If every parameter and every
+/// coordinate has a unit, the equations are checked for them; `1` is the unit of a plain number. Exponents of units are
+/// exact, as in `N/m^1.5`. A power whose exponent is a parameter has a plain number as its base. Values are used as they
+/// are: `mm` and `m` do not agree.
 ///
 /// # Equations
 ///
@@ -98,7 +123,10 @@ use proc_macro::TokenStream;
 ///
 /// The base of a power that is not whole must not be negative on its piece, and where it can vanish the exponent must be
 /// positive: declare `param alpha > 0;`. A force may jump where the gap crosses a level. It may not jump with the rate, as
-/// dry friction does.
+/// dry friction does; it may have a kink there, as `max(0, k*gap + c*dot(gap))` has.
+///
+/// A force depends on one gap. Polynomials of several coordinates, or of several velocities, are taken apart into powers
+/// of sums: `x*y^2` is `((x + y)^3 + (x - y)^3 - 2*x^3)/6`. Other mixtures are refused.
 #[proc_macro]
 pub fn oscillator(declaration: TokenStream) -> TokenStream {
     hertzian_compiler::oscillator(declaration.into()).into()

@@ -1,6 +1,6 @@
 hertzian::oscillator! {
     pub Model(x, y) {
-        ddot(x) + x*y^2 = cos(omega*t);
+        ddot(x) + x*|y| + x^2*dot(y) = cos(omega*t);
         ddot(y) + y = 0;
     }
 }

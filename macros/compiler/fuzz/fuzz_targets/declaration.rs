@@ -1,0 +1,13 @@
+//! Any text that lexes is compiled and expanded: no panic, and an end.
+#![no_main]
+
+use std::str::FromStr;
+
+use libfuzzer_sys::fuzz_target;
+use proc_macro2::TokenStream;
+
+fuzz_target!(|text: &str| {
+    if let Ok(tokens) = TokenStream::from_str(text) {
+        let _ = hertzian_compiler::oscillator(tokens);
+    }
+});
