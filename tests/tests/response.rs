@@ -448,6 +448,11 @@ fn bad_requests_are_refused_before_any_work() {
         refused(good().vary("zeta").omega(1.0).from(-1.0)),
         Error::Parameter { .. }
     ));
+}
+
+#[test]
+fn unusable_parameters_are_refused_with_their_range() {
+    let refused = |request: FrequencyResponse<'_>| request.run().unwrap_err();
     let negative = OneSided {
         zeta: -0.1,
         ..CONTACT

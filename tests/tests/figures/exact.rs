@@ -1,5 +1,9 @@
 //! Exact values, computed independently of this project: event-located DOP853 in 80-bit arithmetic, errors in omega
 //! below 1e-12, confirmed by a second integrator.
+#![allow(
+    clippy::unreadable_literal,
+    reason = "numbers as they were published, to be searched for"
+)]
 
 /// A fold.
 #[derive(Debug, Clone, Copy)]

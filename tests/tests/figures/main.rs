@@ -16,7 +16,7 @@ hertzian::oscillator! {
     }
 }
 
-fn curve<'a>(model: &'a Continuous, from: f64, to: f64) -> Branch<'a> {
+fn curve(model: &Continuous, from: f64, to: f64) -> Branch<'_> {
     let branch = FrequencyResponse::of(model)
         .from(from)
         .to(to)
