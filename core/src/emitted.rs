@@ -20,7 +20,7 @@
 pub mod constants;
 mod law;
 
-pub use law::{Batch, ByArgument, Generated, Kernels, Primitive, Spring};
+pub use law::{Batch, ByArgument, Declared, Generated, Kernels, Primitive, Spring};
 
 /// Guarded power `base^exponent` for a base that the declaration proves is not negative.
 #[inline(always)]

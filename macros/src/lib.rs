@@ -131,3 +131,22 @@ use proc_macro::TokenStream;
 pub fn oscillator(declaration: TokenStream) -> TokenStream {
     hertzian_compiler::oscillator(declaration.into()).into()
 }
+
+/// Declares a law without a model: `pub Name(gap, argument, ...) { pieces }`.
+///
+/// The pieces are those of a law in [`oscillator!`]; arguments may carry a range, which powers need. It becomes a type
+/// without fields that implements `hertzian::law::Law`, to be attached to a `hertzian::structure::Structure`.
+///
+/// ```text
+/// hertzian::law! {
+///     /// Contact whose damping grows with the force.
+///     pub Hertz(gap, k, c) {
+///         gap > 0 => k*gap^1.5*(1 + c*dot(gap)),
+///         else    => 0,
+///     }
+/// }
+/// ```
+#[proc_macro]
+pub fn law(declaration: TokenStream) -> TokenStream {
+    hertzian_compiler::law(declaration.into()).into()
+}

@@ -3,6 +3,7 @@
 //! Everything but the type itself stands inside one anonymous constant, so that no name leaks into the user's module;
 //! inside it, every path starts at a crate root or at an alias of one.
 
+mod alone;
 mod code;
 mod data;
 mod document;
@@ -22,6 +23,7 @@ use quote::quote;
 
 use crate::ir::{Model, Parameter};
 
+pub use alone::{law_alone, law_stub};
 pub use stub::stub;
 
 /// Writes a model as Rust code.
@@ -82,8 +84,22 @@ fn defaults(model: &Model) -> Option<TokenStream> {
     })
 }
 
-/// Puts implementations into an anonymous constant, with the aliases they use.
+/// Puts the implementations of a model into an anonymous constant.
 fn wrap(name: &Ident, items: &TokenStream) -> TokenStream {
+    wrap_items(&quote! {
+        impl #name {
+            /// The same system, its laws interpreted from data: the oracle of the generated code.
+            pub fn generic(&self) -> __generic::Interpreted<'_> {
+                __generic::Interpreted::of(self)
+            }
+        }
+
+        #items
+    })
+}
+
+/// Puts items into an anonymous constant, with the aliases they use.
+fn wrap_items(items: &TokenStream) -> TokenStream {
     quote! {
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)]
         #[allow(missing_docs, nonstandard_style, unused, unused_qualifications)]
@@ -91,13 +107,6 @@ fn wrap(name: &Ident, items: &TokenStream) -> TokenStream {
             use ::core::primitive::{f64, usize};
             use ::hertzian::{emitted as __emitted, generic as __generic, law as __law, system as __system};
             use ::std::borrow::Cow as __Cow;
-
-            impl #name {
-                /// The same system, its laws interpreted from data: the oracle of the generated code.
-                pub fn generic(&self) -> __generic::Interpreted<'_> {
-                    __generic::Interpreted::of(self)
-                }
-            }
 
             #items
         };

@@ -16,6 +16,7 @@ pub mod text;
 
 mod check;
 mod index;
+mod law_alone;
 mod lower;
 mod parse;
 
@@ -24,6 +25,8 @@ use proc_macro2::TokenStream;
 use crate::ast::Declaration;
 use crate::errors::{Diagnostics, Errors};
 use crate::ir::Model;
+
+pub use crate::law_alone::law;
 
 /// Expands a declaration. After errors the expansion holds all of them, and a stub of the type.
 pub fn oscillator(declaration: TokenStream) -> TokenStream {

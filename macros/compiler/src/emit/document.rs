@@ -26,6 +26,24 @@ pub fn of_model(model: &Model) -> String {
     text
 }
 
+/// Documentation of a law that stands alone.
+pub fn of_law_alone(own: &str, dag: &Dag, law: &Law) -> String {
+    let own = own.trim();
+    let mut text = if own.is_empty() {
+        format!("The law `{}`.", law.name)
+    } else {
+        own.to_owned()
+    };
+    text.push_str("\n\n# Force by piece\n\n```text\n");
+    text.push_str(&of_law(dag, law));
+    text.push_str("```\n");
+    if !law.arguments.is_empty() {
+        let arguments = law.arguments.join("`, `");
+        text.push_str(&format!("\nArguments: `{arguments}`.\n"));
+    }
+    text
+}
+
 /// Documentation of a field.
 pub fn of_field(name: &Ident, documentation: &str) -> String {
     let own = documentation.trim();

@@ -1,0 +1,175 @@
+//! Laws that stand alone, and structures given as matrices.
+
+use hertzian::FrequencyResponse;
+use hertzian::law::{Law, On, RateDependence};
+use hertzian::structure::{Contact, DMatrix, Structure, StructureError, parameter};
+use hertzian::system::{System, Variable};
+
+hertzian::law! {
+    /// Force of a spring that is touched at gap zero.
+    Spring(gap, k) { gap > 0 => k*gap, else => 0 }
+}
+
+hertzian::law! {
+    /// Contact whose damping grows with the force.
+    pub HuntCrossley(gap, k, c, alpha > 0) {
+        gap > 0 => k*gap^alpha*(1 + c*dot(gap)),
+        else => 0,
+    }
+}
+
+hertzian::oscillator! {
+    /// Two masses, the first with an elastic stop.
+    TwoMasses(x1, x2) {
+        param stop > 0;
+        param drive;
+        law stop_spring(gap) { gap > 1 => stop*(gap - 1), else => 0 }
+        ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop_spring(x1) = 0;
+        ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t);
+    }
+}
+
+fn stiffness() -> DMatrix<f64> {
+    DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 2.0])
+}
+
+fn two_masses() -> hertzian::structure::Builder {
+    let stiffness = stiffness();
+    Structure::of(&DMatrix::identity(2, 2), &(0.03 * &stiffness), &stiffness).cosine(
+        1,
+        1,
+        parameter("drive", 0.1),
+    )
+}
+
+fn stop() -> Contact {
+    Contact::new(Spring)
+        .arguments([parameter("stop", 100.0)])
+        .direction([1.0, 0.0])
+        .offset(1.0)
+}
+
+#[test]
+fn matrices_and_a_declaration_are_one_system() {
+    let structure = two_masses().contact(stop()).build().expect("it is sound");
+    let declared = TwoMasses {
+        stop: 100.0,
+        drive: 0.1,
+    };
+    let curve = |system: &dyn System| {
+        let request = FrequencyResponse::of(system).from(0.8).to(0.9);
+        let branch = request.harmonics(7).samples(128).run().expect("it runs");
+        let points = branch.at(0.85).expect("it was passed");
+        points.first().expect("a point").peak_to_peak()
+    };
+    let (a, b) = (curve(&structure), curve(&declared));
+    assert!((a - b).abs() < 1e-9, "{a} {b}");
+}
+
+#[test]
+fn parameters_are_varied_by_name() {
+    let mut structure = two_masses()
+        .constant(0, parameter("drive", 0.1).times(3.0))
+        .contact(stop())
+        .build()
+        .expect("it is sound");
+    let names: Vec<_> = structure
+        .facts()
+        .parameters
+        .iter()
+        .map(|p| p.name.to_string())
+        .collect();
+    assert_eq!(names, ["drive", "stop"]);
+    let count = structure.facts().places.len();
+    let [mut low, mut high, mut by] = [(); 3].map(|()| vec![0.0; count]);
+    structure.coefficients(&[0.1, 100.0], 1.0, &mut low);
+    structure.coefficients(&[0.2, 100.0], 1.0, &mut high);
+    structure.coefficients_by(Variable::Parameter(0), &[0.1, 100.0], 1.0, &mut by);
+    for ((low, high), by) in low.iter().zip(&high).zip(&by) {
+        assert!((high - low - 0.1 * by).abs() < 1e-15);
+    }
+    assert_eq!(by.iter().sum::<f64>(), 4.0);
+    structure.coefficients_by(Variable::Omega, &[0.1, 100.0], 1.0, &mut by);
+    assert!(by.iter().all(|&by| by == 0.0));
+
+    structure.set("stop", 50.0).expect("there is one");
+    let mut values = [0.0; 2];
+    structure.values(&mut values);
+    assert_eq!(values, [0.1, 50.0]);
+    assert!(structure.set("stopp", 50.0).is_err());
+}
+
+#[test]
+fn what_does_not_fit_is_said_with_numbers() {
+    let square = |size| DMatrix::<f64>::identity(size, size);
+    let fails = |builder: hertzian::structure::Builder| builder.build().err().expect("a fault");
+    assert_eq!(
+        fails(Structure::of(&square(2), &square(3), &square(2))),
+        StructureError::MatrixSize {
+            matrix: "damping",
+            rows: 3,
+            columns: 3,
+            coordinates: 2
+        }
+    );
+    let empty = square(0);
+    let fault = fails(Structure::of(&empty, &empty, &empty));
+    assert!(matches!(fault, StructureError::MatrixSize { .. }));
+    let singular = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0]);
+    for mass in [singular, DMatrix::zeros(2, 2)] {
+        let fault = fails(Structure::of(&mass, &square(2), &square(2)));
+        assert_eq!(fault, StructureError::SingularMass { pivot: 0.0 });
+    }
+    let mut holed = square(2);
+    holed[(0, 1)] = f64::INFINITY;
+    let fault = fails(Structure::of(&square(2), &square(2), &holed));
+    assert!(
+        matches!(&fault, StructureError::NotFinite { value, .. } if value.is_infinite()),
+        "{fault}"
+    );
+    assert_eq!(
+        fails(two_masses().constant(2, 1.0)),
+        StructureError::NoCoordinate {
+            coordinate: 2,
+            coordinates: 2
+        }
+    );
+    assert_eq!(
+        fails(two_masses().contact(stop().direction([1.0]))),
+        StructureError::DirectionSize {
+            contact: 0,
+            entries: 1,
+            coordinates: 2
+        }
+    );
+    assert_eq!(
+        fails(two_masses().contact(stop().arguments([1.0, 2.0]))),
+        StructureError::Arguments {
+            law: "Spring".to_owned(),
+            expected: 1,
+            given: 2
+        }
+    );
+    let fault = fails(two_masses().contact(stop().offset(parameter("drive", 0.5))));
+    assert_eq!(
+        fault.to_string(),
+        "parameter `drive` is 0.1 in one place and 0.5 in another"
+    );
+}
+
+#[test]
+fn a_law_alone_takes_its_arguments_in_order() {
+    let law: &dyn Law = &HuntCrossley;
+    assert_eq!(law.facts().name, "HuntCrossley");
+    assert_eq!(law.facts().arguments.as_ref(), ["k", "c", "alpha"]);
+    assert_eq!(law.facts().rate, RateDependence::Linear);
+    let (k, c, alpha) = (3.0, 0.2, 1.7);
+    let (gap, rate) = ([-1.0, 0.0, 0.5, 2.0], [1.0, -1.0, 0.5, -0.25]);
+    let mut force = [f64::NAN; 4];
+    law.force(On::AllPieces, &[k, c, alpha], &gap, &rate, &mut force);
+    for ((&g, &r), &force) in gap.iter().zip(&rate).zip(&force) {
+        let expected = k * f64::max(g, 0.0).powf(alpha) * (1.0 + c * r);
+        assert!((force - expected).abs() <= 1e-14 * expected.abs());
+    }
+    assert!(law.parts().is_some());
+}
