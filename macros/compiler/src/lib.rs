@@ -49,7 +49,17 @@ fn stub(declaration: &Declaration) -> TokenStream {
             fields.push(parameter.name.clone());
         }
     }
-    emit::stub(&declaration.name, &declaration.visibility, &fields)
+    let parameters = &declaration.parameters;
+    let has_defaults = !parameters.is_empty()
+        && parameters
+            .iter()
+            .all(|parameter| parameter.default.is_some());
+    emit::stub(
+        &declaration.name,
+        &declaration.visibility,
+        &fields,
+        has_defaults,
+    )
 }
 
 /// Compiles a declaration as far as the checked model.

@@ -1,6 +1,7 @@
 //! [`Declaration`] to [`Model`]: equations are multiplied out, linear terms become coefficients, the rest laws.
 
 mod assemble;
+mod build;
 mod calls;
 mod found;
 mod functions;
@@ -15,8 +16,6 @@ pub(crate) mod interval;
 pub(crate) mod term;
 pub(crate) mod wave;
 
-use std::collections::HashMap;
-
 use crate::ast::{Declaration, Equation, Expr, Kind, Limit, Statement};
 use crate::check::{forcing, inertia};
 use crate::dag::{Id, Variable};
@@ -24,13 +23,12 @@ use crate::errors::{Diagnostics, Extent};
 use crate::index::Constants;
 use crate::ir::{self, Bound, Model};
 
-use self::assemble::{Action, Assembly};
+use self::build::Builder;
 use self::expand::{Expander, Meaning};
-use self::found::{Found, Gatherer};
+use self::found::Gatherer;
 use self::interval::{Interval, Stretch};
 use self::law::Lowered;
-use self::term::{Motion, Term, collect};
-use self::wave::Wave;
+use self::term::{Term, collect};
 
 /// What an equation with a few contacts is multiplied out to.
 const TERMS_PER_COORDINATE: usize = 512;
@@ -55,12 +53,7 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
     if !diagnostics.is_clean() {
         return None;
     }
-    let mut builder = Builder {
-        context,
-        laws: Vec::new(),
-        actions: Vec::new(),
-        terms: Vec::new(),
-    };
+    let mut builder = Builder::new(context);
     for (row, term) in rows.terms {
         diagnostics.keep(builder.term(row, term, &laws));
     }
@@ -283,157 +276,6 @@ fn declared_laws(
     laws
 }
 
-/// Collects what [`Assembly`] is made of.
-struct Builder {
-    context: Expander,
-    laws: Vec<ir::Law>,
-    actions: Vec<(Action, Extent)>,
-    terms: Vec<(usize, Term)>,
-}
-
-impl Builder {
-    /// Adds a term that is a call of a law or linear.
-    fn term(&mut self, row: usize, term: Term, laws: &[Option<Lowered>]) -> syn::Result<()> {
-        let Motion::Call(call) = term.motion else {
-            self.linear(row, term);
-            return Ok(());
-        };
-        let call = self.context.calls[call].clone();
-        let Some(Some(lowered)) = laws.get(call.law) else {
-            return Ok(());
-        };
-        let mut arguments = call.arguments;
-        let written: HashMap<Variable, Id> = numbered(&arguments);
-        for &captured in &lowered.captured {
-            arguments.push(self.context.dag.substitute(captured, &written));
-        }
-        if let Some(parts) = law::linear(&mut self.context.dag, &lowered.law) {
-            return self.linear_law(row, &term, &call.gap, &arguments, parts);
-        }
-        let law = found::intern(&mut self.laws, lowered.law.clone());
-        let action = Action {
-            law,
-            gap: call.gap,
-            arguments,
-            row,
-            factor: term.coefficient,
-            wave: term.wave,
-        };
-        self.actions.push((action, term.extent));
-        Ok(())
-    }
-
-    /// A law that is linear everywhere is multiplied out.
-    fn linear_law(
-        &mut self,
-        row: usize,
-        term: &Term,
-        gap: &[Term],
-        arguments: &[Id],
-        parts: [Id; 3],
-    ) -> syn::Result<()> {
-        let by = numbered(arguments);
-        let one = self.context.dag.integer(1);
-        let rate = self.context.rate(gap, term.extent)?;
-        let unit = vec![Term::constant(one, term.extent)];
-        for (part, motion) in parts.into_iter().zip([gap.to_vec(), rate, unit]) {
-            let factor = self.context.dag.substitute(part, &by);
-            let factor = Term {
-                motion: Motion::None,
-                ..term.scaled(&mut self.context.dag, factor)
-            };
-            for product in self.context.multiply(&[factor], &motion, term.extent)? {
-                self.linear(row, product);
-            }
-        }
-        Ok(())
-    }
-
-    /// Adds a linear term. Damping that varies with time has no matrix to stand in: it is a law, linear in its rate.
-    fn linear(&mut self, row: usize, term: Term) {
-        let Motion::Linear(Variable::Velocity(column)) = term.motion else {
-            self.terms.push((row, term));
-            return;
-        };
-        if term.is_steady() {
-            self.terms.push((row, term));
-            return;
-        }
-        let damper = ir::Law {
-            name: "damper".to_owned(),
-            arguments: Vec::new(),
-            ranges: Vec::new(),
-            levels: Vec::new(),
-            pieces: vec![self.context.dag.variable(Variable::Rate)],
-        };
-        let law = found::intern(&mut self.laws, damper);
-        let gap = self.coordinate(column, term.extent);
-        let action = Action {
-            law,
-            gap: vec![gap],
-            arguments: Vec::new(),
-            row,
-            factor: term.coefficient,
-            wave: term.wave,
-        };
-        self.actions.push((action, term.extent));
-    }
-
-    fn coordinate(&mut self, index: usize, extent: Extent) -> Term {
-        let one = self.context.dag.integer(1);
-        Term {
-            motion: Motion::Linear(Variable::Coordinate(index)),
-            ..Term::constant(one, extent)
-        }
-    }
-
-    fn found(&mut self, found: Found) {
-        let arguments = found.lowered.captured;
-        let law = found::intern(&mut self.laws, found.lowered.law);
-        let extent = found.extent;
-        let gap: Vec<Term> = found
-            .direction
-            .iter()
-            .map(|&(index, factor)| Term {
-                coefficient: factor,
-                ..self.coordinate(index, extent)
-            })
-            .collect();
-        for (row, wave, factor) in found.rows {
-            let action = Action {
-                law,
-                gap: gap.clone(),
-                arguments: arguments.clone(),
-                row,
-                factor,
-                wave,
-            };
-            self.actions.push((action, extent));
-        }
-    }
-
-    fn assemble(&mut self, declaration: &Declaration) -> syn::Result<Assembly> {
-        let mut waves: Vec<Wave> = self.terms.iter().map(|(_, term)| term.wave).collect();
-        for (action, _) in &self.actions {
-            waves.push(action.wave);
-            waves.extend(action.gap.iter().map(|term| term.wave));
-        }
-        let extent = all_equations(declaration);
-        let divisor = assemble::divisor(waves.iter()).map_err(|message| extent.fault(message))?;
-        let mut assembly = Assembly::new(divisor);
-        let dag = &mut self.context.dag;
-        for (row, term) in &self.terms {
-            forcing::mass_is_constant(term)?;
-            assembly.linear(dag, *row, term);
-        }
-        for (action, _) in &self.actions {
-            assembly.force(dag, action);
-        }
-        assembly.drop_zeros(dag);
-        Ok(assembly)
-    }
-}
-
 /// From the first equation to the last.
 pub fn all_equations(declaration: &Declaration) -> Extent {
     let equations: Vec<&Equation> = declaration
@@ -445,10 +287,4 @@ pub fn all_equations(declaration: &Declaration) -> Extent {
         (Some(first), Some(last)) => first.left.extent.to(last.right.extent),
         _ => Extent::at(declaration.name.span()),
     }
-}
-
-/// Values of the arguments of a law, by position.
-fn numbered(arguments: &[Id]) -> HashMap<Variable, Id> {
-    let numbered = |(index, &value): (usize, &Id)| (Variable::Argument(index), value);
-    arguments.iter().enumerate().map(numbered).collect()
 }

@@ -1,0 +1,130 @@
+//! Parameters and coordinates, with unit, default and range.
+
+use proc_macro2::Delimiter;
+
+use super::Parser;
+use super::tokens::Token;
+use crate::ast::{Coordinate, Limit, Parameter};
+use crate::dag::Rational;
+use crate::errors::Extent;
+
+impl Parser<'_> {
+    /// `name : unit = default range ;`. A parameter with a faulty range is kept, so that its field exists.
+    pub(super) fn parameter(
+        &mut self,
+        documentation: String,
+    ) -> syn::Result<(Parameter, syn::Result<()>)> {
+        let name = self.name("the name of the parameter")?;
+        let mut parameter = Parameter {
+            documentation,
+            range: Extent::at(name.span()),
+            name,
+            minimum: None,
+            maximum: None,
+            default: None,
+            unit: None,
+        };
+        let result = self
+            .details(&mut parameter)
+            .and_then(|()| self.expect(";", "`;`, or a range such as `in 0.0..` or `> 0`"));
+        Ok((parameter, result))
+    }
+
+    /// What follows the name of a parameter: unit, default and range, each if it is there.
+    fn details(&mut self, parameter: &mut Parameter) -> syn::Result<()> {
+        parameter.unit = self.unit()?;
+        if self.tokens.is("=") {
+            self.tokens.next();
+            let start = self.tokens.here();
+            let Some(Limit { value, .. }) = self.limit(true)? else {
+                return Err(self.unexpected("a number, as in `param k = 1.5e3;`"));
+            };
+            parameter.default = Some((value, start.to(self.tokens.before())));
+        }
+        self.range(parameter)
+    }
+
+    /// `(x, y[8], z: m)`, at least one.
+    pub(super) fn coordinates(&mut self) -> syn::Result<Vec<Coordinate>> {
+        let example = "the coordinates in parentheses, as in `Oscillator(x)`";
+        self.list(example, |parser| {
+            let name = parser.name("a name")?;
+            let count = parser.count()?;
+            let unit = parser.unit()?;
+            Ok(Coordinate { name, count, unit })
+        })
+    }
+
+    /// `[8]`, if it is there.
+    fn count(&mut self) -> syn::Result<Option<usize>> {
+        let Token::Open(Delimiter::Bracket, _) = self.tokens.peek() else {
+            return Ok(None);
+        };
+        self.tokens.next();
+        let place = self.tokens.here();
+        let count = match self.tokens.next() {
+            Token::Literal(text) => text.parse().ok(),
+            _ => None,
+        };
+        let Some(count) = count.filter(|&count: &usize| count > 0) else {
+            return Err(place.fault("an array has a length of at least one, as in `Chain(x[64])`"));
+        };
+        self.close("`]`")?;
+        Ok(Some(count))
+    }
+
+    /// One of `in a..b`, `> a`, `>= a`, `< b`, `<= b`, or nothing.
+    fn range(&mut self, parameter: &mut Parameter) -> syn::Result<()> {
+        let start = self.tokens.here();
+        let end = if self.tokens.take_word("in") {
+            parameter.minimum = self.limit(true)?;
+            let inclusive = self.tokens.is("..=");
+            if !inclusive && !self.tokens.is("..") {
+                return Err(self.unexpected("a range, as in `0.0..` or `-1..=1`"));
+            }
+            let _ = self.tokens.take("..=") || self.tokens.take("..");
+            parameter.maximum = self.limit(inclusive)?;
+            self.tokens.before()
+        } else if let Some((lower, or_equal)) = self.relation() {
+            let limit = self.limit(or_equal)?;
+            if limit.is_none() {
+                return Err(self.unexpected("a number"));
+            }
+            *(if lower {
+                &mut parameter.minimum
+            } else {
+                &mut parameter.maximum
+            }) = limit;
+            self.tokens.before()
+        } else {
+            return Ok(());
+        };
+        parameter.range = start.to(end);
+        Ok(())
+    }
+
+    /// A number that may carry a sign, if there is one.
+    fn limit(&mut self, included: bool) -> syn::Result<Option<Limit>> {
+        let minus = self.tokens.take("-");
+        let Token::Literal(text) = self.tokens.peek().clone() else {
+            return if minus {
+                Err(self.unexpected("a number"))
+            } else {
+                Ok(None)
+            };
+        };
+        let place = self.tokens.here();
+        self.tokens.next();
+        let Some(value) = Rational::from_decimal(&text) else {
+            return Err(place.fault(format!(
+                "expected a decimal number in the range, found `{text}`"
+            )));
+        };
+        let value = if minus {
+            -value.to_f64()
+        } else {
+            value.to_f64()
+        };
+        Ok(Some(Limit { value, included }))
+    }
+}
