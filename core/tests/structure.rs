@@ -173,3 +173,22 @@ fn a_law_alone_takes_its_arguments_in_order() {
     }
     assert!(law.parts().is_some());
 }
+
+#[test]
+fn a_model_whose_parameters_have_defaults_has_one() {
+    hertzian::oscillator! {
+        /// An oscillator with a cubic spring.
+        Cubic(x) {
+            param k = 2.5 in 0.0..;
+            param drive = -1;
+            ddot(x) + x + k*x^3 = drive*cos(omega*t);
+        }
+    }
+    assert_eq!(
+        Cubic::default(),
+        Cubic {
+            k: 2.5,
+            drive: -1.0
+        }
+    );
+}

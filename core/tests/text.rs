@@ -29,7 +29,7 @@ both! { HUNT_CROSSLEY:
 both! { STOP:
     Stop(x, y) {
         param k > 0;
-        param play in 0.0..1.0;
+        param play = 0.25 in 0.0..1.0;
         law stop(gap) {
             gap > play => k*(gap - play),
             else => 0,
@@ -139,7 +139,8 @@ fn parameters_are_set_by_name() {
     let mut model = Declaration::parse(STOP).expect("the macro has accepted it");
     let mut values = [0.0; 2];
     model.values(&mut values);
-    assert!(values.iter().all(|value| value.is_nan()));
+    assert!(values[0].is_nan());
+    assert_eq!(values[1], 0.25);
     let error = model.set("K", 1.0).expect_err("no such parameter");
     assert_eq!(
         error.to_string(),

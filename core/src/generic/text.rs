@@ -33,7 +33,7 @@ use crate::system::{System, SystemFacts, Variable};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A parameter that has not been set is not a number, and a run refuses it by name.
+/// A parameter without a default that has not been set is not a number, and a run refuses it by name.
 #[derive(Debug, Clone)]
 pub struct Declaration {
     facts: SystemFacts,
@@ -79,10 +79,12 @@ impl Declaration {
             .map(|law| convert::law(Family::of(&mut model.dag, law)))
             .collect();
         let coefficients = Coefficients::of(&mut model);
+        let parameters = model.parameters.iter();
+        let defaults = parameters.map(|parameter| parameter.default.unwrap_or(f64::NAN));
         let nodes = convert::nodes(&coefficients.nodes);
         let program = |outputs: &Vec<usize>| constant(&nodes, outputs);
         Ok(Self {
-            values: vec![f64::NAN; facts.parameters.len()],
+            values: defaults.collect(),
             coefficients: program(&coefficients.values),
             by_omega: program(&coefficients.by_omega),
             by_parameter: coefficients.by_parameter.iter().map(program).collect(),

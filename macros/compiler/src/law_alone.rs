@@ -15,7 +15,7 @@ use crate::ir::{Law, Level, Model, Place};
 
 /// Expands a law. After errors the expansion holds all of them, and a stub of the type.
 pub fn law(declaration: TokenStream) -> TokenStream {
-    let model = model_of(&declaration);
+    let model = model_of(declaration);
     let (read, compiled) = crate::read(model);
     let law = compiled.and_then(|mut model| {
         let law = alone(&mut model)?;
@@ -33,7 +33,7 @@ pub fn law(declaration: TokenStream) -> TokenStream {
 
 /// The declaration of the smallest model with the law. What is not in its place is left where it is, for the parser to
 /// complain about.
-fn model_of(declaration: &TokenStream) -> TokenStream {
+fn model_of(declaration: TokenStream) -> TokenStream {
     let mut head = Vec::new();
     let mut tokens = declaration.clone().into_iter().peekable();
     while let Some(token) = tokens.peek() {
@@ -47,7 +47,7 @@ fn model_of(declaration: &TokenStream) -> TokenStream {
     let name = head.last().cloned();
     let (Some(TokenTree::Group(names)), Some(TokenTree::Ident(name))) = (tokens.next(), name)
     else {
-        return declaration.clone();
+        return declaration;
     };
     let span = name.span();
     let coordinate = Ident::new("coordinate_of_the_law", span);
@@ -165,14 +165,14 @@ mod tests {
                 ddot(coordinate_of_the_law) + Hertz(coordinate_of_the_law) = 0;
             }
         };
-        assert_eq!(model_of(&law).to_string(), expected.to_string());
+        assert_eq!(model_of(law).to_string(), expected.to_string());
     }
 
     #[test]
     fn arguments_keep_their_order() {
         let declaration =
             quote!(Stop(gap, play > 0, k) { gap > play => k*(gap - play)^2, else => 0 });
-        let mut model = crate::compile(model_of(&declaration)).expect("it is sound");
+        let mut model = crate::compile(model_of(declaration)).expect("it is sound");
         let law = alone(&mut model).expect("it is a law");
         assert_eq!(law.arguments, ["play", "k"]);
         assert!(

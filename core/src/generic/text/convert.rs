@@ -19,7 +19,7 @@ pub(super) fn system(model: &ir::Model) -> SystemFacts {
     SystemFacts {
         name: model.name.to_string().into(),
         equation: model.equation.clone().into(),
-        coordinates: coordinates.map(|name| name.to_string().into()).collect(),
+        coordinates: coordinates.map(|name| name.clone().into()).collect(),
         parameters: parameters
             .map(|parameter| ParameterFacts {
                 name: parameter.name.to_string().into(),

@@ -39,7 +39,7 @@ pub fn of_law_alone(own: &str, dag: &Dag, law: &Law) -> String {
     text.push_str("```\n");
     if !law.arguments.is_empty() {
         let arguments = law.arguments.join("`, `");
-        text.push_str(&format!("\nArguments: `{arguments}`.\n"));
+        text.extend(["\nArguments: `", &arguments, "`.\n"]);
     }
     text
 }

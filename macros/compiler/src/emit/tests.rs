@@ -22,13 +22,16 @@ fn run(tape: &Tape, at: [f64; 3]) -> Vec<f64> {
             Operation::Power(a, b) if v(a) > 0.0 => v(a).powf(v(b)),
             Operation::PowerLog(a, b) if v(a) > 0.0 => v(a).powf(v(b)) * v(a).ln(),
             Operation::Raise(a, log, b) if v(a) > 0.0 => (v(b) * v(log)).exp(),
-            Operation::Power(..) | Operation::PowerLog(..) | Operation::Raise(..) => 0.0,
             Operation::Nearest(a, low, high) => (-v(a)).round().clamp(v(low), v(high)),
             Operation::Over(a, b) if v(b) > 0.0 => v(a) / v(b),
             Operation::Shift {
                 power, base, steps, ..
             } if v(base) > 0.0 => v(power) * v(base).powf(v(steps)),
-            Operation::Over(..) | Operation::Shift { .. } => 0.0,
+            Operation::Power(..)
+            | Operation::PowerLog(..)
+            | Operation::Raise(..)
+            | Operation::Over(..)
+            | Operation::Shift { .. } => 0.0,
             Operation::Root(a) => v(a).max(0.0).sqrt(),
             Operation::CubeRoot(a) => v(a).max(0.0).cbrt(),
             Operation::Reciprocal(a) if v(a) == 0.0 => 0.0,
