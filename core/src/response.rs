@@ -115,7 +115,8 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
-    /// Harmonics per excitation period. Default: 20 at the default tolerance, twice as many for every two digits more.
+    /// Harmonics of the base frequency, which is omega over the divisor of the declaration (one, unless it has fractions of
+    /// omega), for an orbit of period one; an orbit of period `n` has `n` times as many. Default: 20 at the default tolerance, twice as many for every two digits more.
     #[must_use]
     pub fn harmonics(mut self, harmonics: usize) -> Self {
         self.harmonics = Some(harmonics);
