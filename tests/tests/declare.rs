@@ -446,3 +446,33 @@ fn a_contact_without_tension_lets_go() {
         .derivatives(On::AllPieces, &arguments, &[0.25], &[-11000.0], out);
     assert_eq!((force, by_gap, by_rate), ([0.0], [0.0], [0.0]));
 }
+
+hertzian::oscillator! {
+    Pressed(x) {
+        param c in 0.0..;
+        param drive;
+        law contact(gap) { gap > 0 => max(0, gap^1.5*(1 + c*dot(gap))), else => 0 }
+        ddot(x) + contact(x) = 1 + drive*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    Coupled(x, y) {
+        param gamma;
+        ddot(x) + 0.1*dot(x) + x + gamma*x*y^2 = 0.1*cos(omega*t);
+        ddot(y) + 0.1*dot(y) + 2*y + gamma*x^2*y = 0.05*cos(omega*t);
+    }
+}
+
+#[test]
+fn kinks_and_polynomials_have_branches() {
+    let pressed = Pressed { c: 0.1, drive: 0.3 };
+    let coupled = Coupled { gamma: 0.5 };
+    let systems: [&dyn System; 2] = [&pressed, &coupled];
+    for system in systems {
+        let request = hertzian::FrequencyResponse::of(system).from(0.4).to(1.8);
+        let branch = request.harmonics(8).samples(256).run().unwrap();
+        let last = branch.points.last().unwrap();
+        assert!((last.value - 1.8).abs() < 1e-12, "{}", last.value);
+    }
+}
