@@ -10,6 +10,7 @@ use crate::observe::{Motion, Observed};
 use crate::response::Follower;
 use crate::stability::Stability;
 use crate::statistics::Statistics;
+use crate::system::System;
 
 /// A periodic orbit as Fourier series of its coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,7 +171,12 @@ pub struct Branch<'a> {
     pub(crate) follower: Follower<'a>,
 }
 
-impl Branch<'_> {
+impl<'a> Branch<'a> {
+    /// The system that it belongs to.
+    pub fn system(&self) -> &'a dyn System {
+        self.follower.system
+    }
+
     /// The folds.
     pub fn folds(&self) -> impl Iterator<Item = &Event> {
         self.events

@@ -347,3 +347,57 @@ fn contact_that_cannot_be_lost_has_no_boundary() {
         assert_eq!(boundary, Vec::<[f64; 2]>::new());
     }
 }
+
+/// A Duffing oscillator read from a file is the one that is declared: its response to a small force is the linear one.
+#[test]
+fn an_oscillator_is_read_from_a_file() {
+    let folder = Folder::new("model");
+    let model = folder.file("duffing.txt");
+    let text = "Duffing(x) {\n    param zeta = 0.05 in 0.0..;\n    param drive;\n    \
+                ddot(x) + 2*zeta*dot(x) + x + x^3 = drive*cos(omega*t);\n}\n";
+    std::fs::write(&model, text).expect("written");
+    let arguments = [
+        "--model",
+        &model,
+        "--set",
+        "drive=1e-5",
+        "--to",
+        "0.7",
+        "--at",
+        "0.6",
+    ];
+    let outcome = coarse(&folder, &arguments).expect("a branch");
+    assert!(outcome.complete);
+    let peak_to_peak = 2e-5 / (1.0 - 0.36_f64).hypot(0.06);
+    let found = format!("at         omega 0.6: peak-to-peak {peak_to_peak:.6}, stable");
+    assert!(
+        outcome.summary.contains(&found),
+        "{found} in\n{}",
+        outcome.summary
+    );
+    assert!(outcome.summary.contains("zeta = 0.05, drive = 0.00001"));
+}
+
+#[test]
+fn what_is_wrong_with_a_file_is_said_with_its_place() {
+    let folder = Folder::new("faulty");
+    let model = folder.file("model.txt");
+    let refused = |text: &str, more: &[&str]| {
+        std::fs::write(&model, text).expect("written");
+        let arguments = [&["--model", &model][..], more].concat();
+        let failure = coarse(&folder, &arguments).expect_err("a failure");
+        assert_eq!(failure.exit_code(), 2);
+        failure.to_string()
+    };
+    let good = "A(x) { param k; ddot(x) + k*x = cos(omega*t); }";
+    assert!(
+        refused("A(x) { param k; ddot(x) + kk*x = 0; }", &[])
+            .contains("model.txt:1:27: unknown name `kk`")
+    );
+    assert!(refused(good, &[]).ends_with("parameters without a value: --set k=VALUE"));
+    assert!(refused(good, &["--set", "c=1"]).contains('c'));
+    assert!(refused(good, &["--set", "k=1", "--sweep", "drive"]).contains("no parameter drive"));
+    std::fs::remove_file(&model).expect("removed");
+    let failure = coarse(&folder, &["--model", &model]).expect_err("a failure");
+    assert!(failure.to_string().starts_with("cannot read"));
+}

@@ -112,6 +112,13 @@ impl Declaration {
                 .collect(),
         })
     }
+
+    /// Names and values of all parameters, in order of declaration.
+    pub fn values(&self) -> Vec<(&str, f64)> {
+        let parameters = self.facts.parameters.iter();
+        let names = parameters.map(|parameter| parameter.name.as_ref());
+        names.zip(self.values.iter().copied()).collect()
+    }
 }
 
 impl System for Declaration {

@@ -4,7 +4,7 @@ use std::ops::{ControlFlow, RangeInclusive};
 
 use hertzian::{Branch, FrequencyResponse};
 
-use super::models::model;
+use super::models::declared;
 use super::options::Options;
 
 /// Frequencies at which the boundary is computed.
@@ -37,7 +37,7 @@ pub fn loss_of_contact(
 
 /// Peak-to-peak of the orbit that touches zero at one frequency.
 fn at_frequency(options: &Options, omega: f64) -> Option<f64> {
-    let model = model(options);
+    let model = declared(options);
     let highest = highest_drive(options, omega);
     let branch = FrequencyResponse::of(&*model)
         .vary("drive")

@@ -2,7 +2,8 @@
 
 pub mod boundary;
 pub mod files;
-pub mod models;
+pub mod model_file;
+mod models;
 pub mod options;
 pub mod progress;
 pub mod records;

@@ -6,6 +6,7 @@
 
 use hertzian::System;
 
+use super::model_file::{self, ModelError};
 use super::options::Options;
 
 hertzian::oscillator! {
@@ -114,8 +115,22 @@ hertzian::oscillator! {
     }
 }
 
-/// The model that the options ask for: a specialised one if there is one for the exponent.
-pub fn model(options: &Options) -> Box<dyn System> {
+/// The oscillator that the options ask for: the one in a file, or a declared one.
+///
+/// # Errors
+/// If the file gives none.
+pub fn model(options: &Options) -> Result<Box<dyn System>, ModelError> {
+    match &options.model {
+        Some(path) => {
+            let varied = (options.varied(), options.from);
+            Ok(Box::new(model_file::read(path, &options.set, varied)?))
+        }
+        None => Ok(declared(options)),
+    }
+}
+
+/// The declared oscillator: a specialised one if there is one for the exponent.
+pub fn declared(options: &Options) -> Box<dyn System> {
     let &Options {
         alpha,
         zeta,

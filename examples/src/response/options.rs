@@ -35,6 +35,18 @@ pub struct Options {
     #[arg(long)]
     pub continuous: bool,
 
+    /// Read the oscillator from this file instead, in the language of `hertzian::oscillator!`
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = ["alpha", "one_sided", "continuous", "zeta", "load", "drive"]
+    )]
+    pub model: Option<PathBuf>,
+
+    /// Value of a parameter of that oscillator
+    #[arg(long, value_name = "NAME=VALUE", requires = "model", value_parser = setting)]
+    pub set: Vec<(String, f64)>,
+
     /// Damping ratio, not negative
     #[arg(
         long,
@@ -162,7 +174,7 @@ pub enum Aft {
 impl Options {
     /// Whether contact can be lost.
     pub fn loses_contact(&self) -> bool {
-        !self.continuous
+        self.model.is_none() && !self.continuous
     }
 
     /// Name of what varies, as the models call it.
@@ -172,4 +184,14 @@ impl Options {
             Sweep::Drive => "drive",
         }
     }
+}
+
+/// Reads `NAME=VALUE`.
+fn setting(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let value = value
+        .trim()
+        .parse()
+        .map_err(|_| format!("`{value}` is not a number"))?;
+    Ok((name.trim().to_owned(), value))
 }

@@ -10,6 +10,7 @@ use hertzian::{Branch, Error, FrequencyResponse, Point, Stop, System};
 
 use super::boundary::loss_of_contact;
 use super::files;
+use super::model_file::ModelError;
 use super::models::model;
 use super::options::{Aft, Options, Sweep};
 use super::progress::Progress;
@@ -35,6 +36,8 @@ pub enum Failure {
     Library(Error),
     /// A value of `--at` is not a number that could be reached.
     At(f64),
+    /// The file of the oscillator is at fault.
+    Model(PathBuf, ModelError),
     /// A file cannot be written.
     File(PathBuf, io::Error),
 }
@@ -53,6 +56,7 @@ impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Library(error) => error.fmt(f),
+            Self::Model(path, error) => f.write_str(&error.describe(path)),
             Self::At(value) => write!(f, "at = {value}: must be finite"),
             Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
         }
@@ -77,7 +81,10 @@ pub fn run(
     progress: &mut Progress,
 ) -> Result<Outcome, Failure> {
     check(options)?;
-    let model = model(options);
+    let model = model(options).map_err(|error| {
+        let path = options.model.clone().unwrap_or_default();
+        Failure::Model(path, error)
+    })?;
     let stop = || interrupted.load(Ordering::Relaxed);
     let mut count = 0_usize;
     let branch = request(options, &*model).run_with(|point| {
@@ -164,6 +171,9 @@ fn solutions_at(options: &Options, branch: &Branch<'_>, warnings: &mut Vec<Strin
 
 /// The library's picture of the branch, with the boundary of lost contact.
 fn picture(options: &Options, branch: &Branch<'_>, stop: impl Fn() -> bool) -> Chart {
+    if options.model.is_some() {
+        return branch.chart();
+    }
     let chart = branch.chart().title(summary::title(options));
     if options.sweep == Sweep::Drive {
         return chart;

@@ -46,7 +46,10 @@ fn write_all(
     at: &[Point],
     written: &[&Path],
 ) -> fmt::Result {
-    equation(text, options)?;
+    match &options.model {
+        Some(path) => from_file(text, path, options, branch)?,
+        None => equation(text, options)?,
+    }
     range(text, branch)?;
     folds(text, branch)?;
     stability(text, branch)?;
@@ -70,6 +73,36 @@ fn write_all(
     )?;
     let paths = written.iter().map(|path| path.display().to_string());
     writeln!(text, "written    {}", paths.collect::<Vec<_>>().join(", "))
+}
+
+/// The equations of a file, and the parameters that do not vary.
+fn from_file(
+    text: &mut String,
+    path: &Path,
+    options: &Options,
+    branch: &Branch<'_>,
+) -> fmt::Result {
+    let facts = branch.system().facts();
+    writeln!(
+        text,
+        "{} from {}: {}",
+        facts.name,
+        path.display(),
+        facts.equation
+    )?;
+    let Some(point) = branch.points.first() else {
+        return Ok(());
+    };
+    let parameters = facts.parameters.iter().zip(&point.parameters);
+    let fixed = parameters
+        .filter(|(parameter, _)| parameter.name != branch.varied)
+        .map(|(parameter, value)| format!("{} = {value}", parameter.name));
+    let omega = (options.sweep == Sweep::Drive).then(|| format!("omega = {}", options.omega));
+    writeln!(
+        text,
+        "{}\n",
+        fixed.chain(omega).collect::<Vec<_>>().join(", ")
+    )
 }
 
 fn equation(text: &mut String, options: &Options) -> fmt::Result {
@@ -185,7 +218,7 @@ fn list(text: &mut String, label: &str, entries: impl Iterator<Item = String>) -
 fn caution(text: &mut String, options: &Options) -> fmt::Result {
     let reason = if options.loses_contact() {
         "damping switches with contact"
-    } else if options.alpha < 1.0 {
+    } else if options.model.is_none() && options.alpha < 1.0 {
         "the stiffness is unbounded at x = 0"
     } else {
         return Ok(());
