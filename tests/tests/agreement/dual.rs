@@ -94,7 +94,9 @@ impl Numbers for Dual64 {
         DualNum::exp(&self)
     }
 
+    /// Dual numbers take the quotient of sinh and cosh, which both overflow where tanh is one; so does `cosh^2`, but its
+    /// reciprocal is then the zero that it should be.
     fn tanh(self) -> Self {
-        DualNum::tanh(&self)
+        Self::new(self.re.tanh(), self.eps / self.re.cosh().powi(2))
     }
 }

@@ -1,4 +1,5 @@
-//! Generated code, the interpreter and dual numbers agree, on every declared model and at 1e5 random points each.
+//! Generated code, the interpreter and dual numbers agree, on every declared model and at 1e5 random points each, or at
+//! as many as the environment variable `HERTZIAN_POINTS` says.
 //!
 //! Three ways lead to a force and its derivatives: the code that the macro emits; the interpreter, which runs the
 //! derivatives that the compiler found symbolically; and dual numbers (num-dual), which differentiate the data of the
@@ -19,16 +20,20 @@ use hertzian::system::{Place, System};
 use models::MODELS;
 use random::Random;
 
-const BATCHES: usize = 100;
-const POINTS: usize = 1000;
+/// Points of each model, unless `HERTZIAN_POINTS` says otherwise.
+const DEFAULT_POINTS: usize = 100_000;
+/// Points that share the parameters of the model.
+const BATCH: usize = 1000;
 
 #[test]
 fn generated_interpreted_and_dual_numbers_agree() {
+    let batches = points().div_ceil(BATCH);
     for (name, model) in MODELS {
         let mut random = Random::new(20_210_603);
-        for _ in 0..BATCHES {
+        for _ in 0..batches {
             let system = model(&mut random);
             let interpreted = Interpreted::of(system.as_ref());
+            assert!(!system.facts().contacts.is_empty(), "{name}: no contacts");
             for (contact, facts) in system.facts().contacts.iter().enumerate() {
                 let arguments = arguments(system.as_ref(), contact);
                 let (law, twin) = (system.law(facts.law), interpreted.law(facts.law));
@@ -45,6 +50,12 @@ fn generated_interpreted_and_dual_numbers_agree() {
             }
         }
     }
+}
+
+fn points() -> usize {
+    std::env::var("HERTZIAN_POINTS").map_or(DEFAULT_POINTS, |text| {
+        text.parse().expect("HERTZIAN_POINTS is a whole number")
+    })
 }
 
 /// The arguments of the law of a contact, at the values of the parameters.
@@ -171,7 +182,7 @@ fn gaps(levels: &[f64], random: &mut Random) -> Vec<f64> {
         .iter()
         .flat_map(|level| [*level, level.next_up(), level.next_down()])
         .collect();
-    while gaps.len() < POINTS {
+    while gaps.len() < BATCH {
         let centre = centres[random.below(centres.len())];
         gaps.push(centre + random.magnitude(-300.0, 6.0));
     }

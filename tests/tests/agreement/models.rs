@@ -35,6 +35,85 @@ pub const MODELS: &[(&str, Model)] = &[
             c: r.within(0.0, 0.9),
         })
     }),
+    ("linear contact", |r| {
+        Box::new(LinearContact {
+            k: r.within(0.1, 9.0),
+            c: r.within(0.0, 0.9),
+        })
+    }),
+    ("two powers", |r| {
+        Box::new(TwoPowers {
+            alpha: r.within(0.05, 2.0),
+            beta: r.within(2.0, 4.0),
+            weight: r.within(-1.0, 1.0),
+        })
+    }),
+    ("rough layer", |r| {
+        Box::new(RoughLayer {
+            n: r.within(1.6, 4.0),
+            layer: r.within(0.01, 1.0),
+        })
+    }),
+    ("Hunt-Crossley without tension", |r| {
+        Box::new(NoTension {
+            k: r.within(0.1, 9.0),
+            c: r.within(0.0, 0.9),
+        })
+    }),
+    ("backlash with different sides", |r| {
+        Box::new(Gears {
+            drive_side: r.within(0.1, 9.0),
+            coast_side: r.within(0.1, 9.0),
+            front: r.within(0.0, 2.0),
+            back: r.within(0.0, 2.0),
+        })
+    }),
+    ("bilinear", |r| {
+        Box::new(Bilinear {
+            pushed: r.within(0.1, 9.0),
+            pulled: r.within(0.1, 9.0),
+        })
+    }),
+    ("preloaded stop", |r| {
+        Box::new(PreloadedStop {
+            k: r.within(0.1, 9.0),
+            preload: r.within(0.0, 2.0),
+        })
+    }),
+    ("attraction and contact", |r| {
+        Box::new(Tip {
+            h: r.within(0.01, 1.0),
+            a: r.within(0.01, 1.0),
+            k: r.within(0.1, 9.0),
+        })
+    }),
+    ("Duffing", |r| {
+        Box::new(Duffing {
+            beta: r.within(-1.0, 1.0),
+        })
+    }),
+    ("van der Pol", |r| {
+        Box::new(VanDerPol {
+            mu: r.within(-1.0, 5.0),
+        })
+    }),
+    ("quadratic damping", |r| {
+        Box::new(QuadraticDamping {
+            c: r.within(0.0, 2.0),
+        })
+    }),
+    ("smooth friction", |r| {
+        Box::new(SmoothFriction {
+            friction: r.within(0.0, 2.0),
+            speed: r.within(0.01, 1.0),
+        })
+    }),
+    ("exponential well", |r| {
+        Box::new(Well {
+            depth: r.within(0.0, 2.0),
+            width: r.within(0.1, 2.0),
+        })
+    }),
 ];
 
 oscillator! {
@@ -111,5 +190,191 @@ oscillator! {
         }
 
         ddot(x) + contact(x) = 0.1*cos(omega*t) + 1;
+    }
+}
+
+oscillator! {
+    /// Linear contact on one side: the damping force jumps.
+    LinearContact(x) {
+        /// stiffness
+        param k > 0;
+        /// damping
+        param c in 0.0..;
+
+        /// gap > 0 is penetration
+        law contact(gap) { gap > 0 => k*gap + c*dot(gap), else => 0 }
+
+        ddot(x) + contact(x) = cos(omega*t) + 1;
+    }
+}
+
+oscillator! {
+    /// Two powers of either sign, both exponents parameters.
+    TwoPowers(x) {
+        /// lower exponent
+        param alpha > 0;
+        /// higher exponent
+        param beta > 0;
+        /// factor of the second power
+        param weight;
+
+        ddot(x) + 0.064*dot(x) + sgn(x)*|x|^alpha + weight*sgn(x)*|x|^beta = 0.1*cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// A power of a scaled gap beside a Hertz contact.
+    RoughLayer(x) {
+        /// exponent
+        param n > 0;
+        /// thickness of the layer
+        param layer > 0;
+
+        /// gap > 0 is penetration
+        law rough(gap) { gap > 0 => gap^1.5 + layer^1.5*(gap/layer)^n, else => 0 }
+
+        ddot(x) + rough(x) = 0.1*cos(omega*t) + 1;
+    }
+}
+
+oscillator! {
+    /// A fast separation does not pull: the force switches at a rate.
+    NoTension(x) {
+        /// stiffness
+        param k > 0;
+        /// damping
+        param c in 0.0..;
+
+        /// gap > 0 is penetration
+        law contact(gap) { gap > 0 => max(0, k*gap^1.5*(1 + c*dot(gap))), else => 0 }
+
+        ddot(x) + contact(x) = 1 + cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// Play between flanks of different stiffness, which varies in time.
+    Gears(x) {
+        /// stiffness of the front flank
+        param drive_side > 0;
+        /// stiffness of the back flank
+        param coast_side > 0;
+        /// place of the front flank
+        param front > 0;
+        /// place of the back flank
+        param back > 0;
+
+        /// gap beyond either flank
+        law teeth(gap) {
+            gap > front           => drive_side*(gap - front),
+            -back <= gap <= front => 0,
+            gap < -back           => coast_side*(gap + back),
+        }
+
+        ddot(x) + 0.1*dot(x) + (1 + 0.2*cos(omega*t))*teeth(x) = 0.1;
+    }
+}
+
+oscillator! {
+    /// Two slopes that meet at zero.
+    Bilinear(x) {
+        /// stiffness above zero
+        param pushed > 0;
+        /// stiffness below zero
+        param pulled > 0;
+
+        /// either side of zero
+        law spring(gap) { gap > 0 => pushed*gap, else => pulled*gap }
+
+        ddot(x) + 0.05*dot(x) + spring(x) = cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// The force begins at the preload: a static jump.
+    PreloadedStop(x) {
+        /// stiffness
+        param k > 0;
+        /// force at touch
+        param preload in 0.0..;
+
+        /// The level itself belongs to contact.
+        law stop(gap) { gap >= 0 => preload + k*gap, else => 0 }
+
+        ddot(x) + 0.05*dot(x) + x + stop(x - 1) = cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// Van der Waals attraction outside, Hertz contact inside (DMT).
+    Tip(x) {
+        /// strength of the attraction
+        param h > 0;
+        /// distance that keeps it finite
+        param a > 0;
+        /// stiffness in contact
+        param k > 0;
+
+        /// gap > 0 is penetration
+        law surface(gap) {
+            gap > 0 => k*gap^1.5 - h/a^2,
+            else    => -h*(a - gap)^-2,
+        }
+
+        ddot(x) + 0.01*dot(x) + x + surface(x - 1) = cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// Cubic spring.
+    Duffing(x) {
+        /// cubic stiffness
+        param beta;
+
+        ddot(x) + 0.1*dot(x) + x + beta*x^3 = cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// Damping that drives small motion.
+    VanDerPol(x) {
+        /// damping
+        param mu;
+
+        ddot(x) + mu*(x^2 - 1)*dot(x) + x = cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// Drag.
+    QuadraticDamping(x) {
+        /// damping
+        param c in 0.0..;
+
+        ddot(x) + c*|dot(x)|*dot(x) + x = cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// Dry friction made smooth.
+    SmoothFriction(x) {
+        /// force at high speed
+        param friction in 0.0..;
+        /// speed at which it is reached
+        param speed > 0;
+
+        ddot(x) + friction*tanh(dot(x)/speed) + x = cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// A well with smooth walls.
+    Well(x) {
+        /// force
+        param depth in 0.0..;
+        /// width
+        param width > 0;
+
+        ddot(x) + 0.1*dot(x) + x + depth*x*exp(-(x/width)^2) = cos(omega*t);
     }
 }
