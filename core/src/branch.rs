@@ -22,7 +22,7 @@ pub struct Orbit {
     pub omega: f64,
     /// Base frequency: the orbit repeats after `2 pi / base`.
     pub base: f64,
-    /// Number of excitation periods in its period.
+    /// Number of periods of the declaration (`2 pi divisor / omega`) in its period.
     pub period: usize,
 }
 
@@ -140,7 +140,7 @@ impl fmt::Display for Event {
 
 /// A place where the branch turned back, but not through a fold: the test function jumped.
 ///
-/// A sampled balance of a force that jumps does this (see [`aft`](crate)), and so does an orbit that grazes a level.
+/// A sampled balance of a force that jumps does this, and so does an orbit that grazes a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
     /// What the branch varies, where the jump is.
@@ -189,7 +189,7 @@ impl<'a> Branch<'a> {
     /// # Errors
     /// If an orbit between two points cannot be computed.
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
-        self.follower.at(&self.points, value)
+        self.follower.at(&self.points, &self.events, value)
     }
 
     /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.

@@ -64,12 +64,28 @@ pub enum Error {
         /// The levels.
         levels: Vec<f64>,
     },
-    /// The load has harmonics that the balance does not carry.
+    /// The declaration has harmonics that the balance does not carry.
     Harmonics {
         /// Harmonics of the balance.
         harmonics: usize,
-        /// The highest harmonic of the load, counted in the orbit's own period.
-        load: usize,
+        /// The highest harmonic of loads, stiffness and directions, counted in the orbit's own period.
+        highest: usize,
+    },
+    /// The system has no coordinates.
+    NoCoordinates,
+    /// The mass matrix is singular.
+    SingularMass {
+        /// Its determinant.
+        determinant: f64,
+    },
+    /// A branch passes a value between two of its points, but the orbit there could not be computed.
+    Lost {
+        /// The value.
+        value: f64,
+        /// The value at the point before.
+        from: f64,
+        /// The value at the point behind.
+        to: f64,
     },
     /// No orbit was found at the start of the range.
     NoStart {
@@ -130,10 +146,23 @@ impl std::fmt::Display for Error {
                     "the levels of law {law} are not in increasing order: {levels:?}"
                 )
             }
-            Self::Harmonics { harmonics, load } => write!(
+            Self::Harmonics { harmonics, highest } => write!(
                 f,
-                "the load has harmonic {load} of the orbit, and the balance only {harmonics}: take more harmonics"
+                "the declaration has harmonic {highest} of the orbit, and the balance only {harmonics}: take more harmonics"
             ),
+            Self::NoCoordinates => write!(f, "the system has no coordinates"),
+            Self::SingularMass { determinant } => {
+                write!(
+                    f,
+                    "the mass matrix is singular: its determinant is {determinant:e}"
+                )
+            }
+            Self::Lost { value, from, to } => {
+                write!(
+                    f,
+                    "the orbit at {value}, between those at {from} and {to}, could not be computed"
+                )
+            }
             Self::NoStart { parameter, reason } => {
                 write!(f, "no periodic orbit found at {parameter}: {reason}")
             }

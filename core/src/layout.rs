@@ -182,6 +182,25 @@ impl Layout {
         }
     }
 
+    /// Highest harmonic in the declaration, in multiples of `omega / divisor`.
+    pub(crate) fn highest_harmonic(&self) -> usize {
+        let stiffness = self
+            .stiffness
+            .iter()
+            .map(|entry| entry.wave.harmonic as usize);
+        let contacts = self.contacts.iter().map(|contact| {
+            contact
+                .force_harmonic()
+                .max(contact.gap_harmonic())
+                .max(contact.offset_harmonic())
+        });
+        stiffness
+            .chain(contacts)
+            .max()
+            .unwrap_or(0)
+            .max(self.load_harmonic())
+    }
+
     /// Highest harmonic of the load, in multiples of `omega / divisor`.
     pub(crate) fn load_harmonic(&self) -> usize {
         self.load

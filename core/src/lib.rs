@@ -67,7 +67,7 @@ pub mod system;
 mod truncation;
 mod validate;
 
-pub use branch::{Branch, Event, EventKind, Orbit, Point};
+pub use branch::{Branch, Event, EventKind, Orbit, Point, Turn};
 pub use continuation::follow::Stop;
 pub use error::Error;
 pub use hertzian_macros::{law, oscillator};

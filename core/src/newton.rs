@@ -10,7 +10,7 @@
 //! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems; the border is the
 //! unit vector of the parameter to solve at a fixed parameter, and a tangent for a step of pseudo-arclength.
 
-use crate::continuation::problem::{Problem, Scale};
+use crate::continuation::problem::{Norm, Problem, Scale};
 use crate::linear::{Lu, Matrix, Singular};
 use crate::statistics::Statistics;
 
@@ -96,7 +96,9 @@ pub struct Newton {
     residual: Vec<f64>,
     update: Vec<f64>,
     trial: Vec<f64>,
-    weights: Vec<f64>,
+    norm: Norm,
+    /// The scale of the factors at hand.
+    scale: Scale,
     /// Work done so far.
     pub statistics: Statistics,
 }
@@ -114,22 +116,21 @@ impl Newton {
     /// Room for `n` unknowns and a parameter.
     pub fn new(problem: &impl Problem) -> Self {
         let n = problem.unknowns();
-        let mut weights = vec![0.0; n];
-        problem.weights(&mut weights);
         Self {
             matrix: Matrix::zeros(n + 1),
             lu: Lu::new(n + 1),
             residual: vec![0.0; n + 1],
             update: vec![0.0; n + 1],
             trial: vec![0.0; n + 1],
-            weights,
+            norm: Norm::of(problem),
+            scale: Scale::UNIT,
             statistics: Statistics::default(),
         }
     }
 
-    /// The weights of the problem's norm.
-    pub fn weights(&self) -> &[f64] {
-        &self.weights
+    /// The problem's norm.
+    pub fn norm(&self) -> &Norm {
+        &self.norm
     }
 
     /// Solves (1) repeatedly until the update is small; `u` is the start and becomes the solution. The factors of the
@@ -145,15 +146,17 @@ impl Newton {
         scale: Scale,
         options: NewtonOptions,
     ) -> Result<Converged, NewtonError> {
+        self.scale = scale;
         let mut previous = f64::INFINITY;
+        let mut updates = 0;
         let mut size = f64::INFINITY;
         for iteration in 0..options.iterations {
-            self.linearise(problem, u, border, scale)
+            self.linearise(problem, u, border)
                 .map_err(|error| error.after(iteration))?;
             self.update.copy_from_slice(&self.residual);
             self.lu.solve(&self.matrix, &mut self.update);
-            unscale(&mut self.update, scale);
-            size = scale.norm(&self.weights, &self.update);
+            unscale(&self.norm, scale, &mut self.update);
+            size = self.norm.length(scale, &self.update);
             if !size.is_finite() {
                 return Err(NewtonError::NotFinite {
                     iterations: iteration,
@@ -174,10 +177,11 @@ impl Newton {
                 }
                 subtract(u, &self.update, 1.0);
             }
+            updates = iteration + 1;
             previous = size;
         }
         Err(NewtonError::NotConverged {
-            iterations: options.iterations,
+            iterations: updates,
             update: size,
             residual: largest(&self.residual),
         })
@@ -185,26 +189,26 @@ impl Newton {
 
     /// Solves with the matrix of the last [`Newton::correct`] and a right-hand side that is zero but for the border.
     /// With a unit value there, the result is the tangent of the solution curve, not yet normalised.
-    pub fn solve_border(&self, tangent: &mut [f64], scale: Scale) {
+    pub fn solve_border(&self, tangent: &mut [f64]) {
         tangent.fill(0.0);
         if let Some(last) = tangent.last_mut() {
             *last = 1.0;
         }
-        self.solve(tangent, scale);
+        self.solve(tangent);
     }
 
     /// Solves with the matrix of the last [`Newton::correct`], in place.
-    pub fn solve(&self, vector: &mut [f64], scale: Scale) {
+    pub fn solve(&self, vector: &mut [f64]) {
         self.lu.solve(&self.matrix, vector);
-        unscale(vector, scale);
+        unscale(&self.norm, self.scale, vector);
     }
 
     /// Writes `psi` with `psi^T R_u = 0` and `psi^T R_lambda = 1`, which exists at a fold: there a small residual `r`
     /// moves the parameter of the fold by `-psi . r`. The last entry is the defect, zero at the fold itself.
-    pub fn left_null_vector(&self, psi: &mut [f64], scale: Scale) {
+    pub fn left_null_vector(&self, psi: &mut [f64]) {
         psi.fill(0.0);
         if let Some(last) = psi.last_mut() {
-            *last = scale.parameter;
+            *last = self.scale.parameter;
         }
         self.lu.solve_transposed(&self.matrix, psi);
     }
@@ -215,9 +219,8 @@ impl Newton {
         problem: &mut impl Problem,
         u: &[f64],
         border: Border<'_>,
-        scale: Scale,
     ) -> Result<(), NewtonError> {
-        let n = self.weights.len();
+        let n = self.norm.unknowns();
         self.matrix.clear();
         problem.evaluate(u, &mut self.residual[..n], Some(&mut self.matrix));
         self.statistics.jacobians += 1;
@@ -228,10 +231,9 @@ impl Newton {
         }
         for row in 0..=n {
             let entries = self.matrix.row_mut(row);
-            for x in &mut entries[..n] {
-                *x *= scale.state;
+            for (column, x) in entries.iter_mut().enumerate() {
+                *x *= self.norm.unit(self.scale, column);
             }
-            entries[n] *= scale.parameter;
         }
         self.statistics.factorisations += 1;
         self.lu
@@ -241,7 +243,7 @@ impl Newton {
 
     /// Takes the longest of the halved updates that reduces the residual, or the shortest.
     fn damped_update(&mut self, problem: &mut impl Problem, u: &mut [f64], border: Border<'_>) {
-        let n = self.weights.len();
+        let n = self.norm.unknowns();
         let before = norm(&self.residual);
         let mut factor = 1.0;
         for _ in 0..12 {
@@ -270,12 +272,9 @@ impl NewtonError {
 }
 
 /// From units of the scale to the units of the unknowns.
-fn unscale(vector: &mut [f64], scale: Scale) {
-    if let Some((parameter, state)) = vector.split_last_mut() {
-        *parameter *= scale.parameter;
-        for x in state {
-            *x *= scale.state;
-        }
+fn unscale(norm: &Norm, scale: Scale, vector: &mut [f64]) {
+    for (unknown, x) in vector.iter_mut().enumerate() {
+        *x *= norm.unit(scale, unknown);
     }
 }
 

@@ -7,12 +7,12 @@ use crate::balance::{Balance, Resolution};
 use crate::branch::{Branch, Event, EventKind, Orbit, Point, Turn};
 use crate::continuation::follow::{CurvePoint, FollowOptions, Visit, follow};
 use crate::continuation::locate::locate;
-use crate::continuation::problem::{Problem, Scale};
+use crate::continuation::problem::{Norm, Problem};
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::fourier::series;
 use crate::layout::{ContactLayout, Layout};
-use crate::newton::{Border, Newton, NewtonOptions};
+use crate::newton::{Newton, NewtonOptions};
 use crate::observe::observe;
 use crate::stability::judge::Judge;
 use crate::start::{StartRequest, start};
@@ -23,6 +23,10 @@ use crate::validate;
 
 /// The test function of a fold is driven below this.
 const FOLD_TOLERANCE: f64 = 1e-10;
+/// A value asked for is met to this part of the range.
+const VALUE_TOLERANCE: f64 = 1e-13;
+/// More samples of an orbit would take more than a gigabyte.
+const MOST_SAMPLES: usize = 10_000_000;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
@@ -116,7 +120,8 @@ impl<'a> FrequencyResponse<'a> {
     }
 
     /// Harmonics of the base frequency, which is omega over the divisor of the declaration (one, unless it has fractions of
-    /// omega), for an orbit of period one; an orbit of period `n` has `n` times as many. Default: 20 at the default tolerance, twice as many for every two digits more.
+    /// omega), for an orbit of period one; an orbit of period `n` has `n` times as many. Default: 20 times the divisor at the
+    /// default tolerance, twice as many for every two digits more, and between 5 and 100.
     #[must_use]
     pub fn harmonics(mut self, harmonics: usize) -> Self {
         self.harmonics = Some(harmonics);
@@ -190,6 +195,9 @@ impl<'a> FrequencyResponse<'a> {
     /// Checks everything that was asked for.
     fn check(&self) -> Result<(Follower<'a>, FollowOptions), Error> {
         let facts = self.system.facts();
+        if facts.coordinates.is_empty() {
+            return Err(Error::NoCoordinates);
+        }
         let mut parameters = vec![0.0; facts.parameters.len()];
         self.system.values(&mut parameters);
         let variable = validate::variable(facts, self.vary.as_deref())?;
@@ -197,7 +205,15 @@ impl<'a> FrequencyResponse<'a> {
         let to = self.to.ok_or(Error::MissingEnd { name: "to" })?;
         validate::range(facts, variable, from, to)?;
         let omega = match (variable, self.omega) {
-            (Variable::Omega, _) => from,
+            (Variable::Omega, None) => from,
+            (Variable::Omega, Some(value)) => {
+                let must = "is what is varied: give it by from and to";
+                return Err(Error::Option {
+                    name: "omega",
+                    value,
+                    must,
+                });
+            }
             (Variable::Parameter(index), Some(omega)) => {
                 parameters[index] = from;
                 validate::omega(omega)?
@@ -224,7 +240,19 @@ impl<'a> FrequencyResponse<'a> {
             "must be 2 or more",
         )?;
         let resolution = self.resolution()?;
-        validate::levels(self.system, &parameters, omega)?;
+        // Levels are affine in the parameters, so if they are in order at both ends, they are in between.
+        let at_end = match variable {
+            Variable::Omega => (parameters.clone(), to),
+            Variable::Parameter(index) => {
+                let mut parameters = parameters.clone();
+                parameters[index] = to;
+                (parameters, omega)
+            }
+        };
+        for (parameters, omega) in [(&parameters, omega), (&at_end.0, at_end.1)] {
+            validate::levels(self.system, parameters, omega)?;
+            validate::mass(self.system, parameters, omega)?;
+        }
         let newton = NewtonOptions {
             tolerance: (1e-3 * self.tolerance).clamp(1e-11, 1e-6),
             iterations: 12,
@@ -259,7 +287,8 @@ impl<'a> FrequencyResponse<'a> {
         let by_tolerance = (20.0 * ((digits - 6.0) / 2.0).exp2())
             .round()
             .clamp(5.0, 100.0) as usize;
-        let per_period = self.harmonics.unwrap_or(by_tolerance);
+        let divisor = self.system.facts().divisor as usize;
+        let per_period = self.harmonics.unwrap_or(by_tolerance * divisor);
         validate::option(
             "harmonics",
             per_period as f64,
@@ -275,9 +304,9 @@ impl<'a> FrequencyResponse<'a> {
                 most: MOST_UNKNOWNS,
             });
         }
-        let load = layout.load_harmonic() * self.period;
-        if load > harmonics {
-            return Err(Error::Harmonics { harmonics, load });
+        let highest = layout.highest_harmonic() * self.period;
+        if highest > harmonics {
+            return Err(Error::Harmonics { harmonics, highest });
         }
         let samples_per_period = self
             .samples
@@ -289,6 +318,14 @@ impl<'a> FrequencyResponse<'a> {
             "must be from 1 to 1e7",
         )?;
         let samples = samples_per_period * self.period;
+        if samples > MOST_SAMPLES {
+            let must = "times the period must be at most 1e7";
+            return Err(Error::Option {
+                name: "samples",
+                value: samples as f64,
+                must,
+            });
+        }
         // The derivatives are needed up to twice the harmonics of the balance, and the waves of directions and offsets on top.
         let contacts = layout.contacts.iter();
         let wave = |contact: &ContactLayout| {
@@ -366,63 +403,120 @@ impl<'a> Follower<'a> {
     }
 
     /// See [`Branch::at`].
-    pub(crate) fn at(&self, points: &[Point], value: f64) -> Result<Vec<Point>, Error> {
+    pub(crate) fn at(
+        &self,
+        points: &[Point],
+        events: &[Event],
+        value: f64,
+    ) -> Result<Vec<Point>, Error> {
         let mut balance = self.balance();
         let mut newton = Newton::new(&balance);
         let mut judge = Judge::new(self.finer());
-        let mut found = Vec::new();
-        for (index, point) in points.iter().enumerate() {
-            let next = points.get(index + 1);
-            if point.value == value {
-                found.push(point.clone());
-            } else if let Some(next) = next
-                && (point.value < value) != (next.value < value)
-                && next.value != value
-            {
-                let part = (value - point.value) / (next.value - point.value);
-                let (a, b) = (&point.orbit.series, &next.orbit.series);
-                let mut u: Vec<f64> = a.iter().zip(b).map(|(x, y)| x + part * (y - x)).collect();
-                u.push(value);
-                let scale = self.solve(&mut balance, &mut newton, &mut u)?;
-                found.push(point_of(&mut balance, &mut newton, &mut judge, &u, scale));
-            }
+        let mut found: Vec<Point> = Vec::new();
+        // Between folds the branch is monotonic, so every part of this chain passes a value at most once.
+        let chain = chain(points, events);
+        for (index, point) in chain.iter().enumerate() {
+            let solution = if point.value == value {
+                Some((*point).clone())
+            } else {
+                match chain.get(index + 1) {
+                    Some(next)
+                        if next.value != value && (point.value < value) != (next.value < value) =>
+                    {
+                        let u = self.between(&mut balance, &mut newton, (point, next), value)?;
+                        Some(point_of(&mut balance, &mut newton, &mut judge, &u))
+                    }
+                    _ => None,
+                }
+            };
+            // A closed branch ends where it began.
+            found.extend(
+                solution.filter(|new| !found.iter().any(|old| is_same(&old.orbit, &new.orbit))),
+            );
         }
         Ok(found)
     }
 
-    /// Newton's method at a fixed value.
-    fn solve(
+    /// The orbit at a value between those of two neighbours, searched along the chord of the two.
+    fn between(
         &self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        u: &mut [f64],
-    ) -> Result<Scale, Error> {
-        let last = u.len() - 1;
-        let value = u[last];
-        let state = newton
-            .weights()
-            .iter()
-            .zip(&*u)
-            .map(|(w, x)| w * x * x)
-            .sum::<f64>()
-            .sqrt();
-        let parameter = (self.to - self.from).abs();
-        let scale = Scale {
-            state: if state > 0.0 { state } else { 1.0 },
-            parameter,
+        (a, b): (&Point, &Point),
+        value: f64,
+    ) -> Result<Vec<f64>, Error> {
+        let extended = |point: &Point| {
+            let mut u = point.orbit.series.clone();
+            u.push(point.value);
+            u
         };
-        let mut row = vec![0.0; u.len()];
-        row[last] = 1.0;
-        let border = Border { row: &row, value };
-        newton
-            .correct(balance, u, border, scale, self.newton)
-            .map_err(|reason| Error::NoStart {
-                parameter: value,
-                reason,
-            })?;
+        let (from, to) = (extended(a), extended(b));
+        let range = (self.to - self.from).abs();
+        let norm: &Norm = newton.norm();
+        let mut largest = [0.0; 2];
+        norm.scale_at(&to, range, &mut largest);
+        let scale = norm.scale_at(&from, range, &mut largest);
+        let mut tangent: Vec<f64> = to.iter().zip(&from).map(|(x, y)| x - y).collect();
+        let length = norm.length(scale, &tangent);
+        for t in &mut tangent {
+            *t /= length;
+        }
+        let first = CurvePoint {
+            u: from,
+            tangent: tangent.clone(),
+            scale,
+        };
+        let second = CurvePoint {
+            u: to,
+            tangent,
+            scale,
+        };
+        let offset = |point: &CurvePoint| (point.parameter() - value) / range;
+        let located = locate(
+            balance,
+            newton,
+            (&first, &second),
+            self.newton,
+            VALUE_TOLERANCE,
+            offset,
+        );
+        let lost = Error::Lost {
+            value,
+            from: a.value,
+            to: b.value,
+        };
+        let mut u = located
+            .filter(|located| located.vanishes)
+            .ok_or(lost)?
+            .point
+            .u;
+        let last = u.len() - 1;
         u[last] = value;
-        Ok(scale)
+        Ok(u)
     }
+}
+
+/// Points and folds of a branch in their order along it.
+fn chain<'p>(points: &'p [Point], events: &'p [Event]) -> Vec<&'p Point> {
+    let mut chain = Vec::with_capacity(points.len() + events.len());
+    for (index, point) in points.iter().enumerate() {
+        let folds = events
+            .iter()
+            .filter(|event| event.after == index && event.kind == EventKind::Fold);
+        chain.extend(folds.map(|event| &event.point));
+        chain.push(point);
+    }
+    chain
+}
+
+/// Whether two orbits are one to nine digits.
+fn is_same(a: &Orbit, b: &Orbit) -> bool {
+    let size = a.series.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    a.omega == b.omega
+        && a.series
+            .iter()
+            .zip(&b.series)
+            .all(|(x, y)| (x - y).abs() <= 1e-9 * size)
 }
 
 /// What a run has gathered.
@@ -455,7 +549,7 @@ impl<'a> Run<'a> {
     ) -> ControlFlow<()> {
         match seen {
             Visit::Point(at) => {
-                let point = point_of(balance, newton, &mut self.judge, &at.u, at.scale);
+                let point = point_of(balance, newton, &mut self.judge, &at.u);
                 let answer = visit(&point);
                 self.points.push(point);
                 answer
@@ -480,9 +574,9 @@ impl<'a> Run<'a> {
         let slope = CurvePoint::parameter_slope;
         match locate(balance, newton, between, options, FOLD_TOLERANCE, slope) {
             Some(located) if located.vanishes => {
-                let CurvePoint { u, scale, .. } = &located.point;
-                let error = self.finer.fold_error(u, newton, *scale);
-                let point = point_of(balance, newton, &mut self.judge, u, *scale);
+                let u = &located.point.u;
+                let error = self.finer.fold_error(u, newton);
+                let point = point_of(balance, newton, &mut self.judge, u);
                 let kind = EventKind::Fold;
                 self.events.push(Event {
                     kind,
@@ -518,11 +612,10 @@ fn point_of(
     newton: &mut Newton,
     judge: &mut Judge<'_>,
     u: &[f64],
-    scale: Scale,
 ) -> Point {
     let n = balance.unknowns();
     balance.set(u[n]);
-    let stability = judge.stability(balance, newton, u, scale);
+    let stability = judge.stability(balance, newton, u);
     let orbit = Orbit {
         series: u[..n].to_vec(),
         coordinates: balance.layout().coordinates,

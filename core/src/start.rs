@@ -14,7 +14,7 @@
 
 use crate::balance::{Balance, Resolution};
 use crate::continuation::follow::{FollowOptions, Visit, follow};
-use crate::continuation::problem::{Problem, Scale};
+use crate::continuation::problem::Problem;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::fourier::series;
@@ -125,21 +125,12 @@ impl<'a> Fixed<'a> {
     /// Newton's method at the fixed value.
     fn solve(&mut self, u: &mut [f64], options: NewtonOptions) -> Result<(), NewtonError> {
         let last = u.len() - 1;
-        let size = Scale {
-            state: 1.0,
-            parameter: 1.0,
-        }
-        .norm(self.newton.weights(), u);
-        let size = (size * size - self.value * self.value).max(0.0).sqrt();
         let parameter = if self.value == 0.0 {
             1.0
         } else {
             self.value.abs()
         };
-        let scale = Scale {
-            state: if size > 0.0 { size } else { 1.0 },
-            parameter,
-        };
+        let scale = self.newton.norm().scale_at(u, parameter, &mut [0.0; 2]);
         let border = Border {
             row: &self.border,
             value: self.value,
@@ -337,11 +328,21 @@ fn homotopy(
     mut rest: Vec<f64>,
     statistics: &mut Statistics,
 ) -> Option<Vec<f64>> {
-    let fixed = Fixed::new(request, request.resolution.harmonics);
+    let mut fixed = Fixed::new(request, request.resolution.harmonics);
+    let mut oscillating = vec![0.0; fixed.border.len() - 1];
+    fixed.balance.set(fixed.value);
+    fixed
+        .balance
+        .add_load(fixed.balance.coefficients(), -1.0, &mut oscillating);
+    fixed.balance.set_drive_factor(0.0);
+    fixed
+        .balance
+        .add_load(fixed.balance.coefficients(), 1.0, &mut oscillating);
     let mut problem = Homotopy {
         balance: fixed.balance,
         value: request.value,
         extended: rest.clone(),
+        oscillating,
     };
     let last = rest.len() - 1;
     rest[last] = 0.0;
@@ -384,6 +385,8 @@ struct Homotopy<'a> {
     balance: Balance<'a>,
     value: f64,
     extended: Vec<f64>,
+    /// The oscillating load with its sign in the residual: the derivative by the factor.
+    oscillating: Vec<f64>,
 }
 
 impl Problem for Homotopy<'_> {
@@ -402,15 +405,7 @@ impl Problem for Homotopy<'_> {
         };
         self.balance
             .evaluate(&self.extended, residual, Some(&mut *jacobian));
-        // The load is linear in its factor, so its derivative is the oscillating load itself.
-        let mut oscillating = vec![0.0; n];
-        self.balance.set_drive_factor(1.0);
-        self.balance
-            .add_load(self.balance.coefficients(), -1.0, &mut oscillating);
-        self.balance.set_drive_factor(0.0);
-        self.balance
-            .add_load(self.balance.coefficients(), 1.0, &mut oscillating);
-        for (row, value) in oscillating.into_iter().enumerate() {
+        for (row, &value) in self.oscillating.iter().enumerate() {
             jacobian.row_mut(row)[n] = value;
         }
     }
@@ -418,14 +413,65 @@ impl Problem for Homotopy<'_> {
     fn weights(&self, weights: &mut [f64]) {
         self.balance.weights(weights);
     }
+
+    fn is_mean(&self, unknown: usize) -> bool {
+        self.balance.is_mean(unknown)
+    }
 }
 
-/// An orbit whose shortest period is the one asked for, near a disturbed orbit of period one.
+/// Harmonics and samples per excitation period in the search for a longer period: fewer harmonics for very long ones.
+fn search_resolution(period: usize) -> (usize, usize) {
+    ((60 / period).clamp(3, 10), 1024)
+}
+
+/// An orbit whose shortest period is the one asked for, near a disturbed orbit of period one: searched with few harmonics,
+/// then solved with all.
 fn subharmonic_orbit(
     request: StartRequest<'_>,
     simple: &[f64],
     statistics: &mut Statistics,
 ) -> Option<Vec<f64>> {
+    let Resolution {
+        harmonics,
+        samples,
+        period,
+    } = request.resolution;
+    let (searched_harmonics, searched_samples) = search_resolution(period);
+    let coarse = Resolution {
+        harmonics: harmonics.min(searched_harmonics * period),
+        samples: samples.min(searched_samples * period),
+        period,
+    };
+    let searched = StartRequest {
+        resolution: coarse,
+        ..request
+    };
+    let mut candidates = longer_orbits(searched, simple, statistics);
+    let mut full = Fixed::new(&request, harmonics);
+    let options = NewtonOptions {
+        iterations: 60,
+        damped: true,
+        ..request.newton
+    };
+    let length = full.balance.length();
+    let coarse_length = series::length(coarse.harmonics);
+    candidates
+        .sort_by(|a, b| oscillation(a, coarse_length).total_cmp(&oscillation(b, coarse_length)));
+    let found = candidates.into_iter().find_map(|candidate| {
+        let mut u = spread(&candidate, &full);
+        let solved = full.solve(&mut u, options).is_ok();
+        (solved && has_shortest_period(&u, length, period)).then_some(u)
+    });
+    *statistics += full.newton.statistics;
+    found
+}
+
+/// Every orbit of the period that Newton's method finds from disturbances of eight sizes and eight phases.
+fn longer_orbits(
+    request: StartRequest<'_>,
+    simple: &[f64],
+    statistics: &mut Statistics,
+) -> Vec<Vec<f64>> {
     let mut fixed = Fixed::new(&request, request.resolution.harmonics);
     let stretched = stretch(simple, &fixed, request.resolution.period);
     let length = fixed.balance.length();
@@ -434,13 +480,15 @@ fn subharmonic_orbit(
         .sqrt()
         .max(f64::MIN_POSITIVE);
     let options = NewtonOptions {
-        iterations: 60,
+        tolerance: request.newton.tolerance.max(1e-5),
+
+        iterations: 40,
         damped: true,
         ..request.newton
     };
-    let mut found: Vec<Vec<f64>> = Vec::new();
-    for step in 0..12 {
-        let amplitude = size * 0.1 * 10_f64.powf(f64::from(step) / 4.0);
+    let mut found = Vec::new();
+    for step in 0..8 {
+        let amplitude = size * 0.1 * 10_f64.powf(f64::from(step) / 3.0);
         for direction in 0..8 {
             let (sine, cosine) = (f64::from(direction) * std::f64::consts::FRAC_PI_4).sin_cos();
             let mut u = stretched.clone();
@@ -456,8 +504,6 @@ fn subharmonic_orbit(
     }
     *statistics += fixed.newton.statistics;
     found
-        .into_iter()
-        .min_by(|a, b| oscillation(a, length).total_cmp(&oscillation(b, length)))
 }
 
 /// An orbit of period one as unknowns of a balance of period `n`: harmonic `k` becomes harmonic `n k`.

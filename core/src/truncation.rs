@@ -14,7 +14,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::balance::{Balance, Resolution};
-use crate::continuation::problem::{Problem, Scale};
+use crate::continuation::problem::Problem;
 use crate::fourier::series;
 use crate::newton::Newton;
 use crate::system::{System, Variable};
@@ -112,13 +112,13 @@ impl<'a> Finer<'a> {
     }
 
     /// Adds the tail and the change of the coarse harmonics, (1); false if that fails.
-    pub(crate) fn correct(&mut self, u: &[f64], newton: &mut Newton, scale: Scale) -> bool {
+    pub(crate) fn correct(&mut self, u: &[f64], newton: &mut Newton) -> bool {
         let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
         let coordinates = self.balance.layout().coordinates;
         if self.add_tail(u, newton).is_none() {
             return false;
         }
-        newton.solve(&mut self.core, scale);
+        newton.solve(&mut self.core);
         for i in 0..coordinates {
             for index in 0..coarse {
                 self.orbit[i * fine + index] -= self.core[i * coarse + index];
@@ -131,9 +131,9 @@ impl<'a> Finer<'a> {
     }
 
     /// Estimated error of the parameter at a fold, whose factors Newton's method holds.
-    pub(crate) fn fold_error(&mut self, u: &[f64], newton: &mut Newton, scale: Scale) -> f64 {
+    pub(crate) fn fold_error(&mut self, u: &[f64], newton: &mut Newton) -> f64 {
         let mut psi = vec![0.0; u.len()];
-        newton.left_null_vector(&mut psi, scale);
+        newton.left_null_vector(&mut psi);
         let n = u.len() - 1;
         self.add_tail(u, newton).map_or(f64::INFINITY, |core| {
             crate::linear::dot(&psi[..n], &core[..n]).abs()

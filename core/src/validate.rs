@@ -2,6 +2,8 @@
 
 use std::ops::RangeInclusive;
 
+use nalgebra::DMatrix;
+
 use crate::error::Error;
 use crate::layout::Layout;
 use crate::system::{Bound, ParameterFacts, System, SystemFacts, Variable};
@@ -129,4 +131,21 @@ pub(crate) fn levels(system: &dyn System, parameters: &[f64], omega: f64) -> Res
         }
     }
     Ok(())
+}
+
+/// The mass matrix can be inverted.
+pub(crate) fn mass(system: &dyn System, parameters: &[f64], omega: f64) -> Result<(), Error> {
+    let layout = Layout::of(system);
+    let mut coefficients = vec![0.0; layout.coefficients];
+    system.coefficients(parameters, omega, &mut coefficients);
+    let mut mass = DMatrix::zeros(layout.coordinates, layout.coordinates);
+    for entry in &layout.mass {
+        mass[(entry.row, entry.column)] += coefficients[entry.coefficient];
+    }
+    let determinant: f64 = mass.determinant();
+    let inverse = mass.try_inverse();
+    match inverse {
+        Some(inverse) if inverse.iter().all(|x| x.is_finite()) => Ok(()),
+        _ => Err(Error::SingularMass { determinant }),
+    }
 }

@@ -475,7 +475,7 @@ fn unusable_parameters_are_refused_with_their_range() {
         refused(FrequencyResponse::of(&fast).from(0.6).to(1.6).harmonics(1)),
         Error::Harmonics {
             harmonics: 1,
-            load: 2
+            highest: 2
         }
     ));
 }
@@ -497,4 +497,159 @@ fn states_are_those_of_time() {
     let (x0, v0) = orbit.state(0, 0.0);
     let (x1, v1) = orbit.state(0, PI / 0.5);
     assert!((x0 + x1).abs() < 1e-15 && (v0 + v1).abs() < 1e-15);
+}
+
+/// Near a fold there are three orbits on one side and one on the other; all are found, and none twice.
+#[test]
+fn every_solution_is_returned_beside_a_fold() {
+    let model = Continuous {
+        zeta: 0.01,
+        alpha: 1.5,
+        load: 0.0,
+        drive: 0.1,
+    };
+    let branch = FrequencyResponse::of(&model)
+        .from(0.6)
+        .to(1.7)
+        .harmonics(10)
+        .samples(512)
+        .run()
+        .unwrap();
+    let folds: Vec<f64> = branch.folds().map(|fold| fold.point.value).collect();
+    let (upper, lower) = (folds[0].max(folds[1]), folds[0].min(folds[1]));
+    for distance in [1e-3, 1e-4, 3e-5, 1e-5, 1e-6] {
+        for (value, count) in [
+            (upper - distance, 3),
+            (upper + distance, 1),
+            (lower + distance, 3),
+            (lower - distance, 1),
+        ] {
+            let found = branch.at(value).unwrap();
+            let sizes: Vec<f64> = found.iter().map(hertzian::Point::peak_to_peak).collect();
+            assert_eq!(found.len(), count, "{value}: {sizes:?}");
+            assert!(found.iter().all(|point| point.value == value));
+            assert!(
+                sizes
+                    .windows(2)
+                    .all(|pair| (pair[0] - pair[1]).abs() > 1e-6),
+                "{sizes:?}"
+            );
+        }
+    }
+}
+
+hertzian::oscillator! {
+    /// A linear oscillator under a load that shifts it far.
+    Loaded(x) {
+        param load;
+        ddot(x) + 0.02*dot(x) + x = load + 0.1*cos(omega*t);
+    }
+}
+
+/// The resonance is ten high whatever the load is: a large mean does not hide it from the steps.
+#[test]
+fn a_resonance_is_not_stepped_over_under_a_heavy_load() {
+    for load in [0.0, 100.0, 1000.0, 1e6] {
+        let model = Loaded { load };
+        let branch = FrequencyResponse::of(&model)
+            .from(0.5)
+            .to(1.5)
+            .harmonics(1)
+            .samples(16)
+            .run()
+            .unwrap();
+        let highest = branch
+            .points
+            .iter()
+            .map(hertzian::Point::peak_to_peak)
+            .fold(0.0, f64::max);
+        assert!((highest - 10.0).abs() < 0.05, "load {load}: {highest}");
+    }
+}
+
+/// The response of a linear oscillator vanishes with its drive; the branch passes through rest in ordinary steps.
+#[test]
+fn a_sweep_passes_through_rest() {
+    let model = Linear {
+        zeta: 0.05,
+        drive: 0.1,
+    };
+    let request = FrequencyResponse::of(&model)
+        .vary("drive")
+        .omega(0.8)
+        .harmonics(1)
+        .samples(16);
+    for (from, to) in [(-0.1, 0.1), (0.1, 0.0), (0.0, 0.1)] {
+        let branch = request.clone().from(from).to(to).run().unwrap();
+        assert_eq!(branch.stopped, Stop::ReachedEnd);
+        assert!(
+            branch.points.len() < 500,
+            "{from} to {to}: {} points",
+            branch.points.len()
+        );
+    }
+}
+
+hertzian::oscillator! {
+    /// A pair of linear oscillators, with a stiffness that pulses at a multiple of the excitation.
+    Pair(x, y) {
+        param mass;
+        param pulse;
+        mass*ddot(x) + 0.1*dot(x) + (1 + pulse*cos(7*omega*t))*x + 0.2*(x - y) = cos(omega*t);
+        ddot(y) + 0.1*dot(y) + y + 0.2*(y - x) = 0;
+    }
+}
+
+#[test]
+fn what_cannot_be_represented_is_refused() {
+    let refused = |request: FrequencyResponse<'_>| request.run().unwrap_err();
+    let model = Pair {
+        mass: 1.0,
+        pulse: 0.1,
+    };
+    let good = || FrequencyResponse::of(&model).from(0.6).to(1.6);
+    assert!(matches!(
+        refused(good().harmonics(5)),
+        Error::Harmonics {
+            harmonics: 5,
+            highest: 7
+        }
+    ));
+    assert!(matches!(
+        refused(good().omega(1.0)),
+        Error::Option { name: "omega", .. }
+    ));
+    assert!(matches!(
+        refused(good().samples(10_000_000).period(30)),
+        Error::Option {
+            name: "samples",
+            ..
+        }
+    ));
+    let singular = Pair {
+        mass: 0.0,
+        pulse: 0.1,
+    };
+    assert_eq!(
+        refused(FrequencyResponse::of(&singular).from(0.6).to(1.6)),
+        Error::SingularMass { determinant: 0.0 }
+    );
+}
+
+/// A frequency so low that a step of the monodromy overflows: no verdict, and no hang.
+#[test]
+fn a_vanishing_frequency_ends() {
+    let model = Pair {
+        mass: 1.0,
+        pulse: 0.0,
+    };
+    for omega in [1e-45, 1e-12] {
+        let branch = FrequencyResponse::of(&model)
+            .from(omega)
+            .to(2.0 * omega)
+            .run();
+        if let Ok(branch) = branch {
+            assert!(branch.points[0].stability.verdict != Verdict::Unstable);
+        }
+    }
 }

@@ -503,6 +503,10 @@ impl Problem for Balance<'_> {
         self.assemble(jacobian);
     }
 
+    fn is_mean(&self, unknown: usize) -> bool {
+        unknown.is_multiple_of(self.length())
+    }
+
     /// The mean square of the orbit over time and coordinates, by Parseval's identity.
     fn weights(&self, weights: &mut [f64]) {
         let length = self.length();

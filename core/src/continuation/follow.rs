@@ -127,11 +127,14 @@ pub(crate) fn follow<P: Problem>(
             Ok(next) => next,
             Err(stop) => return Ok(stop),
         };
-        let (next, stop) = walk.cut_at_range(problem, newton, &point, next);
+        let (next, stop) = match walk.cut_at_range(problem, newton, &point, next) {
+            Ok(cut) => cut,
+            Err(stop) => return Ok(stop),
+        };
         if visit(problem, newton, Visit::Point(&next)).is_break() {
             return Ok(Stop::Interrupted);
         }
-        if next.parameter_slope() * point.parameter_slope() < 0.0
+        if (next.parameter_slope() < 0.0) != (point.parameter_slope() < 0.0)
             && visit(problem, newton, Visit::Turn(&point, &next)).is_break()
         {
             return Ok(Stop::Interrupted);
@@ -164,6 +167,8 @@ struct Walk {
     border: Vec<f64>,
     trial: Vec<f64>,
     scale: Scale,
+    /// Largest oscillation and mean so far.
+    largest: [f64; 2],
 }
 
 impl Walk {
@@ -175,9 +180,10 @@ impl Walk {
             border: vec![0.0; problem.unknowns() + 1],
             trial: u,
             scale: Scale {
-                state: 1.0,
                 parameter,
+                ..Scale::UNIT
             },
+            largest: [0.0; 2],
         }
     }
 
@@ -187,9 +193,8 @@ impl Walk {
         problem: &mut P,
         newton: &mut Newton,
     ) -> Result<CurvePoint, NewtonError> {
-        self.scale = scale_of(newton.weights(), &self.trial, self.scale.parameter);
+        self.scale = self.scale_at_trial(newton);
         self.solve_at(problem, newton, self.options.from)?;
-        self.scale = scale_of(newton.weights(), &self.trial, self.scale.parameter);
         let mut point = self.point(newton);
         if point.parameter_slope() * (self.options.to - self.options.from) < 0.0 {
             for t in &mut point.tangent {
@@ -228,9 +233,9 @@ impl Walk {
     /// The point at `trial`, with the tangent from the last matrix of the corrector.
     fn point(&mut self, newton: &mut Newton) -> CurvePoint {
         let mut tangent = vec![0.0; self.trial.len()];
-        newton.solve_border(&mut tangent, self.scale);
-        let scale = scale_of(newton.weights(), &self.trial, self.scale.parameter);
-        let norm = scale.norm(newton.weights(), &tangent);
+        newton.solve_border(&mut tangent);
+        let scale = self.scale_at_trial(newton);
+        let norm = newton.norm().length(scale, &tangent);
         for t in &mut tangent {
             *t /= norm;
         }
@@ -239,6 +244,12 @@ impl Walk {
             tangent,
             scale,
         }
+    }
+
+    fn scale_at_trial(&mut self, newton: &Newton) -> Scale {
+        newton
+            .norm()
+            .scale_at(&self.trial, self.scale.parameter, &mut self.largest)
     }
 
     /// One step, shortened until it succeeds.
@@ -252,10 +263,10 @@ impl Walk {
             let result = self.corrected(problem, newton, from, self.step);
             let reason = match result {
                 Ok((point, iterations)) => {
-                    let cosine =
-                        from.scale
-                            .product(newton.weights(), &from.tangent, &point.tangent)
-                            / from.scale.norm(newton.weights(), &point.tangent);
+                    let cosine = newton
+                        .norm()
+                        .product(from.scale, &from.tangent, &point.tangent)
+                        / newton.norm().length(from.scale, &point.tangent);
                     let angle = cosine.clamp(-1.0, 1.0).acos();
                     if !self.options.steps.turns_too_far(angle, self.step) {
                         newton.statistics.accepted_steps += 1;
@@ -301,7 +312,9 @@ impl Walk {
         for (i, x) in self.trial.iter_mut().enumerate() {
             *x = from.u[i] + step * from.tangent[i];
         }
-        border_of(newton.weights(), from, &mut self.border);
+        newton
+            .norm()
+            .linear_form(from.scale, &from.tangent, &mut self.border);
         let value = crate::linear::dot(&self.border, &self.trial);
         let border = Border {
             row: &self.border,
@@ -324,7 +337,7 @@ impl Walk {
         newton: &mut Newton,
         from: &CurvePoint,
         next: CurvePoint,
-    ) -> (CurvePoint, Option<Stop>) {
+    ) -> Result<(CurvePoint, Option<Stop>), Stop> {
         let FollowOptions {
             from: start,
             to: end,
@@ -336,29 +349,31 @@ impl Walk {
         } else if (next.parameter() - start) * forwards < 0.0 {
             (start, Stop::LeftAtStart)
         } else {
-            return (next, None);
+            return Ok((next, None));
         };
         let part = (limit - from.parameter()) / (next.parameter() - from.parameter());
         for (i, x) in self.trial.iter_mut().enumerate() {
             *x = from.u[i] + part * (next.u[i] - from.u[i]);
         }
         self.scale = from.scale;
-        match self.solve_at(problem, newton, limit) {
-            Ok(()) => {
-                let mut point = self.point(newton);
-                if point
-                    .scale
-                    .product(newton.weights(), &point.tangent, &next.tangent)
-                    < 0.0
-                {
-                    for t in &mut point.tangent {
-                        *t = -*t;
-                    }
-                }
-                (point, Some(stop))
+        // A point beyond the range is never kept: the equations need not make sense there.
+        self.solve_at(problem, newton, limit)
+            .map_err(|reason| Stop::StepTooShort {
+                step: self.step,
+                parameter: from.parameter(),
+                reason,
+            })?;
+        let mut point = self.point(newton);
+        if newton
+            .norm()
+            .product(point.scale, &point.tangent, &next.tangent)
+            < 0.0
+        {
+            for t in &mut point.tangent {
+                *t = -*t;
             }
-            Err(_) => (next, Some(stop)),
         }
+        Ok((point, Some(stop)))
     }
 
     /// Whether the last step passed the first point in the first direction.
@@ -369,12 +384,12 @@ impl Walk {
         from: &CurvePoint,
         to: &CurvePoint,
     ) -> bool {
-        let weights = newton.weights();
+        let norm = newton.norm();
         let along = |a: &CurvePoint| {
             let difference: Vec<f64> = first.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
             (
-                first.scale.product(weights, &difference, &first.tangent),
-                first.scale.norm(weights, &difference),
+                norm.product(first.scale, &difference, &first.tangent),
+                norm.length(first.scale, &difference),
             )
         };
         let ((ahead, far), (behind, near)) = (along(from), along(to));
@@ -382,34 +397,6 @@ impl Walk {
         ahead > 0.0
             && behind <= 0.0
             && step < 2.0 * self.options.steps.largest
-            && first.scale.product(weights, &from.tangent, &first.tangent) > 0.9
-    }
-}
-
-/// The row of (1): the product with a tangent as a linear form.
-pub(crate) fn border_of(weights: &[f64], point: &CurvePoint, border: &mut [f64]) {
-    let n = weights.len();
-    let Scale { state, parameter } = point.scale;
-    for i in 0..n {
-        border[i] = weights[i] * point.tangent[i] / (state * state);
-    }
-    border[n] = point.tangent[n] / (parameter * parameter);
-}
-
-/// The scale at a point: the size of the orbit there, or one where it is at rest.
-fn scale_of(weights: &[f64], u: &[f64], parameter: f64) -> Scale {
-    let size: f64 = weights
-        .iter()
-        .zip(u)
-        .map(|(w, x)| w * x * x)
-        .sum::<f64>()
-        .sqrt();
-    Scale {
-        state: if size > 0.0 && size.is_finite() {
-            size
-        } else {
-            1.0
-        },
-        parameter,
+            && norm.product(first.scale, &from.tangent, &first.tangent) > 0.9
     }
 }

@@ -5,7 +5,7 @@
 //! (1971), "A modified regula falsi method for computing the root of an equation" (the Illinois rule), with bisection
 //! whenever it does not halve the bracket.
 
-use super::follow::{CurvePoint, border_of};
+use super::follow::CurvePoint;
 use super::problem::Problem;
 use crate::newton::{Border, Newton, NewtonOptions};
 
@@ -30,11 +30,10 @@ pub(crate) fn locate<P: Problem>(
     tolerance: f64,
     test: impl Fn(&CurvePoint) -> f64,
 ) -> Option<Located> {
-    let weights = newton.weights().to_vec();
     let difference: Vec<f64> = b.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
-    let length = a.scale.product(&weights, &a.tangent, &difference);
+    let length = newton.norm().product(a.scale, &a.tangent, &difference);
     let mut border = vec![0.0; a.u.len()];
-    border_of(&weights, a, &mut border);
+    newton.norm().linear_form(a.scale, &a.tangent, &mut border);
     let origin = crate::linear::dot(&border, &a.u);
     let mut low = (0.0, test(a), a.clone());
     let mut high = (length, test(b), b.clone());
@@ -106,9 +105,13 @@ fn corrected<P: Problem>(
     newton
         .correct(problem, &mut u, border, scale, options)
         .ok()?;
+    // Once more, so that the matrix, and with it the test function, is that of the solution itself.
+    newton
+        .correct(problem, &mut u, border, scale, options)
+        .ok()?;
     let mut tangent = vec![0.0; u.len()];
-    newton.solve_border(&mut tangent, scale);
-    let norm = scale.norm(newton.weights(), &tangent);
+    newton.solve_border(&mut tangent);
+    let norm = newton.norm().length(scale, &tangent);
     for t in &mut tangent {
         *t /= norm;
     }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use realfft::num_complex::Complex64;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
+#[cfg(test)]
 use super::series;
 
 /// Plans and scratch for one number of samples. No method allocates.
@@ -92,19 +93,6 @@ impl SampledTransform {
             pair[1] = -scale * bin.im;
         }
     }
-}
-
-/// A series of at most this many harmonics is represented exactly by this many samples.
-pub const fn representable(samples: usize) -> usize {
-    (samples - 1) / 2
-}
-
-/// Zero-padded or cut copy of a series.
-pub fn resize(series: &[f64], harmonics: usize) -> Vec<f64> {
-    let mut resized = vec![0.0; series::length(harmonics)];
-    let shared = resized.len().min(series.len());
-    resized[..shared].copy_from_slice(&series[..shared]);
-    resized
 }
 
 #[cfg(test)]

@@ -114,7 +114,7 @@ impl Declaration {
     }
 
     /// Names and values of all parameters, in order of declaration.
-    pub fn values(&self) -> Vec<(&str, f64)> {
+    pub fn parameters(&self) -> Vec<(&str, f64)> {
         let parameters = self.facts.parameters.iter();
         let names = parameters.map(|parameter| parameter.name.as_ref());
         names.zip(self.values.iter().copied()).collect()

@@ -9,7 +9,6 @@ use nalgebra::Complex;
 use super::monodromy::{Orbit, Panels};
 use super::{Stability, distance, eigenvalues};
 use crate::balance::Balance;
-use crate::continuation::problem::Scale;
 use crate::layout::Layout;
 use crate::newton::Newton;
 use crate::truncation::Finer;
@@ -46,7 +45,6 @@ impl<'a> Judge<'a> {
         balance: &Balance<'_>,
         newton: &mut Newton,
         u: &[f64],
-        scale: Scale,
     ) -> Stability {
         self.computed += 1;
         let series = &u[..u.len() - 1];
@@ -56,7 +54,7 @@ impl<'a> Judge<'a> {
         let Some(plain) = plain else {
             return Stability::unknown();
         };
-        if !self.finer.correct(u, newton, scale) {
+        if !self.finer.correct(u, newton) {
             return Stability {
                 multipliers: plain,
                 ..Stability::unknown()

@@ -5,7 +5,7 @@ pub(crate) mod judge;
 mod magnus;
 pub(crate) mod monodromy;
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, Schur};
 
 /// What is known of the stability of an orbit.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,7 +81,10 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let mut values: Vec<_> = if matrix.nrows() == 2 {
         eigenvalues_of_two(matrix).to_vec()
     } else {
-        matrix.complex_eigenvalues().iter().copied().collect()
+        // With a bound on the iterations, which the plain call does not have.
+        Schur::try_new(matrix.clone(), f64::EPSILON, 10_000)
+            .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
+            .unwrap_or_default()
     };
     values.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));
     values

@@ -51,7 +51,7 @@ pub fn read(
             .set(name, *value)
             .map_err(|error| ModelError::Parameter(error.to_string()))?;
     }
-    let values = model.values();
+    let values = model.parameters();
     let missing = values
         .into_iter()
         .filter(|(_, value)| value.is_nan())
