@@ -481,10 +481,8 @@ fn longer_orbits(
         .max(f64::MIN_POSITIVE);
     let options = NewtonOptions {
         tolerance: request.newton.tolerance.max(1e-5),
-
         iterations: 40,
         damped: true,
-        ..request.newton
     };
     let mut found = Vec::new();
     for step in 0..8 {
