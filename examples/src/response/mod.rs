@@ -3,7 +3,7 @@
 pub mod boundary;
 pub mod files;
 pub mod model_file;
-mod models;
+pub mod models;
 pub mod options;
 pub mod progress;
 pub mod records;
