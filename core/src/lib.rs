@@ -27,7 +27,7 @@
 //! [`fourier::series`] says. Nothing panics on the values of parameters or options: what is wrong comes back as an
 //! [`Error`] before any work, and a branch that ends early comes back with what was computed and with the reason.
 //!
-//! The modules [`system`] and [`law`] are the contract between generated code and the runtime; a system written by hand
+//! The modules [`system`] and [`law`](mod@law) are the contract between generated code and the runtime; a system written by hand
 //! against them is as good as a declared one. [`generic`] interprets the same declarations.
 #![deny(missing_docs)]
 
