@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use crate::continuation::follow::Stop;
 use crate::error::Error;
+use crate::follower::Follower;
 use crate::fourier::series;
 use crate::observe::{Motion, Observed};
-use crate::response::Follower;
 use crate::stability::Stability;
 use crate::statistics::Statistics;
 use crate::system::System;

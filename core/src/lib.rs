@@ -47,6 +47,7 @@ mod continuation;
 #[doc(hidden)]
 pub mod emitted;
 mod error;
+mod follower;
 pub mod fourier;
 pub mod generic;
 #[cfg(doctest)]

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::balance::{Balance, gap_series, rate_series};
-use crate::fourier::crossings::{Crossing, crossings};
+use crate::fourier::crossings::{Crossing, crossings, extremum};
 use crate::fourier::series;
 use crate::law::{Law, On, Variation};
 use crate::layout::ContactLayout;
@@ -98,7 +98,7 @@ fn extremes(of: &[f64]) -> (f64, f64) {
             series::value_and_derivatives(of, b).1 > 0.0
         };
         if rises != rising {
-            let x = series::value(of, stationary(of, a, b, rising));
+            let x = series::value(of, extremum(of, a, b, rising));
             extremes = if found {
                 (extremes.0.min(x), extremes.1.max(x))
             } else {
@@ -109,31 +109,6 @@ fn extremes(of: &[f64]) -> (f64, f64) {
         rising = rises;
     }
     extremes
-}
-
-/// The phase in `[a, b]` where the derivative changes sign, by Newton's method inside a bracket.
-fn stationary(of: &[f64], mut a: f64, mut b: f64, rising: bool) -> f64 {
-    let mut t = 0.5 * (a + b);
-    for _ in 0..60 {
-        let (_, v, c) = series::value_and_derivatives(of, t);
-        if (v > 0.0) == rising {
-            a = t;
-        } else {
-            b = t;
-        }
-        let newton = t - v / c;
-        let next = if newton > a && newton < b {
-            newton
-        } else {
-            0.5 * (a + b)
-        };
-        // The value is stationary: its error is the square of this.
-        if (next - t).abs() < 1e-10 {
-            return next;
-        }
-        t = next;
-    }
-    t
 }
 
 /// Reads everything off an orbit, at the variable that the balance was set to last.

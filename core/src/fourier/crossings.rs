@@ -89,6 +89,16 @@ fn first_two((x, v, _): (f64, f64, f64)) -> (f64, f64) {
     (x, v)
 }
 
+/// The phase in `[a, b]` where the slope of a series changes its sign; `rising` is its sign at `a`.
+pub(crate) fn extremum(of: &[f64], a: f64, b: f64, rising: bool) -> f64 {
+    root(
+        |t| last_two(series::value_and_derivatives(of, t)),
+        a,
+        b,
+        rising,
+    )
+}
+
 fn last_two((_, v, a): (f64, f64, f64)) -> (f64, f64) {
     (v, a)
 }
