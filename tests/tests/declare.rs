@@ -476,3 +476,61 @@ fn kinks_and_polynomials_have_branches() {
         assert!((last.value - 1.8).abs() < 1e-12, "{}", last.value);
     }
 }
+
+hertzian::oscillator! {
+    /// Forces written in place, of gaps whose first coefficient may be zero.
+    InPlace(x, y) {
+        param a = 0;
+        ddot(x) + x = cos(omega*t);
+        ddot(y) + 2*y + tanh(a*x + y) + (a*x - 2*y)^3 = 0;
+    }
+}
+
+/// A gap is divided by a coefficient that is a number, so that none is lost where a parameter vanishes.
+#[test]
+fn a_vanishing_coefficient_does_not_take_the_gap_with_it() {
+    for a in [0.0, 0.7] {
+        let model = InPlace { a };
+        let facts = model.facts();
+        let mut coefficients = vec![0.0; facts.places.len()];
+        model.coefficients(&[a], 1.0, &mut coefficients);
+        let (x, y) = (0.3, -0.4);
+        let mut total = 0.0;
+        for contact in 0..facts.contacts.len() {
+            let sum = |wanted: fn(Place, usize) -> Option<usize>, by: [f64; 2]| -> f64 {
+                let places = facts.places.iter().zip(&coefficients);
+                places
+                    .filter_map(|(&place, value)| Some(value * by[wanted(place, contact)?]))
+                    .sum()
+            };
+            let gap = sum(
+                |place, of| match place {
+                    Place::GapDirection {
+                        contact, column, ..
+                    } if contact == of => Some(column),
+                    _ => None,
+                },
+                [x, y],
+            );
+            let direction = sum(
+                |place, of| match place {
+                    Place::ForceDirection { contact, row, .. } if contact == of => Some(row),
+                    _ => None,
+                },
+                [0.0, 1.0],
+            );
+            let law = facts.contacts[contact].law;
+            let mut arguments = vec![0.0; model.law(law).facts().arguments.len()];
+            for (place, value) in facts.places.iter().zip(&coefficients) {
+                if let Place::Argument { contact: of, index } = *place
+                    && of == contact
+                {
+                    arguments[index] += value;
+                }
+            }
+            total += direction * force(&model, law, &arguments, gap, 0.0);
+        }
+        let expected = (a * x + y).tanh() + (a * x - 2.0 * y).powi(3);
+        assert!((total - expected).abs() < 1e-14, "{a}: {total} {expected}");
+    }
+}

@@ -87,6 +87,7 @@ impl Gatherer {
             for part in parts {
                 let direction = single_direction(&mut context.dag, part)
                     .ok_or_else(|| mixed(context, part, term.extent))?;
+                pivot_does_not_vanish(context, &direction, term.extent)?;
                 linear.extend(self.add_part(context, (row, origin), term, part, &direction));
             }
         }
@@ -342,7 +343,8 @@ fn linear_term(dag: &mut Dag, term: Id) -> Option<(Variable, Id)> {
     (rest == dag.variable(variable)).then_some((variable, factor))
 }
 
-/// Collects coordinates and divides by the first coefficient.
+/// Collects coordinates and divides by the first coefficient that is a number, or else by the first: see
+/// [`pivot_does_not_vanish`].
 fn normalise(dag: &mut Dag, direction: &mut Direction) {
     direction.sort_by_key(|&(index, _)| index);
     let mut merged: Direction = Vec::new();
@@ -353,20 +355,50 @@ fn normalise(dag: &mut Dag, direction: &mut Direction) {
         }
     }
     merged.retain(|&(_, factor)| dag.as_number(factor) != Some(Rational::ZERO));
-    if let Some(&(_, first)) = merged.first() {
+    let number = merged
+        .iter()
+        .find(|&&(_, factor)| dag.as_number(factor).is_some());
+    if let Some(&(_, pivot)) = number.or(merged.first()) {
         for (_, factor) in &mut merged {
-            *factor = dag.quotient(*factor, first);
+            *factor = dag.quotient(*factor, pivot);
         }
     }
     *direction = merged;
 }
 
+/// What a gap of several coordinates was divided by never vanishes; else the other coordinates would be lost with it.
+fn pivot_does_not_vanish(
+    context: &mut Expander,
+    direction: &Direction,
+    extent: Extent,
+) -> Result<(), syn::Error> {
+    let factors: Vec<Id> = direction.iter().map(|&(_, factor)| factor).collect();
+    for id in context.dag.reachable(&factors) {
+        let Node::Power(base, exponent) = *context.dag.node(id) else {
+            continue;
+        };
+        let divides = context
+            .dag
+            .as_number(exponent)
+            .is_some_and(Rational::is_negative);
+        let bounds = context.ranges.bounds(&mut context.dag, base, Stretch::ALL);
+        if divides && !bounds.excludes_zero() {
+            let shown = context.show(base);
+            return Err(extent.fault(format!(
+                "the coefficient `{shown}` of a coordinate in this gap may be zero: declare a range without it, or declare a law and call it with this gap"
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// The force depends on `g = q_i + ...` alone, so its value is that at `q_i = g` with all other coordinates zero.
 fn in_gap(dag: &mut Dag, direction: &Direction) -> HashMap<Variable, Id> {
-    let zero = dag.integer(0);
+    let (zero, one) = (dag.integer(0), dag.integer(1));
+    let pivot = direction.iter().position(|&(_, factor)| factor == one);
     let mut by = HashMap::new();
     for (position, &(index, _)) in direction.iter().enumerate() {
-        let (gap, rate) = if position == 0 {
+        let (gap, rate) = if Some(position) == pivot {
             (dag.variable(Variable::Gap), dag.variable(Variable::Rate))
         } else {
             (zero, zero)
