@@ -92,8 +92,9 @@ fn error(alpha: f64, density: f64) -> f64 {
     largest
 }
 
-/// With saltation at the switch of the damping, and stiffness that vanishes, jumps or is unbounded there. A phase is
-/// rounded by 1e-15, and the integral of the power -0.4 over such a distance is 1e-9 on either side of the comparison.
+/// With saltation at the switch of the damping, and stiffness that vanishes, jumps or is unbounded there. For 0.6 the two
+/// computations differ by 1.7e-8, far more than the error of the steps; the rounding of phases next to an unbounded
+/// stiffness is the likely cause, not a proven one, so the bound there is what was observed and not what the method allows.
 #[test]
 fn agrees_with_the_continuous_coordinate() {
     for (alpha, bound) in [(2.5, 1e-11), (1.5, 1e-11), (1.0, 1e-12), (0.6, 1e-7)] {
