@@ -35,12 +35,6 @@ pub(crate) struct StartRequest<'a> {
     pub(crate) newton: NewtonOptions,
 }
 
-const FAILED: NewtonError = NewtonError::NotConverged {
-    iterations: 0,
-    update: f64::INFINITY,
-    residual: f64::INFINITY,
-};
-
 /// Extended unknowns of an orbit at the requested value.
 pub(crate) fn start(
     request: StartRequest<'_>,
@@ -165,18 +159,19 @@ fn first_orbit_in(
         damped: false,
         ..request.newton
     };
-    if let Some(rest) = &rest {
+    let from_rest = rest.as_ref().map_err(|&error| error).and_then(|rest| {
         let mut u = spread(rest, full);
-        if full.solve(&mut u, undamped).is_ok() {
-            return Ok(u);
-        }
-    }
+        full.solve(&mut u, undamped).map(|()| u)
+    });
+    let Err(mut reason) = from_rest else {
+        return from_rest;
+    };
     let damped = NewtonOptions {
         iterations: 40,
         damped: true,
         ..request.newton
     };
-    let mut reason = FAILED;
+    let rest = rest.ok();
     for candidate in equivalent_linearisation(request, rest.as_deref(), statistics) {
         let mut u = spread(&candidate, full);
         match full.solve(&mut u, damped) {
@@ -189,14 +184,19 @@ fn first_orbit_in(
     })
 }
 
-/// The static equilibrium, if one is found: a balance of no harmonics.
-fn at_rest(request: &StartRequest<'_>, statistics: &mut Statistics) -> Option<Vec<f64>> {
+/// The static equilibrium, a balance of no harmonics; or what the last attempt to find it said.
+fn at_rest(
+    request: &StartRequest<'_>,
+    statistics: &mut Statistics,
+) -> Result<Vec<f64>, NewtonError> {
     let mut fixed = Fixed::new(request, 0);
     let n = fixed.border.len() - 1;
     let origin = fixed.zeros();
     let at_origin = fixed.residual(&origin);
-    let mut found = (at_origin == 0.0).then(|| origin.clone());
-    if found.is_none() {
+    let mut found = Err(NewtonError::NotFinite { iterations: 0 });
+    if at_origin == 0.0 {
+        found = Ok(origin);
+    } else {
         let direction: Vec<f64> = fixed.residual.iter().map(|r| -r / at_origin).collect();
         let mut along = |s: f64| {
             let mut u = origin.clone();
@@ -215,10 +215,12 @@ fn at_rest(request: &StartRequest<'_>, statistics: &mut Statistics) -> Option<Ve
             damped: true,
             ..request.newton
         };
-        found = trials
-            .into_iter()
-            .take(6)
-            .find_map(|(_, mut u)| fixed.solve(&mut u, options).is_ok().then_some(u));
+        for (_, mut u) in trials.into_iter().take(6) {
+            found = fixed.solve(&mut u, options).map(|()| u);
+            if found.is_ok() {
+                break;
+            }
+        }
     }
     *statistics += fixed.newton.statistics;
     found

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use hertzian::observe::{amplitudes, phases};
-use hertzian::{Error, FrequencyResponse, Stop, System, Verdict};
+use hertzian::{Error, FrequencyResponse, NewtonError, Stop, System, Verdict};
 
 hertzian::oscillator! {
     /// Nothing but linear terms.
@@ -304,6 +304,41 @@ fn every_solution_at_a_value_is_returned() {
     assert_eq!(branch.at(1.5).unwrap().len(), 1);
     assert!(branch.at(2.0).unwrap().is_empty());
     assert_eq!(branch.at(0.6).unwrap().len(), 1);
+}
+
+/// An undamped resonance has no orbit, nothing holds a contact that is pulled away, and the square of a huge load is
+/// infinite: the error is what an attempt met, with numbers.
+#[test]
+fn a_start_that_is_not_found_says_why() {
+    let reason = |system: &dyn System, from: f64| {
+        let request = FrequencyResponse::of(system).from(from).to(1.5);
+        match request.run() {
+            Err(Error::NoStart { parameter, reason }) if parameter == from => reason,
+            Err(error) => panic!("{error}"),
+            Ok(branch) => panic!("{} points", branch.points.len()),
+        }
+    };
+    let resonant = Linear {
+        zeta: 0.0,
+        drive: 0.1,
+    };
+    let pulled = OneSided {
+        load: -1.0,
+        ..CONTACT
+    };
+    for (system, from) in [(&resonant as &dyn System, 1.0), (&pulled, 0.5)] {
+        let met = reason(system, from);
+        assert!(
+            matches!(met, NewtonError::Singular { at, .. } if at.pivot == 0.0),
+            "{met}"
+        );
+    }
+    let huge = Duffing {
+        zeta: 0.05,
+        drive: 1e300,
+    };
+    let met = reason(&huge, 0.5);
+    assert!(matches!(met, NewtonError::NotFinite { .. }), "{met}");
 }
 
 #[test]
