@@ -39,7 +39,8 @@ use proc_macro::TokenStream;
 /// bound       = [ "-" ] number
 /// unit        = factor { ( "*" | "/" ) factor }
 /// factor      = ( symbol | "1" | "(" unit ")" ) [ "^" ( bound | "(" bound [ "/" bound ] ")" ) ]
-/// law         = "law" name "(" name { "," name } [ "," ] ")" "{" ( expression | piece { "," piece } [ "," ] ) "}"
+/// law         = "law" name "(" name { "," name } [ "," ] ")" pieces
+/// pieces      = "{" ( expression | piece { "," piece } [ "," ] ) "}"
 /// piece       = ( condition | "else" ) "=>" expression
 /// condition   = chain { "&&" chain }
 /// chain       = expression relation expression { relation expression }
@@ -132,20 +133,32 @@ pub fn oscillator(declaration: TokenStream) -> TokenStream {
     hertzian_compiler::oscillator(declaration.into()).into()
 }
 
-/// Declares a law without a model: `pub Name(gap, argument, ...) { pieces }`.
-///
-/// The pieces are those of a law in [`oscillator!`]; arguments may carry a range, which powers need. It becomes a type
-/// without fields that implements `hertzian::law::Law`, to be attached to a `hertzian::structure::Structure`.
+/// Declares a law without a model: a type without fields that implements `hertzian::law::Law`, to be attached to the
+/// matrices of a `hertzian::structure::Structure` while the program runs.
 ///
 /// ```text
 /// hertzian::law! {
-///     /// Contact whose damping grows with the force.
-///     pub Hertz(gap, k, c) {
-///         gap > 0 => k*gap^1.5*(1 + c*dot(gap)),
+///     /// Contact whose damping grows with the force, Hunt and Crossley (1975).
+///     pub HuntCrossley(gap, k, c, n >= 1) {
+///         gap > 0 => k*gap^n*(1 + c*dot(gap)),
 ///         else    => 0,
 ///     }
 /// }
 /// ```
+///
+/// # Grammar
+///
+/// ```text
+/// alone       = { doc } [ visibility ] name "(" name { "," argument } [ "," ] ")" pieces
+/// argument    = name [ range ]
+/// ```
+///
+/// The first name is that of the gap. `pieces` and `range` are those of [`oscillator!`], with the same rules: an
+/// exponent whose base can vanish must be positive, and it must be known which level is the higher one. Here the ranges
+/// of the arguments say so, where a law in a model goes by the ranges of the parameters. A law that is linear in gap and
+/// rate everywhere is refused: it belongs into the matrices.
+///
+/// The guide "Declaring contacts", `docs/book/src/declaring-contacts.md`, has an example that is compiled.
 #[proc_macro]
 pub fn law(declaration: TokenStream) -> TokenStream {
     hertzian_compiler::law(declaration.into()).into()
