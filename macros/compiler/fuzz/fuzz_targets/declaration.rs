@@ -1,4 +1,4 @@
-//! Any text that lexes is compiled and expanded: no panic, and an end.
+//! Any text that lexes is compiled and expanded, as a model and as a law alone: no panic, and an end.
 #![no_main]
 
 use std::str::FromStr;
@@ -8,6 +8,7 @@ use proc_macro2::TokenStream;
 
 fuzz_target!(|text: &str| {
     if let Ok(tokens) = TokenStream::from_str(text) {
-        let _ = hertzian_compiler::oscillator(tokens);
+        let _ = hertzian_compiler::oscillator(tokens.clone());
+        let _ = hertzian_compiler::law(tokens);
     }
 });
