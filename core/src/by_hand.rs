@@ -93,18 +93,25 @@ impl PowerForm {
     }
 }
 
-/// The stiffness is the power `alpha - 1` of the distance from the level.
-fn stiffness_term() -> Vec<TermFacts> {
-    let exponent = Exponent {
-        number: -1.0,
-        argument: Some(1),
+/// The force is a power of the distance from the level, the stiffness one less; by the exponent, with a logarithm.
+fn terms() -> Vec<TermFacts> {
+    let term = |of, number, logarithm| {
+        let exponent = Exponent {
+            number,
+            argument: Some(1),
+        };
+        TermFacts {
+            of,
+            lower: exponent,
+            upper: exponent,
+            logarithm,
+        }
     };
-    vec![TermFacts {
-        of: Quantity::ByGap,
-        lower: exponent,
-        upper: exponent,
-        logarithm: false,
-    }]
+    vec![
+        term(Quantity::Force, 0.0, false),
+        term(Quantity::ByGap, -1.0, false),
+        term(Quantity::ByArgument(1), 0.0, true),
+    ]
 }
 
 impl PowerLaw {
@@ -120,7 +127,7 @@ impl PowerLaw {
                 terms: if zero {
                     Cow::Borrowed(&[])
                 } else {
-                    stiffness_term().into()
+                    terms().into()
                 },
             }
         };

@@ -59,6 +59,8 @@ mod newton;
 pub mod observe;
 #[cfg(feature = "plot")]
 mod picture;
+#[cfg(test)]
+mod random;
 mod response;
 pub mod stability;
 mod start;
@@ -68,6 +70,7 @@ pub mod system;
 mod truncation;
 mod validate;
 
+pub use aft::Aft;
 pub use branch::{Branch, Event, EventKind, Orbit, Point, Turn};
 pub use continuation::follow::Stop;
 pub use error::Error;

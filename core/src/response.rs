@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use crate::aft::Aft;
 use crate::balance::Resolution;
 use crate::branch::{Branch, Point};
 use crate::continuation::follow::{FollowOptions, follow};
@@ -52,6 +53,7 @@ pub struct FrequencyResponse<'a> {
     to: Option<f64>,
     harmonics: Option<usize>,
     samples: Option<usize>,
+    aft: Aft,
     period: usize,
     tolerance: f64,
     max_points: usize,
@@ -79,6 +81,7 @@ impl<'a> FrequencyResponse<'a> {
             to: None,
             harmonics: None,
             samples: None,
+            aft: Aft::default(),
             period: 1,
             tolerance: 1e-6,
             max_points: 20_000,
@@ -137,7 +140,14 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
-    /// Samples per excitation period. Default: at least 200 per harmonic, a power of two. The derivative of a force like
+    /// How the harmonics of contact forces are found. Default: [`Aft::Switched`], exact; the others are for comparison.
+    #[must_use]
+    pub fn aft(mut self, aft: Aft) -> Self {
+        self.aft = aft;
+        self
+    }
+
+    /// Samples per excitation period, for the methods that sample. Default: at least 200 per harmonic, a power of two. The derivative of a force like
     /// `g^1.5` has a kink where contact begins; folds feel it as the power -1.5 of the samples.
     #[must_use]
     pub fn samples(mut self, samples: usize) -> Self {
@@ -352,6 +362,7 @@ impl<'a> FrequencyResponse<'a> {
         Ok(Resolution {
             harmonics,
             samples,
+            aft: self.aft,
             period: self.period,
         })
     }

@@ -49,8 +49,8 @@ pub(crate) fn start(
     }
     let resolution = Resolution {
         harmonics: (request.resolution.harmonics / period).max(1),
-        samples: request.resolution.samples,
         period: 1,
+        ..request.resolution
     };
     let simple = first_orbit(
         StartRequest {
@@ -437,12 +437,13 @@ fn subharmonic_orbit(
         harmonics,
         samples,
         period,
+        ..
     } = request.resolution;
     let (searched_harmonics, searched_samples) = search_resolution(period);
     let coarse = Resolution {
         harmonics: harmonics.min(searched_harmonics * period),
         samples: samples.min(searched_samples * period),
-        period,
+        ..request.resolution
     };
     let searched = StartRequest {
         resolution: coarse,

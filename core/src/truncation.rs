@@ -42,7 +42,7 @@ impl<'a> Finer<'a> {
         let fine = Resolution {
             harmonics: 2 * coarse.harmonics,
             samples: 2 * coarse.samples,
-            period: coarse.period,
+            ..coarse
         };
         let balance = Balance::new(system, parameters, omega, variable, fine);
         let unknowns = balance.unknowns();

@@ -2,9 +2,79 @@
 //!
 //! The balance knows only this: a law, a gap as a series, and the series of force and derivatives that come back.
 
-pub(crate) mod sampled;
+mod primitive;
+mod sampled;
+mod switched;
 
 use crate::law::Law;
+use primitive::PrimitiveAft;
+use sampled::SampledAft;
+use switched::SwitchedAft;
+
+/// How the harmonics of a contact force are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Aft {
+    /// Integrated from switch to switch: exact, whatever the number of harmonics.
+    #[default]
+    Switched,
+    /// On equally spaced samples: the classical method, for comparison. A switch between two samples is not seen to move.
+    Sampled,
+    /// On equally spaced samples, with rate terms `h(g) dg/dt` taken as time derivatives of their primitive `G(g)`, which is
+    /// continuous where `h` jumps. Laws that have no primitive are sampled.
+    Primitive,
+}
+
+impl std::fmt::Display for Aft {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Switched => "switched",
+            Self::Sampled => "sampled",
+            Self::Primitive => "primitive",
+        })
+    }
+}
+
+/// The method chosen, with its room.
+#[derive(Debug)]
+pub(crate) enum Engine {
+    Switched(Box<SwitchedAft>),
+    Sampled(Box<SampledAft>),
+    Primitive(Box<PrimitiveAft>),
+}
+
+impl Engine {
+    pub(crate) fn new(method: Aft, samples: usize) -> Self {
+        match method {
+            Aft::Switched => Self::Switched(Box::default()),
+            Aft::Sampled => Self::Sampled(Box::new(SampledAft::new(samples))),
+            Aft::Primitive => Self::Primitive(Box::new(PrimitiveAft::new(samples))),
+        }
+    }
+
+    /// Writes the series of the force.
+    pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
+        match self {
+            Self::Switched(aft) => aft.force(input, force),
+            Self::Sampled(aft) => aft.force(input, force),
+            Self::Primitive(aft) => aft.force(input, force),
+        }
+    }
+
+    /// Writes the series of the force and of its derivatives.
+    pub(crate) fn derivatives(
+        &mut self,
+        input: ContactInput<'_>,
+        change: Option<Change<'_>>,
+        force: &mut [f64],
+        out: &mut ContactDerivatives<'_>,
+    ) {
+        match self {
+            Self::Switched(aft) => aft.derivatives(input, change, force, out),
+            Self::Sampled(aft) => aft.derivatives(input, change, force, out),
+            Self::Primitive(aft) => aft.derivatives(input, change, force, out),
+        }
+    }
+}
 
 /// The gap of one contact, and how the answer shall change with the continuation parameter.
 #[derive(Clone, Copy)]
@@ -13,8 +83,10 @@ pub(crate) struct ContactInput<'a> {
     pub(crate) arguments: &'a [f64],
     /// Series of the gap.
     pub(crate) gap: &'a [f64],
-    /// Series of its rate, a time derivative.
+    /// Series of its rate, a time derivative: `base` times the phase derivative of the gap.
     pub(crate) rate: &'a [f64],
+    /// Base frequency.
+    pub(crate) base: f64,
 }
 
 /// Derivatives of gap, rate and arguments with respect to the continuation parameter, the unknowns held fast.
@@ -23,6 +95,7 @@ pub(crate) struct Change<'a> {
     pub(crate) gap: &'a [f64],
     pub(crate) rate: &'a [f64],
     pub(crate) arguments: &'a [f64],
+    pub(crate) base: f64,
 }
 
 /// Series of the derivatives of the force of one contact; each has as many harmonics as it has room for.

@@ -28,8 +28,7 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-use crate::aft::sampled::SampledAft;
-use crate::aft::{Change, ContactDerivatives, ContactInput};
+use crate::aft::{Aft, Change, ContactDerivatives, ContactInput, Engine};
 use crate::continuation::problem::Problem;
 use crate::fourier::series;
 use crate::layout::Layout;
@@ -44,8 +43,10 @@ pub(crate) use terms::{gap_series, rate_series};
 pub struct Resolution {
     /// Harmonics of the base frequency.
     pub harmonics: usize,
-    /// Samples of one period of the orbit.
+    /// Samples of one period of the orbit, for methods that sample.
     pub samples: usize,
+    /// How contact forces are found.
+    pub aft: Aft,
     /// Number of excitation periods in one period of the orbit.
     pub period: usize,
 }
@@ -59,7 +60,7 @@ pub struct Balance<'a> {
     omega: f64,
     variable: Variable,
     drive_factor: f64,
-    aft: SampledAft,
+    aft: Engine,
     coefficients: Vec<f64>,
     coefficients_by: Vec<f64>,
     scratch: Scratch,
@@ -150,7 +151,7 @@ impl<'a> Balance<'a> {
             omega,
             variable,
             drive_factor: 1.0,
-            aft: SampledAft::new(resolution.samples),
+            aft: Engine::new(resolution.aft, resolution.samples),
             coefficients,
             coefficients_by: vec![0.0; layout.coefficients],
             scratch: Scratch::new(&layout, resolution),
@@ -250,6 +251,7 @@ impl<'a> Balance<'a> {
                 arguments,
                 gap: &s.gap,
                 rate: &s.rate,
+                base,
             },
             force,
         );
@@ -364,6 +366,7 @@ impl<'a> Balance<'a> {
             gap: &s.change_gap,
             rate: &s.change_rate,
             arguments: arguments_by,
+            base: base_by,
         };
         let mut out = ContactDerivatives {
             by_gap: &mut s.by_gap,
@@ -375,6 +378,7 @@ impl<'a> Balance<'a> {
             arguments,
             gap: &s.gap,
             rate: &s.rate,
+            base,
         };
         self.aft
             .derivatives(input, changes.then_some(change), &mut s.force, &mut out);

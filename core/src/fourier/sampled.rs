@@ -71,6 +71,21 @@ impl SampledTransform {
         );
     }
 
+    /// Whether the upper eighth of the spectrum of these samples is below a part of its largest coefficient.
+    pub(crate) fn is_resolved(&mut self, samples: &[f64], part: f64) -> bool {
+        self.input.copy_from_slice(samples);
+        let done = self.forward.process_with_scratch(
+            &mut self.input,
+            &mut self.spectrum,
+            &mut self.scratch,
+        );
+        debug_assert!(done.is_ok(), "lengths fit: {done:?}");
+        let largest = |bins: &[Complex64]| bins.iter().fold(0.0_f64, |m, b| m.max(b.norm_sqr()));
+        let upper = self.spectrum.len() - self.spectrum.len() / 8 - 1;
+        let (all, end) = (largest(&self.spectrum), largest(&self.spectrum[upper..]));
+        end <= part * part * all
+    }
+
     /// Writes the series of samples, as many harmonics as it has room for; those from `samples / 2` upwards are zero.
     pub fn analyse(&mut self, samples: &[f64], series: &mut [f64]) {
         self.input.copy_from_slice(samples);

@@ -1,6 +1,5 @@
 //! Floquet stability of periodic orbits.
 
-mod grading;
 pub(crate) mod judge;
 mod magnus;
 pub(crate) mod monodromy;

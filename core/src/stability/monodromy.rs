@@ -27,10 +27,10 @@ use std::f64::consts::TAU;
 use nalgebra::allocator::Allocator;
 use nalgebra::{Const, DMatrix, DefaultAllocator, Dim, Dyn, OMatrix};
 
-use super::grading::Grading;
 use super::magnus;
 use crate::balance::{gap_series, rate_series};
 use crate::fourier::crossings::{Crossing, crossings};
+use crate::fourier::grading::Grading;
 use crate::fourier::series;
 use crate::law::{Derivatives, On, Quantity, TermFacts, Variation};
 use crate::layout::{Layout, Term};

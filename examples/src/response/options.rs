@@ -118,7 +118,7 @@ pub struct Options {
     pub samples: Option<usize>,
 
     /// How the harmonics of the contact force are computed
-    #[arg(long, value_enum, default_value_t = Aft::Sampled)]
+    #[arg(long, value_enum, default_value_t = Aft::Switched)]
     pub aft: Aft,
 
     /// Relative accuracy asked of peak-to-peak
@@ -167,8 +167,22 @@ pub enum Sweep {
 /// How the harmonics of the contact force are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Aft {
+    /// Integrated from switch to switch: exact
+    Switched,
     /// From samples over the period (Cameron and Griffin 1989)
     Sampled,
+    /// From samples, with damping as the time derivative of its primitive
+    Primitive,
+}
+
+impl From<Aft> for hertzian::Aft {
+    fn from(aft: Aft) -> Self {
+        match aft {
+            Aft::Switched => Self::Switched,
+            Aft::Sampled => Self::Sampled,
+            Aft::Primitive => Self::Primitive,
+        }
+    }
 }
 
 impl Options {

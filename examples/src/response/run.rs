@@ -12,7 +12,7 @@ use super::boundary::loss_of_contact;
 use super::files;
 use super::model_file::ModelError;
 use super::models::model;
-use super::options::{Aft, Options, Sweep};
+use super::options::{Options, Sweep};
 use super::progress::Progress;
 use super::records::Record;
 use super::summary;
@@ -133,13 +133,12 @@ fn paths(options: &Options) -> impl Iterator<Item = &Path> {
 
 /// The options in the library's terms.
 fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a> {
-    // The only method there is needs no setting.
-    let Aft::Sampled = options.aft;
     let mut request = FrequencyResponse::of(model)
         .from(options.from)
         .to(options.to)
         .period(options.period)
         .tolerance(options.tolerance)
+        .aft(options.aft.into())
         .max_points(options.max_points);
     if options.sweep == Sweep::Drive {
         request = request.vary("drive").omega(options.omega);

@@ -1,0 +1,200 @@
+//! Alternating frequency/time with exact switching: the law is integrated from crossing to crossing.
+//!
+//! With the phases `tau_c` at which the gap crosses a level known, the harmonics of the force are sums over the panels
+//! between them,
+//!
+//! ```text
+//! F_k = 1/pi sum over panels  int phi(g, r) e^(i k tau) dtau                                                  (1)
+//! ```
+//!
+//! and no integrand has a jump or a kink inside a panel. A change `dg` of the gap moves the ends of the panels too: where
+//! the force jumps by `[phi]` from below the level to above, `dtau_c = -(dg - dl) / g'` gives
+//!
+//! ```text
+//! dF_k = 1/pi int (phi_g dg + phi_r dr) e^(i k tau) dtau
+//!      + 1/pi sum over crossings  [phi] / |g'| (dg - dl) e^(i k tau_c)                                       (2)
+//! ```
+//!
+//! so that a crossing adds an impulse of weight `[phi] / |g'|` to the series of `phi_g`, and the Jacobian is exact.
+//!
+//! Three ways lead to the integrals of (1): a closed form where the force is affine in gap and rate ([`affine`]), a rule
+//! graded towards the ends where it is not ([`panel`]), and equally spaced samples where the orbit stays on one piece all
+//! the period long ([`whole`]).
+//!
+//! Sources: Petrov and Ewins (2003), Analytical formulation of friction interface elements for analysis of nonlinear
+//! multi-harmonic vibrations of bladed disks (exact transition points in harmonic balance); Krack, Panning-von Scheidt
+//! and Wallaschek (2013), A high-order harmonic balance method for systems with distinct states.
+
+mod affine;
+mod cut;
+mod panel;
+#[cfg(test)]
+mod tests;
+mod whole;
+
+use super::{Change, ContactDerivatives, ContactInput};
+use crate::fourier::kernels::Product;
+use crate::fourier::series;
+use crate::law::{On, Variation};
+use affine::Affine;
+use cut::{Cut, Switch};
+use panel::Quadrature;
+use whole::Whole;
+
+/// Room for one contact after the other; after the first few calls nothing is allocated.
+#[derive(Debug, Default)]
+pub(crate) struct SwitchedAft {
+    cut: Cut,
+    affine: Affine,
+    quadrature: Quadrature,
+    whole: Whole,
+    product: Product,
+}
+
+/// What is summed up over the panels.
+struct Sums<'s> {
+    force: &'s mut [f64],
+    slopes: Option<Slopes<'s>>,
+}
+
+/// The derivatives among it.
+struct Slopes<'s> {
+    by_gap: &'s mut [f64],
+    by_rate: &'s mut [f64],
+    /// The arguments that change with the parameter, and by how much; the sum of their effects.
+    arguments: &'s [f64],
+    by_arguments: &'s mut [f64],
+}
+
+impl SwitchedAft {
+    /// Writes the series of the force.
+    pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
+        force.fill(0.0);
+        self.integrate(
+            input,
+            &mut Sums {
+                force,
+                slopes: None,
+            },
+        );
+    }
+
+    /// Writes the series of the force and of its derivatives.
+    pub(crate) fn derivatives(
+        &mut self,
+        input: ContactInput<'_>,
+        change: Option<Change<'_>>,
+        force: &mut [f64],
+        out: &mut ContactDerivatives<'_>,
+    ) {
+        force.fill(0.0);
+        out.by_gap.fill(0.0);
+        out.by_rate.fill(0.0);
+        out.by_parameter.fill(0.0);
+        let slopes = Slopes {
+            by_gap: out.by_gap,
+            by_rate: out.by_rate,
+            arguments: change.map_or(&[], |change| change.arguments),
+            by_arguments: out.by_parameter,
+        };
+        self.integrate(
+            input,
+            &mut Sums {
+                force,
+                slopes: Some(slopes),
+            },
+        );
+        self.add_jumps(input, change, out);
+        if let Some(change) = change {
+            // What the parameter does by way of gap and rate; impulses are in the series already.
+            self.product.add(out.by_gap, change.gap, out.by_parameter);
+            self.product.add(out.by_rate, change.rate, out.by_parameter);
+        }
+    }
+
+    fn integrate(&mut self, input: ContactInput<'_>, sums: &mut Sums<'_>) {
+        let facts = input.law.facts();
+        self.cut.apply(input);
+        if let [whole] = self.cut.panels()
+            && whole.is_period()
+            && !facts.pieces[whole.piece].affine
+        {
+            self.whole.add(input, whole.piece, sums);
+            return;
+        }
+        for piece in 0..facts.pieces.len() {
+            let of = &facts.pieces[piece];
+            let panels = || self.cut.panels().iter().filter(move |p| p.piece == piece);
+            if is_nothing(of) || panels().next().is_none() {
+                continue;
+            }
+            if of.affine {
+                self.affine
+                    .add(input, piece, panels(), &mut self.product, sums);
+            } else {
+                for panel in panels() {
+                    self.quadrature.add(input, panel, self.cut.levels(), sums);
+                }
+            }
+        }
+    }
+
+    /// Adds the impulses of (2).
+    fn add_jumps(
+        &mut self,
+        input: ContactInput<'_>,
+        change: Option<Change<'_>>,
+        out: &mut ContactDerivatives<'_>,
+    ) {
+        for index in 0..self.cut.switches().len() {
+            let Switch { tau, level, .. } = self.cut.switches()[index];
+            let facts = &input.law.facts().levels[level];
+            if !(facts.force_jumps || facts.by_rate_jumps) {
+                continue;
+            }
+            let gap = self.cut.levels()[level];
+            let slope = series::value_and_derivatives(input.gap, tau).1;
+            let rate = input.base * slope;
+            let at_level = |piece| {
+                let mut force = [0.0];
+                input.law.force(
+                    On::Piece(piece),
+                    input.arguments,
+                    &[gap],
+                    &[rate],
+                    &mut force,
+                );
+                force[0]
+            };
+            let weight = (at_level(level + 1) - at_level(level)) / slope.abs();
+            if !weight.is_finite() {
+                continue;
+            }
+            add_impulse(tau, weight, out.by_gap);
+            if let Some(change) = change {
+                let moved = self.cut.level_by(input, level, change.arguments);
+                if moved != 0.0 {
+                    add_impulse(tau, -weight * moved, out.by_parameter);
+                }
+            }
+        }
+    }
+}
+
+/// Neither force nor derivatives on this piece.
+fn is_nothing(piece: &crate::law::PieceFacts) -> bool {
+    piece.force == Variation::Zero
+}
+
+/// Adds the series of `weight` times Dirac's impulse at a phase: `weight / pi (1/2 + sum cos k (tau - tau_c))`.
+fn add_impulse(tau: f64, weight: f64, series: &mut [f64]) {
+    let (sine, cosine) = tau.sin_cos();
+    let scaled = weight * std::f64::consts::FRAC_1_PI;
+    series[0] += 0.5 * scaled;
+    let (mut c, mut s) = (scaled, 0.0);
+    for pair in series[1..].chunks_exact_mut(2) {
+        (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
+        pair[0] += c;
+        pair[1] += s;
+    }
+}

@@ -1,0 +1,457 @@
+//! Panels on which the force is no polynomial: a Gauss-Legendre rule on a graded variable.
+//!
+//! Towards a level the force and its derivatives are sums of powers of the distance, and of logarithms for a derivative by
+//! an exponent. The map of [`grading`](crate::fourier::grading) makes all of them smooth at once, so one set of nodes serves
+//! the force and every derivative, whatever the exponents.
+//!
+//! Between its ends the graded integrand is the product of the law and of a harmonic. A Gauss rule of `N` nodes is exact to
+//! degree `2 N - 1`. The harmonic `k` of a panel of width `w` takes about `k w / 2` degrees; the law takes as many as its
+//! Legendre coefficients need to fall to rounding, which those of the highest degrees at hand show. If they are still too large,
+//! the next larger rule is taken, or the panel is cut in two.
+//!
+//! Source: Trefethen (2008), Is Gauss quadrature better than Clenshaw-Curtis?, sections 2 and 7 (exactness and degrees);
+//! Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8 (decay of coefficients).
+
+use super::Sums;
+use super::cut::{End, Panel};
+use crate::aft::ContactInput;
+use crate::fourier::gauss::{self, Rule};
+use crate::fourier::grading::{Grading, power_for};
+use crate::fourier::kernels::{evaluate, padded, project};
+use crate::fourier::series;
+use crate::law::{Derivatives, On, PieceFacts, Variation};
+
+/// Nodes beyond those that the harmonics take, at first.
+const MARGIN: f64 = 12.0;
+/// Error aimed at in the harmonics of the force, relative to the largest force.
+const FORCE_ERROR: f64 = 1e-15;
+/// Error aimed at in the harmonics of the derivatives.
+const SLOPE_ERROR: f64 = 1e-11;
+/// Within this phase of the highest harmonic, four terms of Taylor's series give the gap to rounding.
+const NEAR: f64 = 1e-3;
+/// Panels are cut in two at most so many times.
+const DEPTH: u32 = 12;
+
+/// Room for the nodes of one panel, and the graded rules met so far.
+#[derive(Debug, Default)]
+pub(super) struct Quadrature {
+    rules: Vec<GradedRule>,
+    cosines: Vec<f64>,
+    sines: Vec<f64>,
+    weights: Vec<f64>,
+    gap: Vec<f64>,
+    rate: Vec<f64>,
+    force: Vec<f64>,
+    by_gap: Vec<f64>,
+    by_rate: Vec<f64>,
+    by_argument: Vec<f64>,
+    /// The rule in use, and the levels at the ends of the panel.
+    current: usize,
+    levels: [f64; 2],
+    /// The phases while they are rotated.
+    rotated: [Vec<f64>; 2],
+}
+
+/// A rule on `[0, 1]`, nodes measured from the nearer end.
+#[derive(Debug)]
+struct GradedRule {
+    grading: Grading,
+    count: usize,
+    /// Distance from the start, or from the end and negative.
+    nodes: Vec<f64>,
+    weights: Vec<f64>,
+    /// Slope of the map.
+    slopes: Vec<f64>,
+    plain: &'static Rule,
+}
+
+/// A part of a panel.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    start: f64,
+    end: f64,
+    /// The powers that its ends need; one where it was only cut.
+    ends: Grading,
+}
+
+/// Derivatives of a gap at a switch, each divided by its factorial.
+#[derive(Debug, Clone, Copy)]
+struct Taylor([f64; 4]);
+
+impl Taylor {
+    fn at(series: &[f64], tau: f64) -> Self {
+        let (sine, cosine) = tau.sin_cos();
+        let (mut c, mut s) = (1.0, 0.0);
+        let mut sums = [0.0; 4];
+        for (index, pair) in series[1..].chunks_exact(2).enumerate() {
+            let k = (index + 1) as f64;
+            (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
+            let (even, odd) = (pair[0] * c + pair[1] * s, pair[1] * c - pair[0] * s);
+            sums[0] += k * odd;
+            sums[1] -= k * k * even;
+            sums[2] -= k * k * k * odd;
+            sums[3] += k * k * k * k * even;
+        }
+        Self([sums[0], sums[1] / 2.0, sums[2] / 6.0, sums[3] / 24.0])
+    }
+
+    /// The gap at a small distance from where it is on the level.
+    fn value(self, level: f64, distance: f64) -> f64 {
+        let [a, b, c, d] = self.0;
+        level + distance * (a + distance * (b + distance * (c + distance * d)))
+    }
+}
+
+/// The harmonics that a panel must serve.
+#[derive(Debug, Clone, Copy)]
+struct Demand {
+    /// Of the force.
+    force: f64,
+    /// Of the derivatives.
+    slopes: f64,
+    /// Of the gap itself.
+    own: f64,
+}
+
+impl GradedRule {
+    /// The largest of the highest Legendre coefficients of values times the slope of the map, relative to the largest value.
+    fn highest_coefficient(&self, values: &[f64]) -> f64 {
+        let mut largest = 0.0_f64;
+        let mut sums = [0.0; gauss::CHECKED];
+        for (j, (value, slope)) in values.iter().zip(&self.slopes).enumerate() {
+            let graded = value * slope;
+            largest = largest.max(graded.abs());
+            for (sum, coefficients) in sums.iter_mut().zip(&self.plain.highest) {
+                *sum += coefficients[j] * graded;
+            }
+        }
+        let highest = sums.iter().fold(0.0_f64, |m, sum| m.max(sum.abs()));
+        if largest > 0.0 {
+            highest / largest
+        } else {
+            0.0
+        }
+    }
+}
+
+impl Quadrature {
+    /// Adds the integrals over a panel.
+    pub(super) fn add(
+        &mut self,
+        input: ContactInput<'_>,
+        panel: &Panel,
+        levels: &[f64],
+        sums: &mut Sums<'_>,
+    ) {
+        let facts = &input.law.facts().pieces[panel.piece];
+        let with_arguments = sums.slopes.as_ref().map_or(&[][..], |s| s.arguments);
+        let power =
+            |end: End, upper: bool| power_at(facts, input.arguments, with_arguments, end, upper);
+        let grading = Grading {
+            start: power(panel.from, panel.from == End::Level(panel.piece)),
+            end: power(panel.to, panel.to == End::Level(panel.piece)),
+        };
+        let level = |end| match end {
+            End::Level(index) => levels[index],
+            End::Period => 0.0,
+        };
+        self.levels = [level(panel.from), level(panel.to)];
+        let top = sums.slopes.as_ref().map_or(sums.force.len(), |slopes| {
+            slopes.by_gap.len().max(sums.force.len())
+        }) / 2;
+        let demand = Demand {
+            force: (sums.force.len() / 2) as f64,
+            slopes: top as f64,
+            own: series::harmonics(input.gap) as f64,
+        };
+        self.part(
+            input,
+            panel.piece,
+            (panel.start, panel.end),
+            grading,
+            demand,
+            sums,
+            DEPTH,
+        );
+    }
+
+    /// Adds the integrals over a part of a panel.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "the panel, what it holds, and what is wanted of it"
+    )]
+    fn part(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        (start, end): (f64, f64),
+        ends: Grading,
+        demand: Demand,
+        sums: &mut Sums<'_>,
+        depth: u32,
+    ) {
+        let width = end - start;
+        let grading = ends.balanced();
+        let stretch = Stretch { start, end, ends };
+        let degrees = 0.5 * width * grading.stretch();
+        let mut wanted = 0.5 * degrees * (demand.slopes + demand.own) + MARGIN;
+        let largest = gauss::COUNTS[gauss::COUNTS.len() - 1] as f64;
+        while wanted <= largest || depth == 0 {
+            let rule = self.place(start, end, grading, wanted.ceil() as usize);
+            self.evaluate(
+                input,
+                piece,
+                sums.slopes.as_ref().map(|s| s.arguments),
+                &stretch,
+            );
+            let count = self.rules[rule].count as f64;
+            if depth == 0 || self.is_resolved(rule, count, degrees, demand, sums) {
+                self.sum_up(input, piece, sums);
+                return;
+            }
+            wanted = count + 1.0;
+        }
+        let middle = 0.5 * (start + end);
+        let first = Grading { end: 1, ..ends };
+        let second = Grading { start: 1, ..ends };
+        self.part(
+            input,
+            piece,
+            (start, middle),
+            first,
+            demand,
+            sums,
+            depth - 1,
+        );
+        self.part(input, piece, (middle, end), second, demand, sums, depth - 1);
+    }
+
+    /// Whether the nodes suffice: the Legendre coefficients of the graded law, continued as they fall, have reached the error
+    /// aimed at where the harmonics leave off.
+    fn is_resolved(
+        &self,
+        rule: usize,
+        count: f64,
+        degrees: f64,
+        demand: Demand,
+        sums: &Sums<'_>,
+    ) -> bool {
+        let rule = &self.rules[rule];
+        let falls = |values: &[f64], harmonics: f64, error: f64| {
+            let left = (2.0 * count - degrees * harmonics).max(1.0);
+            let allowed = error.powf(((count - 2.0) / left).min(1.0));
+            rule.highest_coefficient(values) <= allowed
+        };
+        let Some(slopes) = &sums.slopes else {
+            return falls(&self.force, demand.force, FORCE_ERROR);
+        };
+        let changing = slopes.arguments.iter().any(|by| *by != 0.0);
+        falls(&self.force, demand.force, FORCE_ERROR)
+            && falls(&self.by_gap, demand.slopes, SLOPE_ERROR)
+            && (!changing || falls(&self.by_argument, demand.force, SLOPE_ERROR))
+    }
+
+    /// Puts nodes on a part of a panel; returns the rule.
+    fn place(&mut self, start: f64, end: f64, grading: Grading, count: usize) -> usize {
+        let index = self.rule(grading, count);
+        let rule = &self.rules[index];
+        let nodes = padded(rule.nodes.len());
+        let [c, s] = &mut self.rotated;
+        for room in [
+            &mut self.cosines,
+            &mut self.sines,
+            &mut self.weights,
+            &mut self.gap,
+            &mut self.rate,
+            &mut self.force,
+            &mut self.by_gap,
+            &mut self.by_rate,
+            &mut self.by_argument,
+            c,
+            s,
+        ] {
+            room.resize(nodes, 0.0);
+        }
+        let width = end - start;
+        for (j, (node, weight)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
+            let base = if node.is_sign_negative() { end } else { start };
+            (self.sines[j], self.cosines[j]) = (base + width * node).sin_cos();
+            self.weights[j] = weight * width / std::f64::consts::TAU;
+        }
+        // Nodes that only fill the last group stand where the last one stands and weigh nothing.
+        let count = rule.nodes.len();
+        for j in count..nodes {
+            (self.sines[j], self.cosines[j]) = (self.sines[count - 1], self.cosines[count - 1]);
+            self.weights[j] = 0.0;
+        }
+        self.current = index;
+        index
+    }
+
+    fn rule(&mut self, grading: Grading, count: usize) -> usize {
+        let plain = gauss::rule(count);
+        let count = plain.nodes.len();
+        let known = self
+            .rules
+            .iter()
+            .position(|rule| rule.grading == grading && rule.count == count);
+        known.unwrap_or_else(|| {
+            let mut rule = GradedRule {
+                grading,
+                count,
+                nodes: Vec::new(),
+                weights: Vec::new(),
+                slopes: Vec::new(),
+                plain,
+            };
+            for (s, w) in plain.nodes.iter().zip(&plain.weights) {
+                let (distance, slope, from_start) = grading.distance(*s);
+                rule.nodes
+                    .push(if from_start { distance } else { -distance });
+                rule.weights.push(w * slope);
+                rule.slopes.push(slope);
+            }
+            self.rules.push(rule);
+            self.rules.len() - 1
+        })
+    }
+
+    /// The law at the nodes; `changing` are the arguments' derivatives if slopes are wanted.
+    fn evaluate(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        changing: Option<&[f64]>,
+        stretch: &Stretch,
+    ) {
+        evaluate(
+            [input.gap, input.rate],
+            &self.cosines,
+            &self.sines,
+            &mut self.gap,
+            &mut self.rate,
+        );
+        self.sharpen(input, stretch);
+        let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
+        let Some(changing) = changing else {
+            input
+                .law
+                .force(on, input.arguments, gap, rate, &mut self.force);
+            return;
+        };
+        let mut changing = changing.iter().enumerate().filter(|&(_, &by)| by != 0.0);
+        let out = Derivatives {
+            force: &mut self.force,
+            by_gap: &mut self.by_gap,
+            by_rate: &mut self.by_rate,
+        };
+        let Some((argument, &by)) = changing.next() else {
+            input.law.derivatives(on, input.arguments, gap, rate, out);
+            return;
+        };
+        let by_argument = &mut self.by_argument;
+        input
+            .law
+            .derivatives_and_by(argument, on, input.arguments, gap, rate, out, by_argument);
+        for slope in by_argument.iter_mut() {
+            *slope *= by;
+        }
+        for (argument, &by) in changing {
+            let out = Derivatives {
+                force: &mut self.force,
+                by_gap: &mut self.by_gap,
+                by_rate: &mut self.by_rate,
+            };
+            let [other, _] = &mut self.rotated;
+            input
+                .law
+                .derivatives_and_by(argument, on, input.arguments, gap, rate, out, other);
+            for (sum, slope) in self.by_argument.iter_mut().zip(other) {
+                *sum += by * *slope;
+            }
+        }
+    }
+
+    /// Replaces the gap close to a singular end by its Taylor polynomial there: a small distance from the level keeps all its
+    /// digits then, which an exponent below one needs.
+    fn sharpen(&mut self, input: ContactInput<'_>, stretch: &Stretch) {
+        let near = NEAR / series::harmonics(input.gap).max(1) as f64;
+        let width = stretch.end - stretch.start;
+        let rule = &self.rules[self.current];
+        let (start, end) = (stretch.ends.start > 1, stretch.ends.end > 1);
+        if start {
+            let taylor = Taylor::at(input.gap, stretch.start);
+            let nodes = rule.nodes.iter().zip(&mut self.gap);
+            for (node, gap) in nodes.take_while(|(node, _)| **node * width < near) {
+                *gap = taylor.value(self.levels[0], width * node);
+            }
+        }
+        if end {
+            let taylor = Taylor::at(input.gap, stretch.end);
+            let nodes = rule.nodes.iter().zip(&mut self.gap).rev();
+            for (node, gap) in nodes.take_while(|(node, _)| -**node * width < near) {
+                *gap = taylor.value(self.levels[1], width * node);
+            }
+        }
+    }
+
+    /// Adds the weighted harmonics of what was evaluated.
+    fn sum_up(&mut self, input: ContactInput<'_>, piece: usize, sums: &mut Sums<'_>) {
+        self.add_weighted(Which::Force, sums.force);
+        let Some(slopes) = &mut sums.slopes else {
+            return;
+        };
+        let facts = &input.law.facts().pieces[piece];
+        if facts.by_gap != Variation::Zero {
+            self.add_weighted(Which::ByGap, slopes.by_gap);
+        }
+        if facts.by_rate != Variation::Zero {
+            self.add_weighted(Which::ByRate, slopes.by_rate);
+        }
+        if slopes.arguments.iter().any(|by| *by != 0.0) {
+            self.add_weighted(Which::ByArgument, slopes.by_arguments);
+        }
+    }
+
+    fn add_weighted(&mut self, which: Which, series: &mut [f64]) {
+        let values = match which {
+            Which::Force => &mut self.force,
+            Which::ByGap => &mut self.by_gap,
+            Which::ByRate => &mut self.by_rate,
+            Which::ByArgument => &mut self.by_argument,
+        };
+        weigh(&self.weights, values);
+        let [c, s] = &mut self.rotated;
+        project(values, &self.cosines, &self.sines, c, s, series);
+    }
+}
+
+/// A quantity at the nodes.
+#[derive(Clone, Copy)]
+enum Which {
+    Force,
+    ByGap,
+    ByRate,
+    ByArgument,
+}
+
+fn weigh(weights: &[f64], values: &mut [f64]) {
+    for (value, weight) in values.iter_mut().zip(weights) {
+        *value *= weight;
+    }
+}
+
+/// The power of the grading that an end of a panel needs: by the exponents of the force and its derivatives there.
+fn power_at(facts: &PieceFacts, arguments: &[f64], changing: &[f64], end: End, upper: bool) -> u32 {
+    if end == End::Period {
+        return 1;
+    }
+    let terms = facts.terms.iter().filter(|term| match term.of {
+        crate::law::Quantity::ByArgument(index) => changing.get(index).is_some_and(|by| *by != 0.0),
+        _ => true,
+    });
+    power_for(terms.map(|term| {
+        let exponent = if upper { term.upper } else { term.lower };
+        (exponent.value(arguments), term.logarithm)
+    }))
+}

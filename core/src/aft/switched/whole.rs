@@ -1,0 +1,160 @@
+//! Orbits that stay on one piece: equally spaced samples.
+//!
+//! The trapezoidal rule errs by what lies beyond the Nyquist frequency, and for an analytic integrand that falls
+//! exponentially (Trefethen and Weideman (2014), The exponentially convergent trapezoidal rule). The samples are doubled until
+//! the upper end of the spectrum has fallen to rounding, or to the largest number.
+
+use super::Sums;
+use crate::aft::ContactInput;
+use crate::fourier::sampled::SampledTransform;
+use crate::fourier::series;
+use crate::law::{Derivatives, On, Variation};
+
+/// The upper eighth of the spectrum, relative to the largest coefficient, at which samples suffice: aliases of the harmonics
+/// asked for lie as far above Nyquist as those lie below, and are smaller still.
+const RESOLVED: f64 = 1e-10;
+/// More samples are never taken.
+const MOST: usize = 1 << 15;
+
+/// Transforms of increasing length, made when they are first needed.
+#[derive(Debug, Default)]
+pub(super) struct Whole {
+    grids: Vec<Grid>,
+}
+
+#[derive(Debug)]
+struct Grid {
+    transform: SampledTransform,
+    gap: Vec<f64>,
+    rate: Vec<f64>,
+    force: Vec<f64>,
+    by_gap: Vec<f64>,
+    by_rate: Vec<f64>,
+    by_argument: Vec<f64>,
+    by_arguments: Vec<f64>,
+    series: Vec<f64>,
+}
+
+impl Whole {
+    /// Adds a period on one piece.
+    pub(super) fn add(&mut self, input: ContactInput<'_>, piece: usize, sums: &mut Sums<'_>) {
+        let slopes = sums.slopes.as_ref().map_or(0, |s| s.by_gap.len() / 2);
+        let top = (sums.force.len() / 2).max(slopes);
+        let least = (top + series::harmonics(input.gap) + 8).next_power_of_two();
+        let mut samples = least;
+        loop {
+            let index = self.grid(samples);
+            let grid = &mut self.grids[index];
+            let changing = sums.slopes.as_ref().map(|slopes| slopes.arguments);
+            if grid.evaluate(input, piece, changing) || samples >= MOST.max(least) {
+                grid.add(sums);
+                return;
+            }
+            samples *= 2;
+        }
+    }
+
+    fn grid(&mut self, samples: usize) -> usize {
+        let known = self
+            .grids
+            .iter()
+            .position(|grid| grid.transform.samples() == samples);
+        known.unwrap_or_else(|| {
+            self.grids.push(Grid::new(samples));
+            self.grids.len() - 1
+        })
+    }
+}
+
+impl Grid {
+    fn new(samples: usize) -> Self {
+        let room = || vec![0.0; samples];
+        Self {
+            transform: SampledTransform::new(samples),
+            gap: room(),
+            rate: room(),
+            force: room(),
+            by_gap: room(),
+            by_rate: room(),
+            by_argument: room(),
+            by_arguments: room(),
+            series: vec![0.0; series::length((samples - 1) / 2)],
+        }
+    }
+
+    /// The law at all samples. Returns whether the samples suffice.
+    fn evaluate(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        changing: Option<&[f64]>,
+    ) -> bool {
+        self.transform.sample(input.gap, &mut self.gap);
+        self.transform.sample(input.rate, &mut self.rate);
+        let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
+        let Some(changing) = changing else {
+            input
+                .law
+                .force(on, input.arguments, gap, rate, &mut self.force);
+            return self.transform.is_resolved(&self.force, RESOLVED);
+        };
+        let out = Derivatives {
+            force: &mut self.force,
+            by_gap: &mut self.by_gap,
+            by_rate: &mut self.by_rate,
+        };
+        input.law.derivatives(on, input.arguments, gap, rate, out);
+        let facts = &input.law.facts().pieces[piece];
+        let varying = |variation| variation == Variation::Varying;
+        self.by_changing(input, piece, changing);
+        self.transform.is_resolved(&self.force, RESOLVED)
+            && (!varying(facts.by_gap) || self.transform.is_resolved(&self.by_gap, RESOLVED))
+            && (!varying(facts.by_rate) || self.transform.is_resolved(&self.by_rate, RESOLVED))
+            && self.transform.is_resolved(&self.by_arguments, RESOLVED)
+    }
+
+    /// What the arguments that change do, summed up.
+    fn by_changing(&mut self, input: ContactInput<'_>, piece: usize, changing: &[f64]) {
+        self.by_arguments.fill(0.0);
+        let changing = changing.iter().enumerate();
+        for (argument, &by) in changing.filter(|&(_, &by)| by != 0.0) {
+            let out = Derivatives {
+                force: &mut self.force,
+                by_gap: &mut self.by_gap,
+                by_rate: &mut self.by_rate,
+            };
+            input.law.derivatives_and_by(
+                argument,
+                On::Piece(piece),
+                input.arguments,
+                &self.gap,
+                &self.rate,
+                out,
+                &mut self.by_argument,
+            );
+            for (sum, slope) in self.by_arguments.iter_mut().zip(&self.by_argument) {
+                *sum += by * slope;
+            }
+        }
+    }
+
+    /// Adds the harmonics of what was evaluated.
+    fn add(&mut self, sums: &mut Sums<'_>) {
+        let (transform, room) = (&mut self.transform, &mut self.series);
+        add(transform, &self.force, room, sums.force);
+        if let Some(slopes) = &mut sums.slopes {
+            add(transform, &self.by_gap, room, slopes.by_gap);
+            add(transform, &self.by_rate, room, slopes.by_rate);
+            if slopes.arguments.iter().any(|by| *by != 0.0) {
+                add(transform, &self.by_arguments, room, slopes.by_arguments);
+            }
+        }
+    }
+}
+
+fn add(transform: &mut SampledTransform, samples: &[f64], room: &mut [f64], sum: &mut [f64]) {
+    transform.analyse(samples, room);
+    for (to, from) in sum.iter_mut().zip(room) {
+        *to += *from;
+    }
+}
