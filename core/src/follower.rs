@@ -10,6 +10,7 @@ use crate::continuation::problem::{Norm, Problem};
 use crate::error::Error;
 use crate::newton::{Newton, NewtonOptions};
 use crate::observe::observe;
+use crate::stability::Stability;
 use crate::stability::judge::Judge;
 use crate::start::StartRequest;
 use crate::system::{System, Variable};
@@ -29,6 +30,7 @@ pub(crate) struct Follower<'a> {
     pub(crate) variable: Variable,
     pub(crate) resolution: Resolution,
     pub(crate) newton: NewtonOptions,
+    pub(crate) stability: bool,
     pub(crate) from: f64,
     pub(crate) to: f64,
 }
@@ -62,6 +64,10 @@ impl<'a> Follower<'a> {
         )
     }
 
+    fn judge(&self) -> Option<Judge<'a>> {
+        self.stability.then(|| Judge::new(self.finer()))
+    }
+
     pub(crate) fn start_request(&self, options: FollowOptions) -> StartRequest<'_> {
         StartRequest {
             system: self.system,
@@ -83,7 +89,7 @@ impl<'a> Follower<'a> {
     ) -> Result<Vec<Point>, Error> {
         let mut balance = self.balance();
         let mut newton = Newton::new(&balance);
-        let mut judge = Judge::new(self.finer());
+        let mut judge = self.judge();
         let mut found: Vec<Point> = Vec::new();
         // Between folds the branch is monotonic, so every part of this chain passes a value at most once.
         let chain = chain(points, events);
@@ -96,7 +102,7 @@ impl<'a> Follower<'a> {
                         if next.value != value && (point.value < value) != (next.value < value) =>
                     {
                         let u = self.between(&mut balance, &mut newton, (point, next), value)?;
-                        Some(point_of(&mut balance, &mut newton, &mut judge, &u))
+                        Some(point_of(&mut balance, &mut newton, judge.as_mut(), &u))
                     }
                     _ => None,
                 }
@@ -193,7 +199,7 @@ fn is_same(a: &Orbit, b: &Orbit) -> bool {
 
 /// What a run has gathered.
 pub(crate) struct Run<'a> {
-    pub(crate) judge: Judge<'a>,
+    pub(crate) judge: Option<Judge<'a>>,
     finer: Finer<'a>,
     pub(crate) points: Vec<Point>,
     pub(crate) events: Vec<Event>,
@@ -203,7 +209,7 @@ pub(crate) struct Run<'a> {
 impl<'a> Run<'a> {
     pub(crate) fn new(follower: &Follower<'a>) -> Self {
         Self {
-            judge: Judge::new(follower.finer()),
+            judge: follower.judge(),
             finer: follower.finer(),
             points: Vec::new(),
             events: Vec::new(),
@@ -221,7 +227,7 @@ impl<'a> Run<'a> {
     ) -> ControlFlow<()> {
         match seen {
             Visit::Point(at) => {
-                let point = point_of(balance, newton, &mut self.judge, &at.u);
+                let point = point_of(balance, newton, self.judge.as_mut(), &at.u);
                 let answer = visit(&point);
                 self.points.push(point);
                 answer
@@ -248,7 +254,7 @@ impl<'a> Run<'a> {
             Some(located) if located.vanishes => {
                 let u = &located.point.u;
                 let error = self.finer.fold_error(u, newton);
-                let point = point_of(balance, newton, &mut self.judge, u);
+                let point = point_of(balance, newton, self.judge.as_mut(), u);
                 let kind = EventKind::Fold;
                 self.events.push(Event {
                     kind,
@@ -282,12 +288,14 @@ impl<'a> Run<'a> {
 fn point_of(
     balance: &mut Balance<'_>,
     newton: &mut Newton,
-    judge: &mut Judge<'_>,
+    judge: Option<&mut Judge<'_>>,
     u: &[f64],
 ) -> Point {
     let n = balance.unknowns();
     balance.set(u[n]);
-    let stability = judge.stability(balance, newton, u);
+    let stability = judge.map_or_else(Stability::unknown, |judge| {
+        judge.stability(balance, newton, u)
+    });
     let orbit = Orbit {
         series: u[..n].to_vec(),
         coordinates: balance.layout().coordinates,

@@ -52,6 +52,7 @@ pub mod fourier;
 pub mod generic;
 #[cfg(doctest)]
 mod guide;
+mod jacobian;
 pub mod law;
 mod layout;
 mod linear;

@@ -11,7 +11,8 @@
 //! unit vector of the parameter to solve at a fixed parameter, and a tangent for a step of pseudo-arclength.
 
 use crate::continuation::problem::{Norm, Problem, Scale};
-use crate::linear::{Lu, Matrix, Singular};
+use crate::jacobian::Jacobian;
+use crate::linear::{Singular, dot};
 use crate::statistics::Statistics;
 
 /// When to stop, and how carefully to go.
@@ -91,17 +92,36 @@ impl std::error::Error for NewtonError {}
 /// Room for one problem; no method allocates.
 #[derive(Debug)]
 pub struct Newton {
-    matrix: Matrix,
-    lu: Lu,
+    jacobian: Jacobian,
     residual: Vec<f64>,
     update: Vec<f64>,
     trial: Vec<f64>,
+    border: Vec<f64>,
     norm: Norm,
     /// The scale of the factors at hand.
     scale: Scale,
+    /// How far the unknowns have moved since the factors were made, in units of the scale.
+    drift: f64,
+    /// Largest ratio of successive updates with factors that were made at the first of them.
+    contraction: f64,
     /// Work done so far.
     pub statistics: Statistics,
 }
+
+/// Updates that shrink by at least this factor keep the factors they were made with (a chord iteration).
+const CHORD: f64 = 0.2;
+/// The first update must be at most this long for the second to use its factors.
+const CHORD_START: f64 = 0.05;
+/// Further updates that a chord iteration is allowed for each that Newton's method is.
+const CHORD_PATIENCE: usize = 2;
+/// A tangent whose component along the parameter is smaller than this is computed exactly: it may be near a fold.
+const NEAR_FOLD: f64 = 0.1;
+/// Corrections of an exact tangent, at most.
+const REFINEMENTS: usize = 60;
+/// Relative size of the last of them.
+const REFINED: f64 = 1e-13;
+/// Drift that does not change a tangent noticeably.
+const SMALL_DRIFT: f64 = 1e-8;
 
 /// The last row of (1).
 #[derive(Debug, Clone, Copy)]
@@ -117,13 +137,15 @@ impl Newton {
     pub fn new(problem: &impl Problem) -> Self {
         let n = problem.unknowns();
         Self {
-            matrix: Matrix::zeros(n + 1),
-            lu: Lu::new(n + 1),
+            jacobian: Jacobian::new(problem.partition()),
             residual: vec![0.0; n + 1],
             update: vec![0.0; n + 1],
             trial: vec![0.0; n + 1],
+            border: vec![0.0; n + 1],
             norm: Norm::of(problem),
             scale: Scale::UNIT,
+            drift: f64::INFINITY,
+            contraction: 0.0,
             statistics: Statistics::default(),
         }
     }
@@ -134,7 +156,10 @@ impl Newton {
     }
 
     /// Solves (1) repeatedly until the update is small; `u` is the start and becomes the solution. The factors of the
-    /// last matrix are kept for [`Newton::solve_bordered`].
+    /// last matrix are kept for [`Newton::solve`].
+    ///
+    /// As long as the updates shrink fast, the factors of the first are used again (Deuflhard (2011), Newton Methods for
+    /// Nonlinear Problems, section 2.1.3: the simplified Newton method and its contraction).
     ///
     /// # Errors
     /// [`NewtonError`]; `u` then holds the last iterate.
@@ -147,14 +172,23 @@ impl Newton {
         options: NewtonOptions,
     ) -> Result<Converged, NewtonError> {
         self.scale = scale;
+        self.contraction = 0.0;
         let mut previous = f64::INFINITY;
-        let mut updates = 0;
         let mut size = f64::INFINITY;
-        for iteration in 0..options.iterations {
-            self.linearise(problem, u, border)
-                .map_err(|error| error.after(iteration))?;
+        let mut renew = true;
+        let most = options.iterations * if options.damped { 1 } else { CHORD_PATIENCE };
+        let mut updates = 0;
+        for iteration in 0..most {
+            let renewed = renew;
+            if renew {
+                self.linearise(problem, u, border)
+                    .map_err(|error| error.after(iteration))?;
+            } else {
+                self.evaluate(problem, u, border)
+                    .map_err(|error| error.after(iteration))?;
+            }
             self.update.copy_from_slice(&self.residual);
-            self.lu.solve(&self.matrix, &mut self.update);
+            self.jacobian.solve(&mut self.update);
             unscale(&self.norm, scale, &mut self.update);
             size = self.norm.length(scale, &self.update);
             if !size.is_finite() {
@@ -164,6 +198,7 @@ impl Newton {
             }
             if size <= options.tolerance {
                 subtract(u, &self.update, 1.0);
+                self.drift += size;
                 return Ok(Converged {
                     iterations: iteration + 1,
                     update: size,
@@ -176,7 +211,17 @@ impl Newton {
                     break;
                 }
                 subtract(u, &self.update, 1.0);
+                let ratio = size / previous;
+                renew = if previous.is_finite() {
+                    ratio > CHORD && !(renewed && !self.jacobian.is_exact())
+                } else {
+                    size > CHORD_START
+                };
+                if !self.jacobian.is_exact() && previous.is_finite() {
+                    self.contraction = self.contraction.max(ratio);
+                }
             }
+            self.drift += size;
             updates = iteration + 1;
             previous = size;
         }
@@ -187,30 +232,89 @@ impl Newton {
         })
     }
 
-    /// Solves with the matrix of the last [`Newton::correct`] and a right-hand side that is zero but for the border.
-    /// With a unit value there, the result is the tangent of the solution curve, not yet normalised.
-    pub fn solve_border(&self, tangent: &mut [f64]) {
+    /// Largest ratio of successive updates in the last correction where the Jacobian leaves something out; zero otherwise.
+    pub fn contraction(&self) -> f64 {
+        self.contraction
+    }
+
+    /// The direction of the solution curve at a solution that was corrected last, not yet normalised: it solves (1) with a
+    /// right-hand side that is one in the border and zero elsewhere. Near a fold, or where `exact` is set, nothing is left out
+    /// of the Jacobian.
+    pub fn tangent(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &[f64],
+        tangent: &mut [f64],
+        exact: bool,
+    ) {
+        let n = self.norm.unknowns();
         tangent.fill(0.0);
-        if let Some(last) = tangent.last_mut() {
-            *last = 1.0;
-        }
+        tangent[n] = 1.0;
         self.solve(tangent);
+        let slope = |tangent: &[f64]| tangent[n] / self.scale.parameter;
+        let steep = slope(tangent).abs() >= NEAR_FOLD * self.norm.length(self.scale, tangent);
+        if steep && !exact {
+            return;
+        }
+        if self.drift > SMALL_DRIFT {
+            self.trial.copy_from_slice(&self.border);
+            let border = std::mem::take(&mut self.trial);
+            let row = Border {
+                row: &border,
+                value: dot(&border, u),
+            };
+            let renewed = self.linearise(problem, u, row);
+            self.trial = border;
+            if renewed.is_err() {
+                return;
+            }
+            tangent.fill(0.0);
+            tangent[n] = 1.0;
+            self.solve(tangent);
+        }
+        if !self.jacobian.is_exact() {
+            self.refine(problem, u, tangent);
+        }
+    }
+
+    /// Makes up for what the Jacobian leaves out: `t += B^-1 ([0; 1] - J t)`, repeated.
+    fn refine(&mut self, problem: &mut impl Problem, u: &[f64], tangent: &mut [f64]) {
+        let n = self.norm.unknowns();
+        let size = self.norm.length(self.scale, tangent);
+        let mut previous = f64::INFINITY;
+        for _ in 0..REFINEMENTS {
+            problem.apply(u, tangent, &mut self.residual[..n]);
+            self.statistics.jacobians += 1;
+            self.residual[n] = dot(&self.border, tangent) - 1.0;
+            self.update.copy_from_slice(&self.residual);
+            self.jacobian.solve(&mut self.update);
+            unscale(&self.norm, self.scale, &mut self.update);
+            let change = self.norm.length(self.scale, &self.update);
+            if !(change < previous) {
+                return;
+            }
+            subtract(tangent, &self.update, 1.0);
+            if change <= REFINED * size {
+                return;
+            }
+            previous = change;
+        }
     }
 
     /// Solves with the matrix of the last [`Newton::correct`], in place.
-    pub fn solve(&self, vector: &mut [f64]) {
-        self.lu.solve(&self.matrix, vector);
+    pub fn solve(&mut self, vector: &mut [f64]) {
+        self.jacobian.solve(vector);
         unscale(&self.norm, self.scale, vector);
     }
 
     /// Writes `psi` with `psi^T R_u = 0` and `psi^T R_lambda = 1`, which exists at a fold: there a small residual `r`
     /// moves the parameter of the fold by `-psi . r`. The last entry is the defect, zero at the fold itself.
-    pub fn left_null_vector(&self, psi: &mut [f64]) {
+    pub fn left_null_vector(&mut self, psi: &mut [f64]) {
         psi.fill(0.0);
         if let Some(last) = psi.last_mut() {
             *last = self.scale.parameter;
         }
-        self.lu.solve_transposed(&self.matrix, psi);
+        self.jacobian.solve_transposed(psi);
     }
 
     /// Fills and factorises the bordered matrix at `u`, with columns in units of the scale.
@@ -221,24 +325,43 @@ impl Newton {
         border: Border<'_>,
     ) -> Result<(), NewtonError> {
         let n = self.norm.unknowns();
-        self.matrix.clear();
-        problem.evaluate(u, &mut self.residual[..n], Some(&mut self.matrix));
+        self.jacobian.clear();
+        problem.evaluate(u, &mut self.residual[..n], Some(&mut self.jacobian));
         self.statistics.jacobians += 1;
-        self.matrix.row_mut(n).copy_from_slice(border.row);
-        self.residual[n] = crate::linear::dot(border.row, u) - border.value;
-        if !largest(&self.residual).is_finite() {
-            return Err(NewtonError::NotFinite { iterations: 0 });
-        }
-        for row in 0..=n {
-            let entries = self.matrix.row_mut(row);
-            for (column, x) in entries.iter_mut().enumerate() {
-                *x *= self.norm.unit(self.scale, column);
-            }
-        }
+        self.close(u, border)?;
+        self.border.copy_from_slice(border.row);
+        self.jacobian.set_border(border.row);
+        self.jacobian
+            .scale_columns(|unknown| self.norm.unit(self.scale, unknown));
         self.statistics.factorisations += 1;
-        self.lu
-            .factorise(&mut self.matrix)
+        self.drift = 0.0;
+        self.jacobian
+            .factorise()
             .map_err(|at| NewtonError::Singular { iterations: 0, at })
+    }
+
+    /// Evaluates the residual at `u` alone.
+    fn evaluate(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &[f64],
+        border: Border<'_>,
+    ) -> Result<(), NewtonError> {
+        let n = self.norm.unknowns();
+        problem.evaluate(u, &mut self.residual[..n], None);
+        self.statistics.residuals += 1;
+        self.close(u, border)
+    }
+
+    /// The residual of the border; an error if any is not finite.
+    fn close(&mut self, u: &[f64], border: Border<'_>) -> Result<(), NewtonError> {
+        let n = self.norm.unknowns();
+        self.residual[n] = dot(border.row, u) - border.value;
+        if largest(&self.residual).is_finite() {
+            Ok(())
+        } else {
+            Err(NewtonError::NotFinite { iterations: 0 })
+        }
     }
 
     /// Takes the longest of the halved updates that reduces the residual, or the shortest.
@@ -251,7 +374,7 @@ impl Newton {
             subtract(&mut self.trial, &self.update, factor);
             problem.evaluate(&self.trial, &mut self.residual[..n], None);
             self.statistics.residuals += 1;
-            self.residual[n] = crate::linear::dot(border.row, &self.trial) - border.value;
+            self.residual[n] = dot(border.row, &self.trial) - border.value;
             if norm(&self.residual) < (1.0 - 1e-4 * factor) * before {
                 break;
             }

@@ -18,7 +18,7 @@ use crate::continuation::problem::Problem;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::fourier::series;
-use crate::linear::Matrix;
+use crate::jacobian::{Jacobian, Partition};
 use crate::newton::{Border, Newton, NewtonError, NewtonOptions};
 use crate::statistics::Statistics;
 use crate::system::{System, Variable};
@@ -80,8 +80,10 @@ struct Fixed<'a> {
 
 impl<'a> Fixed<'a> {
     fn new(request: &StartRequest<'a>, harmonics: usize) -> Self {
+        // Without its harmonics a symmetric orbit has no unknowns; at rest there is but the mean.
         let resolution = Resolution {
             harmonics,
+            odd: request.resolution.odd && harmonics > 0,
             ..request.resolution
         };
         let balance = Balance::new(
@@ -396,7 +398,11 @@ impl Problem for Homotopy<'_> {
         self.balance.unknowns()
     }
 
-    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Matrix>) {
+    fn partition(&self) -> Partition {
+        self.balance.partition()
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
         let n = self.balance.unknowns();
         self.extended[..n].copy_from_slice(&u[..n]);
         self.extended[n] = self.value;
@@ -407,8 +413,19 @@ impl Problem for Homotopy<'_> {
         };
         self.balance
             .evaluate(&self.extended, residual, Some(&mut *jacobian));
-        for (row, &value) in self.oscillating.iter().enumerate() {
-            jacobian.row_mut(row)[n] = value;
+        jacobian.set_column(&self.oscillating);
+    }
+
+    fn apply(&mut self, u: &[f64], direction: &[f64], derivative: &mut [f64]) {
+        let n = self.balance.unknowns();
+        self.extended[..n].copy_from_slice(&u[..n]);
+        self.extended[n] = self.value;
+        self.balance.set_drive_factor(u[n]);
+        let mut held = direction.to_vec();
+        held[n] = 0.0;
+        self.balance.apply(&self.extended, &held, derivative);
+        for (to, by) in derivative.iter_mut().zip(&self.oscillating) {
+            *to += by * direction[n];
         }
     }
 

@@ -41,6 +41,7 @@ impl<'a> Finer<'a> {
     ) -> Self {
         let fine = Resolution {
             harmonics: 2 * coarse.harmonics,
+            core: 0,
             samples: 2 * coarse.samples,
             ..coarse
         };

@@ -1,6 +1,8 @@
 //! Blocks of the Jacobian: multiplication by a periodic function as Toeplitz plus Hankel.
 
+use super::harmonics::Harmonics;
 use crate::fourier::series;
+use crate::jacobian::Jacobian;
 use crate::layout::Layout;
 use crate::linear::Matrix;
 use crate::system::Wave;
@@ -18,8 +20,8 @@ pub(super) struct Block {
     constant: bool,
 }
 
-/// The blocks that a system can fill, cleared.
-pub(super) fn of_layout(layout: &Layout, harmonics: usize) -> Vec<Block> {
+/// The blocks that a system can fill, cleared, with series of `reach` harmonics.
+pub(super) fn of_layout(layout: &Layout, reach: usize) -> Vec<Block> {
     let mut blocks = Vec::new();
     for entry in layout.stiffness.iter().chain(&layout.damping) {
         find_or_add(
@@ -27,31 +29,25 @@ pub(super) fn of_layout(layout: &Layout, harmonics: usize) -> Vec<Block> {
             entry.row,
             entry.column,
             entry.wave == Wave::CONSTANT,
-            harmonics,
+            reach,
         );
     }
     for contact in &layout.contacts {
         for e in &contact.force {
             for d in &contact.gap {
-                find_or_add(&mut blocks, e.index, d.index, false, harmonics);
+                find_or_add(&mut blocks, e.index, d.index, false, reach);
             }
         }
     }
     blocks
 }
 
-fn find_or_add(
-    blocks: &mut Vec<Block>,
-    row: usize,
-    column: usize,
-    constant: bool,
-    harmonics: usize,
-) {
+fn find_or_add(blocks: &mut Vec<Block>, row: usize, column: usize, constant: bool, reach: usize) {
     if let Some(block) = find(blocks, row, column) {
         block.constant &= constant;
         return;
     }
-    let length = series::length(2 * harmonics);
+    let length = series::length(reach);
     let zeros = || vec![0.0; length];
     blocks.push(Block {
         row,
@@ -119,38 +115,68 @@ impl Block {
     }
 
     /// Adds the block to the Jacobian, by (2) of [`balance`](super).
-    pub(super) fn add_to(&self, harmonics: usize, jacobian: &mut Matrix) {
-        let length = series::length(harmonics);
-        let (top, left) = (self.row * length, self.column * length);
-        jacobian.row_mut(top)[left] += self.stiffness[0];
-        if self.constant {
-            self.add_diagonal(harmonics, top, left, jacobian);
-            return;
-        }
-        self.add_mean_row(harmonics, &mut jacobian.row_mut(top)[left..][..length]);
-        for l in 1..=harmonics {
-            let (cosine, sine) = jacobian.two_rows_mut(top + 2 * l - 1, top + 2 * l);
-            let cosine = &mut cosine[left..][..length];
-            let sine = &mut sine[left..][..length];
-            cosine[0] += self.stiffness[2 * l - 1];
-            sine[0] += self.stiffness[2 * l];
-            for m in 1..=harmonics {
-                self.add_pair(
-                    l,
-                    m,
-                    &mut cosine[2 * m - 1..=2 * m],
-                    &mut sine[2 * m - 1..=2 * m],
-                );
-            }
+    pub(super) fn add_to(&self, harmonics: &Harmonics, jacobian: &mut Jacobian) {
+        self.add_to_core(&harmonics.core, jacobian.core_mut());
+        for (group, &k) in harmonics.tail.iter().enumerate() {
+            self.add_to_group(k, jacobian.group_mut(group));
         }
     }
 
-    fn add_mean_row(&self, harmonics: usize, row: &mut [f64]) {
-        for m in 1..=harmonics {
+    fn add_to_core(&self, harmonics: &[usize], core: &mut Matrix) {
+        let length = places(harmonics);
+        let (top, left) = (self.row * length, self.column * length);
+        if self.constant {
+            let mut place = 0;
+            for &l in harmonics {
+                self.add_diagonal(l, core, top + place, left + place);
+                place += if l == 0 { 1 } else { 2 };
+            }
+            return;
+        }
+        let mut place = top;
+        for &l in harmonics {
+            if l == 0 {
+                let row = &mut core.row_mut(place)[left..][..length];
+                self.add_mean_row(harmonics, row);
+                place += 1;
+                continue;
+            }
+            let (cosine, sine) = core.two_rows_mut(place, place + 1);
+            let cosine = &mut cosine[left..][..length];
+            let sine = &mut sine[left..][..length];
+            let mut column = 0;
+            for &m in harmonics {
+                if m == 0 {
+                    cosine[0] += self.stiffness[2 * l - 1];
+                    sine[0] += self.stiffness[2 * l];
+                    column += 1;
+                    continue;
+                }
+                self.add_pair(
+                    l,
+                    m,
+                    &mut cosine[column..column + 2],
+                    &mut sine[column..column + 2],
+                );
+                column += 2;
+            }
+            place += 2;
+        }
+    }
+
+    fn add_mean_row(&self, harmonics: &[usize], row: &mut [f64]) {
+        let mut column = 0;
+        for &m in harmonics {
+            if m == 0 {
+                row[0] += self.stiffness[0];
+                column += 1;
+                continue;
+            }
             let (c, s) = (0.5 * self.stiffness[2 * m - 1], 0.5 * self.stiffness[2 * m]);
             let (tc, ts) = (0.5 * self.damping[2 * m - 1], 0.5 * self.damping[2 * m]);
-            row[2 * m - 1] += c - m as f64 * ts;
-            row[2 * m] += s + m as f64 * tc;
+            row[column] += c - m as f64 * ts;
+            row[column + 1] += s + m as f64 * tc;
+            column += 2;
         }
     }
 
@@ -167,17 +193,27 @@ impl Block {
         sine[1] += s.sin_sin + m * t.sin_cos;
     }
 
-    fn add_diagonal(&self, harmonics: usize, top: usize, left: usize, jacobian: &mut Matrix) {
+    /// What a mean stiffness and damping do to one harmonic.
+    fn add_diagonal(&self, m: usize, matrix: &mut Matrix, row: usize, column: usize) {
         let (s, t) = (self.stiffness[0], self.damping[0]);
-        for m in 1..=harmonics {
-            let (cosine, sine) = jacobian.two_rows_mut(top + 2 * m - 1, top + 2 * m);
-            let i = left + 2 * m - 1;
-            cosine[i] += s;
-            cosine[i + 1] += m as f64 * t;
-            sine[i] -= m as f64 * t;
-            sine[i + 1] += s;
+        matrix.row_mut(row)[column] += s;
+        if m > 0 {
+            matrix.row_mut(row)[column + 1] += m as f64 * t;
+            matrix.row_mut(row + 1)[column] -= m as f64 * t;
+            matrix.row_mut(row + 1)[column + 1] += s;
         }
     }
+
+    /// A harmonic of the tail is coupled to itself alone, through the means.
+    fn add_to_group(&self, k: usize, group: &mut Matrix) {
+        let (row, column) = (2 * self.row, 2 * self.column);
+        self.add_diagonal(k, group, row, column);
+    }
+}
+
+/// Number of unknowns that harmonics of one coordinate make.
+pub(super) fn places(harmonics: &[usize]) -> usize {
+    harmonics.iter().map(|&k| if k == 0 { 1 } else { 2 }).sum()
 }
 
 /// `2 <S cos l cos m>` and its companions.

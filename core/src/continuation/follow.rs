@@ -195,7 +195,7 @@ impl Walk {
     ) -> Result<CurvePoint, NewtonError> {
         self.scale = self.scale_at_trial(newton);
         self.solve_at(problem, newton, self.options.from)?;
-        let mut point = self.point(newton);
+        let mut point = self.point(problem, newton);
         if point.parameter_slope() * (self.options.to - self.options.from) < 0.0 {
             for t in &mut point.tangent {
                 *t = -*t;
@@ -231,9 +231,9 @@ impl Walk {
     }
 
     /// The point at `trial`, with the tangent from the last matrix of the corrector.
-    fn point(&mut self, newton: &mut Newton) -> CurvePoint {
+    fn point<P: Problem>(&mut self, problem: &mut P, newton: &mut Newton) -> CurvePoint {
         let mut tangent = vec![0.0; self.trial.len()];
-        newton.solve_border(&mut tangent);
+        newton.tangent(problem, &self.trial, &mut tangent, false);
         let scale = self.scale_at_trial(newton);
         let norm = newton.norm().length(scale, &tangent);
         for t in &mut tangent {
@@ -327,7 +327,7 @@ impl Walk {
             self.scale,
             self.options.newton,
         )?;
-        Ok((self.point(newton), converged.iterations))
+        Ok((self.point(problem, newton), converged.iterations))
     }
 
     /// If the step went beyond an end of the range, replaces its point by the one at the end.
@@ -363,7 +363,7 @@ impl Walk {
                 parameter: from.parameter(),
                 reason,
             })?;
-        let mut point = self.point(newton);
+        let mut point = self.point(problem, newton);
         if newton
             .norm()
             .product(point.scale, &point.tangent, &next.tangent)

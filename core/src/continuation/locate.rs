@@ -110,7 +110,7 @@ fn corrected<P: Problem>(
         .correct(problem, &mut u, border, scale, options)
         .ok()?;
     let mut tangent = vec![0.0; u.len()];
-    newton.solve_border(&mut tangent);
+    newton.tangent(problem, &u, &mut tangent, true);
     let norm = newton.norm().length(scale, &tangent);
     for t in &mut tangent {
         *t /= norm;

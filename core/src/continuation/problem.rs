@@ -1,6 +1,6 @@
 //! What continuation knows of the equations it follows.
 
-use crate::linear::Matrix;
+use crate::jacobian::{Jacobian, Partition};
 
 /// `n` equations in `n` unknowns and one parameter.
 ///
@@ -9,9 +9,21 @@ pub trait Problem {
     /// `n`
     fn unknowns(&self) -> usize;
 
-    /// Writes the residual, and if asked for its derivatives by all `n + 1` extended unknowns into the first `n` rows of
-    /// the matrix, which is of order `n + 1`.
-    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Matrix>);
+    /// Which unknowns the Jacobian couples densely, and which by groups.
+    fn partition(&self) -> Partition {
+        Partition::dense(self.unknowns())
+    }
+
+    /// Writes the residual, and if asked for its derivatives by all `n + 1` extended unknowns into the Jacobian, which is
+    /// clear. Residuals of unknowns that are in no part of the [`Partition`] are zero.
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>);
+
+    /// Writes the derivative of the residual in a direction of the extended unknowns, nothing left out. Only called where the
+    /// [`Partition`] has a tail.
+    fn apply(&mut self, u: &[f64], direction: &[f64], derivative: &mut [f64]) {
+        let _ = (u, direction);
+        derivative.fill(f64::NAN);
+    }
 
     /// Writes the weights `w` of the norm `|u|^2 = sum w_i u_i^2` over the `n` unknowns: a mean square that does not
     /// change when unknowns are added that are zero.

@@ -1,10 +1,19 @@
-//! The period of a gap, cut where it crosses a level.
+//! The period of a gap, cut where it crosses a level, and where it nearly does.
+//!
+//! Near an extremum that misses a level by a small distance `d` with curvature `c`, a power of `g - level` has its
+//! singularities beside the real axis, at `tau +- i sqrt(2 d / c)`. A panel of a piece with such a power is cut there too.
 
 use std::f64::consts::TAU;
 
+use super::panel::power_at;
 use crate::aft::ContactInput;
-use crate::fourier::crossings::{Crossing, crossings};
+use crate::fourier::crossings::{Crossing, CrossingFinder, NearMiss};
 use crate::fourier::series;
+
+/// Singularities farther from the real axis than this cost fewer nodes than a cut.
+const NEAR: f64 = 0.15;
+/// Where near misses are looked for, in parts of the size of the gap's oscillation.
+const REACH: f64 = 0.05;
 
 /// The gap crosses a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +35,8 @@ impl Switch {
 pub(super) enum End {
     /// The gap crosses this level.
     Level(usize),
+    /// The gap nearly touches this level.
+    Near(usize),
     /// Nothing but the period.
     Period,
 }
@@ -33,7 +44,7 @@ pub(super) enum End {
 /// A part of the period on which the gap stays on one piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Panel {
-    /// From this phase, in `[0, 2 pi]`,
+    /// From this phase
     pub(super) start: f64,
     /// to this one, at most a period later.
     pub(super) end: f64,
@@ -43,7 +54,7 @@ pub(super) struct Panel {
 }
 
 impl Panel {
-    /// Whether it is the whole period.
+    /// Whether it is the whole period, uncut.
     pub(super) fn is_period(&self) -> bool {
         self.from == End::Period
     }
@@ -52,9 +63,11 @@ impl Panel {
 /// Switches and panels of the gap cut last.
 #[derive(Debug, Default)]
 pub(super) struct Cut {
+    finder: Option<CrossingFinder>,
     levels: Vec<f64>,
     levels_by: Vec<f64>,
     found: Vec<Crossing>,
+    misses: Vec<NearMiss>,
     switches: Vec<Switch>,
     panels: Vec<Panel>,
 }
@@ -66,9 +79,23 @@ impl Cut {
         self.levels.resize(count, 0.0);
         input.law.levels(input.arguments, &mut self.levels);
         self.switches.clear();
+        if count > 0 {
+            self.find(input);
+        }
+        self.fill_panels(input.gap);
+        for level in 0..count {
+            self.cut_near(input, level);
+        }
+    }
+
+    fn find(&mut self, input: ContactInput<'_>) {
+        let finder = self
+            .finder
+            .get_or_insert_with(|| CrossingFinder::new(series::harmonics(input.gap)));
+        finder.sample(input.gap);
         for (level, &value) in self.levels.iter().enumerate() {
             self.found.clear();
-            crossings(input.gap, value, &mut self.found);
+            finder.crossings(value, &mut self.found);
             let found = self.found.iter();
             self.switches
                 .extend(found.map(|&Crossing { tau, rising }| Switch { tau, level, rising }));
@@ -80,7 +107,6 @@ impl Cut {
         };
         self.switches
             .sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau).then(order(a).cmp(&order(b))));
-        self.fill_panels(input.gap);
     }
 
     fn fill_panels(&mut self, gap: &[f64]) {
@@ -112,6 +138,81 @@ impl Cut {
             }
             from = to;
         }
+    }
+
+    /// Cuts panels where the gap nearly touches a level from a side on which the force has a broken power of the distance.
+    fn cut_near(&mut self, input: ContactInput<'_>, level: usize) {
+        let facts = &input.law.facts().pieces;
+        let broken = |piece: usize| {
+            let upper = piece == level;
+            power_at(
+                &facts[piece],
+                input.arguments,
+                &[],
+                End::Level(level),
+                upper,
+            ) > 1
+        };
+        let sides = [broken(level), broken(level + 1)];
+        if sides == [false, false] {
+            return;
+        }
+        let Some(finder) = &self.finder else {
+            return;
+        };
+        let size: f64 = input.gap[1..].iter().map(|x| x.abs()).sum();
+        self.misses.clear();
+        finder.near_misses(self.levels[level], REACH * size, &mut self.misses);
+        for index in 0..self.misses.len() {
+            let NearMiss {
+                tau,
+                distance,
+                curvature,
+            } = self.misses[index];
+            let near = 2.0 * distance < NEAR * NEAR * curvature;
+            if near {
+                self.cut_panel(tau, level, sides);
+            }
+        }
+    }
+
+    fn cut_panel(&mut self, tau: f64, level: usize, sides: [bool; 2]) {
+        let middle = End::Near(level);
+        let lies_in = |panel: &Panel| {
+            // Panels begin up to a period before the phases of near misses.
+            let tau = if tau < panel.end { tau } else { tau - TAU };
+            (tau > panel.start && tau < panel.end).then_some(tau)
+        };
+        let found = self
+            .panels
+            .iter()
+            .enumerate()
+            .find_map(|(index, panel)| lies_in(panel).map(|tau| (index, tau)));
+        let Some((index, tau)) = found else {
+            return;
+        };
+        let panel = self.panels[index];
+        let adjacent = panel.piece == level || panel.piece == level + 1;
+        if !adjacent || !sides[panel.piece - level] {
+            return;
+        }
+        if panel.is_period() {
+            self.panels[index] = Panel {
+                start: tau,
+                end: tau + TAU,
+                from: middle,
+                to: middle,
+                ..panel
+            };
+            return;
+        }
+        self.panels[index].end = tau;
+        self.panels[index].to = middle;
+        self.panels.push(Panel {
+            start: tau,
+            from: middle,
+            ..panel
+        });
     }
 
     pub(super) fn panels(&self) -> &[Panel] {

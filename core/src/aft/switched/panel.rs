@@ -47,7 +47,7 @@ pub(super) struct Quadrature {
     by_argument: Vec<f64>,
     /// The rule in use, and the levels at the ends of the panel.
     current: usize,
-    levels: [f64; 2],
+    levels: [Option<f64>; 2],
     /// The phases while they are rotated.
     rotated: [Vec<f64>; 2],
 }
@@ -148,12 +148,12 @@ impl Quadrature {
         let power =
             |end: End, upper: bool| power_at(facts, input.arguments, with_arguments, end, upper);
         let grading = Grading {
-            start: power(panel.from, panel.from == End::Level(panel.piece)),
-            end: power(panel.to, panel.to == End::Level(panel.piece)),
+            start: power(panel.from, is_upper(panel.from, panel.piece)),
+            end: power(panel.to, is_upper(panel.to, panel.piece)),
         };
         let level = |end| match end {
-            End::Level(index) => levels[index],
-            End::Period => 0.0,
+            End::Level(index) => Some(levels[index]),
+            End::Near(_) | End::Period => None,
         };
         self.levels = [level(panel.from), level(panel.to)];
         let top = sums.slopes.as_ref().map_or(sums.force.len(), |slopes| {
@@ -378,19 +378,19 @@ impl Quadrature {
         let near = NEAR / series::harmonics(input.gap).max(1) as f64;
         let width = stretch.end - stretch.start;
         let rule = &self.rules[self.current];
-        let (start, end) = (stretch.ends.start > 1, stretch.ends.end > 1);
-        if start {
+        let [first, last] = self.levels;
+        if let Some(level) = first.filter(|_| stretch.ends.start > 1) {
             let taylor = Taylor::at(input.gap, stretch.start);
             let nodes = rule.nodes.iter().zip(&mut self.gap);
             for (node, gap) in nodes.take_while(|(node, _)| **node * width < near) {
-                *gap = taylor.value(self.levels[0], width * node);
+                *gap = taylor.value(level, width * node);
             }
         }
-        if end {
+        if let Some(level) = last.filter(|_| stretch.ends.end > 1) {
             let taylor = Taylor::at(input.gap, stretch.end);
             let nodes = rule.nodes.iter().zip(&mut self.gap).rev();
             for (node, gap) in nodes.take_while(|(node, _)| -**node * width < near) {
-                *gap = taylor.value(self.levels[1], width * node);
+                *gap = taylor.value(level, width * node);
             }
         }
     }
@@ -441,8 +441,19 @@ fn weigh(weights: &[f64], values: &mut [f64]) {
     }
 }
 
+/// Whether an end of a panel is at the upper level of its piece.
+fn is_upper(end: End, piece: usize) -> bool {
+    matches!(end, End::Level(level) | End::Near(level) if level == piece)
+}
+
 /// The power of the grading that an end of a panel needs: by the exponents of the force and its derivatives there.
-fn power_at(facts: &PieceFacts, arguments: &[f64], changing: &[f64], end: End, upper: bool) -> u32 {
+pub(super) fn power_at(
+    facts: &PieceFacts,
+    arguments: &[f64],
+    changing: &[f64],
+    end: End,
+    upper: bool,
+) -> u32 {
     if end == End::Period {
         return 1;
     }

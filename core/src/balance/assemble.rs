@@ -1,0 +1,128 @@
+//! Residual and Jacobian, put together: the balance as a problem of continuation.
+
+use super::terms::stretched;
+use super::{Balance, blocks};
+use crate::continuation::problem::Problem;
+use crate::jacobian::{Jacobian, Partition};
+
+impl Balance<'_> {
+    /// Clears the blocks and puts the linear stiffness and damping into them.
+    fn start_blocks(&mut self) {
+        let base = self.base();
+        for block in &mut self.blocks {
+            block.clear();
+        }
+        for entry in &self.layout.stiffness {
+            if let Some(block) = blocks::find(&mut self.blocks, entry.row, entry.column) {
+                let wave = stretched(entry.wave, self.resolution.period);
+                block.add_stiffness(wave, self.coefficients[entry.coefficient]);
+            }
+        }
+        for entry in &self.layout.damping {
+            if let Some(block) = blocks::find(&mut self.blocks, entry.row, entry.column) {
+                block.add_damping(base * self.coefficients[entry.coefficient]);
+            }
+        }
+    }
+
+    fn assemble(&self, jacobian: &mut Jacobian) {
+        for block in &self.blocks {
+            block.add_to(&self.harmonics, jacobian);
+        }
+        self.add_masses(jacobian);
+        jacobian.set_column(&self.scratch.column);
+    }
+
+    /// Adds `Omega^2 M D^2`.
+    fn add_masses(&self, jacobian: &mut Jacobian) {
+        let base = self.base();
+        let core = &self.harmonics.core;
+        let length = blocks::places(core);
+        for entry in &self.layout.mass {
+            let inertia = base * base * self.coefficients[entry.coefficient];
+            let mut place = 0;
+            for &k in core {
+                let value = inertia * (k * k) as f64;
+                for _ in 0..if k == 0 { 1 } else { 2 } {
+                    let row = jacobian.core_mut().row_mut(entry.row * length + place);
+                    row[entry.column * length + place] -= value;
+                    place += 1;
+                }
+            }
+            for (group, &k) in self.harmonics.tail.iter().enumerate() {
+                let value = inertia * (k * k) as f64;
+                for part in 0..2 {
+                    let row = jacobian.group_mut(group).row_mut(2 * entry.row + part);
+                    row[2 * entry.column + part] -= value;
+                }
+            }
+        }
+    }
+}
+
+impl Problem for Balance<'_> {
+    fn unknowns(&self) -> usize {
+        self.layout.coordinates * self.length()
+    }
+
+    fn partition(&self) -> Partition {
+        Balance::partition(self)
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
+        let unknowns = self.unknowns();
+        self.set(u[unknowns]);
+        let u = &u[..unknowns];
+        residual.fill(0.0);
+        self.add_linear(&self.coefficients, u, residual);
+        let Some(jacobian) = jacobian else {
+            let mut force = std::mem::take(&mut self.scratch.force);
+            for contact in 0..self.layout.contacts.len() {
+                self.contact_force(u, contact, &mut force);
+                self.add_in_direction(contact, &force, residual);
+            }
+            self.scratch.force = force;
+            return;
+        };
+        let mut column = std::mem::take(&mut self.scratch.column);
+        self.linear_by_variable(u, &mut column);
+        self.scratch.column = column;
+        self.start_blocks();
+        for contact in 0..self.layout.contacts.len() {
+            let changes = self.contact_derivatives(u, contact);
+            self.scatter(contact, changes, residual);
+        }
+        self.assemble(jacobian);
+    }
+
+    fn apply(&mut self, u: &[f64], direction: &[f64], derivative: &mut [f64]) {
+        let unknowns = self.unknowns();
+        self.set(u[unknowns]);
+        let u = &u[..unknowns];
+        let mut column = std::mem::take(&mut self.scratch.column);
+        self.linear_by_variable(u, &mut column);
+        derivative.fill(0.0);
+        self.add_motion(&self.coefficients, &direction[..unknowns], derivative);
+        for (to, by) in derivative.iter_mut().zip(&column) {
+            *to += direction[unknowns] * by;
+        }
+        self.scratch.column = column;
+        for contact in 0..self.layout.contacts.len() {
+            self.add_contact_in(u, direction, contact, derivative);
+        }
+    }
+
+    fn is_mean(&self, unknown: usize) -> bool {
+        unknown.is_multiple_of(self.length())
+    }
+
+    /// The mean square of the orbit over time and coordinates, by Parseval's identity.
+    fn weights(&self, weights: &mut [f64]) {
+        let length = self.length();
+        let coordinates = self.layout.coordinates as f64;
+        for (index, weight) in weights.iter_mut().enumerate() {
+            let mean = index % length == 0;
+            *weight = if mean { 1.0 } else { 0.5 } / coordinates;
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! The terms of the balance that come from contacts.
+
+use super::terms::{block_mut, gap_series, rate_series, stretched};
+use super::{Balance, Resolution, blocks};
+use crate::aft::{Change, ContactDerivatives, ContactInput};
+use crate::fourier::series;
+use crate::layout::Layout;
+
+/// Series that an evaluation needs, allocated once.
+#[derive(Debug)]
+pub(super) struct Scratch {
+    arguments: Vec<f64>,
+    arguments_by: Vec<f64>,
+    pub(super) gap: Vec<f64>,
+    rate: Vec<f64>,
+    change_gap: Vec<f64>,
+    change_rate: Vec<f64>,
+    pub(super) force: Vec<f64>,
+    by_gap: Vec<f64>,
+    by_rate: Vec<f64>,
+    by_parameter: Vec<f64>,
+    product: Vec<f64>,
+    pub(super) column: Vec<f64>,
+    /// Length of slopes that couple all harmonics, and room for them, made when they are first needed.
+    full: usize,
+    full_by_gap: Vec<f64>,
+    full_by_rate: Vec<f64>,
+}
+
+impl Scratch {
+    /// Room for slopes that couple harmonics up to `reach`.
+    pub(super) fn new(layout: &Layout, resolution: Resolution, reach: usize) -> Self {
+        let Resolution {
+            harmonics, period, ..
+        } = resolution;
+        let highest = |of: fn(&crate::layout::ContactLayout) -> usize| {
+            layout.contacts.iter().map(of).max().unwrap_or(0) * period
+        };
+        let force_wave = highest(crate::layout::ContactLayout::force_harmonic);
+        let gap_wave = highest(crate::layout::ContactLayout::gap_harmonic);
+        let offset_wave = highest(crate::layout::ContactLayout::offset_harmonic);
+        let zeros = |harmonics| vec![0.0; series::length(harmonics)];
+        let gap = || zeros((harmonics + gap_wave).max(offset_wave));
+        let force = || zeros(harmonics + force_wave);
+        let slope = || zeros(2 * reach + force_wave + gap_wave);
+        let arguments = layout
+            .contacts
+            .iter()
+            .map(|c| c.argument_count)
+            .max()
+            .unwrap_or(0);
+        Self {
+            arguments: vec![0.0; arguments],
+            arguments_by: vec![0.0; arguments],
+            gap: gap(),
+            rate: gap(),
+            change_gap: gap(),
+            change_rate: gap(),
+            force: force(),
+            by_gap: slope(),
+            by_rate: slope(),
+            by_parameter: force(),
+            product: slope(),
+            column: vec![0.0; layout.coordinates * series::length(harmonics)],
+            full: series::length(2 * harmonics + force_wave + gap_wave),
+            full_by_gap: Vec::new(),
+            full_by_rate: Vec::new(),
+        }
+    }
+}
+
+impl Balance<'_> {
+    /// Writes the series of the force of one contact at the variable set last.
+    pub(crate) fn contact_force(&mut self, u: &[f64], contact: usize, force: &mut [f64]) {
+        let (base, length, period) = (self.base(), self.length(), self.resolution.period);
+        let layout = &self.layout.contacts[contact];
+        let s = &mut self.scratch;
+        let arguments = &mut s.arguments[..layout.argument_count];
+        layout.arguments(&self.coefficients, arguments);
+        gap_series(layout, &self.coefficients, period, u, length, &mut s.gap);
+        rate_series(&s.gap, base, &mut s.rate);
+        let law = self.system.law(layout.law);
+        self.aft.force(
+            ContactInput {
+                law,
+                arguments,
+                gap: &s.gap,
+                rate: &s.rate,
+                base,
+            },
+            force,
+        );
+    }
+
+    /// Adds the force of one contact, in its direction, to the equations it acts on.
+    pub(crate) fn add_in_direction(&self, contact: usize, force: &[f64], residual: &mut [f64]) {
+        for e in &self.layout.contacts[contact].force {
+            let wave = stretched(e.wave, self.resolution.period);
+            let to = block_mut(residual, e.index, self.length());
+            series::add_product(force, wave, self.coefficients[e.coefficient], to);
+        }
+    }
+
+    /// Evaluates one contact and its derivatives into the scratch series. Returns whether it depends on the variable.
+    pub(super) fn contact_derivatives(&mut self, u: &[f64], contact: usize) -> bool {
+        let (base, base_by) = (self.base(), self.base_by());
+        let (length, period) = (self.length(), self.resolution.period);
+        let layout = &self.layout.contacts[contact];
+        let s = &mut self.scratch;
+        let arguments = &mut s.arguments[..layout.argument_count];
+        let arguments_by = &mut s.arguments_by[..layout.argument_count];
+        layout.arguments(&self.coefficients, arguments);
+        gap_series(layout, &self.coefficients, period, u, length, &mut s.gap);
+        rate_series(&s.gap, base, &mut s.rate);
+        let own = layout
+            .coefficients()
+            .any(|index| self.coefficients_by[index] != 0.0);
+        let changes = own || base_by != 0.0;
+        if changes {
+            layout.arguments(&self.coefficients_by, arguments_by);
+            gap_series(
+                layout,
+                &self.coefficients_by,
+                period,
+                u,
+                length,
+                &mut s.change_gap,
+            );
+            rate_series(&s.change_gap, base, &mut s.change_rate);
+            // The rate is base times the phase derivative, so it grows with the base frequency by itself over base.
+            for (to, rate) in s.change_rate.iter_mut().zip(&s.rate) {
+                *to += base_by / base * rate;
+            }
+        }
+        let law = self.system.law(layout.law);
+        let change = Change {
+            gap: &s.change_gap,
+            rate: &s.change_rate,
+            arguments: arguments_by,
+            base: base_by,
+        };
+        let mut out = ContactDerivatives {
+            by_gap: &mut s.by_gap,
+            by_rate: &mut s.by_rate,
+            by_parameter: &mut s.by_parameter,
+        };
+        let input = ContactInput {
+            law,
+            arguments,
+            gap: &s.gap,
+            rate: &s.rate,
+            base,
+        };
+        self.aft
+            .derivatives(input, changes.then_some(change), &mut s.force, &mut out);
+        changes
+    }
+
+    /// Puts the scratch series of one contact where they belong.
+    pub(super) fn scatter(&mut self, contact: usize, changes: bool, residual: &mut [f64]) {
+        let (base, length, period) = (self.base(), self.length(), self.resolution.period);
+        let s = &mut self.scratch;
+        for rate in &mut s.by_rate {
+            *rate *= base;
+        }
+        let layout = &self.layout.contacts[contact];
+        for e in &layout.force {
+            let wave = stretched(e.wave, period);
+            let value = self.coefficients[e.coefficient];
+            series::add_product(&s.force, wave, value, block_mut(residual, e.index, length));
+            let column = block_mut(&mut s.column, e.index, length);
+            series::add_product(&s.force, wave, self.coefficients_by[e.coefficient], column);
+            if changes {
+                series::add_product(&s.by_parameter, wave, value, column);
+            }
+            for d in &layout.gap {
+                let factor = value * self.coefficients[d.coefficient];
+                let gap_wave = stretched(d.wave, period);
+                if let Some(block) = blocks::find(&mut self.blocks, e.index, d.index) {
+                    block.add_by_gap(&s.by_gap, wave, gap_wave, factor, &mut s.product);
+                    block.add_by_rate(&s.by_rate, wave, gap_wave, factor, &mut s.product);
+                }
+            }
+        }
+    }
+
+    /// Adds the derivative of the force of one contact in a direction of the extended unknowns, in its direction, to the
+    /// equations it acts on. The derivatives of the coefficients by the variable have been evaluated.
+    pub(super) fn add_contact_in(
+        &mut self,
+        u: &[f64],
+        direction: &[f64],
+        contact: usize,
+        derivative: &mut [f64],
+    ) {
+        let (base, base_by) = (self.base(), self.base_by());
+        let (length, period) = (self.length(), self.resolution.period);
+        let by = direction[direction.len() - 1];
+        let layout = &self.layout.contacts[contact];
+        let s = &mut self.scratch;
+        let arguments = &mut s.arguments[..layout.argument_count];
+        let arguments_by = &mut s.arguments_by[..layout.argument_count];
+        layout.arguments(&self.coefficients, arguments);
+        layout.arguments(&self.coefficients_by, arguments_by);
+        gap_series(layout, &self.coefficients, period, u, length, &mut s.gap);
+        rate_series(&s.gap, base, &mut s.rate);
+        gap_series(
+            layout,
+            &self.coefficients_by,
+            period,
+            u,
+            length,
+            &mut s.change_gap,
+        );
+        for x in s.change_gap.iter_mut().chain(arguments_by.iter_mut()) {
+            *x *= by;
+        }
+        for term in &layout.gap {
+            let wave = stretched(term.wave, period);
+            let from = &direction[term.index * length..][..length];
+            let value = self.coefficients[term.coefficient];
+            series::add_product(from, wave, value, &mut s.change_gap);
+        }
+        rate_series(&s.change_gap, base, &mut s.change_rate);
+        for (to, rate) in s.change_rate.iter_mut().zip(&s.rate) {
+            *to += by * base_by / base * rate;
+        }
+        s.full_by_gap.resize(s.full, 0.0);
+        s.full_by_rate.resize(s.full, 0.0);
+        let change = Change {
+            gap: &s.change_gap,
+            rate: &s.change_rate,
+            arguments: arguments_by,
+            base: by * base_by,
+        };
+        let mut out = ContactDerivatives {
+            by_gap: &mut s.full_by_gap,
+            by_rate: &mut s.full_by_rate,
+            by_parameter: &mut s.by_parameter,
+        };
+        let input = ContactInput {
+            law: self.system.law(layout.law),
+            arguments,
+            gap: &s.gap,
+            rate: &s.rate,
+            base,
+        };
+        self.aft
+            .derivatives(input, Some(change), &mut s.force, &mut out);
+        for e in &layout.force {
+            let wave = stretched(e.wave, period);
+            let to = block_mut(derivative, e.index, length);
+            let value = self.coefficients[e.coefficient];
+            series::add_product(&s.by_parameter, wave, value, to);
+            let value = by * self.coefficients_by[e.coefficient];
+            series::add_product(&s.force, wave, value, to);
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Which harmonics are unknowns, and how their equations are coupled.
+
+use super::Resolution;
+use super::blocks::places;
+use crate::fourier::series;
+use crate::jacobian::Partition;
+
+/// The harmonics of every coordinate, in increasing order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Harmonics {
+    /// Coupled densely.
+    pub(super) core: Vec<usize>,
+    /// Each by itself.
+    pub(super) tail: Vec<usize>,
+}
+
+impl Harmonics {
+    pub(super) fn of(resolution: Resolution) -> Self {
+        let Resolution {
+            harmonics,
+            core,
+            odd,
+            ..
+        } = resolution;
+        let step = if odd { 2 } else { 1 };
+        let (core, tail) = (usize::from(odd)..=harmonics)
+            .step_by(step)
+            .partition(|&k| k <= core || k == usize::from(odd));
+        Self { core, tail }
+    }
+
+    /// Highest harmonic of the core.
+    pub(super) fn reach(&self) -> usize {
+        self.core.last().copied().unwrap_or(0)
+    }
+
+    /// The unknowns in the order of the rows of the Jacobian: the core coordinate by coordinate, the tail harmonic by
+    /// harmonic.
+    pub(super) fn partition(&self, coordinates: usize, harmonics: usize) -> Partition {
+        let length = series::length(harmonics);
+        let of = |coordinate: usize, k: usize| {
+            let first = coordinate * length + if k == 0 { 0 } else { 2 * k - 1 };
+            first..first + if k == 0 { 1 } else { 2 }
+        };
+        let core: Vec<usize> = (0..coordinates)
+            .flat_map(|i| self.core.iter().flat_map(move |&k| of(i, k)))
+            .collect();
+        debug_assert_eq!(core.len(), coordinates * places(&self.core));
+        let tail = self.tail.iter();
+        Partition {
+            unknowns: coordinates * length,
+            core,
+            tail: tail
+                .flat_map(|&k| (0..coordinates).flat_map(move |i| of(i, k)))
+                .collect(),
+            group: 2 * coordinates,
+        }
+    }
+}

@@ -1,0 +1,356 @@
+//! The Jacobian of a continuation problem: dense in a core of unknowns, block diagonal in a tail, with a border.
+//!
+//! High harmonics of an oscillator are almost free masses: their diagonal `(k Omega)^2 M` outweighs what couples them to each
+//! other and to the low ones. With the tail `y` by its diagonal blocks `D` alone,
+//!
+//! ```text
+//! [ A    0    a ] [ x ]   [ r ]
+//! [ 0    D    c ] [ y ] = [ q ]                                                                              (1)
+//! [ b^T  d^T  e ] [ l ]   [ s ]
+//! ```
+//!
+//! elimination of `y` leaves the core with one border, where `e` becomes `e - d^T D^-1 c` and `s` becomes `s - d^T D^-1 q`: the
+//! factorisation costs that of the core. What (1) leaves out, the iteration must make up.
+//!
+//! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (bordering); the division into
+//! strongly and weakly coupled harmonics follows Grolet and Thouverez (2012), On a new harmonic selection technique for
+//! harmonic balance method.
+
+use crate::linear::{Lu, Matrix, Singular, dot};
+
+/// Which unknowns are coupled densely, which by groups, and which are zero for ever.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Partition {
+    /// Number of unknowns, without the parameter.
+    pub(crate) unknowns: usize,
+    /// The unknowns of the core, in the order of its rows.
+    pub(crate) core: Vec<usize>,
+    /// The unknowns of the tail, group after group.
+    pub(crate) tail: Vec<usize>,
+    /// Unknowns in a group.
+    pub(crate) group: usize,
+}
+
+impl Partition {
+    /// All unknowns in the core.
+    pub(crate) fn dense(unknowns: usize) -> Self {
+        Self {
+            unknowns,
+            core: (0..unknowns).collect(),
+            tail: Vec::new(),
+            group: 1,
+        }
+    }
+}
+
+/// Entries, and after [`Jacobian::factorise`] factors, of the matrix of (1).
+#[derive(Debug)]
+pub struct Jacobian {
+    partition: Partition,
+    /// The core with its border, of one order more than the core.
+    core: Matrix,
+    lu: Lu,
+    /// The blocks `D`.
+    groups: Vec<Matrix>,
+    group_lus: Vec<Lu>,
+    /// `c`, and after factorisation `D^-1 c`.
+    column: Vec<f64>,
+    /// `c` itself, for the transposed system.
+    plain_column: Vec<f64>,
+    /// `d`
+    border: Vec<f64>,
+    room: Vec<f64>,
+    tail_room: Vec<f64>,
+}
+
+impl Jacobian {
+    /// Zero, with room for everything.
+    pub(crate) fn new(partition: Partition) -> Self {
+        let order = partition.core.len() + 1;
+        let tail = partition.tail.len();
+        let groups = tail / partition.group;
+        Self {
+            core: Matrix::zeros(order),
+            lu: Lu::new(order),
+            groups: (0..groups)
+                .map(|_| Matrix::zeros(partition.group))
+                .collect(),
+            group_lus: (0..groups).map(|_| Lu::new(partition.group)).collect(),
+            column: vec![0.0; tail],
+            plain_column: vec![0.0; tail],
+            border: vec![0.0; tail],
+            room: vec![0.0; order],
+            tail_room: vec![0.0; tail],
+            partition,
+        }
+    }
+
+    /// Whether nothing is left out of the equations.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.partition.tail.is_empty()
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.core.clear();
+        self.groups.iter_mut().for_each(Matrix::clear);
+        self.column.fill(0.0);
+    }
+
+    /// The core, whose last row and column are the border.
+    pub(crate) fn core_mut(&mut self) -> &mut Matrix {
+        &mut self.core
+    }
+
+    /// One group of the tail.
+    pub(crate) fn group_mut(&mut self, group: usize) -> &mut Matrix {
+        &mut self.groups[group]
+    }
+
+    /// Writes the derivatives by the parameter, one for each unknown's equation.
+    pub(crate) fn set_column(&mut self, values: &[f64]) {
+        let last = self.partition.core.len();
+        for (row, &unknown) in self.partition.core.iter().enumerate() {
+            self.core.row_mut(row)[last] = values[unknown];
+        }
+        for (to, &unknown) in self.column.iter_mut().zip(&self.partition.tail) {
+            *to = values[unknown];
+        }
+    }
+
+    /// Writes the last row of (1), over the extended unknowns.
+    pub(crate) fn set_border(&mut self, values: &[f64]) {
+        let last = self.partition.core.len();
+        let row = self.core.row_mut(last);
+        for (to, &unknown) in row.iter_mut().zip(&self.partition.core) {
+            *to = values[unknown];
+        }
+        row[last] = values[self.partition.unknowns];
+        for (to, &unknown) in self.border.iter_mut().zip(&self.partition.tail) {
+            *to = values[unknown];
+        }
+    }
+
+    /// Measures every unknown in its unit.
+    pub(crate) fn scale_columns(&mut self, unit: impl Fn(usize) -> f64) {
+        let last = self.partition.core.len();
+        let parameter = unit(self.partition.unknowns);
+        for row in 0..=last {
+            let entries = self.core.row_mut(row);
+            for (x, &unknown) in entries.iter_mut().zip(&self.partition.core) {
+                *x *= unit(unknown);
+            }
+            entries[last] *= parameter;
+        }
+        let group = self.partition.group;
+        for (matrix, unknowns) in self
+            .groups
+            .iter_mut()
+            .zip(self.partition.tail.chunks_exact(group))
+        {
+            for row in 0..group {
+                for (x, &unknown) in matrix.row_mut(row).iter_mut().zip(unknowns) {
+                    *x *= unit(unknown);
+                }
+            }
+        }
+        for (index, &unknown) in self.partition.tail.iter().enumerate() {
+            self.column[index] *= parameter;
+            self.border[index] *= unit(unknown);
+        }
+    }
+
+    /// Factorises the tail, then the core with its new border.
+    ///
+    /// # Errors
+    /// [`Singular`], with the column in the core, or behind it for a group of the tail.
+    pub(crate) fn factorise(&mut self) -> Result<(), Singular> {
+        let (order, group) = (self.partition.core.len(), self.partition.group);
+        self.plain_column.copy_from_slice(&self.column);
+        for (index, (matrix, lu)) in self.groups.iter_mut().zip(&mut self.group_lus).enumerate() {
+            lu.factorise(matrix).map_err(|at| Singular {
+                column: order + index * group + at.column,
+                ..at
+            })?;
+            lu.solve(matrix, &mut self.column[index * group..][..group]);
+        }
+        let corner = dot(&self.border, &self.column);
+        self.core.row_mut(order)[order] -= corner;
+        self.lu.factorise(&mut self.core)
+    }
+
+    /// Solves (1) in place, for an extended vector in the order of the unknowns.
+    pub(crate) fn solve(&mut self, vector: &mut [f64]) {
+        let Partition {
+            unknowns,
+            core,
+            tail,
+            group,
+        } = &self.partition;
+        for (to, &unknown) in self.tail_room.iter_mut().zip(tail) {
+            *to = vector[unknown];
+        }
+        for (index, (matrix, lu)) in self.groups.iter().zip(&self.group_lus).enumerate() {
+            lu.solve(matrix, &mut self.tail_room[index * group..][..*group]);
+        }
+        for (to, &unknown) in self.room.iter_mut().zip(core) {
+            *to = vector[unknown];
+        }
+        let last = core.len();
+        self.room[last] = vector[*unknowns] - dot(&self.border, &self.tail_room);
+        self.lu.solve(&self.core, &mut self.room);
+        let parameter = self.room[last];
+        vector.fill(0.0);
+        vector[*unknowns] = parameter;
+        for (from, &unknown) in self.room.iter().zip(core) {
+            vector[unknown] = *from;
+        }
+        for ((from, &unknown), column) in self.tail_room.iter().zip(tail).zip(&self.column) {
+            vector[unknown] = from - parameter * column;
+        }
+    }
+
+    /// Solves the transposed system in place.
+    pub(crate) fn solve_transposed(&mut self, vector: &mut [f64]) {
+        let Partition {
+            unknowns,
+            core,
+            tail,
+            group,
+        } = &self.partition;
+        let last = core.len();
+        for (to, &unknown) in self.tail_room.iter_mut().zip(tail) {
+            *to = vector[unknown];
+        }
+        for (to, &unknown) in self.room.iter_mut().zip(core) {
+            *to = vector[unknown];
+        }
+        self.room[last] = vector[*unknowns] - dot(&self.column, &self.tail_room);
+        self.lu.solve_transposed(&self.core, &mut self.room);
+        let parameter = self.room[last];
+        for (x, d) in self.tail_room.iter_mut().zip(&self.border) {
+            *x -= parameter * d;
+        }
+        for (index, (matrix, lu)) in self.groups.iter().zip(&self.group_lus).enumerate() {
+            lu.solve_transposed(matrix, &mut self.tail_room[index * group..][..*group]);
+        }
+        vector.fill(0.0);
+        vector[*unknowns] = parameter;
+        for (from, &unknown) in self.room.iter().zip(core) {
+            vector[unknown] = *from;
+        }
+        for (from, &unknown) in self.tail_room.iter().zip(tail) {
+            vector[unknown] = *from;
+        }
+    }
+
+    /// All entries, before factorisation, as the matrix of (1).
+    #[cfg(test)]
+    pub(crate) fn entries(&self) -> nalgebra::DMatrix<f64> {
+        let n = self.partition.unknowns;
+        let mut entries = nalgebra::DMatrix::zeros(n + 1, n + 1);
+        let mut places = self.partition.core.clone();
+        places.push(n);
+        for (row, &to) in places.iter().enumerate() {
+            for (column, &from) in places.iter().enumerate() {
+                entries[(to, from)] = self.core.row(row)[column];
+            }
+        }
+        let group = self.partition.group;
+        for (index, &unknown) in self.partition.tail.iter().enumerate() {
+            entries[(unknown, n)] = self.column[index];
+            entries[(n, unknown)] = self.border[index];
+            let start = index / group * group;
+            for column in 0..group {
+                let other = self.partition.tail[start + column];
+                entries[(unknown, other)] = self.groups[index / group].row(index % group)[column];
+            }
+        }
+        entries
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use nalgebra::DVector;
+
+    fn filled(partition: Partition) -> Jacobian {
+        let mut random = Random::new(4);
+        let mut next = |_| random.between(-1.0, 1.0);
+        let mut jacobian = Jacobian::new(partition);
+        for row in 0..=jacobian.partition.core.len() {
+            jacobian
+                .core
+                .row_mut(row)
+                .iter_mut()
+                .for_each(|x| *x = next(0));
+        }
+        for group in 0..jacobian.groups.len() {
+            for row in 0..jacobian.partition.group {
+                let entries = jacobian.group_mut(group).row_mut(row);
+                entries.iter_mut().for_each(|x| *x = next(0));
+                entries[row] += 3.0;
+            }
+        }
+        let n = jacobian.partition.unknowns;
+        let (column, border): (Vec<f64>, Vec<f64>) = (0..=n).map(|i| (next(i), next(i))).unzip();
+        jacobian.set_column(&column[..n]);
+        jacobian.set_border(&border);
+        jacobian.scale_columns(|unknown| 1.0 + 0.1 * unknown as f64);
+        jacobian
+    }
+
+    #[test]
+    fn solves_what_its_entries_say() {
+        let mixed = Partition {
+            unknowns: 11,
+            core: vec![0, 1, 2, 5, 6],
+            tail: vec![3, 4, 7, 8],
+            group: 2,
+        };
+        for partition in [mixed, Partition::dense(4), Partition::dense(0)] {
+            let absent: Vec<usize> = (0..partition.unknowns)
+                .filter(|i| !partition.core.contains(i) && !partition.tail.contains(i))
+                .collect();
+            let mut jacobian = filled(partition);
+            let mut matrix = jacobian.entries();
+            let n = matrix.nrows();
+            for &unknown in &absent {
+                matrix[(unknown, unknown)] = 1.0;
+            }
+            jacobian.factorise().unwrap();
+            let mut right: Vec<f64> = (0..n).map(|i| (i as f64 + 0.3).sin()).collect();
+            for &unknown in &absent {
+                right[unknown] = 0.0;
+            }
+            for transposed in [false, true] {
+                let mut x = right.clone();
+                let reference = if transposed {
+                    jacobian.solve_transposed(&mut x);
+                    matrix.transpose()
+                } else {
+                    jacobian.solve(&mut x);
+                    matrix.clone()
+                };
+                let left = &reference * DVector::from_vec(x);
+                for (a, b) in left.iter().zip(&right) {
+                    assert!((a - b).abs() < 1e-11, "{transposed} {a} {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_singular_group_is_reported_behind_the_core() {
+        let partition = Partition {
+            unknowns: 3,
+            core: vec![0],
+            tail: vec![1, 2],
+            group: 1,
+        };
+        let mut jacobian = filled(partition);
+        jacobian.group_mut(1).row_mut(0)[0] = 0.0;
+        assert_eq!(jacobian.factorise().unwrap_err().column, 2);
+    }
+}
