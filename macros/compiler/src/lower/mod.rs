@@ -63,12 +63,9 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
     let assembly = diagnostics.keep(builder.assemble(declaration))?;
     let masses = assembly.masses();
     let ranges = &builder.context.ranges.parameters;
-    diagnostics.keep(inertia::mass_is_regular(
-        declaration,
-        &builder.context.dag,
-        &masses,
-        ranges,
-    ))?;
+    let dag = &builder.context.dag;
+    diagnostics.keep(inertia::mass_is_regular(declaration, dag, &masses, ranges))?;
+    inertia::ranges_admit_no_singular_mass(declaration, dag, &masses, ranges, diagnostics);
     let equations: Vec<String> = declaration
         .equations
         .iter()

@@ -2,6 +2,7 @@
 
 mod extrema;
 mod loops;
+mod masses;
 mod models;
 mod units;
 
