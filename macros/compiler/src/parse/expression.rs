@@ -9,6 +9,8 @@ use proc_macro2::Delimiter;
 use super::Parser;
 use super::tokens::Token;
 use crate::ast::{Expr, Kind};
+use crate::dag::Rational;
+use crate::errors::Diagnostics;
 
 /// Deeper nesting than anyone writes, and far less than what a stack holds.
 const DEEPEST: usize = 40;
@@ -43,7 +45,11 @@ impl Parser<'_> {
         let mut factors = Vec::new();
         let mut divided = false;
         loop {
-            factors.push((divided, self.signed()?));
+            let factor = self.signed()?;
+            if let (true, Some((_, power))) = (divided, factors.last()) {
+                exponent_is_in_parentheses(power, &factor, self.diagnostics);
+            }
+            factors.push((divided, factor));
             if self.tokens.is("**") {
                 return Err(self
                     .tokens
@@ -202,5 +208,34 @@ impl Parser<'_> {
         let result = read(self);
         self.depth -= 1;
         result
+    }
+}
+
+/// An exponent that is a fraction is in parentheses: `x^1/3` is `(x^1)/3`, which nobody means.
+fn exponent_is_in_parentheses(power: &Expr, divisor: &Expr, diagnostics: &mut Diagnostics) {
+    if let Kind::Power(base, exponent) = &power.kind
+        && matches!(&exponent.kind, Kind::Number(value, _) if *value == Rational::ONE)
+    {
+        let written = Expr {
+            kind: Kind::Product(vec![(false, power.clone()), (true, divisor.clone())]),
+            extent: power.extent.to(divisor.extent),
+        };
+        let root = Expr {
+            kind: Kind::Power(
+                base.clone(),
+                Box::new(Expr {
+                    kind: Kind::Product(vec![
+                        (false, (**exponent).clone()),
+                        (true, divisor.clone()),
+                    ]),
+                    extent: exponent.extent,
+                }),
+            ),
+            extent: power.extent,
+        };
+        let message = format!(
+            "`{written}` divides the power, not the exponent: put the exponent in parentheses, as in `{root}`"
+        );
+        diagnostics.report(written.extent, message);
     }
 }
