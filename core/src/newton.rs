@@ -31,6 +31,8 @@ pub struct NewtonOptions {
 pub struct Converged {
     /// Number of updates.
     pub iterations: usize,
+    /// Length of the first update: how far the start was off.
+    pub first: f64,
     /// Length of the last update.
     pub update: f64,
 }
@@ -118,8 +120,10 @@ const CHORD_PATIENCE: usize = 2;
 const NEAR_FOLD: f64 = 0.1;
 /// Corrections of an exact tangent, at most.
 const REFINEMENTS: usize = 60;
-/// Relative size of the last of them.
+/// Relative size of the last of them, where it decides on an event.
 const REFINED: f64 = 1e-13;
+/// The same where only the side of a fold matters.
+const ROUGHLY: f64 = 1e-4;
 /// Drift that does not change a tangent noticeably.
 const SMALL_DRIFT: f64 = 1e-8;
 
@@ -173,9 +177,10 @@ impl Newton {
     ) -> Result<Converged, NewtonError> {
         self.scale = scale;
         self.contraction = 0.0;
-        let mut previous = f64::INFINITY;
+        let (mut before, mut previous) = (f64::INFINITY, f64::INFINITY);
         let mut size = f64::INFINITY;
         let mut renew = true;
+        let mut first = None;
         let most = options.iterations * if options.damped { 1 } else { CHORD_PATIENCE };
         let mut updates = 0;
         for iteration in 0..most {
@@ -196,18 +201,26 @@ impl Newton {
                     iterations: iteration,
                 });
             }
+            first = first.or(Some(size));
             if size <= options.tolerance {
                 subtract(u, &self.update, 1.0);
                 self.drift += size;
                 return Ok(Converged {
                     iterations: iteration + 1,
+                    first: first.unwrap_or(size),
                     update: size,
                 });
             }
             if options.damped {
                 self.damped_update(problem, u, border);
             } else {
-                if iteration > 1 && size > 2.0 * previous {
+                // Core and tail may take turns, so that every other update is the larger one.
+                let grows = if self.jacobian.is_exact() {
+                    2.0 * previous
+                } else {
+                    4.0 * before.max(previous)
+                };
+                if iteration > 1 && size > grows {
                     break;
                 }
                 subtract(u, &self.update, 1.0);
@@ -223,7 +236,7 @@ impl Newton {
             }
             self.drift += size;
             updates = iteration + 1;
-            previous = size;
+            (before, previous) = (previous, size);
         }
         Err(NewtonError::NotConverged {
             iterations: updates,
@@ -273,15 +286,16 @@ impl Newton {
             self.solve(tangent);
         }
         if !self.jacobian.is_exact() {
-            self.refine(problem, u, tangent);
+            let wanted = if exact { REFINED } else { ROUGHLY };
+            self.refine(problem, u, tangent, wanted);
         }
     }
 
     /// Makes up for what the Jacobian leaves out: `t += B^-1 ([0; 1] - J t)`, repeated.
-    fn refine(&mut self, problem: &mut impl Problem, u: &[f64], tangent: &mut [f64]) {
+    fn refine(&mut self, problem: &mut impl Problem, u: &[f64], tangent: &mut [f64], wanted: f64) {
         let n = self.norm.unknowns();
         let size = self.norm.length(self.scale, tangent);
-        let mut previous = f64::INFINITY;
+        let (mut before, mut previous) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..REFINEMENTS {
             problem.apply(u, tangent, &mut self.residual[..n]);
             self.statistics.jacobians += 1;
@@ -290,14 +304,15 @@ impl Newton {
             self.jacobian.solve(&mut self.update);
             unscale(&self.norm, self.scale, &mut self.update);
             let change = self.norm.length(self.scale, &self.update);
-            if !(change < previous) {
+            // Core and tail may take turns, so that every other change is the larger one.
+            if !(change < 4.0 * before.max(previous)) {
                 return;
             }
             subtract(tangent, &self.update, 1.0);
-            if change <= REFINED * size {
+            if change <= wanted * size {
                 return;
             }
-            previous = change;
+            (before, previous) = (previous, change);
         }
     }
 

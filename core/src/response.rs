@@ -372,7 +372,10 @@ impl<'a> FrequencyResponse<'a> {
         }
         Ok(Resolution {
             harmonics,
-            core: harmonics,
+            core: std::env::var("HCORE")
+                .ok()
+                .and_then(|c| c.parse().ok())
+                .unwrap_or(harmonics),
             odd: false,
             samples,
             aft: self.aft,

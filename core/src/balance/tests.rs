@@ -321,3 +321,49 @@ fn iterations_do_not_allocate() {
         "the counter works"
     );
 }
+
+/// What the core and the tail leave out, the directional derivative has.
+#[test]
+fn the_derivative_in_a_direction_is_that_of_the_whole_jacobian() {
+    let mut random = crate::random::Random::new(5);
+    for aft in [Aft::Sampled, Aft::Switched] {
+        let dense = Resolution { aft, ..RESOLUTION };
+        let split = Resolution { core: 1, ..dense };
+        let new =
+            |resolution| Balance::new(&ROTOR, &values(&ROTOR), 0.7, Variable::Omega, resolution);
+        let (mut all, mut part) = (new(dense), new(split));
+        let u: Vec<f64> = (0..15)
+            .map(|i| {
+                if i == 14 {
+                    0.7
+                } else {
+                    random.between(-0.5, 0.5)
+                }
+            })
+            .collect();
+        let direction: Vec<f64> = (0..15).map(|_| random.between(-1.0, 1.0)).collect();
+        let mut jacobian = Jacobian::new(all.partition());
+        let mut residual = vec![0.0; 14];
+        all.evaluate(&u, &mut residual, Some(&mut jacobian));
+        let expected = jacobian.entries() * nalgebra::DVector::from_column_slice(&direction);
+        let mut derivative = vec![0.0; 14];
+        part.apply(&u, &direction, &mut derivative);
+        for (a, b) in derivative.iter().zip(expected.iter()) {
+            assert!((a - b).abs() < 1e-11 * (1.0 + b.abs()), "{aft} {a} {b}");
+        }
+        // The tail has the diagonal of the whole.
+        let mut tail = Jacobian::new(part.partition());
+        let mut again = vec![0.0; 14];
+        part.evaluate(&u, &mut again, Some(&mut tail));
+        let (whole, tail) = (jacobian.entries(), tail.entries());
+        for (a, b) in residual.iter().zip(&again) {
+            assert!((a - b).abs() < 1e-13 * (1.0 + b.abs()));
+        }
+        for &row in &part.partition().core {
+            for &column in &part.partition().core {
+                assert!((whole[(row, column)] - tail[(row, column)]).abs() < 1e-12);
+            }
+            assert!((whole[(row, 14)] - tail[(row, 14)]).abs() < 1e-12);
+        }
+    }
+}

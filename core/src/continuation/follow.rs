@@ -262,7 +262,7 @@ impl Walk {
         loop {
             let result = self.corrected(problem, newton, from, self.step);
             let reason = match result {
-                Ok((point, iterations)) => {
+                Ok((point, distance)) => {
                     let cosine = newton
                         .norm()
                         .product(from.scale, &from.tangent, &point.tangent)
@@ -270,10 +270,7 @@ impl Walk {
                     let angle = cosine.clamp(-1.0, 1.0).acos();
                     if !self.options.steps.turns_too_far(angle, self.step) {
                         newton.statistics.accepted_steps += 1;
-                        self.step = self
-                            .options
-                            .steps
-                            .after_success(self.step, angle, iterations);
+                        self.step = self.options.steps.after_success(self.step, angle, distance);
                         return Ok(point);
                     }
                     None
@@ -300,14 +297,14 @@ impl Walk {
         }
     }
 
-    /// The solution of (1) at arc length `step` from a point, and the updates it took.
+    /// The solution of (1) at arc length `step` from a point, and how far off the predictor was.
     fn corrected<P: Problem>(
         &mut self,
         problem: &mut P,
         newton: &mut Newton,
         from: &CurvePoint,
         step: f64,
-    ) -> Result<(CurvePoint, usize), NewtonError> {
+    ) -> Result<(CurvePoint, f64), NewtonError> {
         self.scale = from.scale;
         for (i, x) in self.trial.iter_mut().enumerate() {
             *x = from.u[i] + step * from.tangent[i];
@@ -327,7 +324,7 @@ impl Walk {
             self.scale,
             self.options.newton,
         )?;
-        Ok((self.point(problem, newton), converged.iterations))
+        Ok((self.point(problem, newton), converged.first))
     }
 
     /// If the step went beyond an end of the range, replaces its point by the one at the end.

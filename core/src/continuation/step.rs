@@ -1,7 +1,7 @@
 //! The length of the next step.
 //!
 //! Source: Allgower and Georg (1990), Introduction to Numerical Continuation Methods, chapter 6: the angle between
-//! tangents and the number of corrections are held near wanted values.
+//! tangents and the distance of the predictor from the curve are held near wanted values.
 
 /// Bounds and wishes of the step control, in units of arc length.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,8 +11,8 @@ pub(crate) struct StepControl {
     pub(crate) largest: f64,
     /// Angle between successive tangents that is aimed at.
     pub(crate) angle: f64,
-    /// Updates of the corrector that are aimed at.
-    pub(crate) iterations: usize,
+    /// Distance of the predictor from the curve that is aimed at.
+    pub(crate) distance: f64,
 }
 
 impl Default for StepControl {
@@ -22,7 +22,7 @@ impl Default for StepControl {
             smallest: 1e-9,
             largest: 0.05,
             angle: 0.15,
-            iterations: 4,
+            distance: 0.01,
         }
     }
 }
@@ -34,10 +34,11 @@ impl StepControl {
     }
 
     /// The step after one that converged.
-    pub(crate) fn after_success(&self, step: f64, angle: f64, iterations: usize) -> f64 {
+    pub(crate) fn after_success(&self, step: f64, angle: f64, distance: f64) -> f64 {
         let by_angle = self.angle / angle.max(1e-3 * self.angle);
-        let by_effort = (self.iterations as f64 / iterations.max(1) as f64).sqrt();
-        (step * by_angle.min(by_effort).clamp(0.5, 1.5)).clamp(self.smallest, self.largest)
+        // The predictor is off by the square of the step.
+        let by_distance = (self.distance / distance.max(1e-3 * self.distance)).sqrt();
+        (step * by_angle.min(by_distance).clamp(0.5, 1.5)).clamp(self.smallest, self.largest)
     }
 
     /// The step after one that failed; `None` when it cannot be shortened further.

@@ -122,16 +122,17 @@ impl Product {
         let (reach, width) = (sum.len() / 2, b.len() / 2);
         spread(a, reach + width, &mut self.x);
         spread(b, width, &mut self.y);
-        convolve(&self.x, &self.y, sum);
+        convolve(&self.x, &self.y, 2 * width + 1, sum);
     }
 }
 
-/// Writes the coefficients of `e^(i j tau)` for `j` from `-reach` to `reach`, real and imaginary parts.
+/// Writes the coefficients of `e^(i j tau)` for `j` from `-reach` to `reach`, real and imaginary parts, and zeros behind them
+/// for the last group of lanes to read.
 fn spread(series: &[f64], reach: usize, to: &mut [Vec<f64>; 2]) {
     let [re, im] = to;
     for part in [&mut *re, &mut *im] {
         part.clear();
-        part.resize(2 * reach + 1, 0.0);
+        part.resize(2 * reach + 1 + LANES, 0.0);
     }
     re[reach] = series[0];
     for (index, pair) in series[1..].chunks_exact(2).take(reach).enumerate() {
@@ -144,31 +145,28 @@ fn spread(series: &[f64], reach: usize, to: &mut [Vec<f64>; 2]) {
 }
 
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn convolve(x: &[Vec<f64>; 2], y: &[Vec<f64>; 2], sum: &mut [f64]) {
+fn convolve(x: &[Vec<f64>; 2], y: &[Vec<f64>; 2], order: usize, sum: &mut [f64]) {
     let [yr, yi] = y;
-    let order = yr.len();
     // X starts at -(reach + width), Y at -width: at harmonic l they are `reach + l` apart.
-    let reach = (x[0].len() - order) / 2;
-    for l in 0..=sum.len() / 2 {
-        let (xr, xi) = (&x[0][reach + l..][..order], &x[1][reach + l..][..order]);
+    let reach = sum.len() / 2;
+    for first in (0..=reach).step_by(LANES) {
         let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
-        let whole = order / LANES * LANES;
-        for start in (0..whole).step_by(LANES) {
+        let (xr, xi) = (&x[0][reach + first..], &x[1][reach + first..]);
+        for m in 0..order {
+            let (a, b) = (yr[m], yi[m]);
+            let (r, i) = (&xr[m..m + LANES], &xi[m..m + LANES]);
             for lane in 0..LANES {
-                let m = start + lane;
-                re[lane] += yr[m] * xr[m] + yi[m] * xi[m];
-                im[lane] += yr[m] * xi[m] - yi[m] * xr[m];
+                re[lane] += a * r[lane] + b * i[lane];
+                im[lane] += a * i[lane] - b * r[lane];
             }
         }
-        for m in whole..order {
-            re[0] += yr[m] * xr[m] + yi[m] * xi[m];
-            im[0] += yr[m] * xi[m] - yi[m] * xr[m];
-        }
-        if l == 0 {
-            sum[0] += total(&re);
-        } else {
-            sum[2 * l - 1] += 2.0 * total(&re);
-            sum[2 * l] -= 2.0 * total(&im);
+        for l in first..=reach.min(first + LANES - 1) {
+            if l == 0 {
+                sum[0] += re[0];
+            } else {
+                sum[2 * l - 1] += 2.0 * re[l - first];
+                sum[2 * l] -= 2.0 * im[l - first];
+            }
         }
     }
 }

@@ -11,7 +11,7 @@
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 use super::cut::Panel;
-use super::{Slopes, Sums};
+use super::{Changing, Sums};
 use crate::aft::ContactInput;
 use crate::fourier::kernels::Product;
 use crate::fourier::series;
@@ -64,9 +64,11 @@ impl Affine {
         if let Some(slopes) = &mut sums.slopes {
             add_scaled(&self.indicator, form.by_gap, slopes.by_gap);
             add_scaled(&self.indicator, form.by_rate, slopes.by_rate);
-            let changed = by_arguments(input, slopes, piece, point);
-            if let Some(changed) = changed {
-                self.times(input, changed, product, slopes.by_arguments);
+            if let Some(changing) = slopes.change {
+                self.inside.clear();
+                self.inside.resize(input.gap.len(), 0.0);
+                form.add_change(input, changing, piece, point, &mut self.inside);
+                product.add(&self.indicator, &self.inside, slopes.by_parameter);
             }
         }
     }
@@ -98,8 +100,8 @@ fn add_everywhere(
     if let Some(slopes) = &mut sums.slopes {
         slopes.by_gap[0] += form.by_gap;
         slopes.by_rate[0] += form.by_rate;
-        if let Some(changed) = by_arguments(input, slopes, piece, point) {
-            changed.add_to(input, slopes.by_arguments);
+        if let Some(changing) = slopes.change {
+            form.add_change(input, changing, piece, point, slopes.by_parameter);
         }
     }
 }
@@ -149,18 +151,26 @@ impl Form {
         add_scaled(input.gap, self.by_gap, to);
         add_scaled(input.rate, self.by_rate, to);
     }
+
+    /// Adds what the parameter does, dropping harmonics that there is no room for.
+    fn add_change(
+        self,
+        input: ContactInput<'_>,
+        changing: Changing<'_>,
+        piece: usize,
+        point: f64,
+        to: &mut [f64],
+    ) {
+        add_scaled(changing.change.gap, self.by_gap, to);
+        add_scaled(changing.change.rate, self.by_rate, to);
+        if changing.arguments {
+            by_arguments(input, changing, piece, point).add_to(input, to);
+        }
+    }
 }
 
-/// The change of the force with the arguments that change: affine as the force is. `None` if none does.
-fn by_arguments(
-    input: ContactInput<'_>,
-    slopes: &Slopes<'_>,
-    piece: usize,
-    gap: f64,
-) -> Option<Form> {
-    let changing = slopes.arguments.iter().enumerate();
-    let mut changing = changing.filter(|&(_, &by)| by != 0.0).peekable();
-    changing.peek()?;
+/// The change of the force with the arguments that change: affine as the force is.
+fn by_arguments(input: ContactInput<'_>, changing: Changing<'_>, piece: usize, gap: f64) -> Form {
     let mut sum = Form {
         constant: 0.0,
         by_gap: 0.0,
@@ -173,7 +183,7 @@ fn by_arguments(
     let speed = input.base * (gap - other).abs();
     let rates = [0.0, 0.0, speed];
     let mut room = [[0.0; 3]; 3];
-    for (argument, &by) in changing {
+    for (argument, by) in changing.arguments() {
         let [force, by_gap, by_rate] = &mut room;
         let out = Derivatives {
             force,
@@ -197,7 +207,7 @@ fn by_arguments(
             sum.by_rate += by * (values[2] - values[0]) / speed;
         }
     }
-    Some(sum)
+    sum
 }
 
 fn nearest_level(input: ContactInput<'_>, piece: usize, gap: f64) -> Option<f64> {

@@ -61,9 +61,43 @@ struct Sums<'s> {
 struct Slopes<'s> {
     by_gap: &'s mut [f64],
     by_rate: &'s mut [f64],
-    /// The arguments that change with the parameter, and by how much; the sum of their effects.
-    arguments: &'s [f64],
-    by_arguments: &'s mut [f64],
+    by_parameter: &'s mut [f64],
+    change: Option<Changing<'s>>,
+}
+
+/// How gap, rate and arguments change with the parameter.
+#[derive(Clone, Copy)]
+struct Changing<'s> {
+    change: Change<'s>,
+    /// Gap and rate do.
+    motion: bool,
+    /// Some argument does.
+    arguments: bool,
+}
+
+impl<'s> Changing<'s> {
+    fn of(change: Change<'s>) -> Self {
+        let varies = |of: &[f64]| of.iter().any(|x| *x != 0.0);
+        Self {
+            motion: varies(change.gap) || varies(change.rate),
+            arguments: varies(change.arguments),
+            change,
+        }
+    }
+
+    /// The arguments that change, and by how much.
+    fn arguments(self) -> impl Iterator<Item = (usize, f64)> + 's {
+        let all = self.change.arguments.iter().copied().enumerate();
+        all.filter(|&(_, by)| by != 0.0)
+    }
+}
+
+impl<'s> Slopes<'s> {
+    /// Derivatives of the arguments by the parameter; empty if none is asked for.
+    fn arguments(&self) -> &'s [f64] {
+        self.change
+            .map_or(&[], |changing| changing.change.arguments)
+    }
 }
 
 impl SwitchedAft {
@@ -94,8 +128,8 @@ impl SwitchedAft {
         let slopes = Slopes {
             by_gap: out.by_gap,
             by_rate: out.by_rate,
-            arguments: change.map_or(&[], |change| change.arguments),
-            by_arguments: out.by_parameter,
+            by_parameter: out.by_parameter,
+            change: change.map(Changing::of),
         };
         self.integrate(
             input,
@@ -105,11 +139,6 @@ impl SwitchedAft {
             },
         );
         self.add_jumps(input, change, out);
-        if let Some(change) = change {
-            // What the parameter does by way of gap and rate; impulses are in the series already.
-            self.product.add(out.by_gap, change.gap, out.by_parameter);
-            self.product.add(out.by_rate, change.rate, out.by_parameter);
-        }
     }
 
     fn integrate(&mut self, input: ContactInput<'_>, sums: &mut Sums<'_>) {
@@ -172,9 +201,10 @@ impl SwitchedAft {
             }
             add_impulse(tau, weight, out.by_gap);
             if let Some(change) = change {
-                let moved = self.cut.level_by(input, level, change.arguments);
+                let level = self.cut.level_by(input, level, change.arguments);
+                let moved = series::value(change.gap, tau) - level;
                 if moved != 0.0 {
-                    add_impulse(tau, -weight * moved, out.by_parameter);
+                    add_impulse(tau, weight * moved, out.by_parameter);
                 }
             }
         }

@@ -12,8 +12,8 @@
 //! Source: Trefethen (2008), Is Gauss quadrature better than Clenshaw-Curtis?, sections 2 and 7 (exactness and degrees);
 //! Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8 (decay of coefficients).
 
-use super::Sums;
 use super::cut::{End, Panel};
+use super::{Changing, Sums};
 use crate::aft::ContactInput;
 use crate::fourier::gauss::{self, Rule};
 use crate::fourier::grading::{Grading, power_for};
@@ -144,7 +144,7 @@ impl Quadrature {
         sums: &mut Sums<'_>,
     ) {
         let facts = &input.law.facts().pieces[panel.piece];
-        let with_arguments = sums.slopes.as_ref().map_or(&[][..], |s| s.arguments);
+        let with_arguments = sums.slopes.as_ref().map_or(&[][..], |s| s.arguments());
         let power =
             |end: End, upper: bool| power_at(facts, input.arguments, with_arguments, end, upper);
         let grading = Grading {
@@ -201,7 +201,7 @@ impl Quadrature {
             self.evaluate(
                 input,
                 piece,
-                sums.slopes.as_ref().map(|s| s.arguments),
+                sums.slopes.as_ref().map(|s| s.change),
                 &stretch,
             );
             let count = self.rules[rule].count as f64;
@@ -245,10 +245,10 @@ impl Quadrature {
         let Some(slopes) = &sums.slopes else {
             return falls(&self.force, demand.force, FORCE_ERROR);
         };
-        let changing = slopes.arguments.iter().any(|by| *by != 0.0);
         falls(&self.force, demand.force, FORCE_ERROR)
             && falls(&self.by_gap, demand.slopes, SLOPE_ERROR)
-            && (!changing || falls(&self.by_argument, demand.force, SLOPE_ERROR))
+            && (!slopes.change.is_some_and(|c| c.arguments)
+                || falls(&self.by_argument, demand.force, SLOPE_ERROR))
     }
 
     /// Puts nodes on a part of a panel; returns the rule.
@@ -316,12 +316,12 @@ impl Quadrature {
         })
     }
 
-    /// The law at the nodes; `changing` are the arguments' derivatives if slopes are wanted.
+    /// The law at the nodes; its slopes too where there is a place for the parameter's change.
     fn evaluate(
         &mut self,
         input: ContactInput<'_>,
         piece: usize,
-        changing: Option<&[f64]>,
+        slopes: Option<Option<Changing<'_>>>,
         stretch: &Stretch,
     ) {
         evaluate(
@@ -333,19 +333,19 @@ impl Quadrature {
         );
         self.sharpen(input, stretch);
         let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
-        let Some(changing) = changing else {
+        let Some(changing) = slopes else {
             input
                 .law
                 .force(on, input.arguments, gap, rate, &mut self.force);
             return;
         };
-        let mut changing = changing.iter().enumerate().filter(|&(_, &by)| by != 0.0);
+        let mut changing = changing.into_iter().flat_map(Changing::arguments);
         let out = Derivatives {
             force: &mut self.force,
             by_gap: &mut self.by_gap,
             by_rate: &mut self.by_rate,
         };
-        let Some((argument, &by)) = changing.next() else {
+        let Some((argument, by)) = changing.next() else {
             input.law.derivatives(on, input.arguments, gap, rate, out);
             return;
         };
@@ -356,7 +356,7 @@ impl Quadrature {
         for slope in by_argument.iter_mut() {
             *slope *= by;
         }
-        for (argument, &by) in changing {
+        for (argument, by) in changing {
             let out = Derivatives {
                 force: &mut self.force,
                 by_gap: &mut self.by_gap,
@@ -408,8 +408,41 @@ impl Quadrature {
         if facts.by_rate != Variation::Zero {
             self.add_weighted(Which::ByRate, slopes.by_rate);
         }
-        if slopes.arguments.iter().any(|by| *by != 0.0) {
-            self.add_weighted(Which::ByArgument, slopes.by_arguments);
+        if let Some(changing) = slopes.change {
+            self.add_by_parameter(facts, changing, slopes.by_parameter);
+        }
+    }
+
+    /// Adds `phi_g dg + phi_r dr + phi_a da`; the first two factors have been weighted already.
+    fn add_by_parameter(&mut self, facts: &PieceFacts, changing: Changing<'_>, to: &mut [f64]) {
+        if changing.arguments {
+            weigh(&self.weights, &mut self.by_argument);
+        } else {
+            self.by_argument.fill(0.0);
+        }
+        if changing.motion {
+            evaluate(
+                [changing.change.gap, changing.change.rate],
+                &self.cosines,
+                &self.sines,
+                &mut self.gap,
+                &mut self.rate,
+            );
+            let mut add = |slopes: &[f64], change: &[f64]| {
+                for ((sum, slope), by) in self.by_argument.iter_mut().zip(slopes).zip(change) {
+                    *sum += slope * by;
+                }
+            };
+            if facts.by_gap != Variation::Zero {
+                add(&self.by_gap, &self.gap);
+            }
+            if facts.by_rate != Variation::Zero {
+                add(&self.by_rate, &self.rate);
+            }
+        }
+        if changing.motion || changing.arguments {
+            let [c, s] = &mut self.rotated;
+            project(&self.by_argument, &self.cosines, &self.sines, c, s, to);
         }
     }
 
@@ -418,7 +451,6 @@ impl Quadrature {
             Which::Force => &mut self.force,
             Which::ByGap => &mut self.by_gap,
             Which::ByRate => &mut self.by_rate,
-            Which::ByArgument => &mut self.by_argument,
         };
         weigh(&self.weights, values);
         let [c, s] = &mut self.rotated;
@@ -432,7 +464,6 @@ enum Which {
     Force,
     ByGap,
     ByRate,
-    ByArgument,
 }
 
 fn weigh(weights: &[f64], values: &mut [f64]) {

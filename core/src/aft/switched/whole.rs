@@ -4,7 +4,7 @@
 //! exponentially (Trefethen and Weideman (2014), The exponentially convergent trapezoidal rule). The samples are doubled until
 //! the upper end of the spectrum has fallen to rounding, or to the largest number.
 
-use super::Sums;
+use super::{Changing, Sums};
 use crate::aft::ContactInput;
 use crate::fourier::sampled::SampledTransform;
 use crate::fourier::series;
@@ -31,7 +31,7 @@ struct Grid {
     by_gap: Vec<f64>,
     by_rate: Vec<f64>,
     by_argument: Vec<f64>,
-    by_arguments: Vec<f64>,
+    by_parameter: Vec<f64>,
     series: Vec<f64>,
 }
 
@@ -45,8 +45,8 @@ impl Whole {
         loop {
             let index = self.grid(samples);
             let grid = &mut self.grids[index];
-            let changing = sums.slopes.as_ref().map(|slopes| slopes.arguments);
-            if grid.evaluate(input, piece, changing) || samples >= MOST.max(least) {
+            let slopes = sums.slopes.as_ref().map(|slopes| slopes.change);
+            if grid.evaluate(input, piece, slopes) || samples >= MOST.max(least) {
                 grid.add(sums);
                 return;
             }
@@ -77,7 +77,7 @@ impl Grid {
             by_gap: room(),
             by_rate: room(),
             by_argument: room(),
-            by_arguments: room(),
+            by_parameter: room(),
             series: vec![0.0; series::length((samples - 1) / 2)],
         }
     }
@@ -87,12 +87,12 @@ impl Grid {
         &mut self,
         input: ContactInput<'_>,
         piece: usize,
-        changing: Option<&[f64]>,
+        slopes: Option<Option<Changing<'_>>>,
     ) -> bool {
         self.transform.sample(input.gap, &mut self.gap);
         self.transform.sample(input.rate, &mut self.rate);
         let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
-        let Some(changing) = changing else {
+        let Some(changing) = slopes else {
             input
                 .law
                 .force(on, input.arguments, gap, rate, &mut self.force);
@@ -106,18 +106,25 @@ impl Grid {
         input.law.derivatives(on, input.arguments, gap, rate, out);
         let facts = &input.law.facts().pieces[piece];
         let varying = |variation| variation == Variation::Varying;
-        self.by_changing(input, piece, changing);
+        self.by_parameter(input, piece, changing);
         self.transform.is_resolved(&self.force, RESOLVED)
             && (!varying(facts.by_gap) || self.transform.is_resolved(&self.by_gap, RESOLVED))
             && (!varying(facts.by_rate) || self.transform.is_resolved(&self.by_rate, RESOLVED))
-            && self.transform.is_resolved(&self.by_arguments, RESOLVED)
+            && self.transform.is_resolved(&self.by_parameter, RESOLVED)
     }
 
-    /// What the arguments that change do, summed up.
-    fn by_changing(&mut self, input: ContactInput<'_>, piece: usize, changing: &[f64]) {
-        self.by_arguments.fill(0.0);
-        let changing = changing.iter().enumerate();
-        for (argument, &by) in changing.filter(|&(_, &by)| by != 0.0) {
+    /// `phi_g dg + phi_r dr + phi_a da`
+    fn by_parameter(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        changing: Option<Changing<'_>>,
+    ) {
+        self.by_parameter.fill(0.0);
+        let Some(changing) = changing else {
+            return;
+        };
+        for (argument, by) in changing.arguments() {
             let out = Derivatives {
                 force: &mut self.force,
                 by_gap: &mut self.by_gap,
@@ -132,8 +139,15 @@ impl Grid {
                 out,
                 &mut self.by_argument,
             );
-            for (sum, slope) in self.by_arguments.iter_mut().zip(&self.by_argument) {
+            for (sum, slope) in self.by_parameter.iter_mut().zip(&self.by_argument) {
                 *sum += by * slope;
+            }
+        }
+        if changing.motion {
+            self.transform.sample(changing.change.gap, &mut self.gap);
+            self.transform.sample(changing.change.rate, &mut self.rate);
+            for (j, sum) in self.by_parameter.iter_mut().enumerate() {
+                *sum += self.by_gap[j] * self.gap[j] + self.by_rate[j] * self.rate[j];
             }
         }
     }
@@ -145,8 +159,8 @@ impl Grid {
         if let Some(slopes) = &mut sums.slopes {
             add(transform, &self.by_gap, room, slopes.by_gap);
             add(transform, &self.by_rate, room, slopes.by_rate);
-            if slopes.arguments.iter().any(|by| *by != 0.0) {
-                add(transform, &self.by_arguments, room, slopes.by_arguments);
+            if slopes.change.is_some() {
+                add(transform, &self.by_parameter, room, slopes.by_parameter);
             }
         }
     }
