@@ -4,22 +4,21 @@ use crate::dag::{Dag, Id, Node, Rational, Variable};
 use crate::errors::Extent;
 use crate::lower::expand::Expander;
 use crate::lower::interval::Stretch;
+use crate::lower::written::{Quote, Written, place_of_power, quote_of_power};
 
 /// Every power in a force exists on its closed piece. Faults are at the power where its place is known, else at `extent`.
 pub(crate) fn powers_are_defined(
     context: &mut Expander,
     force: Id,
     stretch: Stretch,
-    places: &[(Id, Extent)],
+    written: &[Written],
     extent: Extent,
 ) -> syn::Result<()> {
     for id in context.dag.reachable(&[force]) {
         if let Node::Power(base, exponent) = *context.dag.node(id) {
-            let place = places
-                .iter()
-                .find(|(power, _)| *power == id)
-                .map_or(extent, |(_, place)| *place);
-            power_is_defined(context, base, exponent, stretch)
+            let place = place_of_power(written, id).unwrap_or(extent);
+            let quote = quote_of_power(written, id, base);
+            power_is_defined(context, base, exponent, stretch, quote)
                 .map_err(|message| place.fault(message))?;
         }
     }
@@ -32,6 +31,7 @@ pub(crate) fn power_is_defined(
     base: Id,
     exponent: Id,
     stretch: Stretch,
+    quote: Option<&Quote>,
 ) -> Result<(), String> {
     let [gap, rate] =
         [Variable::Gap, Variable::Rate].map(|variable| context.dag.depends_on(exponent, variable));
@@ -43,10 +43,12 @@ pub(crate) fn power_is_defined(
         .as_number(exponent)
         .is_some_and(Rational::is_integer)
     {
-        base_is_not_negative(context, base, exponent, stretch)?;
-        return exponent_is_positive_where_the_base_vanishes(context, base, exponent, stretch);
+        base_is_not_negative(context, base, exponent, stretch, quote)?;
+        return exponent_is_positive_where_the_base_vanishes(
+            context, base, exponent, stretch, quote,
+        );
     }
-    divisor_does_not_vanish(context, base, exponent, stretch)
+    divisor_does_not_vanish(context, base, exponent, stretch, quote)
 }
 
 /// The base of a power that is not whole is never negative on its piece.
@@ -55,12 +57,14 @@ fn base_is_not_negative(
     base: Id,
     exponent: Id,
     stretch: Stretch,
+    quote: Option<&Quote>,
 ) -> Result<(), String> {
     let bounds = context.ranges.bounds(&mut context.dag, base, stretch);
     if bounds.is_not_negative() {
         return Ok(());
     }
-    let (shown, exponent) = (context.show(base), context.show(exponent));
+    let (shown, exponent) = quoted(context, base, exponent, quote);
+    let raised = as_exponent(&exponent);
     let place = where_it_holds(&context.dag, base);
     let advice = if context
         .dag
@@ -69,7 +73,7 @@ fn base_is_not_negative(
         .any(|variable| matches!(variable, Variable::Gap | Variable::Rate))
     {
         format!(
-            "write `|{shown}|^{exponent}`, or `sgn({shown})*|{shown}|^{exponent}` for an odd force, or restrict the piece"
+            "write `|{shown}|^{raised}`, or `sgn({shown})*|{shown}|^{raised}` for an odd force, or restrict the piece"
         )
     } else {
         advice_on_ranges(context, base, ">=")
@@ -85,6 +89,7 @@ fn exponent_is_positive_where_the_base_vanishes(
     base: Id,
     exponent: Id,
     stretch: Stretch,
+    quote: Option<&Quote>,
 ) -> Result<(), String> {
     let positive = context
         .ranges
@@ -98,9 +103,12 @@ fn exponent_is_positive_where_the_base_vanishes(
     {
         return Ok(());
     }
-    let (shown, shown_exponent) = (context.show(base), context.show(exponent));
+    let (shown, shown_exponent) = quoted(context, base, exponent, quote);
     let advice = if context.dag.as_number(exponent).is_some() {
-        format!("add a positive distance to `{shown}`, as in `({shown} + a)^{shown_exponent}`")
+        format!(
+            "add a positive distance to `{shown}`, as in `({shown} + a)^{}`",
+            as_exponent(&shown_exponent)
+        )
     } else {
         advice_on_ranges(context, exponent, ">")
     };
@@ -116,6 +124,7 @@ fn divisor_does_not_vanish(
     base: Id,
     exponent: Id,
     stretch: Stretch,
+    quote: Option<&Quote>,
 ) -> Result<(), String> {
     let negative = context
         .dag
@@ -129,7 +138,7 @@ fn divisor_does_not_vanish(
     {
         return Ok(());
     }
-    let shown = context.show(base);
+    let (shown, _) = quoted(context, base, exponent, quote);
     let moves = context
         .dag
         .variables(base)
@@ -144,6 +153,23 @@ fn divisor_does_not_vanish(
         "division by `{shown}`, which may be zero: {}",
         advice_on_ranges(context, base, ">")
     ))
+}
+
+/// A base and an exponent as written, or else as they are.
+fn quoted(context: &Expander, base: Id, exponent: Id, quote: Option<&Quote>) -> (String, String) {
+    match quote {
+        Some(quote) => (quote.operand.to_string(), quote.exponent.to_string()),
+        None => (context.show(base), context.show(exponent)),
+    }
+}
+
+/// An exponent that is more than a number or a name needs parentheses.
+fn as_exponent(text: &str) -> String {
+    if text.contains([' ', '*', '/', '^']) {
+        format!("({text})")
+    } else {
+        text.to_owned()
+    }
 }
 
 fn where_it_holds(dag: &Dag, base: Id) -> &'static str {

@@ -4,15 +4,18 @@ use std::collections::HashMap;
 
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
 use crate::errors::Extent;
-use crate::lower::algebra::{affine, put};
+use crate::lower::algebra::{addends, affine, put, split_factor};
 use crate::lower::expand::Expander;
 use crate::lower::interval::Stretch;
+use crate::lower::resolve::shown;
+use crate::lower::written::Written;
 
 /// The force does not jump with the rate. (Across a level it may: the level is crossed at the same speed on both sides. A jump in the rate sticks and
 /// slides, which is another kind of mathematics.)
 pub(crate) fn force_does_not_jump_with_the_rate(
     context: &mut Expander,
     force: Id,
+    written: &[Written],
     extent: Extent,
 ) -> syn::Result<()> {
     for switch in switches(&context.dag, force) {
@@ -26,7 +29,7 @@ pub(crate) fn force_does_not_jump_with_the_rate(
         let message = if context.dag.depends_on(switch, Variable::Gap) {
             format!(
                 "the force jumps where `{}` changes sign, which depends on gap and rate; a force may jump at a level of the gap alone: make it continuous there, as `max(0, ...)` is",
-                context.show(switch)
+                shown(context, switch, written)
             )
         } else {
             format!(
@@ -48,12 +51,30 @@ fn vanishes_with(context: &mut Expander, jump: Id, switch: Id) -> bool {
         Some((variable, slope, rest))
     });
     let Some((variable, slope, rest)) = solved else {
-        return vanishes(context, jump);
+        return vanishes(context, jump) || vanishes_with_a_term(context, jump, switch);
     };
     let quotient = context.dag.quotient(rest, slope);
     let root = context.dag.negate(quotient);
     let jump = put(&mut context.dag, jump, variable, root);
     vanishes(context, jump)
+}
+
+/// The same, where the switch is solved for one of its terms instead: `dot(g)^2` in `1 - dot(g)^2`.
+fn vanishes_with_a_term(context: &mut Expander, jump: Id, switch: Id) -> bool {
+    addends(&mut context.dag, switch).into_iter().any(|term| {
+        let dag = &mut context.dag;
+        let (factor, power) = split_factor(dag, term, &[Variable::Gap, Variable::Rate]);
+        if !dag.depends_on(power, Variable::Rate) {
+            return false;
+        }
+        let rest = dag.difference(switch, term);
+        let quotient = dag.quotient(rest, factor);
+        let root = dag.negate(quotient);
+        let replaced = dag.replace(jump, power, root);
+        let terms = addends(dag, replaced);
+        let jump = dag.sum(&terms);
+        vanishes(context, jump)
+    })
 }
 
 /// What the rate enters through an absolute value, sign or step.

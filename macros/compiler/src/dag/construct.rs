@@ -408,20 +408,28 @@ impl Dag {
         self.intern(Node::Call(Function::Absolute, operand))
     }
 
+    /// What `sgn` is really taken of: the operand without a constant factor, the same for `a - b` and `2*b - 2*a`.
+    pub fn up_to_a_factor(&mut self, operand: Id) -> Id {
+        self.without_sign(operand, true).1
+    }
+
     /// Whether the leading coefficient is negative, and the operand with that sign taken out; the positive factor goes
-    /// too where only the sign matters. The leading term of a sum is its first one that is not a number.
+    /// too where only the sign matters. The leading term of a sum is, of those that are not numbers, the first by what
+    /// its coefficient multiplies, which a change of sign leaves alone.
     fn without_sign(&mut self, operand: Id, only_sign_matters: bool) -> (bool, Id) {
-        let leading = match self.node(operand) {
-            Node::Sum(terms) => {
-                let first = terms
-                    .iter()
-                    .copied()
-                    .find(|&term| self.as_number(term).is_none());
-                first.unwrap_or(operand)
-            }
-            _ => operand,
+        let terms = match self.node(operand) {
+            Node::Sum(terms) => terms.clone(),
+            _ => vec![operand],
         };
-        let (coefficient, _) = self.split_coefficient(leading);
+        let split = terms.iter().map(|&term| self.split_coefficient(term));
+        let split: Vec<(Rational, Id)> = split.collect();
+        let one = self.integer(1);
+        let leading = split
+            .into_iter()
+            .min_by_key(|&(_, rest)| (rest == one, rest));
+        let Some((coefficient, _)) = leading else {
+            return (false, operand);
+        };
         let factor = if only_sign_matters {
             coefficient
         } else {

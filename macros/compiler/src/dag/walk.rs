@@ -37,6 +37,11 @@ impl Dag {
 
     /// The expression with variables replaced.
     pub fn substitute(&mut self, id: Id, by: &HashMap<Variable, Id>) -> Id {
+        self.substituted(id, by)[&id]
+    }
+
+    /// What every part of an expression becomes when variables are replaced.
+    pub(crate) fn substituted(&mut self, id: Id, by: &HashMap<Variable, Id>) -> HashMap<Id, Id> {
         let replacements = self
             .reachable(&[id])
             .into_iter()
@@ -45,7 +50,7 @@ impl Dag {
                 _ => None,
             })
             .collect();
-        self.rebuild(id, replacements)
+        self.rebuilt(id, replacements)
     }
 
     /// The expression with every occurrence of `from` replaced by `to`.
@@ -54,7 +59,12 @@ impl Dag {
     }
 
     /// Rebuilds an expression from its leaves, with `rebuilt` given in advance.
-    pub(crate) fn rebuild(&mut self, id: Id, mut rebuilt: HashMap<Id, Id>) -> Id {
+    pub(crate) fn rebuild(&mut self, id: Id, rebuilt: HashMap<Id, Id>) -> Id {
+        self.rebuilt(id, rebuilt)[&id]
+    }
+
+    /// The same, and what every part of it has become.
+    pub(crate) fn rebuilt(&mut self, id: Id, mut rebuilt: HashMap<Id, Id>) -> HashMap<Id, Id> {
         for current in self.reachable(&[id]) {
             if rebuilt.contains_key(&current) {
                 continue;
@@ -62,7 +72,7 @@ impl Dag {
             let value = self.rebuild_node(current, &rebuilt);
             rebuilt.insert(current, value);
         }
-        rebuilt[&id]
+        rebuilt
     }
 
     /// One node with its operands replaced; `new` has an entry for each of them.

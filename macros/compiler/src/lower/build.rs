@@ -10,7 +10,7 @@ use crate::ir;
 
 use super::assemble::{self, Action, Assembly};
 use super::expand::Expander;
-use super::found::{self, Found};
+use super::found::Found;
 use super::law::{self, Lowered};
 use super::term::{Motion, Term};
 use super::wave::Wave;
@@ -54,7 +54,7 @@ impl Builder {
         if let Some(parts) = law::linear(&mut self.context.dag, &lowered.law) {
             return self.linear_law(row, &term, &call.gap, &arguments, parts);
         }
-        let law = found::intern(&mut self.laws, lowered.law.clone());
+        let law = intern(&mut self.laws, lowered.law.clone());
         let action = Action {
             law,
             gap: call.gap,
@@ -110,7 +110,7 @@ impl Builder {
             levels: Vec::new(),
             pieces: vec![self.context.dag.variable(Variable::Rate)],
         };
-        let law = found::intern(&mut self.laws, damper);
+        let law = intern(&mut self.laws, damper);
         let gap = self.coordinate(column, term.extent);
         let action = Action {
             law,
@@ -133,7 +133,7 @@ impl Builder {
 
     pub fn found(&mut self, found: Found) {
         let arguments = found.lowered.captured;
-        let law = found::intern(&mut self.laws, found.lowered.law);
+        let law = intern(&mut self.laws, found.lowered.law);
         let extent = found.extent;
         let gap: Vec<Term> = found
             .direction
@@ -182,4 +182,23 @@ impl Builder {
 fn numbered(arguments: &[Id]) -> HashMap<Variable, Id> {
     let numbered = |(index, &value): (usize, &Id)| (Variable::Argument(index), value);
     arguments.iter().enumerate().map(numbered).collect()
+}
+
+/// Adds a law unless an equal one is there already; its index.
+fn intern(laws: &mut Vec<ir::Law>, law: ir::Law) -> usize {
+    let same = |other: &ir::Law| {
+        let levels = |law: &ir::Law| -> Vec<(Id, bool)> {
+            law.levels
+                .iter()
+                .map(|level| (level.value, level.belongs_above))
+                .collect()
+        };
+        other.arguments == law.arguments
+            && other.pieces == law.pieces
+            && levels(other) == levels(&law)
+    };
+    laws.iter().position(same).unwrap_or_else(|| {
+        laws.push(law);
+        laws.len() - 1
+    })
 }

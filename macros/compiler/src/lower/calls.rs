@@ -7,6 +7,7 @@ use crate::errors::Extent;
 use super::expand::{Call, Expander};
 use super::term::{Motion, Term, collect};
 use super::wave::Wave;
+use super::written::Quote;
 
 impl Expander {
     pub(super) fn call(
@@ -19,8 +20,7 @@ impl Expander {
             return self.law(law, arguments, extent);
         }
         if let ("max" | "min", [first, second]) = (name, arguments) {
-            let [first, second] = [self.expand(first)?, self.expand(second)?];
-            return self.extremum(name == "max", &first, &second, extent);
+            return self.extremum(name == "max", [first, second], extent);
         }
         let [argument] = arguments else {
             return Err(extent.fault(format!("`{name}` takes one argument")));
@@ -36,15 +36,15 @@ impl Expander {
                 let half = self.dag.integer(2);
                 let one = self.dag.integer(1);
                 let half = self.dag.quotient(one, half);
-                self.power(operand, half, extent)
+                self.power(operand, half, Quote::power(argument, "0.5"), extent)
             }
-            "H" => self.function(Function::Step, &operand, extent),
-            "sgn" => self.function(Function::Sign, &operand, extent),
-            "abs" => self.function(Function::Absolute, &operand, extent),
-            "cos" => self.function(Function::Cosine, &operand, extent),
-            "sin" => self.function(Function::Sine, &operand, extent),
-            "exp" => self.function(Function::Exponential, &operand, extent),
-            "tanh" => self.function(Function::Tanh, &operand, extent),
+            "H" => self.function(Function::Step, &operand, argument, extent),
+            "sgn" => self.function(Function::Sign, &operand, argument, extent),
+            "abs" => self.function(Function::Absolute, &operand, argument, extent),
+            "cos" => self.function(Function::Cosine, &operand, argument, extent),
+            "sin" => self.function(Function::Sine, &operand, argument, extent),
+            "exp" => self.function(Function::Exponential, &operand, argument, extent),
+            "tanh" => self.function(Function::Tanh, &operand, argument, extent),
             _ => Err(extent.fault(format!("unknown function `{name}`"))),
         }
     }

@@ -10,6 +10,7 @@ use crate::index::Constants;
 use super::interval::Ranges;
 use super::term::{Motion, Term, collect};
 use super::wave::Wave;
+use super::written::{Quote, Written};
 
 /// More terms than any equation has, and few enough to be quick.
 const MOST_TERMS: usize = 1 << 14;
@@ -56,8 +57,8 @@ pub struct Expander {
     pub laws: HashMap<String, usize>,
     /// The calls found so far.
     pub calls: Vec<Call>,
-    /// Where each power and quotient stands that depends on the motion.
-    pub powers: Vec<(Id, Extent)>,
+    /// The powers, quotients and switches that depend on the motion.
+    pub written: Vec<Written>,
     /// Names of parameters, for messages.
     pub parameters: Vec<String>,
     /// Names of coordinates, for messages.
@@ -75,7 +76,12 @@ pub struct Expander {
 impl Expander {
     /// An expression as one would write it.
     pub fn show(&self, id: Id) -> String {
-        self.dag.display(id, &|variable| self.label(variable))
+        let is_name = !self.gap.contains([' ', '*', '/', '-']);
+        self.dag.display(id, &|variable| match variable {
+            // `a*(x - y)`, not `a*x - y`.
+            Variable::Gap if !is_name => format!("({})", self.gap),
+            _ => self.label(variable),
+        })
     }
 
     /// A variable as one would write it.
@@ -129,12 +135,13 @@ impl Expander {
             Kind::Power(base, exponent) => {
                 let base_terms = self.expand(base)?;
                 let exponent_terms = self.expand(exponent)?;
+                let quote = Quote::power(base, &exponent.to_string());
                 let exponent = self.constant(&exponent_terms, exponent.extent, "an exponent")?;
-                self.power(base_terms, exponent, extent)?
+                self.power(base_terms, exponent, quote, extent)?
             }
             Kind::Absolute(operand) => {
                 let terms = self.expand(operand)?;
-                self.function(Function::Absolute, &terms, extent)?
+                self.function(Function::Absolute, &terms, operand, extent)?
             }
             Kind::Call(name, arguments) => self.call(&name.to_string(), arguments, extent)?,
             Kind::Element(name, index) => self.element(&name.to_string(), index, extent)?,
@@ -190,7 +197,7 @@ impl Expander {
             let mut terms = self.expand(part)?;
             if *divided {
                 let minus_one = self.dag.integer(-1);
-                terms = self.power(terms, minus_one, part.extent)?;
+                terms = self.power(terms, minus_one, Quote::power(part, "-1"), part.extent)?;
             }
             if terms.iter().any(Term::moves) {
                 moving.push(terms);

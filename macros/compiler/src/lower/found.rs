@@ -1,23 +1,21 @@
 //! Laws found in the equations: nonlinear terms without a `law` block are grouped by the gap they depend on.
 
-use std::collections::HashMap;
+use std::rc::Rc;
 
 use crate::ast::Expr;
 use crate::dag::{Dag, Id, Node, Rational, Variable};
-use crate::errors::Extent;
-use crate::ir;
+use crate::errors::{Diagnostics, Extent};
 
 use super::algebra::{addends, split_factor};
 use super::expand::Expander;
+use super::gaps::{Direction, in_gap, mixed, pivot_does_not_vanish, show_gap, single_direction};
 use super::interval::Stretch;
 use super::law::{Lowered, finish};
 use super::polynomial::powers_of_forms;
 use super::resolve::{Segment, resolve};
 use super::term::{Motion, Term};
 use super::wave::Wave;
-
-/// Coefficients of the coordinates in a gap, the first of them one, in order of the coordinates.
-pub type Direction = Vec<(usize, Id)>;
+use super::written::{Written, followed};
 
 /// A nonlinear term of one equation, as a force of one gap.
 #[derive(Debug, Clone)]
@@ -29,7 +27,8 @@ struct Part {
     force: Id,
     extent: Extent,
     origin: Origin,
-    powers: Vec<(Id, Extent)>,
+    /// Shared by the parts of one term.
+    written: Rc<[Written]>,
 }
 
 /// The term as written, which a loop repeats.
@@ -103,42 +102,14 @@ impl Gatherer {
         direction: &Direction,
     ) -> Vec<Term> {
         let replacements = in_gap(&mut context.dag, direction);
-        let force = context.dag.substitute(part, &replacements);
-        let inside = context.dag.reachable(&[part]);
-        let mut powers = context.powers.clone();
-        powers.retain(|(power, _)| inside.binary_search(power).is_ok());
-        let powers: Vec<(Id, Extent)> = powers
-            .into_iter()
-            .map(|(power, extent)| (context.dag.substitute(power, &replacements), extent))
-            .collect();
+        let rebuilt = context.dag.substituted(part, &replacements);
+        let force = rebuilt[&part];
+        let written: Rc<[Written]> = followed(&context.written, &rebuilt);
         let mut linear = Vec::new();
-        let (gap, rate) = (
-            context.dag.variable(Variable::Gap),
-            context.dag.variable(Variable::Rate),
-        );
-        let one = context.dag.integer(1);
-        for addend in addends(&mut context.dag, force) {
-            let (coefficient, rest) =
-                split_factor(&mut context.dag, addend, &[Variable::Gap, Variable::Rate]);
+        for (coefficient, rest) in split(&mut context.dag, force, term.is_steady()) {
             let scaled = term.scaled(&mut context.dag, coefficient);
-            if rest == one {
-                linear.push(Term {
-                    motion: Motion::None,
-                    ..scaled
-                });
-            } else if rest == gap || (rest == rate && term.is_steady()) {
-                for &(index, factor) in direction {
-                    let variable = if rest == gap {
-                        Variable::Coordinate(index)
-                    } else {
-                        Variable::Velocity(index)
-                    };
-                    let scaled = scaled.scaled(&mut context.dag, factor);
-                    linear.push(Term {
-                        motion: Motion::Linear(variable),
-                        ..scaled
-                    });
-                }
+            if let Some(basis) = linear_in(&context.dag, rest, term.is_steady()) {
+                linear.extend(in_coordinates(context, scaled, basis, direction));
             } else {
                 self.parts.push(Part {
                     row,
@@ -148,7 +119,7 @@ impl Gatherer {
                     force: rest,
                     extent: term.extent,
                     origin,
-                    powers: powers.clone(),
+                    written: written.clone(),
                 });
             }
         }
@@ -156,11 +127,7 @@ impl Gatherer {
     }
 
     /// One law for each gap of each equation; laws that come out equal are one.
-    pub fn laws(
-        self,
-        context: &mut Expander,
-        diagnostics: &mut crate::errors::Diagnostics,
-    ) -> Vec<Found> {
+    pub fn laws(self, context: &mut Expander, diagnostics: &mut Diagnostics) -> Vec<Found> {
         let mut groups: Vec<Vec<Part>> = Vec::new();
         for part in self.parts {
             let same = |group: &&mut Vec<Part>| {
@@ -188,11 +155,8 @@ impl Gatherer {
                 law.rows.push(row);
                 continue;
             }
-            if group.iter().any(|part| faulty.contains(&part.origin)) {
-                continue;
-            }
             context.gap = show_gap(context, &group[0].direction);
-            if let Some(segments) = diagnostics.keep(segments(context, &group)) {
+            if let Some(segments) = segments(context, &group, &mut faulty, diagnostics) {
                 let name = format!("force {}", laws.len() + 1);
                 let lowered = finish(context, name, segments);
                 laws.push(Found {
@@ -202,37 +166,114 @@ impl Gatherer {
                     extent: group[0].extent,
                 });
                 forces.push(force);
-            } else {
-                faulty.extend(group.iter().map(|part| part.origin));
             }
         }
         laws
     }
 }
 
-/// Resolves the parts of one force together, after each alone, so that a fault is reported at its own term.
-fn segments(context: &mut Expander, group: &[Part]) -> syn::Result<Vec<Segment>> {
-    let whole = |force, part: &Part| Segment {
+/// What a linear term is a multiple of.
+#[derive(Clone, Copy)]
+enum Basis {
+    One,
+    Gap,
+    Rate,
+}
+
+/// What a term is linear in, if it is linear; damping that varies with time has no place of its own.
+fn linear_in(dag: &Dag, id: Id, steady: bool) -> Option<Basis> {
+    match dag.node(id) {
+        _ if dag.as_number(id) == Some(Rational::ONE) => Some(Basis::One),
+        Node::Variable(Variable::Gap) => Some(Basis::Gap),
+        Node::Variable(Variable::Rate) if steady => Some(Basis::Rate),
+        _ => None,
+    }
+}
+
+/// The terms of a force as coefficients and what they multiply. One without linear terms stays whole, as in a law.
+fn split(dag: &mut Dag, force: Id, steady: bool) -> Vec<(Id, Id)> {
+    let moving = [Variable::Gap, Variable::Rate];
+    let mut terms = Vec::new();
+    for addend in addends(dag, force) {
+        terms.push(split_factor(dag, addend, &moving));
+    }
+    let is_linear = |&(_, rest): &(Id, Id)| linear_in(dag, rest, steady).is_some();
+    if terms.iter().any(is_linear) {
+        terms
+    } else {
+        vec![split_factor(dag, force, &moving)]
+    }
+}
+
+/// A term that is linear in the gap or its rate, in coordinates.
+fn in_coordinates(
+    context: &mut Expander,
+    term: Term,
+    basis: Basis,
+    direction: &Direction,
+) -> Vec<Term> {
+    let with = |motion, term| Term { motion, ..term };
+    let variable = match basis {
+        Basis::One => return vec![with(Motion::None, term)],
+        Basis::Gap => Variable::Coordinate,
+        Basis::Rate => Variable::Velocity,
+    };
+    direction
+        .iter()
+        .map(|&(index, factor)| {
+            let scaled = term.scaled(&mut context.dag, factor);
+            with(Motion::Linear(variable(index)), scaled)
+        })
+        .collect()
+}
+
+/// Resolves the parts of one force together, as those of a piece are: what jumps in one of them may be taken back by
+/// another. If that fails, each term is judged alone, so that a fault is reported at its own term, and once.
+fn segments(
+    context: &mut Expander,
+    group: &[Part],
+    faulty: &mut Vec<Origin>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<Segment>> {
+    let together = match resolved(context, group) {
+        Ok(segments) => return Some(segments),
+        Err(fault) => fault,
+    };
+    let mut origins: Vec<Origin> = group.iter().map(|part| part.origin).collect();
+    origins.dedup();
+    let mut explained = false;
+    for &origin in &origins {
+        if !faulty.contains(&origin) {
+            let own = group.iter().filter(|part| part.origin == origin);
+            let own: Vec<Part> = own.cloned().collect();
+            let Err(fault) = resolved(context, &own) else {
+                continue;
+            };
+            diagnostics.add(fault);
+            faulty.push(origin);
+        }
+        explained = true;
+    }
+    if !explained {
+        diagnostics.add(together);
+        faulty.extend(origins);
+    }
+    None
+}
+
+/// The pieces of the sum of some parts.
+fn resolved(context: &mut Expander, parts: &[Part]) -> syn::Result<Vec<Segment>> {
+    let (_, force) = common_factor(&mut context.dag, parts);
+    let mut lists: Vec<&Rc<[Written]>> = parts.iter().map(|part| &part.written).collect();
+    lists.dedup_by(|a, b| Rc::ptr_eq(a, b));
+    let whole = Segment {
         stretch: Stretch::ALL,
         holds_low: false,
         force,
-        powers: part.powers.clone(),
+        written: lists.into_iter().flat_map(|list| list.to_vec()).collect(),
     };
-    let mut fault: Option<syn::Error> = None;
-    for part in group {
-        if let Err(other) = resolve(context, whole(part.force, part), part.extent) {
-            match &mut fault {
-                Some(fault) => fault.combine(other),
-                None => fault = Some(other),
-            }
-        }
-    }
-    if let Some(fault) = fault {
-        return Err(fault);
-    }
-    let (_, force) = common_factor(&mut context.dag, group);
-    let extent = group[0].extent.to(group[group.len() - 1].extent);
-    resolve(context, whole(force, &group[0]), extent)
+    let extent = parts[0].extent.to(parts[parts.len() - 1].extent);
+    resolve(context, whole, extent)
 }
 
 /// The factor that the parts of a force have in common, up to numbers, and the force without it.
@@ -252,178 +293,4 @@ fn common_factor(dag: &mut Dag, group: &[Part]) -> (Id, Id) {
         terms.push(dag.product(&[relative, part.force]));
     }
     (leading, dag.sum(&terms))
-}
-
-fn show_gap(context: &mut Expander, direction: &Direction) -> String {
-    let mut terms = Vec::new();
-    for &(index, factor) in direction {
-        let coordinate = context.dag.variable(Variable::Coordinate(index));
-        terms.push(context.dag.product(&[factor, coordinate]));
-    }
-    let gap = context.dag.sum(&terms);
-    context.show(gap)
-}
-
-fn mixed(context: &mut Expander, part: Id, extent: Extent) -> syn::Error {
-    let gaps: Vec<String> = directions(&mut context.dag, part)
-        .into_iter()
-        .flatten()
-        .map(|direction| format!("`{}`", show_gap(context, &direction)))
-        .collect();
-    extent.fault(format!(
-        "this term mixes {} nonlinearly: a force depends on one gap, a fixed combination of coordinates, and on its rate; only polynomials of coordinates, or of velocities, can be taken apart",
-        if gaps.len() > 1 { gaps.join(" and ") } else { "several coordinates".to_owned() }
-    ))
-}
-
-/// The one gap that an expression in coordinates and velocities depends on.
-fn single_direction(dag: &mut Dag, id: Id) -> Option<Direction> {
-    let mut directions = directions(dag, id)?;
-    (directions.len() == 1).then(|| directions.remove(0))
-}
-
-/// The distinct gaps of an expression: the linear part of each sum is one, and so is each coordinate that stands alone.
-fn directions(dag: &mut Dag, id: Id) -> Option<Vec<Direction>> {
-    let mut found: Vec<Direction> = Vec::new();
-    let mut pending = vec![id];
-    let mut seen = std::collections::HashSet::new();
-    while let Some(current) = pending.pop() {
-        if !seen.insert(current) {
-            continue;
-        }
-        let mut positions: Vec<(usize, Id)> = Vec::new();
-        let mut velocities: Vec<(usize, Id)> = Vec::new();
-        let terms = match dag.node(current).clone() {
-            Node::Sum(terms) => terms,
-            Node::Product(factors) if !is_linear(dag, current) => {
-                pending.extend(factors);
-                continue;
-            }
-            Node::Number(_) | Node::Pi => continue,
-            Node::Product(_) | Node::Variable(_) => vec![current],
-            _ => {
-                pending.extend(dag.operands(current));
-                continue;
-            }
-        };
-        for term in terms {
-            match linear_term(dag, term) {
-                Some((Variable::Coordinate(index), factor)) => positions.push((index, factor)),
-                Some((Variable::Velocity(index), factor)) => velocities.push((index, factor)),
-                Some(_) => return None,
-                None => pending.push(term),
-            }
-        }
-        for mut direction in [positions, velocities] {
-            if direction.is_empty() {
-                continue;
-            }
-            normalise(dag, &mut direction);
-            if !found.contains(&direction) {
-                found.push(direction);
-            }
-        }
-    }
-    Some(found)
-}
-
-fn is_linear(dag: &mut Dag, id: Id) -> bool {
-    linear_term(dag, id).is_some()
-}
-
-/// A term `factor * coordinate` or `factor * velocity`.
-fn linear_term(dag: &mut Dag, term: Id) -> Option<(Variable, Id)> {
-    let moving: Vec<Variable> = dag
-        .variables(term)
-        .into_iter()
-        .filter(|&variable| super::expand::is_motion(variable))
-        .collect();
-    let [variable] = moving[..] else { return None };
-    let (factor, rest) = split_factor(dag, term, &[variable]);
-    (rest == dag.variable(variable)).then_some((variable, factor))
-}
-
-/// Collects coordinates and divides by the first coefficient that is a number, or else by the first: see
-/// [`pivot_does_not_vanish`].
-fn normalise(dag: &mut Dag, direction: &mut Direction) {
-    direction.sort_by_key(|&(index, _)| index);
-    let mut merged: Direction = Vec::new();
-    for &(index, factor) in direction.iter() {
-        match merged.last_mut() {
-            Some(last) if last.0 == index => last.1 = dag.sum(&[last.1, factor]),
-            _ => merged.push((index, factor)),
-        }
-    }
-    merged.retain(|&(_, factor)| dag.as_number(factor) != Some(Rational::ZERO));
-    let number = merged
-        .iter()
-        .find(|&&(_, factor)| dag.as_number(factor).is_some());
-    if let Some(&(_, pivot)) = number.or(merged.first()) {
-        for (_, factor) in &mut merged {
-            *factor = dag.quotient(*factor, pivot);
-        }
-    }
-    *direction = merged;
-}
-
-/// What a gap of several coordinates was divided by never vanishes; else the other coordinates would be lost with it.
-fn pivot_does_not_vanish(
-    context: &mut Expander,
-    direction: &Direction,
-    extent: Extent,
-) -> Result<(), syn::Error> {
-    let factors: Vec<Id> = direction.iter().map(|&(_, factor)| factor).collect();
-    for id in context.dag.reachable(&factors) {
-        let Node::Power(base, exponent) = *context.dag.node(id) else {
-            continue;
-        };
-        let divides = context
-            .dag
-            .as_number(exponent)
-            .is_some_and(Rational::is_negative);
-        let bounds = context.ranges.bounds(&mut context.dag, base, Stretch::ALL);
-        if divides && !bounds.excludes_zero() {
-            let shown = context.show(base);
-            return Err(extent.fault(format!(
-                "the coefficient `{shown}` of a coordinate in this gap may be zero: declare a range without it, or declare a law and call it with this gap"
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// The force depends on `g = q_i + ...` alone, so its value is that at `q_i = g` with all other coordinates zero.
-fn in_gap(dag: &mut Dag, direction: &Direction) -> HashMap<Variable, Id> {
-    let (zero, one) = (dag.integer(0), dag.integer(1));
-    let pivot = direction.iter().position(|&(_, factor)| factor == one);
-    let mut by = HashMap::new();
-    for (position, &(index, _)) in direction.iter().enumerate() {
-        let (gap, rate) = if Some(position) == pivot {
-            (dag.variable(Variable::Gap), dag.variable(Variable::Rate))
-        } else {
-            (zero, zero)
-        };
-        by.insert(Variable::Coordinate(index), gap);
-        by.insert(Variable::Velocity(index), rate);
-    }
-    by
-}
-
-/// Adds a law unless an equal one is there already; its index.
-pub fn intern(laws: &mut Vec<ir::Law>, law: ir::Law) -> usize {
-    let same = |other: &ir::Law| {
-        let levels = |law: &ir::Law| -> Vec<(Id, bool)> {
-            law.levels
-                .iter()
-                .map(|level| (level.value, level.belongs_above))
-                .collect()
-        };
-        other.arguments == law.arguments
-            && other.pieces == law.pieces
-            && levels(other) == levels(&law)
-    };
-    laws.iter().position(same).unwrap_or_else(|| {
-        laws.push(law);
-        laws.len() - 1
-    })
 }

@@ -1,26 +1,30 @@
 //! Powers and functions of terms: of constants, of waves, and of the motion.
 
+use crate::ast::Expr;
 use crate::check::powers;
-use crate::dag::{Function, Id, Rational, Variable};
+use crate::dag::{Function, Id, Node, Rational, Variable};
 use crate::errors::Extent;
+use crate::simplify::factors_of;
 
 use super::expand::Expander;
 use super::interval::Stretch;
 use super::term::{Term, collect};
 use super::wave::Wave;
+use super::written::{Quote, Written};
 
 impl Expander {
     pub(super) fn power(
         &mut self,
         base: Vec<Term>,
         exponent: Id,
+        quote: Quote,
         extent: Extent,
     ) -> syn::Result<Vec<Term>> {
         let whole = self.dag.as_number(exponent).and_then(Rational::to_integer);
         if base.iter().all(Term::is_constant) {
             let base = self.constant(&base, extent, "the base")?;
             let power = self.dag.power(base, exponent);
-            powers::power_is_defined(self, base, exponent, Stretch::ALL)
+            powers::power_is_defined(self, base, exponent, Stretch::ALL, Some(&quote))
                 .map_err(|message| extent.fault(message))?;
             return Ok(vec![Term::constant(power, extent)]);
         }
@@ -30,7 +34,8 @@ impl Expander {
             }
             let base = self.value(&base, extent)?;
             let power = self.dag.power(base, exponent);
-            self.powers.push((power, extent));
+            self.written
+                .push(Written::power(power, base, quote, extent));
             return Ok(self.nonlinear(power, extent));
         }
         let Some(whole @ 0..=8) = whole else {
@@ -50,12 +55,14 @@ impl Expander {
         &mut self,
         function: Function,
         operand: &[Term],
+        written: &Expr,
         extent: Extent,
     ) -> syn::Result<Vec<Term>> {
         let trigonometric = matches!(function, Function::Sine | Function::Cosine);
         if operand.iter().any(Term::moves) {
             let operand = self.value(operand, extent)?;
             let value = self.dag.call(function, operand);
+            self.note_switch(value, &Quote::switch(written), extent);
             return Ok(self.nonlinear(value, extent));
         }
         if trigonometric {
@@ -71,25 +78,29 @@ impl Expander {
     pub(super) fn extremum(
         &mut self,
         larger: bool,
-        first: &[Term],
-        second: &[Term],
+        of: [&Expr; 2],
         extent: Extent,
     ) -> syn::Result<Vec<Term>> {
-        let moves = first.iter().chain(second).any(Term::moves);
+        let [first, second] = [self.expand(of[0])?, self.expand(of[1])?];
+        let moves = first.iter().chain(&second).any(Term::moves);
         if !moves {
-            steady(first, extent)?;
-            steady(second, extent)?;
+            steady(&first, extent)?;
+            steady(&second, extent)?;
         }
-        let [first, second] = [self.value(first, extent)?, self.value(second, extent)?];
+        let [first, second] = [self.value(&first, extent)?, self.value(&second, extent)?];
         let mut parts = Vec::new();
         for (own, other) in [(first, second), (second, first)] {
-            let excess = if larger {
-                self.dag.difference(own, other)
-            } else {
-                self.dag.difference(other, own)
-            };
+            let (minuend, subtrahend) = if larger { (own, other) } else { (other, own) };
+            let excess = self.dag.difference(minuend, subtrahend);
             let chosen = if moves {
-                self.dag.call(Function::Step, excess)
+                let quote = if minuend == first {
+                    Quote::difference(of[0], of[1])
+                } else {
+                    Quote::difference(of[1], of[0])
+                };
+                let step = self.dag.call(Function::Step, excess);
+                self.note_switch(step, &quote, extent);
+                step
             } else {
                 self.without_step(Function::Step, excess)
             };
@@ -100,6 +111,18 @@ impl Expander {
         }
         let value = self.dag.sum(&parts);
         Ok(self.nonlinear(value, extent))
+    }
+
+    /// Notes what an absolute value, sign or step is taken of, which the graph has freed of constant factors.
+    fn note_switch(&mut self, value: Id, quote: &Quote, extent: Extent) {
+        for factor in factors_of(&self.dag, value) {
+            if let Node::Call(Function::Absolute | Function::Sign | Function::Step, operand) =
+                *self.dag.node(factor)
+            {
+                self.written
+                    .push(Written::switch(operand, quote.clone(), extent));
+            }
+        }
     }
 
     /// A function of parameters; a step is written with the sign.

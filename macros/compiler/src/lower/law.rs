@@ -12,6 +12,7 @@ use super::algebra::{addends, affine, split_factor};
 use super::expand::{Expander, Meaning};
 use super::interval::{Interval, Stretch};
 use super::resolve::{Segment, resolve};
+use super::written::{Written, followed};
 
 /// A law and what its arguments beyond the written ones stand for.
 #[derive(Debug, Clone)]
@@ -99,8 +100,13 @@ fn segments(
         diagnostics,
     )?;
     let mut segments = Vec::new();
+    let mut faulty = Vec::new();
     for piece in arranged {
-        let (force, powers) = forces[piece.index].clone()?;
+        // `else` may hold on several stretches.
+        if faulty.contains(&piece.index) {
+            continue;
+        }
+        let (force, written) = forces[piece.index].clone()?;
         let stretch = Stretch {
             low: piece.low.map(|low| low.0),
             high: piece.high.map(|high| high.0),
@@ -111,21 +117,21 @@ fn segments(
             stretch,
             holds_low,
             force,
-            powers,
+            written,
         };
         match diagnostics.keep(resolve(context, whole, extent)) {
             Some(resolved) => segments.extend(resolved),
-            None => sound = false,
+            None => faulty.push(piece.index),
         }
     }
-    sound.then_some(segments)
+    faulty.is_empty().then_some(segments)
 }
 
-type Force = (Id, Vec<(Id, Extent)>);
+type Force = (Id, Vec<Written>);
 
-/// The force of one piece as an expression in gap and rate, and where its powers stand.
+/// The force of one piece as an expression in gap and rate, and what messages quote of it.
 fn force(context: &mut Expander, expression: &crate::ast::Expr) -> syn::Result<Force> {
-    context.powers.clear();
+    context.written.clear();
     let terms = context.expand(expression)?;
     if let Some(term) = terms.iter().find(|term| !term.is_steady()) {
         return Err(term.extent.fault(
@@ -133,18 +139,15 @@ fn force(context: &mut Expander, expression: &crate::ast::Expr) -> syn::Result<F
         ));
     }
     let force = context.value(&terms, expression.extent)?;
-    let powers = std::mem::take(&mut context.powers);
-    let powers = powers
-        .into_iter()
-        .map(|(power, extent)| (in_gap(&mut context.dag, power), extent))
-        .collect();
-    Ok((in_gap(&mut context.dag, force), powers))
+    let rebuilt = in_gap(&mut context.dag, force);
+    let written = std::mem::take(&mut context.written);
+    Ok((rebuilt[&force], followed(&written, &rebuilt)))
 }
 
 /// The only coordinate in a law is its gap.
-fn in_gap(dag: &mut Dag, id: Id) -> Id {
+fn in_gap(dag: &mut Dag, id: Id) -> HashMap<Id, Id> {
     let (gap, rate) = (dag.variable(Variable::Gap), dag.variable(Variable::Rate));
-    dag.substitute(
+    dag.substituted(
         id,
         &HashMap::from([
             (Variable::Coordinate(0), gap),

@@ -5,16 +5,18 @@ mod build;
 mod calls;
 mod found;
 mod functions;
+mod gaps;
 mod law;
 mod polynomial;
 mod repeat;
-mod resolve;
 
 pub(crate) mod algebra;
 pub(crate) mod expand;
 pub(crate) mod interval;
+pub(crate) mod resolve;
 pub(crate) mod term;
 pub(crate) mod wave;
+pub(crate) mod written;
 
 use crate::ast::{Declaration, Equation, Expr, Kind, Limit, Statement};
 use crate::check::{forcing, inertia};
@@ -183,14 +185,14 @@ impl Rows {
             Statement::Loop(repeated) => repeated,
         };
         let faults = diagnostics.count();
-        let powers = context.powers.len();
+        let written = context.written.len();
         let result = context.repeat(repeated, |context| {
             for statement in &repeated.body {
                 if diagnostics.count() == faults {
                     self.statement(context, statement, gatherer, diagnostics);
                 }
             }
-            context.powers.truncate(powers);
+            context.written.truncate(written);
             Ok(())
         });
         diagnostics.keep(result);
@@ -206,30 +208,30 @@ fn equation_terms(
     diagnostics: &mut Diagnostics,
 ) -> Vec<Term> {
     let mut terms = Vec::new();
-    // Places of powers in `let` items are kept, those in the terms before are not.
-    let known = context.powers.len();
+    // What is written in `let` items is kept, what is in the terms before is not.
+    let known = context.written.len();
     for (side, on_right) in [(&equation.left, false), (&equation.right, true)] {
         for (minus, part) in addends(side) {
-            context.powers.truncate(known);
+            context.written.truncate(known);
             let Some(expanded) = diagnostics.keep(context.expand(part)) else {
                 continue;
             };
             for term in collect(&mut context.dag, expanded) {
                 let extent = part.extent;
                 let term = Term { extent, ..term };
-                diagnostics.keep(forcing::term_is_in_its_place(&term, on_right));
-                diagnostics.keep(forcing::term_is_harmonic(&term));
                 let term = if minus == on_right {
                     term
                 } else {
                     term.negated(&mut context.dag)
                 };
-                terms.extend(
-                    diagnostics
-                        .keep(gatherer.add(context, row, &term, part))
-                        .into_iter()
-                        .flatten(),
-                );
+                let added = forcing::term_is_in_its_place(&term, on_right)
+                    .and_then(|()| forcing::term_is_harmonic(&term))
+                    .and_then(|()| gatherer.add(context, row, &term, part));
+                // The rest of what is written here would have the same fault.
+                let Some(added) = diagnostics.keep(added) else {
+                    break;
+                };
+                terms.extend(added);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Pieces from expressions: absolute values, signs and steps of the gap are decided on stretches of it, so that none is left.
 
 use std::cmp::Ordering;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::check::{pieces, powers, rates};
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
@@ -10,6 +10,7 @@ use crate::errors::Extent;
 use super::algebra::affine;
 use super::expand::Expander;
 use super::interval::Stretch;
+use super::written::{Written, followed, quote_of_switch};
 
 /// More levels than a law has.
 const MOST_SEGMENTS: usize = 64;
@@ -23,8 +24,8 @@ pub struct Segment {
     pub holds_low: bool,
     /// The force.
     pub force: Id,
-    /// Where its powers stand in the declaration.
-    pub powers: Vec<(Id, Extent)>,
+    /// Its powers and switches, for messages.
+    pub written: Vec<Written>,
 }
 
 /// Splits a force into smooth segments, in increasing order of the gap.
@@ -44,35 +45,32 @@ pub fn resolve(
         if smooth.len() + pending.len() > MOST_SEGMENTS {
             return Err(extent.fault("more than 64 pieces in one law"));
         }
-        let Some(switch) = innermost_switch(&context.dag, segment.force) else {
+        let switches = innermost_switches(&context.dag, segment.force);
+        let Some(&first) = switches.first() else {
             remove_steps(context, &mut segment);
-            rates::force_does_not_jump_with_the_rate(context, segment.force, extent)?;
+            rates::force_does_not_jump_with_the_rate(
+                context,
+                segment.force,
+                &segment.written,
+                extent,
+            )?;
             powers::powers_are_defined(
                 context,
                 segment.force,
                 segment.stretch,
-                &segment.powers,
+                &segment.written,
                 extent,
             )?;
             remove_powers_of_zero(&mut context.dag, &mut segment);
             smooth.push(segment);
             continue;
         };
-        let bounds = context
-            .ranges
-            .bounds(&mut context.dag, switch, segment.stretch);
-        if bounds.is_not_negative() || bounds.is_not_positive() {
-            decide(
-                &mut context.dag,
-                &mut segment,
-                switch,
-                bounds.is_not_negative(),
-            );
-            pending.push(segment);
-        } else if take_apart(context, &mut segment, switch) {
+        if decide_known(context, &mut segment, &switches)
+            || take_apart(context, &mut segment, first)
+        {
             pending.push(segment);
         } else {
-            let [below, above] = split(context, segment, switch, extent)?;
+            let [below, above] = split(context, segment, first, extent)?;
             pending.push(above);
             pending.push(below);
         }
@@ -80,19 +78,27 @@ pub fn resolve(
     Ok(smooth)
 }
 
-/// The operand of the first absolute value, sign or step of the gap whose own operand holds none.
-fn innermost_switch(dag: &Dag, force: Id) -> Option<Id> {
+/// The operands of the absolute values, signs and steps of the gap whose own operands hold none.
+fn innermost_switches(dag: &Dag, force: Id) -> Vec<Id> {
+    let mut holding: HashSet<Id> = HashSet::new();
+    let mut found = Vec::new();
     // Operands come before their use.
-    dag.reachable(&[force])
-        .into_iter()
-        .find_map(|id| match *dag.node(id) {
+    for id in dag.reachable(&[force]) {
+        let holds = dag.operands(id).iter().any(|part| holding.contains(part));
+        let switch = match *dag.node(id) {
             Node::Call(Function::Absolute | Function::Sign | Function::Step, operand)
                 if dag.depends_on(operand, Variable::Gap) && !is_mixed_with_rate(dag, operand) =>
             {
                 Some(operand)
             }
             _ => None,
-        })
+        };
+        found.extend(switch.filter(|operand| !holds && !found.contains(operand)));
+        if holds || switch.is_some() {
+            holding.insert(id);
+        }
+    }
+    found
 }
 
 /// Left to the rule on rates, unless it is a product, whose factors can be looked at one by one.
@@ -101,28 +107,51 @@ fn is_mixed_with_rate(dag: &Dag, operand: Id) -> bool {
         && !matches!(dag.node(operand), Node::Product(_) | Node::Power(..))
 }
 
-/// Replaces the absolute value, sign and step of an operand whose sign is known.
-fn decide(dag: &mut Dag, segment: &mut Segment, switch: Id, positive: bool) {
-    let (zero, one) = (dag.integer(0), dag.integer(1));
-    let (absolute, sign, step) = if positive {
-        (switch, one, one)
-    } else {
-        (dag.negate(switch), dag.negate(one), zero)
-    };
-    substitute(dag, segment, switch, [absolute, sign, step]);
+/// Replaces the switches whose sign the ranges tell; false if there are none.
+fn decide_known(context: &mut Expander, segment: &mut Segment, switches: &[Id]) -> bool {
+    let mut replacements = HashMap::new();
+    for &switch in switches {
+        let bounds = context
+            .ranges
+            .bounds(&mut context.dag, switch, segment.stretch);
+        let positive = bounds.is_not_negative();
+        if positive || bounds.is_not_positive() {
+            let values = decided(&mut context.dag, switch, positive);
+            replacements.extend(calls_of(&mut context.dag, switch, values));
+        }
+    }
+    let any = !replacements.is_empty();
+    if any {
+        substitute(&mut context.dag, segment, replacements);
+    }
+    any
 }
 
-fn substitute(dag: &mut Dag, segment: &mut Segment, switch: Id, values: [Id; 3]) {
-    let functions = [Function::Absolute, Function::Sign, Function::Step];
-    let replacements: HashMap<Id, Id> = functions
-        .into_iter()
-        .zip(values)
-        .map(|(function, value)| (dag.intern(Node::Call(function, switch)), value))
-        .collect();
-    segment.force = dag.rebuild(segment.force, replacements.clone());
-    for (power, _) in &mut segment.powers {
-        *power = dag.rebuild(*power, replacements.clone());
+/// The absolute value, sign and step of an operand whose sign is known.
+fn decided(dag: &mut Dag, switch: Id, positive: bool) -> [Id; 3] {
+    let (zero, one) = (dag.integer(0), dag.integer(1));
+    if positive {
+        [switch, one, one]
+    } else {
+        [dag.negate(switch), dag.negate(one), zero]
     }
+}
+
+/// The absolute value, sign and step of an operand, each with what it is replaced by.
+fn calls_of(dag: &mut Dag, switch: Id, values: [Id; 3]) -> [(Id, Id); 3] {
+    let [absolute, sign, step] = values;
+    [
+        (Function::Absolute, absolute),
+        (Function::Sign, sign),
+        (Function::Step, step),
+    ]
+    .map(|(function, value)| (dag.intern(Node::Call(function, switch)), value))
+}
+
+fn substitute(dag: &mut Dag, segment: &mut Segment, replacements: HashMap<Id, Id>) {
+    let rebuilt = dag.rebuilt(segment.force, replacements);
+    segment.force = rebuilt[&segment.force];
+    segment.written = followed(&segment.written, &rebuilt);
 }
 
 /// `|a b| = |a| |b|`, `sgn(a b) = sgn(a) sgn(b)`, and the same for whole powers; false where the operand is neither.
@@ -156,7 +185,8 @@ fn take_apart(context: &mut Expander, segment: &mut Segment, switch: Id) -> bool
     let sum = dag.sum(&[sign, one]);
     let two = dag.integer(2);
     let step = dag.quotient(sum, two);
-    substitute(dag, segment, switch, [absolute, sign, step]);
+    let replacements = calls_of(dag, switch, [absolute, sign, step]);
+    substitute(dag, segment, replacements.into());
     true
 }
 
@@ -181,17 +211,18 @@ fn split(
     extent: Extent,
 ) -> syn::Result<[Segment; 2]> {
     let Some((slope, rest)) = affine(&mut context.dag, switch, Variable::Gap) else {
-        let shown = context.show(switch);
+        let shown = shown(context, switch, &segment.written);
         return Err(extent.fault(format!(
             "where `{shown}` changes sign is not known: the operand of `| |`, `sgn` and `H` must be linear in the gap"
         )));
     };
     let bounds = context.ranges.bounds(&mut context.dag, slope, Stretch::ALL);
     if !bounds.excludes_zero() {
-        let (slope_shown, shown) = (context.show(slope), context.show(switch));
+        let shown = shown(context, switch, &segment.written);
+        let slope_shown = context.show(slope);
         let advice = powers::advice_on_ranges(context, slope, ">");
         return Err(extent.fault(format!(
-            "`{shown}` has a slope `{slope_shown}` of unknown sign: {advice}"
+            "whether `{shown}` rises or falls with the gap depends on the sign of `{slope_shown}`, which is not known: {advice}"
         )));
     }
     let quotient = context.dag.quotient(rest, slope);
@@ -217,9 +248,18 @@ fn split(
     above.stretch.low = Some(root);
     // A step is zero at its root itself, which therefore belongs to the side where it is zero.
     above.holds_low = has_step && !rising;
-    decide(&mut context.dag, &mut below, switch, !rising);
-    decide(&mut context.dag, &mut above, switch, rising);
+    for (side, positive) in [(&mut below, !rising), (&mut above, rising)] {
+        let values = decided(&mut context.dag, switch, positive);
+        let replacements = calls_of(&mut context.dag, switch, values);
+        substitute(&mut context.dag, side, replacements.into());
+    }
     Ok([below, above])
+}
+
+/// A switch as written, or else as it is.
+pub(crate) fn shown(context: &mut Expander, switch: Id, written: &[Written]) -> String {
+    quote_of_switch(&mut context.dag, written, switch)
+        .map_or_else(|| context.show(switch), str::to_owned)
 }
 
 /// What is left are steps of the rate; the runtime knows only their sign.
