@@ -75,6 +75,9 @@ pub struct Point {
     pub stability: Stability,
     /// What is read off it.
     pub observed: Observed,
+    /// Estimated relative error of peak-to-peak from the harmonics that were left out; `None` where neither the tolerance nor
+    /// the stability asked for it.
+    pub error: Option<f64>,
 }
 
 impl Point {

@@ -1,23 +1,26 @@
-//! What a run does with the curve it follows: orbits with their stability, folds, and orbits at a value.
-
-use std::ops::ControlFlow;
+//! What it takes to compute further orbits of a branch, and those at a value.
 
 use crate::balance::{Balance, Resolution};
-use crate::branch::{Event, EventKind, Orbit, Point, Turn};
-use crate::continuation::follow::{CurvePoint, FollowOptions, Visit};
+use crate::branch::{Event, EventKind, Orbit, Point};
+use crate::continuation::follow::{CurvePoint, FollowOptions};
 use crate::continuation::locate::locate;
 use crate::continuation::problem::{Norm, Problem};
 use crate::error::Error;
+use crate::fourier::series;
+use crate::harmonics::{Chooser, resize};
+use crate::jacobian::Jacobian;
 use crate::newton::{Newton, NewtonOptions};
-use crate::observe::observe;
-use crate::stability::Stability;
-use crate::stability::judge::Judge;
+use crate::reader::Reader;
 use crate::start::StartRequest;
 use crate::system::{System, Variable};
 use crate::truncation::Finer;
 
-/// The test function of a fold is driven below this.
-const FOLD_TOLERANCE: f64 = 1e-10;
+/// What the core leaves out, relative to the diagonal of the tail.
+const COUPLING: f64 = 0.02;
+/// Harmonics that are always in the core, for each period of the excitation.
+const LEAST_CORE: usize = 6;
+/// A core pays when the harmonics are so many times as many.
+const WORTHWHILE: f64 = 1.5;
 /// A value asked for is met to this part of the range.
 const VALUE_TOLERANCE: f64 = 1e-13;
 
@@ -31,6 +34,8 @@ pub(crate) struct Follower<'a> {
     pub(crate) resolution: Resolution,
     pub(crate) newton: NewtonOptions,
     pub(crate) stability: bool,
+    /// How harmonics follow the tolerance, where they do.
+    pub(crate) chooser: Option<Chooser>,
     pub(crate) from: f64,
     pub(crate) to: f64,
 }
@@ -44,28 +49,52 @@ impl std::fmt::Debug for Follower<'_> {
 }
 
 impl<'a> Follower<'a> {
-    pub(crate) fn balance(&self) -> Balance<'a> {
+    /// The balance at one of the branch's resolutions.
+    pub(crate) fn balance(&self, resolution: Resolution) -> Balance<'a> {
         Balance::new(
             self.system,
             &self.parameters,
             self.omega,
             self.variable,
-            self.resolution,
+            resolution,
         )
     }
 
-    fn finer(&self) -> Finer<'a> {
-        Finer::new(
+    /// A reader of orbits of that resolution.
+    pub(crate) fn reader(&self, resolution: Resolution) -> Reader<'a> {
+        let finer = Finer::new(
             self.system,
             &self.parameters,
             self.omega,
             self.variable,
-            self.resolution,
-        )
+            resolution,
+        );
+        Reader::new(finer, self.stability, self.chooser.is_some())
     }
 
-    fn judge(&self) -> Option<Judge<'a>> {
-        self.stability.then(|| Judge::new(self.finer()))
+    /// The same resolution with another number of harmonics.
+    pub(crate) fn with_harmonics(&self, harmonics: usize, core: usize) -> Resolution {
+        Resolution {
+            harmonics,
+            core: core.min(harmonics),
+            ..self.resolution
+        }
+    }
+
+    /// The resolution with the core that an orbit asks for: small enough to pay, and large enough that the iteration
+    /// converges fast.
+    pub(crate) fn with_core_for(&self, u: &[f64]) -> Resolution {
+        let mut balance = self.balance(self.resolution);
+        let mut jacobian = Jacobian::new(balance.partition());
+        let mut residual = vec![0.0; u.len() - 1];
+        balance.evaluate(u, &mut residual, Some(&mut jacobian));
+        let least = LEAST_CORE * self.resolution.period;
+        let core = balance.core_size(COUPLING).max(least);
+        let pays = WORTHWHILE * core as f64 <= self.resolution.harmonics as f64;
+        Resolution {
+            core: if pays { core } else { usize::MAX },
+            ..self.resolution
+        }
     }
 
     pub(crate) fn start_request(&self, options: FollowOptions) -> StartRequest<'_> {
@@ -87,9 +116,6 @@ impl<'a> Follower<'a> {
         events: &[Event],
         value: f64,
     ) -> Result<Vec<Point>, Error> {
-        let mut balance = self.balance();
-        let mut newton = Newton::new(&balance);
-        let mut judge = self.judge();
         let mut found: Vec<Point> = Vec::new();
         // Between folds the branch is monotonic, so every part of this chain passes a value at most once.
         let chain = chain(points, events);
@@ -101,8 +127,7 @@ impl<'a> Follower<'a> {
                     Some(next)
                         if next.value != value && (point.value < value) != (next.value < value) =>
                     {
-                        let u = self.between(&mut balance, &mut newton, (point, next), value)?;
-                        Some(point_of(&mut balance, &mut newton, judge.as_mut(), &u))
+                        Some(self.between((point, next), value)?)
                     }
                     _ => None,
                 }
@@ -116,17 +141,14 @@ impl<'a> Follower<'a> {
     }
 
     /// The orbit at a value between those of two neighbours, searched along the chord of the two.
-    fn between(
-        &self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        (a, b): (&Point, &Point),
-        value: f64,
-    ) -> Result<Vec<f64>, Error> {
+    fn between(&self, (a, b): (&Point, &Point), value: f64) -> Result<Point, Error> {
+        let harmonics = a.orbit.harmonics().max(b.orbit.harmonics());
+        let mut balance = self.balance(self.with_harmonics(harmonics, harmonics));
+        let newton = &mut Newton::new(&balance);
         let extended = |point: &Point| {
             let mut u = point.orbit.series.clone();
             u.push(point.value);
-            u
+            resize(&u, point.orbit.coordinates, series::length(harmonics))
         };
         let (from, to) = (extended(a), extended(b));
         let range = (self.to - self.from).abs();
@@ -151,7 +173,7 @@ impl<'a> Follower<'a> {
         };
         let offset = |point: &CurvePoint| (point.parameter() - value) / range;
         let located = locate(
-            balance,
+            &mut balance,
             newton,
             (&first, &second),
             self.newton,
@@ -170,7 +192,8 @@ impl<'a> Follower<'a> {
             .u;
         let last = u.len() - 1;
         u[last] = value;
-        Ok(u)
+        let mut reader = self.reader(balance.resolution());
+        Ok(reader.read(&mut balance, newton, &u))
     }
 }
 
@@ -190,125 +213,7 @@ fn chain<'p>(points: &'p [Point], events: &'p [Event]) -> Vec<&'p Point> {
 /// Whether two orbits are one to nine digits.
 fn is_same(a: &Orbit, b: &Orbit) -> bool {
     let size = a.series.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    a.omega == b.omega
-        && a.series
-            .iter()
-            .zip(&b.series)
-            .all(|(x, y)| (x - y).abs() <= 1e-9 * size)
-}
-
-/// What a run has gathered.
-pub(crate) struct Run<'a> {
-    pub(crate) judge: Option<Judge<'a>>,
-    finer: Finer<'a>,
-    pub(crate) points: Vec<Point>,
-    pub(crate) events: Vec<Event>,
-    pub(crate) turns: Vec<Turn>,
-}
-
-impl<'a> Run<'a> {
-    pub(crate) fn new(follower: &Follower<'a>) -> Self {
-        Self {
-            judge: follower.judge(),
-            finer: follower.finer(),
-            points: Vec::new(),
-            events: Vec::new(),
-            turns: Vec::new(),
-        }
-    }
-
-    pub(crate) fn visit(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        seen: &Visit<'_>,
-        options: NewtonOptions,
-        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        match seen {
-            Visit::Point(at) => {
-                let point = point_of(balance, newton, self.judge.as_mut(), &at.u);
-                let answer = visit(&point);
-                self.points.push(point);
-                answer
-            }
-            Visit::Turn(before, behind) => {
-                self.turn(balance, newton, (before, behind), options);
-                ControlFlow::Continue(())
-            }
-        }
-    }
-
-    /// Locates the fold between two points, or the jump that is there instead.
-    fn turn(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
-        options: NewtonOptions,
-    ) {
-        // The point behind the turn has been stored already.
-        let after = self.points.len() - 1;
-        let slope = CurvePoint::parameter_slope;
-        match locate(balance, newton, between, options, FOLD_TOLERANCE, slope) {
-            Some(located) if located.vanishes => {
-                let u = &located.point.u;
-                let error = self.finer.fold_error(u, newton);
-                let point = point_of(balance, newton, self.judge.as_mut(), u);
-                let kind = EventKind::Fold;
-                self.events.push(Event {
-                    kind,
-                    point,
-                    error,
-                    test: located.test,
-                    after,
-                });
-            }
-            Some(located) => {
-                let value = located.point.parameter();
-                self.turns.push(Turn {
-                    value,
-                    test: located.test,
-                    after,
-                });
-            }
-            None => {
-                let value = 0.5 * (between.0.parameter() + between.1.parameter());
-                self.turns.push(Turn {
-                    value,
-                    test: between.0.parameter_slope(),
-                    after,
-                });
-            }
-        }
-    }
-}
-
-/// Everything that is read off a solution, whose factors Newton's method holds.
-fn point_of(
-    balance: &mut Balance<'_>,
-    newton: &mut Newton,
-    judge: Option<&mut Judge<'_>>,
-    u: &[f64],
-) -> Point {
-    let n = balance.unknowns();
-    balance.set(u[n]);
-    let stability = judge.map_or_else(Stability::unknown, |judge| {
-        judge.stability(balance, newton, u)
-    });
-    let orbit = Orbit {
-        series: u[..n].to_vec(),
-        coordinates: balance.layout().coordinates,
-        omega: balance.omega(),
-        base: balance.base(),
-        period: balance.resolution().period,
-    };
-    let observed = observe(balance, u);
-    Point {
-        value: u[n],
-        parameters: balance.parameters().to_vec(),
-        orbit,
-        stability,
-        observed,
-    }
+    let near = |(x, y): (&f64, &f64)| (x - y).abs() <= 1e-9 * size;
+    let same = |i| a.series(i).iter().zip(b.series(i)).all(near);
+    a.omega == b.omega && (0..a.coordinates).all(same)
 }

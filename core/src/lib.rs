@@ -52,6 +52,7 @@ pub mod fourier;
 pub mod generic;
 #[cfg(doctest)]
 mod guide;
+mod harmonics;
 mod jacobian;
 pub mod law;
 mod layout;
@@ -62,7 +63,9 @@ pub mod observe;
 mod picture;
 #[cfg(test)]
 mod random;
+mod reader;
 mod response;
+mod run;
 pub mod stability;
 mod start;
 mod statistics;

@@ -1,12 +1,13 @@
 //! What a user reads off an orbit.
 
-use std::f64::consts::TAU;
+mod contact;
+mod peak;
+mod reader;
 
 use crate::balance::{Balance, gap_series, rate_series};
-use crate::fourier::crossings::{Crossing, crossings, extremum};
 use crate::fourier::series;
-use crate::law::{Law, On, Variation};
-use crate::layout::ContactLayout;
+use contact::ContactReader;
+use reader::Reader;
 
 /// What is read off one orbit.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +44,11 @@ impl Motion {
 
     /// Reads the motion off a series.
     pub fn of(series: &[f64]) -> Self {
-        let (minimum, maximum) = extremes(series);
+        Self::read(&mut Reader::default(), series)
+    }
+
+    fn read(reader: &mut Reader, series: &[f64]) -> Self {
+        let (minimum, maximum) = reader.extremes(series);
         Self {
             maximum,
             minimum,
@@ -64,6 +69,14 @@ pub struct ContactMotion {
     pub count: usize,
 }
 
+impl ContactMotion {
+    const NONE: Self = Self {
+        peak_force: 0.0,
+        fraction: 0.0,
+        count: 0,
+    };
+}
+
 /// Amplitude of each harmonic, the mean (with its sign) first.
 pub fn amplitudes(series: &[f64]) -> Vec<f64> {
     let oscillating = series[1..]
@@ -80,199 +93,111 @@ pub fn phases(series: &[f64]) -> Vec<f64> {
     std::iter::once(0.0).chain(oscillating).collect()
 }
 
-/// Smallest and largest value of a series.
-fn extremes(of: &[f64]) -> (f64, f64) {
-    let intervals = (8 * series::harmonics(of)).max(16);
-    let h = TAU / intervals as f64;
-    let mut extremes = (of[0], of[0]);
-    let mut found = false;
-    let first = series::value_and_derivatives(of, 0.0).1 > 0.0;
-    let mut rising = first;
-    for index in 1..=intervals {
-        let (a, b) = (h * (index - 1) as f64, h * index as f64);
-        // The period closes exactly, whatever the rounding of 2 pi.
-        let last = index == intervals;
-        let rises = if last {
-            first
-        } else {
-            series::value_and_derivatives(of, b).1 > 0.0
-        };
-        if rises != rising {
-            let x = series::value(of, extremum(of, a, b, rising));
-            extremes = if found {
-                (extremes.0.min(x), extremes.1.max(x))
-            } else {
-                (x, x)
-            };
-            found = true;
+/// Reads orbits, one after the other. Beyond what it returns, it allocates for the first orbit only.
+#[derive(Debug, Default)]
+pub(crate) struct Observer {
+    reader: Reader,
+    contact: ContactReader,
+    gap: Vec<f64>,
+    load: Vec<f64>,
+    forces: Vec<f64>,
+    force: Vec<f64>,
+    velocity: Vec<f64>,
+}
+
+impl Observer {
+    /// Reads everything off an orbit, at the variable that the balance was set to last.
+    pub(crate) fn observe(&mut self, balance: &mut Balance<'_>, u: &[f64]) -> Observed {
+        let length = balance.length();
+        let u = &u[..balance.layout().coordinates * length];
+        let (input_power, dissipated_power) = self.powers(balance, u);
+        // Contacts first: a coordinate that moves as a gap does is not searched again.
+        let contacts = (0..balance.layout().contacts.len())
+            .map(|contact| self.contact_motion(balance, contact, u))
+            .collect();
+        let motions = u
+            .chunks_exact(length)
+            .map(|series| Motion::read(&mut self.reader, series))
+            .collect();
+        Observed {
+            motions,
+            contacts,
+            input_power,
+            dissipated_power,
         }
-        rising = rises;
     }
-    extremes
-}
 
-/// Reads everything off an orbit, at the variable that the balance was set to last.
-pub(crate) fn observe(balance: &mut Balance<'_>, u: &[f64]) -> Observed {
-    let coordinates = balance.layout().coordinates;
-    let length = balance.length();
-    let unknowns = coordinates * length;
-    let u = &u[..unknowns];
-    let (input_power, dissipated_power) = powers(balance, u);
-    let contacts = balance.layout().contacts.iter();
-    Observed {
-        motions: u.chunks_exact(length).map(Motion::of).collect(),
-        contacts: contacts
-            .map(|contact| contact_motion(balance, contact, u))
-            .collect(),
-        input_power,
-        dissipated_power,
-    }
-}
-
-/// `<f . q'>` and `<(C q' + K q + sum e phi) . q'>`.
-fn powers(balance: &mut Balance<'_>, u: &[f64]) -> (f64, f64) {
-    let length = balance.length();
-    let mut load = vec![0.0; u.len()];
-    let mut forces = vec![0.0; u.len()];
-    balance.add_load(balance.coefficients(), 1.0, &mut load);
-    balance.add_damping(balance.coefficients(), balance.base(), u, &mut forces);
-    balance.add_stiffness(balance.coefficients(), u, &mut forces);
-    let mut force = vec![0.0; series::length(balance.force_harmonics())];
-    for contact in 0..balance.layout().contacts.len() {
-        balance.contact_force(u, contact, &mut force);
-        balance.add_in_direction(contact, &force, &mut forces);
-    }
-    let mut velocity = vec![0.0; length];
-    let mut powers = (0.0, 0.0);
-    for (row, coordinate) in u.chunks_exact(length).enumerate() {
-        rate_series(coordinate, balance.base(), &mut velocity);
-        powers.0 += series::mean_product(&load[row * length..][..length], &velocity);
-        powers.1 += series::mean_product(&forces[row * length..][..length], &velocity);
-    }
-    powers
-}
-
-fn contact_motion(balance: &Balance<'_>, contact: &ContactLayout, u: &[f64]) -> ContactMotion {
-    let law = balance.system().law(contact.law);
-    let mut arguments = vec![0.0; contact.argument_count];
-    contact.arguments(balance.coefficients(), &mut arguments);
-    let mut gap = vec![0.0; series::length(balance.gap_harmonics())];
-    let period = balance.resolution().period;
-    gap_series(
-        contact,
-        balance.coefficients(),
-        period,
-        u,
-        balance.length(),
-        &mut gap,
-    );
-    let mut rate = gap.clone();
-    rate_series(&gap, balance.base(), &mut rate);
-    let panels = panels(law, &arguments, &gap);
-    let touches = |piece: usize| law.facts().pieces[piece].force != Variation::Zero;
-    let mut motion = ContactMotion {
-        peak_force: 0.0,
-        fraction: 0.0,
-        count: 0,
-    };
-    let mut before = panels.last().is_some_and(|panel| touches(panel.piece));
-    let always = panels.iter().all(|panel| touches(panel.piece));
-    for panel in &panels {
-        let now = touches(panel.piece);
-        if now {
-            motion.fraction += (panel.end - panel.start) / TAU;
-            let peak = panel.peak_force(law, &arguments, &gap, &rate);
-            motion.peak_force = motion.peak_force.max(peak);
+    /// `<f . q'>` and `<(C q' + K q + sum e phi) . q'>`.
+    fn powers(&mut self, balance: &mut Balance<'_>, u: &[f64]) -> (f64, f64) {
+        let length = balance.length();
+        for sum in [&mut self.load, &mut self.forces] {
+            sum.clear();
+            sum.resize(u.len(), 0.0);
         }
-        motion.count += usize::from(now && !before);
-        before = now;
+        balance.add_load(balance.coefficients(), 1.0, &mut self.load);
+        balance.add_damping(balance.coefficients(), balance.base(), u, &mut self.forces);
+        balance.add_stiffness(balance.coefficients(), u, &mut self.forces);
+        let room = series::length(balance.force_harmonics());
+        self.force.resize(room, 0.0);
+        for contact in 0..balance.layout().contacts.len() {
+            if contact::is_idle(balance, contact) {
+                continue;
+            }
+            balance.contact_force(u, contact, &mut self.force);
+            balance.add_in_direction(contact, &self.force, &mut self.forces);
+        }
+        self.velocity.resize(length, 0.0);
+        let mut powers = (0.0, 0.0);
+        let rows = self.load.chunks_exact(length);
+        let rows = rows.zip(self.forces.chunks_exact(length));
+        for (coordinate, (load, forces)) in u.chunks_exact(length).zip(rows) {
+            rate_series(coordinate, balance.base(), &mut self.velocity);
+            powers.0 += series::mean_product(load, &self.velocity);
+            powers.1 += series::mean_product(forces, &self.velocity);
+        }
+        powers
     }
-    if always {
-        motion.count = 1;
-    }
-    motion
-}
 
-/// A part of the period on which the gap stays on one piece.
-#[derive(Debug, Clone, Copy)]
-struct Panel {
-    start: f64,
-    end: f64,
-    piece: usize,
-}
-
-fn panels(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> Vec<Panel> {
-    let mut levels = vec![0.0; law.facts().levels.len()];
-    law.levels(arguments, &mut levels);
-    let mut found: Vec<Crossing> = Vec::new();
-    for &level in &levels {
-        crossings(gap, level, &mut found);
-    }
-    let mut cuts: Vec<f64> = found.iter().map(|crossing| crossing.tau).collect();
-    cuts.extend([0.0, TAU]);
-    cuts.sort_by(f64::total_cmp);
-    let pairs = cuts.windows(2).filter(|pair| pair[1] > pair[0]);
-    pairs
-        .map(|pair| {
-            let (start, end) = (pair[0], pair[1]);
-            let middle = series::value(gap, 0.5 * (start + end));
-            let piece = levels.iter().filter(|&&level| middle > level).count();
-            Panel { start, end, piece }
-        })
-        .collect()
-}
-
-impl Panel {
-    /// Largest force by size: on a grid with both ends, refined by golden section around the best.
-    fn peak_force(&self, law: &dyn Law, arguments: &[f64], gap: &[f64], rate: &[f64]) -> f64 {
-        let size = |tau: f64| {
-            let mut force = [0.0];
-            let (g, r) = ([series::value(gap, tau)], [series::value(rate, tau)]);
-            law.force(On::Piece(self.piece), arguments, &g, &r, &mut force);
-            force[0].abs()
-        };
-        let width = self.end - self.start;
-        let intervals = (4.0 * series::harmonics(gap) as f64 * width / TAU)
-            .ceil()
-            .max(8.0);
-        let h = width / intervals;
-        let at = |index: usize| self.start + h * index as f64;
-        let intervals = intervals as usize;
-        let sizes: Vec<f64> = (0..=intervals).map(|index| size(at(index))).collect();
-        let best = (0..=intervals)
-            .max_by(|&i, &j| sizes[i].total_cmp(&sizes[j]))
-            .unwrap_or(0);
-        let refined = golden_maximum(
-            size,
-            at(best.saturating_sub(1)),
-            at((best + 1).min(intervals)),
+    fn contact_motion(
+        &mut self,
+        balance: &Balance<'_>,
+        contact: usize,
+        u: &[f64],
+    ) -> ContactMotion {
+        if contact::is_idle(balance, contact) {
+            return ContactMotion::NONE;
+        }
+        let layout = &balance.layout().contacts[contact];
+        let coefficients = balance.coefficients();
+        self.gap
+            .resize(series::length(balance.gap_harmonics()), 0.0);
+        gap_series(
+            layout,
+            coefficients,
+            balance.resolution().period,
+            u,
+            balance.length(),
+            &mut self.gap,
         );
-        sizes[best].max(refined)
+        self.reader.load(&self.gap);
+        let law = balance.system().law(layout.law);
+        self.contact.take_arguments(layout, coefficients);
+        self.contact.read(law, &mut self.reader, balance.base())
     }
-}
-
-/// Maximum of a function with one peak in `[a, b]`. Source: Kiefer (1953), Sequential minimax search for a maximum.
-fn golden_maximum(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut c, mut d) = (b - ratio * (b - a), a + ratio * (b - a));
-    let (mut fc, mut fd) = (f(c), f(d));
-    for _ in 0..40 {
-        if fc > fd {
-            (b, d, fd) = (d, c, fc);
-            c = b - ratio * (b - a);
-            fc = f(c);
-        } else {
-            (a, c, fc) = (c, d, fd);
-            d = a + ratio * (b - a);
-            fd = f(d);
-        }
-    }
-    fc.max(fd)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
+    use crate::aft::Aft;
+    use crate::allocations::count;
+    use crate::balance::Resolution;
+    use crate::by_hand::PowerForm;
+    use crate::fourier::crossings::crossings;
+    use crate::random::Random;
+    use crate::system::Variable;
 
     #[test]
     fn motion_of_two_harmonics_is_the_closed_form() {
@@ -283,6 +208,92 @@ mod tests {
         assert!((motion.peak_to_peak() - 3.125).abs() < 1e-14);
         assert_eq!(motion.mean, 1.0);
         assert!((motion.rms - 2.0_f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn extremes_are_those_of_a_dense_scan() {
+        let mut random = Random::new(3);
+        let mut reader = Reader::default();
+        for harmonics in [1, 2, 3, 7, 12, 30] {
+            for _ in 0..20 {
+                let coefficients =
+                    (0..series::length(harmonics)).map(|_| random.between(-1.0, 1.0));
+                let series: Vec<f64> = coefficients.collect();
+                let motion = Motion::read(&mut reader, &series);
+                let count = 100 * harmonics;
+                let values = (0..count)
+                    .map(|j| series::value(&series, TAU * f64::from(j as u32) / count as f64));
+                let scan = values.fold((f64::INFINITY, -f64::INFINITY), |(a, b), x| {
+                    (a.min(x), b.max(x))
+                });
+                // No sample is beyond, and the nearest is as near as the largest curvature allows.
+                let curvature: f64 = (1..=harmonics)
+                    .map(|k| (k * k) as f64 * series[2 * k - 1].hypot(series[2 * k]))
+                    .sum();
+                let step = TAU / count as f64;
+                let least = curvature * step * step / 8.0;
+                for beyond in [motion.maximum - scan.1, scan.0 - motion.minimum] {
+                    assert!(beyond > -1e-13 && beyond <= least, "{beyond} {least}");
+                }
+                // The slope vanishes where they are taken, so they agree with roots of the slope.
+                let mut slope = series.clone();
+                series::differentiate(&series, &mut slope);
+                let mut found = Vec::new();
+                crossings(&slope, 0.0, &mut found);
+                let values = found.iter().map(|c| series::value(&series, c.tau));
+                let (low, high) = values.fold((f64::INFINITY, -f64::INFINITY), |(a, b), x| {
+                    (a.min(x), b.max(x))
+                });
+                let error = (low - motion.minimum)
+                    .abs()
+                    .max((high - motion.maximum).abs());
+                let size: f64 = series.iter().map(|x| x.abs()).sum();
+                assert!(error < 1e-14 * size, "{harmonics}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_series_that_hardly_varies_is_read() {
+        for size in [1e-300, 1e-30, 1e-17, 1e-16, 1e-12] {
+            let motion = Motion::of(&[1.0, size, -size, 0.0, 0.5 * size]);
+            assert!(motion.minimum <= motion.maximum);
+            assert!((motion.maximum - 1.0).abs() <= 3.0 * size + 1e-15);
+            assert!((motion.minimum - 1.0).abs() <= 3.0 * size + 1e-15);
+        }
+        let motion = Motion::of(&[0.0, 1e-300, 0.0]);
+        assert!((motion.maximum - 1e-300).abs() < 1e-314);
+        let motion = Motion::of(&[0.0, f64::NAN, 0.0]);
+        assert_eq!((motion.minimum, motion.maximum), (0.0, 0.0));
+    }
+
+    /// The unknowns of a balance of the one-sided oscillator, at a value of its frequency.
+    fn some_orbit(balance: &Balance<'_>) -> Vec<f64> {
+        let mut u = vec![0.0; balance.length()];
+        u[..5].copy_from_slice(&[0.3, 0.8, -0.2, 0.1, 0.15]);
+        u[20] = 1e-3;
+        u
+    }
+
+    #[test]
+    fn only_the_answer_is_allocated() {
+        let system = PowerForm::new(true, 1.5, 0.05, 1.0, 0.1);
+        let resolution = Resolution {
+            harmonics: 10,
+            core: 10,
+            odd: false,
+            samples: 64,
+            aft: Aft::Switched,
+            period: 1,
+        };
+        let mut balance = Balance::new(&system, &system.values, 0.9, Variable::Omega, resolution);
+        let u = some_orbit(&balance);
+        let mut observer = Observer::default();
+        let first = observer.observe(&mut balance, &u);
+        let mut second = None;
+        let allocations = count(|| second = Some(observer.observe(&mut balance, &u)));
+        assert_eq!(allocations, 2);
+        assert_eq!(second, Some(first));
     }
 
     #[test]

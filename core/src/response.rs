@@ -6,13 +6,15 @@ use std::time::Instant;
 use crate::aft::Aft;
 use crate::balance::Resolution;
 use crate::branch::{Branch, Point};
-use crate::continuation::follow::{FollowOptions, follow};
+use crate::continuation::follow::FollowOptions;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
-use crate::follower::{Follower, Run};
+use crate::follower::Follower;
 use crate::fourier::series;
+use crate::harmonics::Chooser;
 use crate::layout::{ContactLayout, Layout};
-use crate::newton::{Newton, NewtonOptions};
+use crate::newton::NewtonOptions;
+use crate::run::Run;
 use crate::start::start;
 use crate::statistics::Statistics;
 use crate::system::{System, Variable};
@@ -20,6 +22,10 @@ use crate::validate;
 
 /// More samples of an orbit would take more than a gigabyte.
 const MOST_SAMPLES: usize = 10_000_000;
+/// Harmonics that are coupled densely in the search for a first orbit.
+const CORE_AT_START: usize = 16;
+/// More harmonics of an excitation period are never chosen, only taken when given.
+const MOST_HARMONICS: usize = 150;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
@@ -193,27 +199,21 @@ impl<'a> FrequencyResponse<'a> {
         let (follower, options) = self.check()?;
         let mut statistics = Statistics::default();
         let first = start(follower.start_request(options), &mut statistics)?;
-        let mut run = Run::new(&follower);
-        let mut balance = follower.balance();
-        let mut newton = Newton::new(&balance);
-        let outcome = follow(
-            &mut balance,
-            &mut newton,
-            first,
-            options,
-            &mut |b, n, seen| run.visit(b, n, &seen, options.newton, &mut visit),
-        );
-        let stopped = outcome.map_err(|reason| Error::NoStart {
-            parameter: options.from,
-            reason,
-        })?;
-        statistics += newton.statistics;
-        statistics.monodromies += run.judge.as_ref().map_or(0, |judge| judge.computed);
+        let mut run = Run::new(&follower, options, &first);
+        let stopped = run.follow(first, &mut visit)?;
+        let Run {
+            points,
+            events,
+            turns,
+            statistics: followed,
+            ..
+        } = run;
+        statistics += followed;
         Ok(Branch {
             varied: self.vary.clone().unwrap_or_else(|| "omega".to_owned()),
-            points: run.points,
-            events: run.events,
-            turns: run.turns,
+            points,
+            events,
+            turns,
             stopped,
             statistics,
             elapsed: started.elapsed(),
@@ -305,11 +305,28 @@ impl<'a> FrequencyResponse<'a> {
                 resolution,
                 newton,
                 stability: self.stability,
+                chooser: self.chooser(resolution),
                 from,
                 to,
             },
             options,
         ))
+    }
+
+    /// How harmonics follow the tolerance: unless they were given, or the contacts are sampled.
+    fn chooser(&self, resolution: Resolution) -> Option<Chooser> {
+        let free = self.harmonics.is_none() && self.aft == Aft::Switched;
+        let layout = Layout::of(self.system);
+        let least = (layout.highest_harmonic() + 2) * self.period;
+        let unknowns_allow = MOST_UNKNOWNS / (2 * layout.coordinates) - 1;
+        let most = MOST_HARMONICS * self.period * self.system.facts().divisor as usize;
+        free.then(|| {
+            Chooser::new(
+                self.tolerance,
+                least.min(resolution.harmonics),
+                most.min(unknowns_allow),
+            )
+        })
     }
 
     fn resolution(&self) -> Result<Resolution, Error> {
@@ -372,10 +389,7 @@ impl<'a> FrequencyResponse<'a> {
         }
         Ok(Resolution {
             harmonics,
-            core: std::env::var("HCORE")
-                .ok()
-                .and_then(|c| c.parse().ok())
-                .unwrap_or(harmonics),
+            core: CORE_AT_START * self.period,
             odd: false,
             samples,
             aft: self.aft,

@@ -13,7 +13,7 @@
 //! An orbit of period `n` is found from the one of period one, disturbed in its lowest subharmonic.
 
 use crate::balance::{Balance, Resolution};
-use crate::continuation::follow::{FollowOptions, Visit, follow};
+use crate::continuation::follow::{FollowOptions, Start, Visit, follow};
 use crate::continuation::problem::Problem;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
@@ -366,7 +366,7 @@ fn homotopy(
     let outcome = follow(
         &mut problem,
         &mut newton,
-        rest,
+        Start::Near(rest),
         options,
         &mut |_, _, visit| {
             if let Visit::Point(point) = visit

@@ -25,6 +25,28 @@ impl Balance<'_> {
         }
     }
 
+    /// The smallest core for which what it leaves out is at most `coupling` of what the tail has on its diagonal, by the
+    /// stiffness evaluated last: `S / (M (K Omega)^2) <= coupling`.
+    pub(crate) fn core_size(&self, coupling: f64) -> usize {
+        let base = self.base();
+        let mass = |row: usize| {
+            let entries = self.layout.mass.iter().filter(|entry| entry.row == row);
+            entries
+                .map(|entry| self.coefficients[entry.coefficient].abs())
+                .fold(0.0, f64::max)
+        };
+        let strongest = self
+            .blocks
+            .iter()
+            .map(|block| {
+                let (row, stiffness) = block.coupling();
+                stiffness / (mass(row) * base * base)
+            })
+            .filter(|ratio| ratio.is_finite())
+            .fold(0.0, f64::max);
+        (strongest / coupling).sqrt().ceil().min(1e6) as usize
+    }
+
     fn assemble(&self, jacobian: &mut Jacobian) {
         for block in &self.blocks {
             block.add_to(&self.harmonics, jacobian);

@@ -71,6 +71,19 @@ impl Block {
         self.damping.fill(0.0);
     }
 
+    /// The equation, and how strongly harmonics are coupled in it: the largest coefficient of the stiffness but the mean, or
+    /// what the mean would make of it if contact came and went. Zero without a contact or a wave.
+    pub(super) fn coupling(&self) -> (usize, f64) {
+        if self.constant {
+            return (self.row, 0.0);
+        }
+        let waves = self.stiffness[1..]
+            .chunks_exact(2)
+            .map(|pair| pair[0].hypot(pair[1]));
+        let mean = std::f64::consts::FRAC_2_PI * self.stiffness[0].abs();
+        (self.row, waves.fold(mean, f64::max))
+    }
+
     /// Adds an entry of `K` or, times the base frequency, of `C`.
     pub(super) fn add_stiffness(&mut self, wave: Wave, value: f64) {
         series::add_wave(

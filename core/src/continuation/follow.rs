@@ -1,4 +1,4 @@
-//! Pseudo-arclength continuation: tangent predictor, bordered corrector.
+//! Pseudo-arclength continuation: parabolic predictor, bordered corrector.
 //!
 //! From a solution `u_0` with unit tangent `t_0`, a step of length `s` solves
 //!
@@ -6,7 +6,7 @@
 //! R(u) = 0,    <t_0, u - u_0> = s                                                                             (1)
 //! ```
 //!
-//! with Newton's method from `u_0 + s t_0`. The tangent at the solution follows from the last matrix of that iteration,
+//! with Newton's method from `u_0 + s t_0 + s^2 b`, where the parabola goes through the point before as well. The tangent at the solution follows from the last matrix of that iteration,
 //! `[R_u; t_0^T] t = [0; 1]`, which keeps its direction through folds. The product is the one of
 //! [`Scale`]: mean squares relative to the size of the orbit, and the parameter relative to its range.
 //!
@@ -98,66 +98,152 @@ impl std::fmt::Display for Stop {
     }
 }
 
-/// What the visitor of a curve answers.
-pub(crate) type Continue = std::ops::ControlFlow<()>;
+/// Why a visitor ends a walk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Halt {
+    /// For good.
+    Stop,
+    /// To go on from here with another number of unknowns.
+    Resize,
+}
 
-/// Follows the curve through `u` until the parameter reaches `to`, calling `visit` at every point in order. The factors
-/// that Newton's method holds then are those of the point. Where the slope of the parameter changes its sign, `visit` is
-/// called once more with both points.
+/// What the visitor of a curve answers.
+pub(crate) type Continue = std::ops::ControlFlow<Halt>;
+
+/// Where a walk begins.
+pub(crate) enum Start {
+    /// Near a solution, given as extended unknowns.
+    Near(Vec<f64>),
+    /// Where another walk was halted to be resized.
+    At(Box<Halted>),
+}
+
+/// A halted walk, whose vectors may be given another length.
+#[derive(Debug, Clone)]
+pub(crate) struct Halted {
+    pub(crate) point: CurvePoint,
+    /// The point before, for a turn between the two that has not been seen yet.
+    pub(crate) previous: Option<CurvePoint>,
+    pub(crate) before: Option<Vec<f64>>,
+    pub(crate) first: CurvePoint,
+    step: f64,
+    largest: [f64; 2],
+    count: usize,
+    /// The walk ends at the point.
+    ended: Option<Stop>,
+}
+
+impl Halted {
+    /// The extended vectors of the walk.
+    pub(crate) fn vectors(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let Self {
+            point,
+            previous,
+            before,
+            first,
+            ..
+        } = self;
+        let points = [point, first].into_iter().chain(previous);
+        points
+            .flat_map(|point| [&mut point.u, &mut point.tangent])
+            .chain(before)
+    }
+}
+
+/// How a walk ended.
+pub(crate) enum Outcome {
+    Stopped(Stop),
+    Halted(Box<Halted>),
+}
+
+/// Follows the curve until the parameter reaches `to`, calling `visit` at every point in order. The factors that Newton's
+/// method holds then are those of the point. Where the slope of the parameter changes its sign, `visit` is called once more
+/// with both points. A walk that was resized visits its point again.
 pub(crate) fn follow<P: Problem>(
     problem: &mut P,
     newton: &mut Newton,
-    u: Vec<f64>,
+    start: Start,
     options: FollowOptions,
     visit: &mut dyn FnMut(&mut P, &mut Newton, Visit<'_>) -> Continue,
-) -> Result<Stop, NewtonError> {
-    let mut walk = Walk::new(problem, options, u);
-    let mut point = walk.first(problem, newton)?;
-    if visit(problem, newton, Visit::Point(&point)).is_break() {
-        return Ok(Stop::Interrupted);
-    }
-    let first = point.clone();
-    for count in 1.. {
+) -> Result<Outcome, NewtonError> {
+    let stopped = |stop| Ok(Outcome::Stopped(stop));
+    let resumed = matches!(start, Start::At(_));
+    let Begun {
+        mut walk,
+        mut point,
+        mut first,
+        mut previous,
+        begun,
+        ended,
+    } = Walk::begin(problem, newton, start, options)?;
+    let mut count = begun;
+    let mut stop = ended;
+    let mut again = resumed;
+    loop {
+        let seen = if again {
+            Visit::Again(&point)
+        } else {
+            Visit::Point(&point)
+        };
+        again = false;
+        if let Continue::Break(halt) = visit(problem, newton, seen) {
+            return Ok(walk.halted(halt, point, previous, first, count, stop));
+        }
+        if let Some(from) = &previous
+            && (point.parameter_slope() < 0.0) != (from.parameter_slope() < 0.0)
+            && visit(problem, newton, Visit::Turn(from, &point)).is_break()
+        {
+            return stopped(Stop::Interrupted);
+        }
+        if let Some(stop) = stop {
+            return stopped(stop);
+        }
+        if let Some(from) = &previous
+            && count > 10
+            && walk.closes(newton, &first, from, &point)
+        {
+            return stopped(Stop::Closed);
+        }
+        if count == 0 {
+            first = point.clone();
+        }
+        count += 1;
         if count >= options.points {
-            return Ok(Stop::PointLimit {
+            return stopped(Stop::PointLimit {
                 points: options.points,
             });
         }
-        let next = match walk.next(problem, newton, &point) {
-            Ok(next) => next,
-            Err(stop) => return Ok(stop),
-        };
-        let (next, stop) = match walk.cut_at_range(problem, newton, &point, next) {
-            Ok(cut) => cut,
-            Err(stop) => return Ok(stop),
-        };
-        if visit(problem, newton, Visit::Point(&next)).is_break() {
-            return Ok(Stop::Interrupted);
+        let next = walk
+            .next(problem, newton, &point)
+            .and_then(|next| walk.cut_at_range(problem, newton, &point, next));
+        match next {
+            Ok((next, end)) => {
+                previous = Some(std::mem::replace(&mut point, next));
+                stop = end;
+            }
+            Err(stop) => return stopped(stop),
         }
-        if (next.parameter_slope() < 0.0) != (point.parameter_slope() < 0.0)
-            && visit(problem, newton, Visit::Turn(&point, &next)).is_break()
-        {
-            return Ok(Stop::Interrupted);
-        }
-        if let Some(stop) = stop {
-            return Ok(stop);
-        }
-        if count > 10 && walk.closes(newton, &first, &point, &next) {
-            return Ok(Stop::Closed);
-        }
-        point = next;
     }
-    Ok(Stop::PointLimit {
-        points: options.points,
-    })
 }
 
 /// What a visitor sees.
 pub(crate) enum Visit<'a> {
     /// The next point.
     Point(&'a CurvePoint),
+    /// The last point again, with another number of unknowns.
+    Again(&'a CurvePoint),
     /// The parameter turns between these two points.
     Turn(&'a CurvePoint, &'a CurvePoint),
+}
+
+/// A walk that has its first point.
+struct Begun {
+    walk: Walk,
+    point: CurvePoint,
+    first: CurvePoint,
+    previous: Option<CurvePoint>,
+    begun: usize,
+    ended: Option<Stop>,
 }
 
 /// State of a walk along a curve; its buffers are reused.
@@ -169,6 +255,10 @@ struct Walk {
     scale: Scale,
     /// Largest oscillation and mean so far.
     largest: [f64; 2],
+    /// The point before the one from which the next step goes, where the curve between them was smooth.
+    before: Option<Vec<f64>>,
+    /// Half the second derivative by arc length of the curve there.
+    bend: Vec<f64>,
 }
 
 impl Walk {
@@ -184,7 +274,114 @@ impl Walk {
                 ..Scale::UNIT
             },
             largest: [0.0; 2],
+            before: None,
+            bend: vec![0.0; problem.unknowns() + 1],
         }
+    }
+
+    /// Finds the first point, or corrects the one where a walk was halted.
+    fn begin<P: Problem>(
+        problem: &mut P,
+        newton: &mut Newton,
+        start: Start,
+        options: FollowOptions,
+    ) -> Result<Begun, NewtonError> {
+        match start {
+            Start::Near(u) => {
+                let mut walk = Self::new(problem, options, u);
+                let point = walk.first(problem, newton)?;
+                Ok(Begun {
+                    walk,
+                    first: point.clone(),
+                    point,
+                    previous: None,
+                    begun: 0,
+                    ended: None,
+                })
+            }
+            Start::At(halted) => {
+                let Halted {
+                    point,
+                    previous,
+                    before,
+                    first,
+                    step,
+                    largest,
+                    count,
+                    ended,
+                } = *halted;
+                let mut walk = Self::new(problem, options, point.u.clone());
+                (walk.step, walk.largest, walk.before) = (step, largest, before);
+                let point = walk.again(problem, newton, &point, ended.is_some())?;
+                Ok(Begun {
+                    walk,
+                    point,
+                    first,
+                    previous,
+                    begun: count,
+                    ended,
+                })
+            }
+        }
+    }
+
+    /// Corrects a point of another number of unknowns, in the plane across its tangent; at an end of the range, there.
+    fn again<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        point: &CurvePoint,
+        at_end: bool,
+    ) -> Result<CurvePoint, NewtonError> {
+        self.scale = point.scale;
+        if at_end || point.parameter() == self.options.from {
+            self.solve_at(problem, newton, point.parameter())?;
+        } else {
+            newton
+                .norm()
+                .linear_form(point.scale, &point.tangent, &mut self.border);
+            let border = Border {
+                row: &self.border,
+                value: crate::linear::dot(&self.border, &point.u),
+            };
+            let options = self.options.newton;
+            newton.correct(problem, &mut self.trial, border, self.scale, options)?;
+        }
+        let mut again = self.point(problem, newton);
+        if newton
+            .norm()
+            .product(point.scale, &again.tangent, &point.tangent)
+            < 0.0
+        {
+            for t in &mut again.tangent {
+                *t = -*t;
+            }
+        }
+        Ok(again)
+    }
+
+    fn halted(
+        &self,
+        halt: Halt,
+        point: CurvePoint,
+        previous: Option<CurvePoint>,
+        first: CurvePoint,
+        count: usize,
+        ended: Option<Stop>,
+    ) -> Outcome {
+        if halt == Halt::Stop {
+            return Outcome::Stopped(Stop::Interrupted);
+        }
+        Outcome::Halted(Box::new(Halted {
+            point,
+            previous,
+            before: self.before.clone(),
+            first,
+            step: self.step,
+            largest: self.largest,
+            count,
+            ended,
+        }))
     }
 
     /// Solves at the first parameter and points the tangent towards the end of the range.
@@ -259,6 +456,7 @@ impl Walk {
         newton: &mut Newton,
         from: &CurvePoint,
     ) -> Result<CurvePoint, Stop> {
+        self.bend_at(newton, from);
         loop {
             let result = self.corrected(problem, newton, from, self.step);
             let reason = match result {
@@ -270,6 +468,7 @@ impl Walk {
                     let angle = cosine.clamp(-1.0, 1.0).acos();
                     if !self.options.steps.turns_too_far(angle, self.step) {
                         newton.statistics.accepted_steps += 1;
+                        self.remember(from, angle);
                         self.step = self.options.steps.after_success(self.step, angle, distance);
                         return Ok(point);
                     }
@@ -278,6 +477,7 @@ impl Walk {
                 Err(reason) => Some(reason),
             };
             newton.statistics.rejected_steps += 1;
+            self.bend.fill(0.0);
             match (self.options.steps.after_failure(self.step), reason) {
                 (Some(shorter), _) => self.step = shorter,
                 (None, reason) => {
@@ -297,6 +497,38 @@ impl Walk {
         }
     }
 
+    /// The parabola through the point before, and this one with its tangent: at arc length `-h` before,
+    /// `u_0 - h t_0 + h^2 b = u_(-1)`. Zero where there is none.
+    fn bend_at(&mut self, newton: &Newton, from: &CurvePoint) {
+        let Some(before) = self.before.take() else {
+            self.bend.fill(0.0);
+            return;
+        };
+        for (to, (x, y)) in self.bend.iter_mut().zip(before.iter().zip(&from.u)) {
+            *to = x - y;
+        }
+        let h = -newton.norm().product(from.scale, &from.tangent, &self.bend);
+        for (to, t) in self.bend.iter_mut().zip(&from.tangent) {
+            *to = (*to + h * t) / (h * h);
+        }
+        if !(h > 0.0 && self.bend.iter().all(|x| x.is_finite())) {
+            self.bend.fill(0.0);
+        }
+        self.before = Some(before);
+    }
+
+    /// Keeps a point for the next parabola, unless the curve turned sharply behind it.
+    fn remember(&mut self, from: &CurvePoint, angle: f64) {
+        if angle > self.options.steps.angle {
+            self.before = None;
+            return;
+        }
+        match &mut self.before {
+            Some(before) => before.copy_from_slice(&from.u),
+            None => self.before = Some(from.u.clone()),
+        }
+    }
+
     /// The solution of (1) at arc length `step` from a point, and how far off the predictor was.
     fn corrected<P: Problem>(
         &mut self,
@@ -307,7 +539,7 @@ impl Walk {
     ) -> Result<(CurvePoint, f64), NewtonError> {
         self.scale = from.scale;
         for (i, x) in self.trial.iter_mut().enumerate() {
-            *x = from.u[i] + step * from.tangent[i];
+            *x = from.u[i] + step * (from.tangent[i] + step * self.bend[i]);
         }
         newton
             .norm()

@@ -20,9 +20,9 @@ impl Default for StepControl {
         Self {
             initial: 0.01,
             smallest: 1e-9,
-            largest: 0.05,
-            angle: 0.15,
-            distance: 0.01,
+            largest: 0.1,
+            angle: 0.2,
+            distance: 0.003,
         }
     }
 }
@@ -36,8 +36,8 @@ impl StepControl {
     /// The step after one that converged.
     pub(crate) fn after_success(&self, step: f64, angle: f64, distance: f64) -> f64 {
         let by_angle = self.angle / angle.max(1e-3 * self.angle);
-        // The predictor is off by the square of the step.
-        let by_distance = (self.distance / distance.max(1e-3 * self.distance)).sqrt();
+        // The predictor is off by the cube of the step.
+        let by_distance = (self.distance / distance.max(1e-3 * self.distance)).cbrt();
         (step * by_angle.min(by_distance).clamp(0.5, 1.5)).clamp(self.smallest, self.largest)
     }
 

@@ -8,6 +8,7 @@
 //! Source: enclosures of range and bisection, Moore (1966), Interval Analysis, and Neumaier (1990), Interval Methods for
 //! Systems of Equations; here the enclosure is that of the interpolating cubic, not of interval arithmetic.
 
+#[cfg(test)]
 use super::series;
 
 mod finder;
@@ -52,6 +53,7 @@ pub fn crossings(series: &[f64], level: f64, found: &mut Vec<Crossing>) {
 /// The phase in `[a, b]` where the slope of a series changes its sign; `rising` is its sign at `a`.
 ///
 /// Newton's method kept inside a bracket by bisection: Press et al. (2007), Numerical Recipes, section 9.4.
+#[cfg(test)]
 pub(crate) fn extremum(of: &[f64], mut a: f64, mut b: f64, rising: bool) -> f64 {
     let mut t = 0.5 * (a + b);
     for _ in 0..100 {

@@ -10,7 +10,6 @@ use super::monodromy::{Orbit, Panels};
 use super::{Stability, distance, eigenvalues};
 use crate::balance::Balance;
 use crate::layout::Layout;
-use crate::newton::Newton;
 use crate::truncation::Finer;
 
 /// Steps per period at first.
@@ -22,28 +21,26 @@ const INTEGRATION_TOLERANCE: f64 = 1e-7;
 
 /// Judges the orbits of one branch, one after the other.
 #[derive(Debug)]
-pub(crate) struct Judge<'a> {
-    finer: Finer<'a>,
+pub(crate) struct Judge {
     /// Steps per period that sufficed for the last orbit.
     density: f64,
     /// Orbits judged.
     pub(crate) computed: usize,
 }
 
-impl<'a> Judge<'a> {
-    pub(crate) fn new(finer: Finer<'a>) -> Self {
+impl Judge {
+    pub(crate) fn new() -> Self {
         Self {
-            finer,
             density: FIRST_DENSITY,
             computed: 0,
         }
     }
 
-    /// Stability of the orbit `u` of a balance that was set to its variable; Newton's method holds its factors.
+    /// Stability of the orbit `u` of a balance that was set to its variable; `finer` holds it corrected, unless that failed.
     pub(crate) fn stability(
         &mut self,
         balance: &Balance<'_>,
-        newton: &mut Newton,
+        finer: Option<&Finer<'_>>,
         u: &[f64],
     ) -> Stability {
         self.computed += 1;
@@ -54,14 +51,14 @@ impl<'a> Judge<'a> {
         let Some(plain) = plain else {
             return Stability::unknown();
         };
-        if !self.finer.correct(u, newton) {
+        let Some(finer) = finer else {
             return Stability {
                 multipliers: plain,
                 ..Stability::unknown()
             };
-        }
-        let balance = self.finer.balance();
-        let corrected = orbit_of(balance, balance.layout(), self.finer.series());
+        };
+        let balance = finer.balance();
+        let corrected = orbit_of(balance, balance.layout(), finer.series());
         let Some(panels) = Panels::new(corrected) else {
             return Stability {
                 multipliers: plain,

@@ -1,0 +1,298 @@
+//! What is read off the gap of one contact.
+
+use std::f64::consts::TAU;
+
+use super::ContactMotion;
+use super::peak::Batch;
+use super::reader::{Reader, largest};
+use crate::balance::{Balance, rate_series};
+use crate::fourier::crossings::Crossing;
+use crate::law::{Law, RateDependence, Variation};
+use crate::layout::ContactLayout;
+
+/// Whether the force of a contact is identically zero.
+pub(super) fn is_idle(balance: &Balance<'_>, contact: usize) -> bool {
+    let law = balance.system().law(balance.layout().contacts[contact].law);
+    let pieces = law.facts().pieces.iter();
+    pieces.into_iter().all(|p| p.force == Variation::Zero)
+}
+
+/// Room for one contact after the other.
+#[derive(Debug, Default)]
+pub(super) struct ContactReader {
+    arguments: Vec<f64>,
+    levels: Vec<f64>,
+    found: Vec<Crossing>,
+    switches: Vec<Switch>,
+    panels: Vec<Panel>,
+    rate: Vec<f64>,
+    rates: Vec<f64>,
+    batch: Batch,
+}
+
+/// The gap crosses a level.
+#[derive(Debug, Clone, Copy)]
+struct Switch {
+    tau: f64,
+    level: usize,
+    rising: bool,
+}
+
+impl Switch {
+    /// The piece that begins here.
+    fn piece(self) -> usize {
+        self.level + usize::from(self.rising)
+    }
+}
+
+/// A part of the period on which the gap stays on one piece.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Panel {
+    /// At most a period before the end.
+    pub(super) start: f64,
+    pub(super) end: f64,
+    pub(super) piece: usize,
+    /// The levels that its ends are on; none where it is the whole period.
+    pub(super) levels: Option<[f64; 2]>,
+}
+
+impl ContactReader {
+    pub(super) fn take_arguments(&mut self, contact: &ContactLayout, coefficients: &[f64]) {
+        self.arguments.resize(contact.argument_count, 0.0);
+        contact.arguments(coefficients, &mut self.arguments);
+    }
+
+    /// Reads the gap that has been loaded; the arguments have been taken.
+    pub(super) fn read(&mut self, law: &dyn Law, reader: &mut Reader, base: f64) -> ContactMotion {
+        self.cut(law, reader);
+        let pieces = &law.facts().pieces;
+        let touches = |panel: &Panel| pieces[panel.piece].force != Variation::Zero;
+        let mut motion = ContactMotion::NONE;
+        let mut before = self.panels.last().is_some_and(touches);
+        if before && self.panels.iter().all(touches) {
+            motion.count = 1;
+        }
+        if self.panels.iter().any(touches) {
+            self.sample_rate(law, reader, base);
+        }
+        for panel in &self.panels {
+            let now = touches(panel);
+            if now {
+                motion.fraction += (panel.end - panel.start) / TAU;
+                let (gaps, rates) = (reader.samples(), &self.rates[..]);
+                self.batch.take(panel, [gaps, rates], reader.series(), base);
+                let gap = reader.series();
+                let peak = self
+                    .batch
+                    .peak(law, panel.piece, &self.arguments, gap, base);
+                motion.peak_force = largest(motion.peak_force, peak);
+            }
+            motion.count += usize::from(now && !before);
+            before = now;
+        }
+        motion
+    }
+
+    fn sample_rate(&mut self, law: &dyn Law, reader: &mut Reader, base: f64) {
+        if law.facts().rate == RateDependence::None {
+            self.rates.clear();
+            self.rates.resize(reader.samples().len(), 0.0);
+            return;
+        }
+        self.rate.resize(reader.series().len(), 0.0);
+        rate_series(reader.series(), base, &mut self.rate);
+        reader.sample(&self.rate, &mut self.rates);
+    }
+
+    /// Cuts the period at the levels.
+    fn cut(&mut self, law: &dyn Law, reader: &Reader) {
+        self.levels.resize(law.facts().levels.len(), 0.0);
+        law.levels(&self.arguments, &mut self.levels);
+        self.switches.clear();
+        for (level, &value) in self.levels.iter().enumerate() {
+            self.found.clear();
+            if let Some(finder) = reader.finder() {
+                finder.crossings(value, &mut self.found);
+            }
+            let found = self.found.iter();
+            self.switches
+                .extend(found.map(|&Crossing { tau, rising }| Switch { tau, level, rising }));
+        }
+        // Levels that coincide are crossed in their order when the gap rises, and in the opposite one when it falls.
+        let order = |switch: &Switch| {
+            let level = switch.level as isize;
+            if switch.rising { level } else { -level }
+        };
+        self.switches
+            .sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau).then(order(a).cmp(&order(b))));
+        self.panels.clear();
+        let Some(&last) = self.switches.last() else {
+            let value = reader.samples().first().copied().unwrap_or(0.0);
+            self.panels.push(Panel {
+                start: 0.0,
+                end: TAU,
+                piece: self.levels.iter().filter(|&&level| value > level).count(),
+                levels: None,
+            });
+            return;
+        };
+        let mut from = Switch {
+            tau: last.tau - TAU,
+            ..last
+        };
+        for &to in &self.switches {
+            if to.tau > from.tau {
+                self.panels.push(Panel {
+                    start: from.tau,
+                    end: to.tau,
+                    piece: from.piece(),
+                    levels: Some([self.levels[from.level], self.levels[to.level]]),
+                });
+            }
+            from = to;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::by_hand::PowerForm;
+    use crate::fourier::crossings::crossings;
+    use crate::fourier::series;
+    use crate::law::On;
+    use crate::random::Random;
+    use crate::system::System;
+
+    const BASE: f64 = 0.9;
+
+    fn read(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> ContactMotion {
+        let (mut contact, mut reader) = (ContactReader::default(), Reader::default());
+        contact.arguments = arguments.to_vec();
+        reader.load(gap);
+        contact.read(law, &mut reader, BASE)
+    }
+
+    fn random_gap(random: &mut Random, harmonics: usize) -> Vec<f64> {
+        let mut gap = vec![random.between(-0.8, 0.8)];
+        for k in 1..=harmonics {
+            let size = (k as f64).powf(-1.5);
+            gap.push(random.between(-size, size));
+            gap.push(random.between(-size, size));
+        }
+        gap
+    }
+
+    /// By a scan of each stretch between crossings of zero, ends included, and golden sections about its best sample.
+    /// Source: Kiefer (1953), Sequential minimax search for a maximum.
+    fn scanned(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> (f64, f64) {
+        let size = |tau: f64| {
+            let (g, slope, _) = series::value_and_derivatives(gap, tau);
+            let mut force = [0.0];
+            law.force(On::AllPieces, arguments, &[g], &[BASE * slope], &mut force);
+            (force[0].abs(), g)
+        };
+        let mut found = Vec::new();
+        crossings(gap, 0.0, &mut found);
+        let mut cuts: Vec<f64> = found.iter().map(|crossing| crossing.tau).collect();
+        cuts.push(cuts.first().map_or(TAU, |first| first + TAU));
+        if cuts.len() == 1 {
+            cuts.insert(0, 0.0);
+        }
+        let (mut peak, mut inside) = (0.0_f64, 0.0);
+        for ends in cuts.windows(2) {
+            let (a, b) = (ends[0], ends[1]);
+            let middle = size(0.5 * (a + b)).1;
+            let count = 4000;
+            let at = |index: usize| a + (b - a) * index as f64 / f64::from(4000);
+            if !found.is_empty() {
+                // At a switch itself, from the side of this stretch.
+                let rate = |tau| BASE * series::value_and_derivatives(gap, tau).1;
+                let (gaps, mut force) = ([0.0; 2], [0.0; 2]);
+                let on = On::Piece(usize::from(middle > 0.0));
+                law.force(on, arguments, &gaps, &[rate(a), rate(b)], &mut force);
+                peak = peak.max(force[0].abs()).max(force[1].abs());
+            }
+            let best = (0..=count)
+                .max_by(|&i, &j| size(at(i)).0.total_cmp(&size(at(j)).0))
+                .unwrap();
+            let (mut low, mut high) = (at(best.saturating_sub(1)), at((best + 1).min(count)));
+            let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
+            for _ in 0..60 {
+                let (c, d) = (high - ratio * (high - low), low + ratio * (high - low));
+                if size(c).0 > size(d).0 {
+                    high = d;
+                } else {
+                    low = c;
+                }
+            }
+            peak = peak.max(size(at(best)).0).max(size(0.5 * (low + high)).0);
+            if middle > 0.0 {
+                inside += (ends[1] - ends[0]) / TAU;
+            }
+        }
+        (peak, inside)
+    }
+
+    #[test]
+    fn peak_force_is_that_of_a_dense_scan() {
+        let mut random = Random::new(7);
+        let mut compared = 0;
+        for one_sided in [true, false] {
+            for alpha in [0.6, 1.0, 1.5, 3.0] {
+                for harmonics in [1, 2, 3, 5, 10, 20] {
+                    for zeta in [0.0, 0.03, 0.5, 3.0] {
+                        let system = PowerForm::new(one_sided, alpha, zeta, 1.0, 1.0);
+                        let law = system.law(0);
+                        let gap = random_gap(&mut random, harmonics);
+                        let motion = read(law, &[zeta, alpha], &gap);
+                        let (peak, inside) = scanned(law, &[zeta, alpha], &gap);
+                        let error = (motion.peak_force - peak).abs();
+                        assert!(
+                            error <= 1e-10 * peak,
+                            "{one_sided} {alpha} {harmonics} {zeta}: {} {peak}",
+                            motion.peak_force
+                        );
+                        if one_sided {
+                            assert!((motion.fraction - inside).abs() < 1e-12);
+                            compared += usize::from(inside > 0.0 && inside < 1.0);
+                        }
+                    }
+                }
+            }
+        }
+        assert!(compared > 50, "{compared}");
+    }
+
+    #[test]
+    fn a_short_contact_is_sampled_by_itself() {
+        // Just above the level for an eightieth of the period: the force of cos tau - cos(pi / 80), exponent 1, no damping.
+        let half: f64 = TAU / 160.0;
+        let system = PowerForm::new(true, 1.0, 0.0, 1.0, 1.0);
+        for lag in [0.0, 0.013, 3.0, 6.28] {
+            let gap = [-half.cos(), f64::cos(lag), f64::sin(lag)];
+            let motion = read(system.law(0), &[0.0, 1.0], &gap);
+            let peak = 1.0 - half.cos();
+            assert!((motion.peak_force - peak).abs() < 1e-15);
+            assert!((motion.fraction - 2.0 * half / TAU).abs() < 1e-13);
+            assert_eq!(motion.count, 1);
+        }
+    }
+
+    #[test]
+    fn contact_that_never_ends_or_never_begins_is_counted() {
+        let system = PowerForm::new(true, 1.5, 0.0, 1.0, 1.0);
+        let arguments = [0.0, 1.5];
+        let rest = read(system.law(0), &arguments, &[4.0]);
+        assert_eq!((rest.fraction, rest.count), (1.0, 1));
+        assert!((rest.peak_force - 8.0).abs() < 1e-14);
+        let above = read(system.law(0), &arguments, &[2.0, 0.6, -0.8]);
+        assert_eq!((above.fraction, above.count), (1.0, 1));
+        assert!((above.peak_force - 3.0_f64.powf(1.5)).abs() < 1e-13);
+        let below = read(system.law(0), &arguments, &[-2.0, 0.6, -0.8]);
+        assert_eq!(below, ContactMotion::NONE);
+        let twice = read(system.law(0), &arguments, &[0.0, 0.0, 0.0, 1.0, 0.0]);
+        assert_eq!(twice.count, 2);
+        assert!((twice.fraction - 0.5).abs() < 1e-14);
+    }
+}

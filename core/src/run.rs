@@ -1,0 +1,230 @@
+//! What a run does with the curve it follows: orbits with their stability, folds, and another number of harmonics where the
+//! tolerance asks for it.
+
+use std::ops::ControlFlow;
+
+use crate::balance::{Balance, Resolution};
+use crate::branch::{Event, EventKind, Point, Turn};
+use crate::continuation::follow::{
+    Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
+};
+use crate::continuation::locate::locate;
+use crate::error::Error;
+use crate::follower::Follower;
+use crate::fourier::series;
+use crate::harmonics::resize;
+use crate::newton::{Newton, NewtonOptions};
+use crate::reader::Reader;
+use crate::statistics::Statistics;
+
+/// The test function of a fold is driven below this.
+const FOLD_TOLERANCE: f64 = 1e-10;
+/// The core grows when updates shrink by less than this at so many points in succession.
+const SLOW: f64 = 0.5;
+const SLOW_POINTS: usize = 2;
+
+/// What a run has gathered.
+pub(crate) struct Run<'f, 'a> {
+    follower: &'f Follower<'a>,
+    options: FollowOptions,
+    resolution: Resolution,
+    /// The size of the core that the first orbit asked for.
+    least_core: usize,
+    reader: Reader<'a>,
+    chooser: Option<crate::harmonics::Chooser>,
+    /// The resolution asked for when the walk was halted.
+    wanted: Resolution,
+    /// The last point was refused and is to be read again.
+    refused: bool,
+    slow: usize,
+    pub(crate) points: Vec<Point>,
+    pub(crate) events: Vec<Event>,
+    pub(crate) turns: Vec<Turn>,
+    pub(crate) statistics: Statistics,
+}
+
+impl<'f, 'a> Run<'f, 'a> {
+    pub(crate) fn new(follower: &'f Follower<'a>, options: FollowOptions, first: &[f64]) -> Self {
+        let resolution = follower.with_core_for(first);
+        Self {
+            follower,
+            options,
+            resolution,
+            least_core: resolution.core,
+            reader: follower.reader(resolution),
+            chooser: follower.chooser.clone(),
+            wanted: resolution,
+            refused: false,
+            slow: 0,
+            points: Vec::new(),
+            events: Vec::new(),
+            turns: Vec::new(),
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// Follows the branch to its end, with as many numbers of harmonics as it takes.
+    ///
+    /// # Errors
+    /// If there is no first point.
+    pub(crate) fn follow(
+        &mut self,
+        first: Vec<f64>,
+        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
+    ) -> Result<Stop, Error> {
+        let mut start = Start::Near(first);
+        loop {
+            let mut balance = self.follower.balance(self.resolution);
+            let mut newton = Newton::new(&balance);
+            let options = self.options;
+            let outcome = follow(
+                &mut balance,
+                &mut newton,
+                start,
+                options,
+                &mut |b, n, seen| self.visit(b, n, &seen, visit),
+            );
+            self.statistics += newton.statistics;
+            match outcome {
+                Ok(Outcome::Stopped(stop)) => {
+                    self.statistics.monodromies += self.judged();
+                    return Ok(stop);
+                }
+                Ok(Outcome::Halted(mut halted)) => {
+                    let length = series::length(self.wanted.harmonics);
+                    let coordinates = balance.layout().coordinates;
+                    for vector in halted.vectors() {
+                        *vector = resize(vector, coordinates, length);
+                    }
+                    self.statistics.monodromies += self.judged();
+                    self.resolution = self.wanted;
+                    self.reader = self.follower.reader(self.resolution);
+                    start = Start::At(halted);
+                }
+                Err(reason) if self.points.is_empty() && !self.refused => {
+                    return Err(Error::NoStart {
+                        parameter: options.from,
+                        reason,
+                    });
+                }
+                Err(reason) => {
+                    let parameter = self.points.last().map_or(options.from, |point| point.value);
+                    return Ok(Stop::StepTooShort {
+                        step: 0.0,
+                        parameter,
+                        reason,
+                    });
+                }
+            }
+        }
+    }
+
+    fn judged(&self) -> usize {
+        self.reader.judge.as_ref().map_or(0, |judge| judge.computed)
+    }
+
+    fn visit(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        seen: &Visit<'_>,
+        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
+    ) -> Continue {
+        match seen {
+            Visit::Again(_) if !self.refused => Continue::Continue(()),
+            Visit::Point(at) | Visit::Again(at) => {
+                let point = self.reader.read(balance, newton, &at.u);
+                self.choose(&point, newton.contraction());
+                let change = self.wanted != self.resolution;
+                self.refused = self.wanted.harmonics > self.resolution.harmonics;
+                if self.refused {
+                    return Continue::Break(Halt::Resize);
+                }
+                let answer = visit(&point);
+                self.points.push(point);
+                if answer.is_break() {
+                    Continue::Break(Halt::Stop)
+                } else if change {
+                    Continue::Break(Halt::Resize)
+                } else {
+                    Continue::Continue(())
+                }
+            }
+            Visit::Turn(before, behind) => {
+                self.turn(balance, newton, (before, behind), self.options.newton);
+                Continue::Continue(())
+            }
+        }
+    }
+
+    /// Decides on the resolution of the next point, or of this one again.
+    fn choose(&mut self, point: &Point, contraction: f64) {
+        let Resolution {
+            harmonics, core, ..
+        } = self.resolution;
+        self.slow = if contraction > SLOW { self.slow + 1 } else { 0 };
+        let core = if self.slow >= SLOW_POINTS && core < harmonics {
+            self.slow = 0;
+            core + core.div_ceil(2)
+        } else {
+            core
+        };
+        let chosen = self.chooser.as_mut().and_then(|chooser| {
+            let error = point.error.unwrap_or(f64::INFINITY);
+            chooser.decide(harmonics, error)
+        });
+        let core = if core >= harmonics {
+            // Dense so far: it stays dense up to the size that a core would have.
+            core.max(self.least_core)
+        } else {
+            core
+        };
+        self.wanted = self
+            .follower
+            .with_harmonics(chosen.unwrap_or(harmonics), core);
+    }
+
+    /// Locates the fold between two points, or the jump that is there instead.
+    fn turn(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+        options: NewtonOptions,
+    ) {
+        // The point behind the turn has been stored already.
+        let after = self.points.len() - 1;
+        let slope = CurvePoint::parameter_slope;
+        match locate(balance, newton, between, options, FOLD_TOLERANCE, slope) {
+            Some(located) if located.vanishes => {
+                let u = &located.point.u;
+                let error = self.reader.finer.fold_error(u, newton);
+                let point = self.reader.read(balance, newton, u);
+                let kind = EventKind::Fold;
+                self.events.push(Event {
+                    kind,
+                    point,
+                    error,
+                    test: located.test,
+                    after,
+                });
+            }
+            Some(located) => {
+                let value = located.point.parameter();
+                self.turns.push(Turn {
+                    value,
+                    test: located.test,
+                    after,
+                });
+            }
+            None => {
+                let value = 0.5 * (between.0.parameter() + between.1.parameter());
+                self.turns.push(Turn {
+                    value,
+                    test: between.0.parameter_slope(),
+                    after,
+                });
+            }
+        }
+    }
+}
