@@ -7,9 +7,40 @@ use proc_macro2::Ident;
 use crate::dag::Rational;
 use crate::errors::Extent;
 
+/// The macro that a declaration stands in. A law alone is the law of the smallest model that has it: its arguments
+/// are the parameters, and messages call them what their reader has written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Form {
+    /// `oscillator!`
+    #[default]
+    Model,
+    /// `law!`
+    LawAlone,
+}
+
+impl Form {
+    /// What a parameter is called.
+    pub fn parameter(self) -> &'static str {
+        match self {
+            Self::Model => "parameter",
+            Self::LawAlone => "argument",
+        }
+    }
+
+    /// How to declare the range of a parameter; `declared` is its name with the range.
+    pub fn how_to_declare_range(self, declared: &str) -> String {
+        match self {
+            Self::Model => format!("declare its range, as in `param {declared};`"),
+            Self::LawAlone => format!("write `{declared}` in the list of arguments"),
+        }
+    }
+}
+
 /// A whole declaration, or as much of it as could be read.
 #[derive(Debug, Clone)]
 pub struct Declaration {
+    /// The macro it stands in.
+    pub form: Form,
     /// Text of the doc comments.
     pub documentation: String,
     /// Visibility of the type.
@@ -47,6 +78,21 @@ impl Coordinate {
 }
 
 impl Declaration {
+    /// A name, and nothing declared.
+    pub fn named(name: Ident, form: Form) -> Self {
+        Self {
+            form,
+            documentation: String::new(),
+            visibility: syn::Visibility::Inherited,
+            name,
+            coordinates: Vec::new(),
+            parameters: Vec::new(),
+            laws: Vec::new(),
+            lets: Vec::new(),
+            equations: Vec::new(),
+        }
+    }
+
     /// The names of all coordinates, those of arrays by element, with the name each stands in.
     pub fn elements(&self) -> impl Iterator<Item = (String, &Ident)> {
         self.coordinates.iter().flat_map(|coordinate| {
@@ -76,6 +122,21 @@ pub struct Parameter {
     pub default: Option<(f64, Extent)>,
     /// Its unit.
     pub unit: Option<(Unit, Extent)>,
+}
+
+impl Parameter {
+    /// A name, and nothing declared of it.
+    pub fn named(name: Ident) -> Self {
+        Self {
+            documentation: String::new(),
+            range: Extent::at(name.span()),
+            name,
+            minimum: None,
+            maximum: None,
+            default: None,
+            unit: None,
+        }
+    }
 }
 
 /// A unit as written: symbols, each to an exact power.

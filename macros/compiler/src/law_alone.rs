@@ -5,9 +5,9 @@
 
 use std::collections::HashMap;
 
-use proc_macro2::{Delimiter, Group, Ident, Punct, Spacing, TokenStream, TokenTree};
-use quote::{quote, quote_spanned};
+use proc_macro2::TokenStream;
 
+use crate::ast::Form;
 use crate::dag::{Id, Node, Variable};
 use crate::emit;
 use crate::errors::{Diagnostics, Errors, Extent};
@@ -15,8 +15,7 @@ use crate::ir::{Law, Level, Model, Place};
 
 /// Expands a law. After errors the expansion holds all of them, and a stub of the type.
 pub fn law(declaration: TokenStream) -> TokenStream {
-    let model = model_of(declaration);
-    let (read, compiled) = crate::read(model);
+    let (read, compiled) = crate::read(declaration, Form::LawAlone);
     let law = compiled.and_then(|mut model| {
         let law = alone(&mut model)?;
         Ok((model, law))
@@ -29,72 +28,6 @@ pub fn law(declaration: TokenStream) -> TokenStream {
             expansion
         }
     }
-}
-
-/// The declaration of the smallest model with the law. What is not in its place is left where it is, for the parser to
-/// complain about.
-fn model_of(declaration: TokenStream) -> TokenStream {
-    let mut head = Vec::new();
-    let mut tokens = declaration.clone().into_iter().peekable();
-    while let Some(token) = tokens.peek() {
-        if is_group(token, Delimiter::Parenthesis)
-            && matches!(head.last(), Some(TokenTree::Ident(name)) if name != "pub")
-        {
-            break;
-        }
-        head.extend(tokens.next());
-    }
-    let name = head.last().cloned();
-    let (Some(TokenTree::Group(names)), Some(TokenTree::Ident(name))) = (tokens.next(), name)
-    else {
-        return declaration;
-    };
-    let span = name.span();
-    let coordinate = Ident::new("coordinate_of_the_law", span);
-    let body: TokenStream = tokens.collect();
-    let (gap, parameters) = arguments(&names);
-    let law = quote_spanned!(span=> law #name);
-    let equation = quote_spanned!(span=> ddot(#coordinate) + #name(#coordinate) = 0;);
-    let mut pieces = body.into_iter();
-    let braces = pieces.next();
-    let rest: TokenStream = pieces.collect();
-    quote! {
-        #(#head)* (#coordinate) {
-            #parameters
-            #law #gap #braces
-            #equation
-        }
-        #rest
-    }
-}
-
-/// The gap in parentheses, and the other arguments as parameters.
-fn arguments(names: &Group) -> (TokenTree, TokenStream) {
-    let mut gap = TokenStream::new();
-    let mut parameters = TokenStream::new();
-    let mut current = TokenStream::new();
-    let mut first = true;
-    let end = TokenTree::Punct(Punct::new(',', Spacing::Alone));
-    for token in names.stream().into_iter().chain([end]) {
-        if !matches!(&token, TokenTree::Punct(mark) if mark.as_char() == ',') {
-            current.extend([token]);
-            continue;
-        }
-        let argument = std::mem::take(&mut current);
-        if first {
-            gap = argument;
-        } else if !argument.is_empty() {
-            parameters.extend(quote!(param #argument;));
-        }
-        first = false;
-    }
-    let mut gap = Group::new(Delimiter::Parenthesis, gap);
-    gap.set_span(names.span());
-    (TokenTree::Group(gap), parameters)
-}
-
-fn is_group(token: &TokenTree, delimiter: Delimiter) -> bool {
-    matches!(token, TokenTree::Group(group) if group.delimiter() == delimiter)
 }
 
 /// The law of the model, its arguments those that were written, in their order.
@@ -151,28 +84,22 @@ fn refuse(place: Extent, message: &str) -> Errors {
 
 #[cfg(test)]
 mod tests {
+    use quote::quote;
+
     use super::*;
 
-    #[test]
-    fn a_law_becomes_the_law_of_the_smallest_model() {
-        let law =
-            quote!(pub Hertz(gap, k > 0, c) { gap > 0 => k*gap^1.5*(1 + c*dot(gap)), else => 0 });
-        let expected = quote! {
-            pub Hertz(coordinate_of_the_law) {
-                param k > 0;
-                param c;
-                law Hertz(gap) { gap > 0 => k*gap^1.5*(1 + c*dot(gap)), else => 0 }
-                ddot(coordinate_of_the_law) + Hertz(coordinate_of_the_law) = 0;
-            }
-        };
-        assert_eq!(model_of(law).to_string(), expected.to_string());
+    fn faults(text: &str) -> Vec<String> {
+        let tokens = text.parse().expect("it is made of tokens");
+        let (_, compiled) = crate::read(tokens, Form::LawAlone);
+        compiled.expect_err("it is refused").messages()
     }
 
     #[test]
     fn arguments_keep_their_order() {
         let declaration =
             quote!(Stop(gap, play > 0, k) { gap > play => k*(gap - play)^2, else => 0 });
-        let mut model = crate::compile(model_of(declaration)).expect("it is sound");
+        let (_, compiled) = crate::read(declaration, Form::LawAlone);
+        let mut model = compiled.expect("it is sound");
         let law = alone(&mut model).expect("it is a law");
         assert_eq!(law.arguments, ["play", "k"]);
         assert!(
@@ -196,6 +123,61 @@ mod tests {
             let tokens: TokenStream = text.parse().expect("it is made of tokens");
             let expansion = law(tokens).to_string();
             assert!(expansion.contains("compile_error"), "{text}: {expansion}");
+        }
+    }
+
+    #[test]
+    fn messages_speak_of_arguments() {
+        for (text, expected) in [
+            (
+                "Hertz(gap, k, n) { gap > 0 => k*gap^n, else => 0 }",
+                "`gap` vanishes on this piece, so the exponent `n` must be positive: write `n > 0` in the list of arguments",
+            ),
+            (
+                "Stop(gap, play, k) { gap > play => k*(gap - play)^2, -play <= gap <= play => 0, else => 1 }",
+                "whether the level `-play` or `play` is the higher one is not known: write `play > 0` in the list of arguments",
+            ),
+            (
+                "Hertz(gap, k, k) { gap > 0 => k*gap^1.5, else => 0 }",
+                "argument `k` is declared twice: remove or rename one of them",
+            ),
+            (
+                "Hertz(gap, k, c) { gap > 0 => k*gap^1.5, else => 0 }",
+                "argument `c` is never used: remove it, or use it in a piece",
+            ),
+            (
+                "Hertz(gap, gap) { gap > 0 => gap^1.5, else => 0 }",
+                "gap `gap` has the name of an argument: rename one of them",
+            ),
+            (
+                "Hertz(gap, k) { gap > 0 => k*gap^1.5 + wobble, else => 0 }",
+                "unknown name `wobble`: add it to the arguments, as in `Hertz(gap, wobble)`",
+            ),
+            (
+                "Hertz(gap, k 3) { gap > 0 => k*gap^1.5, else => 0 }",
+                "expected `,`, `)`, or a range such as `in 0.0..` or `> 0`, found `3`",
+            ),
+            (
+                "Hertz(gap, k: N/m^1.5 > 0) { gap > 0 => k*gap^1.5, else => 0 }",
+                "an argument here has no unit: the law is evaluated with numbers as they are; remove it",
+            ),
+            (
+                "Hertz(gap, k > ) { gap > 0 => k*gap^1.5, else => 0 }",
+                "expected a number, found `)`",
+            ),
+        ] {
+            assert_eq!(faults(text), [expected], "{text}");
+        }
+        for text in [
+            "Hertz(gap, k = 3) {k*gap^3}",
+            "Hertz(gap, k = 3 > 0) {k*gap^3}",
+            "Hertz(gap, k > 0 = 3) {k*gap^3}",
+        ] {
+            let faults = faults(text);
+            assert!(
+                faults.len() == 1 && faults[0].contains("has no default: write `k`"),
+                "{text}: {faults:?}"
+            );
         }
     }
 }

@@ -22,7 +22,7 @@ mod parse;
 
 use proc_macro2::TokenStream;
 
-use crate::ast::Declaration;
+use crate::ast::{Declaration, Form};
 use crate::errors::{Diagnostics, Errors};
 use crate::ir::Model;
 
@@ -30,7 +30,7 @@ pub use crate::law_alone::law;
 
 /// Expands a declaration. After errors the expansion holds all of them, and a stub of the type.
 pub fn oscillator(declaration: TokenStream) -> TokenStream {
-    let (declaration, model) = read(declaration);
+    let (declaration, model) = read(declaration, Form::Model);
     match model {
         Ok(model) => emit::emit(&model),
         Err(errors) => {
@@ -67,13 +67,13 @@ fn stub(declaration: &Declaration) -> TokenStream {
 /// # Errors
 /// Everything that is wrong with the declaration.
 pub fn compile(declaration: TokenStream) -> Result<Model, Errors> {
-    read(declaration).1
+    read(declaration, Form::Model).1
 }
 
 /// Parses, checks and lowers. Each stage runs only if the one before found nothing, so that no fault is reported twice.
-fn read(tokens: TokenStream) -> (Option<Declaration>, Result<Model, Errors>) {
+fn read(tokens: TokenStream, form: Form) -> (Option<Declaration>, Result<Model, Errors>) {
     let mut diagnostics = Diagnostics::default();
-    let declaration = parse::parse(tokens, &mut diagnostics);
+    let declaration = parse::parse(tokens, form, &mut diagnostics);
     let mut model = None;
     if let Some(declaration) = &declaration {
         if diagnostics.is_clean() {

@@ -1,9 +1,11 @@
 //! Declarations that are text at run time, with the place of every fault.
 
+mod primes;
+
 use std::fmt;
 use std::str::FromStr;
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Span, TokenStream, TokenTree};
 
 use crate::compile;
 use crate::ir::Model;
@@ -30,21 +32,53 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Compiles a declaration as far as the checked model.
+/// Compiles a declaration as far as the checked model. The macro may stand around it, as in a program:
+/// `hertzian::oscillator! { ... }`.
 ///
 /// # Errors
 /// Everything that is wrong with the declaration, in the order of its discovery.
 pub fn compile_text(text: &str) -> Result<Model, Vec<Fault>> {
     let tokens = TokenStream::from_str(text).map_err(|fault| {
+        let primes = primes::faults(text);
+        if !primes.is_empty() {
+            return primes;
+        }
         let message = "this is not made of words, numbers and marks that close what they open";
         vec![at(message.to_owned(), fault.span())]
     })?;
-    compile(tokens).map_err(|errors| {
+    compile(inside(tokens)).map_err(|errors| {
         let faults = errors.faults().into_iter();
         faults
             .map(|fault| at(fault.to_string(), fault.span()))
             .collect()
     })
+}
+
+/// What stands in the macro, if nothing else stands beside it.
+fn inside(tokens: TokenStream) -> TokenStream {
+    let all: Vec<TokenTree> = tokens.clone().into_iter().collect();
+    let is_word = |tree: &TokenTree, word| matches!(tree, TokenTree::Ident(name) if name == word);
+    let is_mark =
+        |tree: &TokenTree, mark| matches!(tree, TokenTree::Punct(own) if own.as_char() == mark);
+    let call = match all.as_slice() {
+        [path, colon, second, rest @ ..]
+            if is_word(path, "hertzian") && is_mark(colon, ':') && is_mark(second, ':') =>
+        {
+            rest
+        }
+        all => all,
+    };
+    match call {
+        [name, mark, TokenTree::Group(group), end @ ..]
+            if is_word(name, "oscillator")
+                && is_mark(mark, '!')
+                && end.len() < 2
+                && end.iter().all(|tree| is_mark(tree, ';')) =>
+        {
+            group.stream()
+        }
+        _ => tokens,
+    }
 }
 
 fn at(message: String, span: Span) -> Fault {
@@ -53,5 +87,38 @@ fn at(message: String, span: Span) -> Fault {
         message,
         line: start.line,
         column: start.column + 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MODEL: &str = "Linear(x) { ddot(x) + x = cos(omega*t); }";
+
+    #[test]
+    fn the_macro_may_stand_around_a_declaration() {
+        for text in [
+            MODEL.to_owned(),
+            format!("// spring\nhertzian::oscillator! {{ {MODEL} }}"),
+            format!("oscillator! {{ {MODEL} }}"),
+            format!("hertzian::oscillator!({MODEL});"),
+        ] {
+            let model = compile_text(&text).unwrap_or_else(|faults| panic!("{text}: {faults:?}"));
+            assert_eq!(model.name, "Linear");
+        }
+        let faults = compile_text("oscillator! {\n Linear(x) { ddot(x) + q = 0; } }");
+        assert_eq!(faults.expect_err("`q` is unknown")[0].line, 2);
+        assert!(compile_text(&format!("oscillator! {{ {MODEL} }} {MODEL}")).is_err());
+        assert!(compile_text("oscillator!").is_err());
+    }
+
+    #[test]
+    fn primes_are_explained() {
+        let faults = compile_text("Linear(x) {\n  x'' + x = 0;\n}").expect_err("no such mark");
+        assert_eq!(
+            faults[0].to_string(),
+            "2:3: a second derivative by time is written `ddot(x)`, not `x''`"
+        );
     }
 }

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use proc_macro2::Ident;
 
 use super::expressions::{self, Where};
-use crate::ast::{Coordinate, Declaration, Kind, Law};
+use crate::ast::{Coordinate, Declaration, Expr, Form, Kind, Law};
 use crate::errors::{Diagnostics, Extent, nearest};
 
 /// Names with a meaning of their own.
@@ -25,7 +25,7 @@ pub(super) fn declared(declaration: &Declaration) -> Vec<(&'static str, &Ident)>
     let parameters = declaration
         .parameters
         .iter()
-        .map(|item| ("parameter", &item.name));
+        .map(|item| (declaration.form.parameter(), &item.name));
     let lets = declaration.lets.iter().map(|item| ("`let`", &item.name));
     let laws = declaration.laws.iter().map(|item| ("law", &item.name));
     coordinates
@@ -110,13 +110,21 @@ fn distinct(
         }
         Some((other, _)) => {
             let message = format!(
-                "{} `{text}` has the name of a {}: rename one of them",
+                "{} `{text}` has the name of {} {}: rename one of them",
                 plain(what),
+                article(other),
                 plain(other)
             );
             diagnostics.report(Extent::at(name.span()), message);
         }
         None => known.push((what, text)),
+    }
+}
+
+fn article(what: &str) -> &'static str {
+    match what {
+        "argument" | "index" => "an",
+        _ => "a",
     }
 }
 
@@ -127,8 +135,13 @@ pub(super) fn plain(what: &str) -> &str {
 /// Every name that is used has been declared, a `let` before its use; arrays are used with an index, and only they.
 pub(super) fn names_are_known(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     let mut reported = HashSet::new();
+    let mut beside_time = HashSet::new();
     expressions::parts(declaration, &mut |part, at| {
         let (name, indexed) = match &part.kind {
+            Kind::Product(factors) => {
+                beside_time.extend(multiples_of_time(factors));
+                return;
+            }
             Kind::Name(name) => (name, false),
             Kind::Element(name, _) => (name, true),
             _ => return,
@@ -138,7 +151,8 @@ pub(super) fn names_are_known(declaration: &Declaration, diagnostics: &mut Diagn
             let coordinate = declaration.coordinates.iter().find(coordinate);
             index_is_in_place(name, coordinate.filter(|_| at.law.is_none()), indexed)
         } else {
-            Some(unknown(declaration, &name.to_string(), at))
+            let text = name.to_string();
+            Some(unknown(declaration, &text, beside_time.contains(&text), at))
         };
         if let Some(message) = fault
             && reported.insert(name.to_string())
@@ -146,6 +160,25 @@ pub(super) fn names_are_known(declaration: &Declaration, diagnostics: &mut Diagn
             diagnostics.report(part.extent, message);
         }
     });
+}
+
+/// The names in a product with `t` that has no `omega`: one of them is what its writer calls the frequency.
+fn multiples_of_time(factors: &[(bool, Expr)]) -> HashSet<String> {
+    let is_time = |part: &Expr| matches!(&part.kind, Kind::Name(name) if name == "t");
+    let mut names = HashSet::new();
+    if factors.iter().any(|(_, factor)| is_time(factor)) {
+        for (_, factor) in factors {
+            factor.walk(&mut |part| {
+                if let Kind::Name(name) = &part.kind {
+                    names.insert(name.to_string());
+                }
+            });
+        }
+    }
+    if names.contains("omega") {
+        names.clear();
+    }
+    names
 }
 
 fn is_known(declaration: &Declaration, name: &Ident, at: Where<'_, '_>) -> bool {
@@ -185,7 +218,7 @@ fn index_is_in_place(
     }
 }
 
-fn unknown(declaration: &Declaration, name: &str, at: Where<'_, '_>) -> String {
+fn unknown(declaration: &Declaration, name: &str, beside_time: bool, at: Where<'_, '_>) -> String {
     if FUNCTIONS.contains(&name) || declaration.laws.iter().any(|item| item.name == name) {
         return format!("`{name}` takes an argument in parentheses, as in `{name}(...)`");
     }
@@ -201,6 +234,23 @@ fn unknown(declaration: &Declaration, name: &str, at: Where<'_, '_>) -> String {
             law.gap
         );
     }
+    if beside_time {
+        return format!(
+            "unknown name `{name}`: the frequency of excitation is called `omega`, as in `cos(omega*t)`"
+        );
+    }
+    let known = candidates(declaration, at);
+    match nearest(name, known.iter().map(String::as_str)) {
+        Some(meant) => format!("unknown name `{name}`: did you mean `{meant}`?"),
+        None => format!(
+            "unknown name `{name}`: {}",
+            how_to_declare(declaration, name)
+        ),
+    }
+}
+
+/// Every name that could have been meant.
+fn candidates(declaration: &Declaration, at: Where<'_, '_>) -> Vec<String> {
     let mut known: Vec<String> = CONSTANTS.map(str::to_owned).to_vec();
     known.extend(
         declaration
@@ -216,10 +266,22 @@ fn unknown(declaration: &Declaration, name: &str, at: Where<'_, '_>) -> String {
     known.extend(at.loops.iter().map(|(_, name)| name.to_string()));
     match at.law {
         Some(law) => known.extend(local(law).map(|(_, name)| name.to_string())),
-        None => known.extend(coordinates().map(ToString::to_string)),
+        None => known.extend(
+            declaration
+                .coordinates
+                .iter()
+                .map(|item| item.name.to_string()),
+        ),
     }
-    match nearest(name, known.iter().map(String::as_str)) {
-        Some(meant) => format!("unknown name `{name}`: did you mean `{meant}`?"),
-        None => format!("unknown name `{name}`: declare it with `param {name};`"),
+    known
+}
+
+fn how_to_declare(declaration: &Declaration, name: &str) -> String {
+    match (declaration.form, declaration.laws.first()) {
+        (Form::LawAlone, Some(law)) => format!(
+            "add it to the arguments, as in `{}({}, {name})`",
+            law.name, law.gap
+        ),
+        _ => format!("declare it with `param {name};`"),
     }
 }

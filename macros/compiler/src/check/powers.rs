@@ -191,7 +191,10 @@ pub(crate) fn advice_on_ranges(context: &Expander, id: Id, relation: &str) -> St
         .collect();
     match names.as_slice() {
         [] => "change the numbers".to_owned(),
-        [name] => format!("declare its range, as in `param {name} {relation} 0;`"),
+        [name] => {
+            let declared = format!("{name} {relation} 0");
+            context.form.how_to_declare_range(&declared)
+        }
         names => format!("declare ranges that say so for `{}`", names.join("`, `")),
     }
 }

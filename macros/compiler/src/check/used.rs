@@ -34,6 +34,7 @@ pub(super) fn everything_is_used(declaration: &Declaration, diagnostics: &mut Di
     for (what, name) in declared(declaration) {
         let advice = match what {
             "parameter" => "remove it, or use it in a law or an equation",
+            "argument" => "remove it, or use it in a piece",
             "law" => "call it in an equation, or remove it",
             "`let`" => "remove it",
             _ => continue,

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::ast::{Expr, Kind};
+use crate::ast::{Expr, Form, Kind};
 use crate::dag::{Dag, Function, Id, Variable};
 use crate::errors::Extent;
 use crate::index::Constants;
@@ -45,6 +45,8 @@ pub enum Meaning {
 /// Takes expressions apart.
 #[derive(Debug, Default)]
 pub struct Expander {
+    /// The macro that the declaration stands in, for messages.
+    pub form: Form,
     /// The graph.
     pub dag: Dag,
     /// What is known of parameters and arguments.

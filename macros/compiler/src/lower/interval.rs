@@ -145,6 +145,22 @@ impl Interval {
         }
     }
 
+    /// The values on one side of zero; zero for the others.
+    fn on_side(self, positive: bool) -> Self {
+        let zero = (0.0, false);
+        if positive {
+            Self {
+                low: zero,
+                high: upper(self.high, zero),
+            }
+        } else {
+            Self {
+                low: lower(self.low, zero),
+                high: zero,
+            }
+        }
+    }
+
     /// An increasing function of every value.
     fn map(self, function: impl Fn(f64) -> f64) -> Self {
         Self {
@@ -247,11 +263,7 @@ impl Ranges {
                                 .fold(Interval::point(0.0), |sum, term| sum.add(known[term]))
                         })
                 }
-                Node::Product(factors) => factors
-                    .iter()
-                    .fold(Interval::point(1.0), |product, factor| {
-                        product.multiply(known[factor])
-                    }),
+                Node::Product(factors) => product_of(dag, &factors, &known),
                 Node::Power(base, exponent) => {
                     let whole = dag.as_number(exponent).and_then(Rational::to_integer);
                     power(known[&base], known[&exponent], whole)
@@ -286,6 +298,61 @@ impl Ranges {
             None => None,
         };
         Some(end(stretch.low, f64::NEG_INFINITY)?.hull(end(stretch.high, f64::INFINITY)?))
+    }
+}
+
+/// A product. With the step of one of its factors, as in `u H(u)`, which is how `max(0, u)` is written, that factor
+/// counts on one side of zero only.
+fn product_of(dag: &mut Dag, factors: &[Id], known: &HashMap<Id, Interval>) -> Interval {
+    let all = |factors: &[Id]| {
+        factors
+            .iter()
+            .fold(Interval::point(1.0), |product, factor| {
+                product.multiply(known[factor])
+            })
+    };
+    for (position, &step) in factors.iter().enumerate() {
+        let mut others = factors.to_vec();
+        others.remove(position);
+        for (position, &part) in others.iter().enumerate() {
+            if let Some(positive) = is_step_of(dag, step, part) {
+                let mut rest = others.clone();
+                rest[position] = step;
+                return known[&part].on_side(positive).multiply(all(&rest));
+            }
+        }
+        let together = dag.product(&others);
+        if let Some(positive) = is_step_of(dag, step, together) {
+            return all(&others).on_side(positive).multiply(known[&step]);
+        }
+    }
+    all(factors)
+}
+
+/// Whether a factor is positive where a part is and zero where it is negative (`true`), or the other way round: a
+/// step, or a multiple of `1 + sgn`.
+fn is_step_of(dag: &mut Dag, step: Id, part: Id) -> Option<bool> {
+    let opposite = dag.negate(part);
+    let [of_part, of_opposite] = match dag.node(step).clone() {
+        Node::Call(Function::Step, _) => {
+            [part, opposite].map(|operand| dag.call(Function::Step, operand))
+        }
+        Node::Sum(terms) if terms.len() == 2 => {
+            let mut numbers = terms.iter().filter_map(|&term| dag.as_number(term));
+            let number = numbers.next().filter(|number| number.is_positive())?;
+            let number = dag.number(number);
+            [part, opposite].map(|operand| {
+                let sign = dag.call(Function::Sign, operand);
+                let term = dag.product(&[number, sign]);
+                dag.sum(&[number, term])
+            })
+        }
+        _ => return None,
+    };
+    if step == of_part {
+        Some(true)
+    } else {
+        (step == of_opposite).then_some(false)
     }
 }
 

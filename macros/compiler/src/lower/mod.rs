@@ -124,6 +124,7 @@ fn documentation(parameter: &crate::ast::Parameter) -> String {
 
 fn context(declaration: &Declaration, parameters: &[ir::Parameter]) -> Expander {
     let mut context = Expander::default();
+    context.form = declaration.form;
     for (index, parameter) in parameters.iter().enumerate() {
         let name = parameter.name.to_string();
         context

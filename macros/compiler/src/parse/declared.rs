@@ -6,7 +6,6 @@ use super::Parser;
 use super::tokens::Token;
 use crate::ast::{Coordinate, Limit, Parameter};
 use crate::dag::Rational;
-use crate::errors::Extent;
 
 impl Parser<'_> {
     /// `name : unit = default range ;`. A parameter with a faulty range is kept, so that its field exists.
@@ -17,12 +16,7 @@ impl Parser<'_> {
         let name = self.name("the name of the parameter")?;
         let mut parameter = Parameter {
             documentation,
-            range: Extent::at(name.span()),
-            name,
-            minimum: None,
-            maximum: None,
-            default: None,
-            unit: None,
+            ..Parameter::named(name)
         };
         let result = self
             .details(&mut parameter)
@@ -74,7 +68,7 @@ impl Parser<'_> {
     }
 
     /// One of `in a..b`, `> a`, `>= a`, `< b`, `<= b`, or nothing.
-    fn range(&mut self, parameter: &mut Parameter) -> syn::Result<()> {
+    pub(super) fn range(&mut self, parameter: &mut Parameter) -> syn::Result<()> {
         let start = self.tokens.here();
         let end = if self.tokens.take_word("in") {
             parameter.minimum = self.limit(true)?;
@@ -104,7 +98,7 @@ impl Parser<'_> {
     }
 
     /// A number that may carry a sign, if there is one.
-    fn limit(&mut self, included: bool) -> syn::Result<Option<Limit>> {
+    pub(super) fn limit(&mut self, included: bool) -> syn::Result<Option<Limit>> {
         let minus = self.tokens.take("-");
         let Token::Literal(text) = self.tokens.peek().clone() else {
             return if minus {

@@ -105,7 +105,10 @@ impl Parser<'_> {
 
     fn power(&mut self) -> syn::Result<Expr> {
         let start = self.tokens.here();
-        let base = self.operand()?;
+        let mut base = self.operand()?;
+        while self.is_method() {
+            base = self.method(base, start)?;
+        }
         if !self.tokens.take("^") {
             return Ok(base);
         }
@@ -171,7 +174,7 @@ impl Parser<'_> {
     }
 
     /// `(a, b, ...)`
-    fn arguments(&mut self) -> syn::Result<Vec<Expr>> {
+    pub(super) fn arguments(&mut self) -> syn::Result<Vec<Expr>> {
         self.tokens.next();
         let mut arguments = Vec::new();
         while !matches!(self.tokens.peek(), Token::Close(_)) {

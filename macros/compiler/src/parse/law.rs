@@ -1,6 +1,6 @@
 //! Laws and their pieces.
 
-use proc_macro2::Delimiter;
+use proc_macro2::{Delimiter, Ident};
 
 use super::Parser;
 use super::tokens::Token;
@@ -10,9 +10,39 @@ use crate::errors::Extent;
 impl Parser<'_> {
     pub(super) fn law(&mut self) -> syn::Result<Law> {
         let name = self.name("the name of the law")?;
-        let mut arguments =
-            self.names("the gap in parentheses, as in `law contact(gap) { ... }`")?;
-        let gap = arguments.remove(0);
+        let example = "the gap in parentheses, as in `law contact(gap) { ... }`";
+        let mut names = self.list(example, Self::argument)?;
+        let gap = names.remove(0);
+        Ok(Law {
+            name,
+            gap,
+            arguments: names,
+            pieces: self.pieces()?,
+        })
+    }
+
+    /// The name of a gap or argument. What else is declared of a parameter is refused and skipped.
+    pub(super) fn argument(&mut self) -> syn::Result<Ident> {
+        let name = self.name("a name")?;
+        let place = self.tokens.here();
+        let message = if self.tokens.is(":") {
+            "no unit is written here: what is passed in a call has one"
+        } else if self.tokens.is("=") {
+            "no default is written here: every call passes a value, as in `contact(x, 1.5)`"
+        } else if self.tokens.is(">") || self.tokens.is("<") || self.tokens.take_word("in") {
+            "no range is written here: inside a model the ranges of the parameters that a call passes count, as in `param n > 1;`"
+        } else {
+            return Ok(name);
+        };
+        self.diagnostics.report(place, message);
+        while !self.tokens.is(",") && !matches!(self.tokens.peek(), Token::Close(_) | Token::End) {
+            self.tokens.skip();
+        }
+        Ok(name)
+    }
+
+    /// The pieces in braces.
+    pub(super) fn pieces(&mut self) -> syn::Result<Vec<Piece>> {
         let Token::Open(Delimiter::Brace, close) = *self.tokens.peek() else {
             return Err(self.unexpected("`{` and the pieces of the law"));
         };
@@ -39,12 +69,7 @@ impl Parser<'_> {
             );
         }
         self.tokens.go_to(close + 1);
-        Ok(Law {
-            name,
-            gap,
-            arguments,
-            pieces,
-        })
+        Ok(pieces)
     }
 
     /// `condition => force`, or the one expression that a law without pieces is.

@@ -1,8 +1,10 @@
 //! Tokens to [`Declaration`]. A fault in one item is reported and the item skipped, so that the others are read too.
 
+mod alone;
 mod declared;
 mod expression;
 mod law;
+mod method;
 mod number;
 mod repeated;
 mod tokens;
@@ -12,17 +14,24 @@ use proc_macro2::{Delimiter, Ident, TokenStream};
 use syn::ext::IdentExt;
 
 use self::tokens::{Token, Tokens};
-use crate::ast::{Declaration, Equation, Let, Statement};
+use crate::ast::{Declaration, Equation, Form, Let, Statement};
 use crate::errors::Diagnostics;
 
 /// Reads a declaration. `None` where not even its name could be read.
-pub fn parse(declaration: TokenStream, diagnostics: &mut Diagnostics) -> Option<Declaration> {
+pub fn parse(
+    declaration: TokenStream,
+    form: Form,
+    diagnostics: &mut Diagnostics,
+) -> Option<Declaration> {
     let mut parser = Parser {
         tokens: Tokens::new(declaration),
         depth: 0,
         diagnostics,
     };
-    let result = parser.declaration();
+    let result = match form {
+        Form::Model => parser.declaration(),
+        Form::LawAlone => parser.law_alone(),
+    };
     result.map_err(|fault| diagnostics.add(fault)).ok()
 }
 
@@ -37,16 +46,9 @@ impl Parser<'_> {
         let documentation = self.documentation()?;
         let visibility = self.visibility()?;
         let name = self.name("a name for the model, as in `pub Oscillator(x) { ... }`")?;
-        let mut declaration = Declaration {
-            documentation,
-            visibility,
-            name,
-            coordinates: Vec::new(),
-            parameters: Vec::new(),
-            laws: Vec::new(),
-            lets: Vec::new(),
-            equations: Vec::new(),
-        };
+        let mut declaration = Declaration::named(name, Form::Model);
+        declaration.documentation = documentation;
+        declaration.visibility = visibility;
         match self.coordinates() {
             Ok(coordinates) => declaration.coordinates = coordinates,
             Err(fault) => {
@@ -68,11 +70,15 @@ impl Parser<'_> {
             }
         }
         self.tokens.go_to(close + 1);
+        self.end("nothing after the closing `}`: one model per macro");
+        Ok(declaration)
+    }
+
+    fn end(&mut self, expected: &str) {
         if !matches!(self.tokens.peek(), Token::End) {
-            let fault = self.unexpected("nothing after the closing `}`: one model per macro");
+            let fault = self.unexpected(expected);
             self.diagnostics.add(fault);
         }
-        Ok(declaration)
     }
 
     /// Skips to the end of a faulty item: past its `;`, or to the next item that begins with a keyword.
@@ -122,6 +128,14 @@ impl Parser<'_> {
             return self.loop_of_equations();
         }
         let left = self.expression()?;
+        if matches!(
+            self.tokens.peek(),
+            Token::Mark(';', _) | Token::Close(_) | Token::End
+        ) {
+            return Err(self.tokens.here().fault(
+                "an equation has two sides: where nothing stands on the right, end it with `= 0;`",
+            ));
+        }
         self.expect("=", "an operator or `=`")?;
         let right = self.expression()?;
         self.expect(";", "an operator or `;`")?;
@@ -179,11 +193,6 @@ impl Parser<'_> {
         }
         syn::parse_str(&text)
             .map_err(|_| place.fault("expected a visibility such as `pub` or `pub(crate)`"))
-    }
-
-    /// `(a, b, ...)`, at least one.
-    fn names(&mut self, expected: &str) -> syn::Result<Vec<Ident>> {
-        self.list(expected, |parser| parser.name("a name"))
     }
 
     /// Items in parentheses, with commas between them and perhaps after them; at least one.

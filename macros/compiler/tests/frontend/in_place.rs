@@ -100,6 +100,37 @@ fn extrema_of_gap_and_rate_are_those_of_a_law() {
     });
 }
 
+#[test]
+fn a_positive_part_has_any_power() {
+    assert_force("max(0, 1 + c*dot(g))^1.5", |_, v| {
+        f64::max(0.0, 1.0 + C * v).powf(1.5)
+    });
+    assert_force("max(0, 2 + 2*dot(g))^0.6", |_, v| {
+        f64::max(0.0, 2.0 + 2.0 * v).powf(0.6)
+    });
+    assert_force("max(2*dot(g) - k, 0)^k", |_, v| {
+        f64::max(0.0, 2.0 * v - K).powf(K)
+    });
+    assert_force("(-min(0, 1 + dot(g)))^2.5", |_, v| {
+        (-f64::min(0.0, 1.0 + v)).powf(2.5)
+    });
+    assert_force("max(0, k*(1 + dot(g)))^1.5", |_, v| {
+        f64::max(0.0, K * (1.0 + v)).powf(1.5)
+    });
+    assert_force("g*(k*max(0, 1 - dot(g)))^1.5", |x, v| {
+        x * (K * f64::max(0.0, 1.0 - v)).powf(1.5)
+    });
+    for term in [
+        "max(-1, 1 + dot(x))^1.5",
+        "min(0, 1 + dot(x))^1.5",
+        "(dot(x)*max(0, 1 + dot(x)))^1.5",
+        "max(0, 1 + dot(x))^-0.5",
+    ] {
+        let text = faults(&format!("M(x) {{ ddot(x) + {term} = 0; }}"));
+        assert_eq!(text.lines().count(), 1, "{text}");
+    }
+}
+
 /// Hunt and Crossley, Journal of Applied Mechanics 42 (1975) 440, without tension.
 #[test]
 fn hunt_and_crossley_without_tension_in_place() {

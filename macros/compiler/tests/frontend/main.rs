@@ -4,6 +4,7 @@ mod extrema;
 mod in_place;
 mod loops;
 mod masses;
+mod messages;
 mod models;
 mod units;
 

@@ -1,0 +1,7 @@
+hertzian::oscillator! {
+    pub Model(x) {
+        ddot(x) + x;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,7 @@
+hertzian::law! {
+    pub Hertz(gap, k, n) { gap > 0 => k*gap^n, else => 0 }
+}
+
+fn main() {
+    let _ = Hertz;
+}
