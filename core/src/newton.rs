@@ -110,6 +110,8 @@ pub struct Newton {
     pub statistics: Statistics,
 }
 
+/// What may be left after the last update, as a part of the tolerance.
+const REMAINDER: f64 = 1e-5;
 /// Updates that shrink by at least this factor keep the factors they were made with (a chord iteration).
 const CHORD: f64 = 0.2;
 /// The first update must be at most this long for the second to use its factors.
@@ -202,7 +204,9 @@ impl Newton {
                 });
             }
             first = first.or(Some(size));
-            if size <= options.tolerance {
+            if size <= options.tolerance
+                && self.is_last(size, (previous, before), options.tolerance)
+            {
                 subtract(u, &self.update, 1.0);
                 self.drift += size;
                 return Ok(Converged {
@@ -243,6 +247,21 @@ impl Newton {
             update: size,
             residual: largest(&self.residual),
         })
+    }
+
+    /// Whether an update is the last one worth making: what is left after it, as the updates shrink, is far below the
+    /// tolerance, or rounding keeps them from shrinking. Core and tail may take turns, so that only every other update
+    /// compares.
+    fn is_last(&self, size: f64, (previous, before): (f64, f64), tolerance: f64) -> bool {
+        let (next, largest) = if self.jacobian.is_exact() {
+            (size * (size / previous), previous)
+        } else {
+            (previous * (size / before), previous.max(before))
+        };
+        if !largest.is_finite() {
+            return size <= REMAINDER * tolerance;
+        }
+        next <= REMAINDER * tolerance || size > 0.5 * largest
     }
 
     /// Largest ratio of successive updates in the last correction where the Jacobian leaves something out; zero otherwise.

@@ -7,7 +7,7 @@ use crate::newton::Newton;
 use crate::observe::{Motion, Observed, Observer};
 use crate::stability::Stability;
 use crate::stability::judge::Judge;
-use crate::truncation::Finer;
+use crate::truncation::{BEYOND, Finer};
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
@@ -82,6 +82,6 @@ impl<'a> Reader<'a> {
             change = change.max((corrected - motion.peak_to_peak()).abs());
             size = size.max(motion.peak_to_peak());
         }
-        if size > 0.0 { change / size } else { change }
+        BEYOND * if size > 0.0 { change / size } else { change }
     }
 }

@@ -23,7 +23,7 @@ use crate::validate;
 /// More samples of an orbit would take more than a gigabyte.
 const MOST_SAMPLES: usize = 10_000_000;
 /// Harmonics that are coupled densely in the search for a first orbit.
-const CORE_AT_START: usize = 16;
+const CORE_AT_START: usize = 40;
 /// More harmonics of an excitation period are never chosen, only taken when given.
 const MOST_HARMONICS: usize = 150;
 /// The dense matrix of more unknowns would take more than 300 megabytes.

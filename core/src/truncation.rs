@@ -19,6 +19,11 @@ use crate::fourier::series;
 use crate::newton::Newton;
 use crate::system::{System, Variable};
 
+/// The change by the harmonics from `K` to `2 K` times this is that by all above `K`, where it falls as `K^-1.6` or faster.
+pub(crate) const BEYOND: f64 = 1.5;
+/// Relative error of an event that rounding and the last updates leave.
+const ROUNDING: f64 = 1e-12;
+
 /// A finer balance of the same system, and room for its vectors.
 #[derive(Debug)]
 pub(crate) struct Finer<'a> {
@@ -136,8 +141,10 @@ impl<'a> Finer<'a> {
         let mut psi = vec![0.0; u.len()];
         newton.left_null_vector(&mut psi);
         let n = u.len() - 1;
+        let value = u[n].abs();
         self.add_tail(u, newton).map_or(f64::INFINITY, |core| {
-            crate::linear::dot(&psi[..n], &core[..n]).abs()
+            let change = crate::linear::dot(&psi[..n], &core[..n]).abs();
+            BEYOND * change + ROUNDING * value
         })
     }
 }

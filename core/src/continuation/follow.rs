@@ -469,7 +469,11 @@ impl Walk {
                     if !self.options.steps.turns_too_far(angle, self.step) {
                         newton.statistics.accepted_steps += 1;
                         self.remember(from, angle);
-                        self.step = self.options.steps.after_success(self.step, angle, distance);
+                        let slope = point.parameter_slope();
+                        self.step = self
+                            .options
+                            .steps
+                            .after_success(self.step, angle, distance, slope);
                         return Ok(point);
                     }
                     None

@@ -9,6 +9,8 @@ pub(crate) struct StepControl {
     pub(crate) initial: f64,
     pub(crate) smallest: f64,
     pub(crate) largest: f64,
+    /// Part of the range that the parameter may change by.
+    pub(crate) range: f64,
     /// Angle between successive tangents that is aimed at.
     pub(crate) angle: f64,
     /// Distance of the predictor from the curve that is aimed at.
@@ -21,6 +23,7 @@ impl Default for StepControl {
             initial: 0.01,
             smallest: 1e-9,
             largest: 0.1,
+            range: 0.015,
             angle: 0.2,
             distance: 0.003,
         }
@@ -33,12 +36,14 @@ impl StepControl {
         angle > 3.0 * self.angle && step > 1e-4
     }
 
-    /// The step after one that converged.
-    pub(crate) fn after_success(&self, step: f64, angle: f64, distance: f64) -> f64 {
+    /// The step after one that converged; `slope` is the part of the range that a unit step takes there.
+    pub(crate) fn after_success(&self, step: f64, angle: f64, distance: f64, slope: f64) -> f64 {
         let by_angle = self.angle / angle.max(1e-3 * self.angle);
         // The predictor is off by the cube of the step.
         let by_distance = (self.distance / distance.max(1e-3 * self.distance)).cbrt();
-        (step * by_angle.min(by_distance).clamp(0.5, 1.5)).clamp(self.smallest, self.largest)
+        (step * by_angle.min(by_distance).clamp(0.5, 1.5))
+            .min(self.range / slope.abs())
+            .clamp(self.smallest, self.largest)
     }
 
     /// The step after one that failed; `None` when it cannot be shortened further.
