@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crate::balance::{Balance, Resolution};
 use crate::branch::{Event, EventKind, Point, Turn};
 use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
+    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, follow,
 };
 use crate::continuation::locate::locate;
 use crate::error::Error;
@@ -73,6 +73,8 @@ impl<'f, 'a> Run<'f, 'a> {
         visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
     ) -> Result<Stop, Error> {
         let mut start = Start::Near(first);
+        // Where the walk was halted last, in case that another resolution fails there.
+        let mut last: Option<(Box<Halted>, Resolution)> = None;
         loop {
             let mut balance = self.follower.balance(self.resolution);
             let mut newton = Newton::new(&balance);
@@ -85,37 +87,48 @@ impl<'f, 'a> Run<'f, 'a> {
                 &mut |b, n, seen| self.visit(b, n, &seen, visit),
             );
             self.statistics += newton.statistics;
+            self.statistics.monodromies += self.judged();
             match outcome {
-                Ok(Outcome::Stopped(stop)) => {
-                    self.statistics.monodromies += self.judged();
-                    return Ok(stop);
-                }
-                Ok(Outcome::Halted(mut halted)) => {
-                    let length = series::length(self.wanted.harmonics);
-                    let coordinates = balance.layout().coordinates;
-                    for vector in halted.vectors() {
-                        *vector = resize(vector, coordinates, length);
-                    }
-                    self.statistics.monodromies += self.judged();
+                Ok(Outcome::Stopped(stop)) => return Ok(stop),
+                Ok(Outcome::Halted(halted)) => {
+                    start = Start::At(Box::new(self.resized(&halted, &balance)));
+                    last = Some((halted, self.resolution));
                     self.resolution = self.wanted;
-                    self.reader = self.follower.reader(self.resolution);
-                    start = Start::At(halted);
-                }
-                Err(reason) if self.points.is_empty() && !self.refused => {
-                    return Err(Error::NoStart {
-                        parameter: options.from,
-                        reason,
-                    });
                 }
                 Err(reason) => {
-                    let parameter = self.points.last().map_or(options.from, |point| point.value);
-                    return Ok(Stop::StepTooShort {
-                        step: 0.0,
-                        parameter,
-                        reason,
-                    });
+                    let Some((halted, resolution)) = last.take() else {
+                        return Err(Error::NoStart {
+                            parameter: options.from,
+                            reason,
+                        });
+                    };
+                    // What was found with the former resolution stands, and is read with its error.
+                    self.settle(resolution);
+                    start = Start::At(halted);
                 }
             }
+            self.reader = self.follower.reader(self.resolution);
+        }
+    }
+
+    /// The state of a halted walk in the resolution wanted.
+    fn resized(&self, halted: &Halted, balance: &Balance<'_>) -> Halted {
+        let length = series::length(self.wanted.harmonics);
+        let coordinates = balance.layout().coordinates;
+        let mut resized = halted.clone();
+        for vector in resized.vectors() {
+            *vector = resize(vector, coordinates, length);
+        }
+        resized
+    }
+
+    /// Returns to a resolution and keeps it.
+    fn settle(&mut self, resolution: Resolution) {
+        self.resolution = resolution;
+        self.wanted = resolution;
+        if let Some(chooser) = &mut self.chooser {
+            chooser.most = resolution.harmonics;
+            chooser.least = resolution.harmonics;
         }
     }
 
