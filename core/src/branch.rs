@@ -103,12 +103,15 @@ impl Point {
 pub enum EventKind {
     /// The branch turns back in what it varies; a multiplier is one.
     Fold,
+    /// An orbit with odd symmetry loses it: a branch of orbits without it crosses.
+    SymmetryBreaking,
 }
 
 impl fmt::Display for EventKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Fold => "fold",
+            Self::SymmetryBreaking => "symmetry-breaking",
         })
     }
 }
@@ -201,10 +204,12 @@ impl<'a> Branch<'a> {
     /// If the file cannot be written.
     #[cfg(feature = "plot")]
     pub fn plot(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
-        let path = path.as_ref();
-        self.chart().write(path).map_err(|error| Error::File {
-            path: path.display().to_string(),
-            reason: error.to_string(),
-        })
+        let written = self.chart().write(path);
+        written.map_err(
+            |crate::chart::ChartError::Write { path, source }| Error::File {
+                path: path.display().to_string(),
+                reason: source.to_string(),
+            },
+        )
     }
 }

@@ -6,8 +6,8 @@ use std::borrow::Cow;
 
 use crate::generic::LawData;
 use crate::law::{
-    Derivatives, Exponent, Law, LawFacts, LevelFacts, On, Parts, PieceFacts, Quantity,
-    RateDependence, TermFacts, Variation,
+    ArgumentFacts, Derivatives, Exponent, Law, LawFacts, LevelFacts, On, Parts, PieceFacts,
+    Quantity, RateDependence, TermFacts, Variation,
 };
 use crate::system::{
     Bound, ContactFacts, ParameterFacts, Part, Place, System, SystemFacts, Variable, Wave,
@@ -133,7 +133,10 @@ impl PowerLaw {
         };
         let facts = LawFacts {
             name: "contact".into(),
-            arguments: vec!["zeta".into(), "alpha".into()].into(),
+            arguments: ["zeta", "alpha"]
+                .map(|name| ArgumentFacts::named(name.into()))
+                .to_vec()
+                .into(),
             levels: vec![LevelFacts {
                 belongs_above: false,
                 force_jumps: false,

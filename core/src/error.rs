@@ -31,9 +31,9 @@ pub enum Error {
         /// What it must be.
         must: &'static str,
     },
-    /// An end of the range has not been given.
+    /// An end of the range has not been given, or not the frequency at which a parameter is varied.
     MissingEnd {
-        /// `from` or `to`.
+        /// `from`, `to` or `omega`.
         name: &'static str,
     },
     /// Both ends of the range are the same.
@@ -124,6 +124,10 @@ impl std::fmt::Display for Error {
                 )
             }
             Self::Option { name, value, must } => write!(f, "{name} = {value}: {must}"),
+            Self::MissingEnd { name: "omega" } => write!(
+                f,
+                "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`"
+            ),
             Self::MissingEnd { name } => write!(f, "the range has no end: call `{name}`"),
             Self::EmptyRange { value } => {
                 write!(f, "the range is empty: from and to are both {value}")

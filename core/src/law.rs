@@ -9,6 +9,7 @@
 use std::borrow::Cow;
 
 use crate::generic::LawData;
+use crate::system::{Bound, is_within};
 
 /// A law as the runtime sees it. Generated types, the interpreter and laws written by hand implement it alike.
 ///
@@ -103,8 +104,8 @@ pub struct Derivatives<'a> {
 pub struct LawFacts {
     /// Name in the declaration.
     pub name: Cow<'static, str>,
-    /// Names of the arguments, in the order of the argument slice.
-    pub arguments: Cow<'static, [Cow<'static, str>]>,
+    /// The arguments, in the order of the argument slice.
+    pub arguments: Cow<'static, [ArgumentFacts]>,
     /// One entry per level, in increasing order of the gap.
     pub levels: Cow<'static, [LevelFacts]>,
     /// One entry per piece, `levels.len() + 1` of them, in increasing order of the gap.
@@ -113,6 +114,33 @@ pub struct LawFacts {
     pub rate: RateDependence,
     /// The force is odd in gap and rate together: `phi(-g, -r) = -phi(g, r)`.
     pub odd: bool,
+}
+
+/// What is known of an argument. Everything else that is known of the law holds for values within the range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArgumentFacts {
+    /// Its name.
+    pub name: Cow<'static, str>,
+    /// Lower end of the range.
+    pub minimum: Bound,
+    /// Upper end of the range.
+    pub maximum: Bound,
+}
+
+impl ArgumentFacts {
+    /// An argument that may have any value.
+    pub const fn named(name: Cow<'static, str>) -> Self {
+        Self {
+            name,
+            minimum: Bound::Unbounded,
+            maximum: Bound::Unbounded,
+        }
+    }
+
+    /// Whether a value is finite and within the range.
+    pub fn admits(&self, value: f64) -> bool {
+        is_within(self.minimum, self.maximum, value)
+    }
 }
 
 /// How a force depends on the rate of its gap.

@@ -99,18 +99,23 @@ pub enum Bound {
 impl ParameterFacts {
     /// Whether a value is finite and within the range.
     pub fn admits(&self, value: f64) -> bool {
-        let above = match self.minimum {
-            Bound::Unbounded => true,
-            Bound::Included(bound) => value >= bound,
-            Bound::Excluded(bound) => value > bound,
-        };
-        let below = match self.maximum {
-            Bound::Unbounded => true,
-            Bound::Included(bound) => value <= bound,
-            Bound::Excluded(bound) => value < bound,
-        };
-        value.is_finite() && above && below
+        is_within(self.minimum, self.maximum, value)
     }
+}
+
+/// Whether a value is finite and between two bounds.
+pub(crate) fn is_within(minimum: Bound, maximum: Bound, value: f64) -> bool {
+    let above = match minimum {
+        Bound::Unbounded => true,
+        Bound::Included(bound) => value >= bound,
+        Bound::Excluded(bound) => value > bound,
+    };
+    let below = match maximum {
+        Bound::Unbounded => true,
+        Bound::Included(bound) => value <= bound,
+        Bound::Excluded(bound) => value < bound,
+    };
+    value.is_finite() && above && below
 }
 
 /// A term `e_c phi_c(g_c, g_c')` of (1).

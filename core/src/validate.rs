@@ -79,17 +79,18 @@ fn parameter(facts: &ParameterFacts, value: f64) -> Result<(), Error> {
     Err(Error::Parameter {
         name: facts.name.to_string(),
         value,
-        range: describe(facts),
+        range: described(facts.minimum, facts.maximum),
     })
 }
 
-fn describe(facts: &ParameterFacts) -> String {
-    let lower = match facts.minimum {
+/// A range as text.
+pub(crate) fn described(minimum: Bound, maximum: Bound) -> String {
+    let lower = match minimum {
         Bound::Unbounded => "(-inf".to_owned(),
         Bound::Included(bound) => format!("[{bound}"),
         Bound::Excluded(bound) => format!("({bound}"),
     };
-    let upper = match facts.maximum {
+    let upper = match maximum {
         Bound::Unbounded => "inf)".to_owned(),
         Bound::Included(bound) => format!("{bound}]"),
         Bound::Excluded(bound) => format!("{bound})"),

@@ -2,8 +2,8 @@
 
 use hertzian::FrequencyResponse;
 use hertzian::law::{Law, On, RateDependence};
-use hertzian::structure::{Contact, DMatrix, Structure, StructureError, parameter};
-use hertzian::system::{System, Variable};
+use hertzian::structure::{Contact, DMatrix, Structure, StructureError, Value, parameter};
+use hertzian::system::{Bound, System, Variable};
 
 hertzian::law! {
     /// Force of a spring that is touched at gap zero.
@@ -157,11 +157,107 @@ fn what_does_not_fit_is_said_with_numbers() {
     );
 }
 
+hertzian::law! {
+    /// Two flanks with play between them.
+    Flanks(gap, play > 0, n in 1..=3) {
+        gap > play => (gap - play)^n,
+        -play <= gap <= play => 0,
+        gap < -play => -(-gap - play)^n,
+    }
+}
+
+/// A contact of the first mass with two flanks.
+fn flanks(play: Value, n: f64) -> Contact {
+    let arguments: [Value; 2] = [play, n.into()];
+    Contact::new(Flanks)
+        .arguments(arguments)
+        .direction([1.0, 0.0])
+}
+
+#[test]
+fn arguments_lie_in_the_ranges_of_the_law() {
+    let build = |play: Value, n| two_masses().contact(flanks(play, n)).build();
+    for n in [1.0, 3.0] {
+        assert!(build(0.5.into(), n).is_ok());
+    }
+    let range = |argument: &str, value, range: &str| StructureError::Range {
+        law: "Flanks".to_owned(),
+        argument: argument.to_owned(),
+        value,
+        range: range.to_owned(),
+    };
+    for (play, n, expected) in [
+        (0.5.into(), 3.5, range("n", 3.5, "[1, 3]")),
+        (0.0.into(), 2.0, range("play", 0.0, "(0, inf)")),
+        (
+            parameter("play", 0.5).times(-2.0),
+            2.0,
+            range("play", -1.0, "(0, inf)"),
+        ),
+    ] {
+        assert_eq!(build(play, n).err(), Some(expected));
+    }
+    let fault = build(0.5.into(), 0.5).err().expect("a fault");
+    assert_eq!(
+        fault.to_string(),
+        "argument `n` of law `Flanks` is 0.5, outside its range [1, 3]"
+    );
+}
+
+#[test]
+fn a_parameter_is_varied_within_the_ranges_of_what_it_is_passed_for() {
+    let contact = |n: Value| {
+        let arguments: [Value; 2] = [0.5.into(), n];
+        Contact::new(Flanks)
+            .arguments(arguments)
+            .direction([1.0, 0.0])
+    };
+    let mut structure = two_masses()
+        .contact(contact(parameter("n", 2.0)))
+        .contact(contact(parameter("n", 2.0).times(0.5)))
+        .contact(contact(parameter("m", -1.5).times(-1.0)))
+        .build()
+        .expect("it is sound");
+    let parameters = structure.facts().parameters.iter();
+    let ranges: Vec<_> = parameters.map(|p| (p.minimum, p.maximum)).collect();
+    let within = |low, high| (Bound::Included(low), Bound::Included(high));
+    let free = (Bound::Unbounded, Bound::Unbounded);
+    assert_eq!(ranges, [free, within(2.0, 3.0), within(-3.0, -1.0)]);
+
+    let vary = |structure: &Structure| {
+        let request = FrequencyResponse::of(structure).vary("n").omega(0.8);
+        request
+            .from(2.5)
+            .to(3.5)
+            .run()
+            .err()
+            .map(|error| error.to_string())
+    };
+    let refused = Some("parameter n = 3.5 is outside its range [2, 3]".to_owned());
+    assert_eq!(vary(&structure), refused);
+    structure.set("n", 1.0).expect("there is one");
+    let request = FrequencyResponse::of(&structure).from(0.8).to(0.9);
+    let error = request.run().err().expect("`n` is too small");
+    assert_eq!(
+        error.to_string(),
+        "parameter n = 1 is outside its range [2, 3]"
+    );
+}
+
 #[test]
 fn a_law_alone_takes_its_arguments_in_order() {
     let law: &dyn Law = &HuntCrossley;
     assert_eq!(law.facts().name, "HuntCrossley");
-    assert_eq!(law.facts().arguments.as_ref(), ["k", "c", "alpha"]);
+    let arguments = law.facts().arguments.iter();
+    let (names, ranges): (Vec<_>, Vec<_>) = arguments
+        .map(|argument| (argument.name.as_ref(), [argument.minimum, argument.maximum]))
+        .unzip();
+    let free = [Bound::Unbounded; 2];
+    assert_eq!(names, ["k", "c", "alpha"]);
+    assert_eq!(
+        ranges,
+        [free, free, [Bound::Excluded(0.0), Bound::Unbounded]]
+    );
     assert_eq!(law.facts().rate, RateDependence::Linear);
     let (k, c, alpha) = (3.0, 0.2, 1.7);
     let (gap, rate) = ([-1.0, 0.0, 0.5, 2.0], [1.0, -1.0, 0.5, -0.25]);

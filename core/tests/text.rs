@@ -129,9 +129,22 @@ fn every_fault_has_its_place() {
     assert!(error.to_string().starts_with("3:15: "), "{error}");
 
     let error = Declaration::parse("Oscillator(x) {\n  x'' = 1").expect_err("it is no Rust");
+    assert_eq!(
+        error.to_string(),
+        "2:3: a second derivative by time is written `ddot(x)`, not `x''`"
+    );
+    let error = Declaration::parse("Oscillator(x) {\n  ddot(x)").expect_err("it has no end");
     assert_eq!(error.faults.len(), 1);
     assert!(error.faults[0].line >= 1);
     assert!(Declaration::parse("").is_err());
+}
+
+#[test]
+fn the_macro_may_stand_around_a_text() {
+    let bare = Declaration::parse(STOP).expect("the macro has accepted it");
+    let text = format!("hertzian::oscillator! {{\n{STOP}\n}}");
+    let wrapped = Declaration::parse(&text).expect("it is the same");
+    assert_eq!(wrapped.facts(), bare.facts());
 }
 
 #[test]

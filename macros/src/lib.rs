@@ -122,8 +122,8 @@ use proc_macro::TokenStream;
 /// ddot(x) + cos(omega*t)*contact(x*cos(omega*t) + y*sin(omega*t) - clearance) = 0;
 /// ```
 ///
-/// The base of a power that is not whole must not be negative on its piece, and where it can vanish the exponent must be
-/// positive: declare `param alpha > 0;`. A force may jump where the gap crosses a level. It may not jump with the rate, as
+/// The base of a power that is not whole must not be negative on its piece (`max(0, u)` never is), and where it can vanish
+/// the exponent must be positive: declare `param alpha > 0;`. A force may jump where the gap crosses a level. It may not jump with the rate, as
 /// dry friction does; it may have a kink there, as `max(0, k*gap + c*dot(gap))` has.
 ///
 /// A force depends on one gap. Polynomials of several coordinates, or of several velocities, are taken apart into powers
@@ -155,7 +155,8 @@ pub fn oscillator(declaration: TokenStream) -> TokenStream {
 ///
 /// The first name is that of the gap. `pieces` and `range` are those of [`oscillator!`], with the same rules: an
 /// exponent whose base can vanish must be positive, and it must be known which level is the higher one. Here the ranges
-/// of the arguments say so, where a law in a model goes by the ranges of the parameters. A law that is linear in gap and
+/// of the arguments say so, where a law in a model goes by the ranges of the parameters. A structure refuses values
+/// outside of them; `hertzian::law::LawFacts` holds them. An argument has neither default nor unit. A law that is linear in gap and
 /// rate everywhere is refused: it belongs into the matrices.
 ///
 /// The guide "Declaring contacts", `docs/book/src/declaring-contacts.md`, has an example that is compiled.

@@ -10,7 +10,7 @@ pub use crate::generic::Node::{self, *};
 pub use crate::generic::{LevelData, PieceData};
 pub use crate::law::Quantity::{self, *};
 pub use crate::law::Variation::*;
-pub use crate::law::{LevelFacts, PieceFacts};
+pub use crate::law::{ArgumentFacts, LevelFacts, PieceFacts};
 pub use crate::system::Bound::{self, *};
 
 /// The force does not depend on the rate.
@@ -51,7 +51,7 @@ pub const fn meeting(list: &[u8]) -> LevelFacts {
 /// The facts of a law.
 pub const fn law_facts(
     name: &'static str,
-    arguments: &'static [Cow<'static, str>],
+    arguments: &'static [ArgumentFacts],
     levels: &'static [LevelFacts],
     pieces: &'static [PieceFacts],
     rate: RateDependence,
@@ -64,6 +64,20 @@ pub const fn law_facts(
         pieces: Cow::Borrowed(pieces),
         rate,
         odd,
+    }
+}
+
+/// An argument of a law that may have any value.
+pub const fn free(name: &'static str) -> ArgumentFacts {
+    ArgumentFacts::named(Cow::Borrowed(name))
+}
+
+/// An argument of a law, and its range.
+pub const fn ranged(name: &'static str, minimum: Bound, maximum: Bound) -> ArgumentFacts {
+    ArgumentFacts {
+        name: Cow::Borrowed(name),
+        minimum,
+        maximum,
     }
 }
 

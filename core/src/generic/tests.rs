@@ -4,11 +4,14 @@ use std::borrow::Cow;
 
 use super::{InterpretedLaw, LawData, LevelData, Node, PieceData};
 use crate::law::{
-    Derivatives, Exponent, Law, LawFacts, LevelFacts, On, PieceFacts, Quantity, RateDependence,
-    TermFacts, Variation,
+    ArgumentFacts, Derivatives, Exponent, Law, LawFacts, LevelFacts, On, PieceFacts, Quantity,
+    RateDependence, TermFacts, Variation,
 };
 
-const ARGUMENTS: [Cow<'static, str>; 2] = [Cow::Borrowed("zeta"), Cow::Borrowed("alpha")];
+const ARGUMENTS: [ArgumentFacts; 2] = [
+    ArgumentFacts::named(Cow::Borrowed("zeta")),
+    ArgumentFacts::named(Cow::Borrowed("alpha")),
+];
 const ZETA: f64 = 0.032;
 
 /// `2 zeta r + g^alpha` for `g > 0`, else zero; the exponent is an argument or a number.

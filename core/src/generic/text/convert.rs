@@ -8,7 +8,8 @@ use hertzian_compiler::ir;
 
 use crate::generic::{InterpretedLaw, LawData, LevelData, Node, PieceData};
 use crate::law::{
-    Exponent, LawFacts, LevelFacts, PieceFacts, Quantity, RateDependence, TermFacts, Variation,
+    ArgumentFacts, Exponent, LawFacts, LevelFacts, PieceFacts, Quantity, RateDependence, TermFacts,
+    Variation,
 };
 use crate::system::{Bound, ContactFacts, ParameterFacts, Part, Place, SystemFacts, Wave};
 
@@ -106,8 +107,8 @@ fn data(member: &Member, nodes: Cow<'static, [Node]>) -> LawData {
 fn facts(member: Member) -> LawFacts {
     let facts = member.facts;
     LawFacts {
+        arguments: arguments(&member.law),
         name: member.law.name.into(),
-        arguments: member.law.arguments.into_iter().map(Cow::from).collect(),
         levels: facts.levels.into_iter().map(level).collect(),
         pieces: facts.pieces.into_iter().map(piece).collect(),
         rate: match facts.rate {
@@ -117,6 +118,19 @@ fn facts(member: Member) -> LawFacts {
         },
         odd: facts.odd,
     }
+}
+
+fn arguments(law: &ir::Law) -> Cow<'static, [ArgumentFacts]> {
+    let unbounded = (ir::Bound::Unbounded, ir::Bound::Unbounded);
+    let ranges = law.ranges.iter().copied().chain(std::iter::repeat(unbounded));
+    let arguments = law.arguments.iter().cloned().zip(ranges);
+    arguments
+        .map(|(name, (minimum, maximum))| ArgumentFacts {
+            name: name.into(),
+            minimum: bound(minimum),
+            maximum: bound(maximum),
+        })
+        .collect()
 }
 
 fn level(facts: known::LevelFacts) -> LevelFacts {

@@ -8,6 +8,7 @@ use quote::{format_ident, quote};
 use super::code::{number, position};
 use crate::facts::{Exponent, LevelFacts, PieceFacts, Quantity, RateDependence, Term, Variation};
 use crate::interpret::{LevelData, Member, Node, PieceData};
+use crate::ir::{Bound, Law};
 
 /// A borrowed list.
 pub fn list(items: impl IntoIterator<Item = TokenStream>) -> TokenStream {
@@ -29,17 +30,44 @@ pub fn text(text: &str) -> TokenStream {
 }
 
 /// The nodes of a family and its levels, as constants.
-pub fn nodes(nodes: &[Node], levels: &[LevelData], arguments: &[String]) -> TokenStream {
+pub fn nodes(nodes: &[Node], levels: &[LevelData], law: &Law) -> TokenStream {
     let nodes = list(nodes.iter().map(node));
     let levels = list(levels.iter().map(|level| {
         let (value, by) = (position(level.value), positions(&level.by_argument));
         quote!(level(#value, #by))
     }));
-    let arguments = list(arguments.iter().map(|argument| text(argument)));
+    let arguments = list((0..law.arguments.len()).map(|index| argument(law, index)));
     quote! {
-        const ARGUMENTS: &[__Cow<'static, str>] = #arguments;
+        const ARGUMENTS: &[ArgumentFacts] = #arguments;
         const LEVELS: &[LevelData] = #levels;
         const NODES: &[Node] = #nodes;
+    }
+}
+
+/// An argument, and its range if it has one.
+fn argument(law: &Law, index: usize) -> TokenStream {
+    let name = &law.arguments[index];
+    match law.ranges.get(index) {
+        None | Some((Bound::Unbounded, Bound::Unbounded)) => quote!(free(#name)),
+        Some(&(minimum, maximum)) => {
+            let [minimum, maximum] = [minimum, maximum].map(bound);
+            quote!(ranged(#name, #minimum, #maximum))
+        }
+    }
+}
+
+/// One end of a range.
+pub fn bound(bound: Bound) -> TokenStream {
+    match bound {
+        Bound::Unbounded => quote!(Unbounded),
+        Bound::Included(value) => {
+            let value = number(value);
+            quote!(Included(#value))
+        }
+        Bound::Excluded(value) => {
+            let value = number(value);
+            quote!(Excluded(#value))
+        }
     }
 }
 

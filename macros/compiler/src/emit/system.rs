@@ -3,13 +3,13 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::code::{Code, number, position};
-use super::data::{list, text};
+use super::code::{Code, position};
+use super::data::{bound, list, text};
 use super::names::locals;
 use super::tape::{Style, Tape};
 use crate::dag::{Id, Variable};
 use crate::differentiate::differentiate;
-use crate::ir::{Bound, Model, Place, Wave};
+use crate::ir::{Model, Place, Wave};
 
 /// The implementation for a model.
 pub fn system(model: &mut Model) -> TokenStream {
@@ -158,20 +158,6 @@ fn facts(model: &Model) -> TokenStream {
                 contacts: __Cow::Borrowed(#contacts),
                 places: __Cow::Borrowed(#places),
             }
-        }
-    }
-}
-
-fn bound(bound: Bound) -> TokenStream {
-    match bound {
-        Bound::Unbounded => quote!(Unbounded),
-        Bound::Included(value) => {
-            let value = number(value);
-            quote!(Included(#value))
-        }
-        Bound::Excluded(value) => {
-            let value = number(value);
-            quote!(Excluded(#value))
         }
     }
 }

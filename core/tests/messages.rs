@@ -1,0 +1,40 @@
+//! What is said of a request that cannot be fulfilled.
+
+use hertzian::FrequencyResponse;
+
+hertzian::oscillator! {
+    Linear(x) {
+        param drive;
+        ddot(x) + 0.1*dot(x) + x = drive*cos(omega*t);
+    }
+}
+
+const MODEL: Linear = Linear { drive: 0.1 };
+
+#[test]
+fn a_missing_end_is_named() {
+    let of = || FrequencyResponse::of(&MODEL);
+    for (request, expected) in [
+        (of().to(2.0), "the range has no end: call `from`"),
+        (of().from(0.5), "the range has no end: call `to`"),
+        (
+            of().vary("drive").from(0.1).to(0.2),
+            "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`",
+        ),
+    ] {
+        let error = request.run().err().expect("something is missing");
+        assert_eq!(error.to_string(), expected);
+    }
+}
+
+#[cfg(feature = "plot")]
+#[test]
+fn a_file_that_cannot_be_written_is_named_once() {
+    let branch = FrequencyResponse::of(&MODEL).from(0.5).to(0.6).run();
+    let branch = branch.expect("it is linear");
+    let folder = std::env::temp_dir();
+    let text = branch.plot(&folder).expect_err("a folder").to_string();
+    let start = format!("cannot write {}: ", folder.display());
+    let reason = text.strip_prefix(&start).expect("it begins so");
+    assert!(!reason.contains("cannot write"), "{text}");
+}
