@@ -1,6 +1,6 @@
 //! What it takes to compute further orbits of a branch, and those at a value.
 
-use crate::balance::{Balance, Resolution};
+use crate::balance::{Balance, Parity, Resolution};
 use crate::branch::{Event, EventKind, Orbit, Point};
 use crate::continuation::follow::{CurvePoint, FollowOptions};
 use crate::continuation::locate::locate;
@@ -12,6 +12,7 @@ use crate::jacobian::Jacobian;
 use crate::newton::{Newton, NewtonOptions};
 use crate::reader::Reader;
 use crate::start::StartRequest;
+use crate::symmetry::EvenBlock;
 use crate::system::{System, Variable};
 use crate::truncation::Finer;
 
@@ -70,6 +71,19 @@ impl<'a> Follower<'a> {
             resolution,
         );
         Reader::new(finer, self.stability, self.chooser.is_some())
+    }
+
+    /// The even harmonics of that resolution, where orbits have odd ones only.
+    pub(crate) fn even_block(&self, resolution: Resolution) -> Option<EvenBlock<'a>> {
+        (resolution.parity == Parity::Odd).then(|| {
+            EvenBlock::new(
+                self.system,
+                &self.parameters,
+                self.omega,
+                self.variable,
+                resolution,
+            )
+        })
     }
 
     /// The same resolution with another number of harmonics.

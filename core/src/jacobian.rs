@@ -178,6 +178,19 @@ impl Jacobian {
         self.lu.factorise(&mut self.core)
     }
 
+    /// Factorises, and gives the sign of the determinant and the logarithm of its size; the sign is zero where that fails.
+    pub(crate) fn determinant(&mut self) -> (f64, f64) {
+        if self.factorise().is_err() {
+            return (0.0, f64::NEG_INFINITY);
+        }
+        let groups = self.groups.iter().zip(&self.group_lus);
+        groups
+            .map(|(matrix, lu)| lu.determinant(matrix))
+            .fold(self.lu.determinant(&self.core), |a, b| {
+                (a.0 * b.0, a.1 + b.1)
+            })
+    }
+
     /// Solves (1) in place, for an extended vector in the order of the unknowns.
     pub(crate) fn solve(&mut self, vector: &mut [f64]) {
         let Partition {

@@ -70,6 +70,7 @@ pub mod stability;
 mod start;
 mod statistics;
 pub mod structure;
+mod symmetry;
 pub mod system;
 mod truncation;
 mod validate;

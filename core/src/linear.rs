@@ -164,6 +164,16 @@ impl Lu {
         result
     }
 
+    /// Sign of the determinant and logarithm of its size, from the factors that [`Lu::factorise`] left in `matrix`.
+    pub fn determinant(&self, matrix: &Matrix) -> (f64, f64) {
+        let pivots = self.pivots.iter().enumerate();
+        pivots.fold((1.0, 0.0), |(sign, size), (column, &pivot)| {
+            let x = matrix.row(column)[column];
+            let swapped = if pivot == column { 1.0 } else { -1.0 };
+            (sign * swapped * x.signum(), size + x.abs().ln())
+        })
+    }
+
     /// Solves `A x = b` in place with the factors that [`Lu::factorise`] left in `matrix`.
     pub fn solve(&self, matrix: &Matrix, b: &mut [f64]) {
         for (column, &pivot) in self.pivots.iter().enumerate() {

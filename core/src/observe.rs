@@ -281,7 +281,7 @@ mod tests {
         let resolution = Resolution {
             harmonics: 10,
             core: 10,
-            odd: false,
+            parity: crate::balance::Parity::All,
             samples: 64,
             aft: Aft::Switched,
             period: 1,

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::aft::Aft;
-use crate::balance::Resolution;
+use crate::balance::{Parity, Resolution};
 use crate::branch::{Branch, Point};
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::step::StepControl;
@@ -17,6 +17,7 @@ use crate::newton::NewtonOptions;
 use crate::run::Run;
 use crate::start::start;
 use crate::statistics::Statistics;
+use crate::symmetry::is_odd;
 use crate::system::{System, Variable};
 use crate::validate;
 
@@ -268,7 +269,12 @@ impl<'a> FrequencyResponse<'a> {
             2.0..=1e9,
             "must be 2 or more",
         )?;
-        let resolution = self.resolution()?;
+        let mut resolution = self.resolution()?;
+        let layout = Layout::of(self.system);
+        let symmetric = is_odd(self.system, &layout, &parameters, omega, variable);
+        if symmetric && self.period == 1 {
+            resolution.parity = Parity::Odd;
+        }
         // Levels are affine in the parameters, so if they are in order at both ends, they are in between.
         let at_end = match variable {
             Variable::Omega => (parameters.clone(), to),
@@ -390,7 +396,7 @@ impl<'a> FrequencyResponse<'a> {
         Ok(Resolution {
             harmonics,
             core: CORE_AT_START * self.period,
-            odd: false,
+            parity: Parity::All,
             samples,
             aft: self.aft,
             period: self.period,

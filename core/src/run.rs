@@ -12,10 +12,12 @@ use crate::continuation::locate::locate;
 use crate::error::Error;
 use crate::follower::Follower;
 use crate::fourier::series;
-use crate::harmonics::resize;
-use crate::newton::{Newton, NewtonOptions};
+use crate::harmonics::{Chooser, resize};
+use crate::newton::Newton;
 use crate::reader::Reader;
 use crate::statistics::Statistics;
+use crate::symmetry::EvenBlock;
+use crate::truncation::BEYOND;
 
 /// The test function of a fold is driven below this.
 const FOLD_TOLERANCE: f64 = 1e-10;
@@ -31,7 +33,9 @@ pub(crate) struct Run<'f, 'a> {
     /// The size of the core that the first orbit asked for.
     least_core: usize,
     reader: Reader<'a>,
-    chooser: Option<crate::harmonics::Chooser>,
+    /// The even harmonics, where the orbits have none.
+    even: Option<EvenBlock<'a>>,
+    chooser: Option<Chooser>,
     /// The resolution asked for when the walk was halted.
     wanted: Resolution,
     /// The last point was refused and is to be read again.
@@ -52,6 +56,7 @@ impl<'f, 'a> Run<'f, 'a> {
             resolution,
             least_core: resolution.core,
             reader: follower.reader(resolution),
+            even: follower.even_block(resolution),
             chooser: follower.chooser.clone(),
             wanted: resolution,
             refused: false,
@@ -108,6 +113,7 @@ impl<'f, 'a> Run<'f, 'a> {
                 }
             }
             self.reader = self.follower.reader(self.resolution);
+            self.even = self.follower.even_block(self.resolution);
         }
     }
 
@@ -163,8 +169,11 @@ impl<'f, 'a> Run<'f, 'a> {
                     Continue::Continue(())
                 }
             }
-            Visit::Turn(before, behind) => {
-                self.turn(balance, newton, (before, behind), self.options.newton);
+            Visit::Between(before, behind) => {
+                if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
+                    self.turn(balance, newton, (before, behind));
+                }
+                self.watch(balance, newton, (before, behind));
                 Continue::Continue(())
             }
         }
@@ -197,14 +206,86 @@ impl<'f, 'a> Run<'f, 'a> {
             .with_harmonics(chosen.unwrap_or(harmonics), core);
     }
 
+    /// Locates where the even harmonics become singular between two symmetric orbits.
+    fn watch(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): (&CurvePoint, &CurvePoint),
+    ) {
+        let Some(even) = &mut self.even else {
+            return;
+        };
+        let (a, b) = (even.determinant(&before.u), even.determinant(&behind.u));
+        if a.0 * b.0 >= 0.0 {
+            return;
+        }
+        let largest = a.1.max(b.1);
+        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
+        let even = std::cell::RefCell::new(even);
+        let test = |point: &CurvePoint| relative(even.borrow_mut().determinant(&point.u));
+        let between = (before, behind);
+        let options = self.options.newton;
+        let located = locate(balance, newton, between, options, FOLD_TOLERANCE, test);
+        let Some(located) = located.filter(|located| located.vanishes) else {
+            return;
+        };
+        let u = &located.point.u;
+        let error = if self.reader.finer.correct(u, newton) {
+            let range = behind.parameter() - before.parameter();
+            self.symmetry_error(&located.point, 1e-4 * range)
+        } else {
+            f64::INFINITY
+        };
+        let point = self.reader.read(balance, newton, u);
+        self.events.push(Event {
+            kind: EventKind::SymmetryBreaking,
+            point,
+            error,
+            test: located.test,
+            after: self.points.len() - 1,
+        });
+    }
+
+    /// Estimated error of a symmetry-breaking point: where twice the harmonics, at the corrected orbit that `finer` holds, would
+    /// put it.
+    fn symmetry_error(&self, point: &CurvePoint, step: f64) -> f64 {
+        let finer = self.reader.finer.extended();
+        let fine = Resolution {
+            harmonics: 2 * self.resolution.harmonics,
+            ..self.resolution
+        };
+        let Some(mut even) = self.follower.even_block(fine) else {
+            return f64::INFINITY;
+        };
+        let coordinates = self.follower.system.facts().coordinates.len();
+        let length = series::length(fine.harmonics);
+        let mut at = |u: &[f64]| even.determinant(&resize(u, coordinates, length));
+        // The determinant along the tangent, by a central difference in the parameter.
+        let value = point.parameter();
+        let along = step / point.tangent[point.tangent.len() - 1];
+        let moved = |by: f64| -> Vec<f64> {
+            let pairs = finer
+                .iter()
+                .zip(resize(&point.tangent, coordinates, length));
+            pairs.map(|(x, t)| x + by * t).collect()
+        };
+        let (a, b, here) = (at(&moved(-along)), at(&moved(along)), at(finer));
+        let largest = a.1.max(b.1);
+        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
+        let slope = (relative(b) - relative(a)) / (2.0 * step);
+        let change = finer[finer.len() - 1] - value - relative(here) / slope;
+        BEYOND * change.abs() + 1e-12 * value.abs()
+    }
+
     /// Locates the fold between two points, or the jump that is there instead.
     fn turn(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         between: (&CurvePoint, &CurvePoint),
-        options: NewtonOptions,
     ) {
+        let options = self.options.newton;
         // The point behind the turn has been stored already.
         let after = self.points.len() - 1;
         let slope = CurvePoint::parameter_slope;

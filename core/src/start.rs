@@ -12,7 +12,7 @@
 //!
 //! An orbit of period `n` is found from the one of period one, disturbed in its lowest subharmonic.
 
-use crate::balance::{Balance, Resolution};
+use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::follow::{FollowOptions, Start, Visit, follow};
 use crate::continuation::problem::Problem;
 use crate::continuation::step::StepControl;
@@ -83,7 +83,11 @@ impl<'a> Fixed<'a> {
         // Without its harmonics a symmetric orbit has no unknowns; at rest there is but the mean.
         let resolution = Resolution {
             harmonics,
-            odd: request.resolution.odd && harmonics > 0,
+            parity: if harmonics > 0 {
+                request.resolution.parity
+            } else {
+                Parity::All
+            },
             ..request.resolution
         };
         let balance = Balance::new(

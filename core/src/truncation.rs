@@ -72,6 +72,11 @@ impl<'a> Finer<'a> {
         &self.orbit[..self.residual.len()]
     }
 
+    /// The same, extended by the parameter.
+    pub(crate) fn extended(&self) -> &[f64] {
+        &self.orbit
+    }
+
     /// Adds the tail to an orbit of the coarse balance. Returns the residual that is left in the coarse harmonics,
     /// extended by a zero; `None` if the mass matrix is singular or the residual is not finite.
     pub(crate) fn add_tail(&mut self, u: &[f64], newton: &mut Newton) -> Option<&mut [f64]> {

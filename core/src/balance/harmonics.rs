@@ -1,7 +1,7 @@
 //! Which harmonics are unknowns, and how their equations are coupled.
 
-use super::Resolution;
 use super::blocks::places;
+use super::{Parity, Resolution};
 use crate::fourier::series;
 use crate::jacobian::Partition;
 
@@ -19,13 +19,17 @@ impl Harmonics {
         let Resolution {
             harmonics,
             core,
-            odd,
+            parity,
             ..
         } = resolution;
-        let step = if odd { 2 } else { 1 };
-        let (core, tail) = (usize::from(odd)..=harmonics)
+        let (first, step) = match parity {
+            Parity::All => (0, 1),
+            Parity::Odd => (1, 2),
+            Parity::Even => (0, 2),
+        };
+        let (core, tail) = (first..=harmonics)
             .step_by(step)
-            .partition(|&k| k <= core || k == usize::from(odd));
+            .partition(|&k| k <= core.max(first));
         Self { core, tail }
     }
 

@@ -42,6 +42,17 @@ use contacts::Scratch;
 use harmonics::Harmonics;
 pub(crate) use terms::{gap_series, rate_series};
 
+/// Which harmonics are unknowns; the others are zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parity {
+    /// All.
+    All,
+    /// Those of an orbit with odd symmetry.
+    Odd,
+    /// Those that break it.
+    Even,
+}
+
 /// How finely an orbit is represented.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Resolution {
@@ -49,8 +60,8 @@ pub struct Resolution {
     pub harmonics: usize,
     /// The equations of harmonics up to this one are coupled densely, those above each by themselves.
     pub core: usize,
-    /// Odd harmonics only.
-    pub odd: bool,
+    /// Which harmonics are unknowns.
+    pub parity: Parity,
     /// Samples of one period of the orbit, for methods that sample.
     pub samples: usize,
     /// How contact forces are found.

@@ -157,8 +157,8 @@ pub(crate) enum Outcome {
 }
 
 /// Follows the curve until the parameter reaches `to`, calling `visit` at every point in order. The factors that Newton's
-/// method holds then are those of the point. Where the slope of the parameter changes its sign, `visit` is called once more
-/// with both points. A walk that was resized visits its point again.
+/// method holds then are those of the point. Then it is called with the step that led there. A walk that was resized visits its
+/// point again.
 pub(crate) fn follow<P: Problem>(
     problem: &mut P,
     newton: &mut Newton,
@@ -190,8 +190,7 @@ pub(crate) fn follow<P: Problem>(
             return Ok(walk.halted(halt, point, previous, first, count, stop));
         }
         if let Some(from) = &previous
-            && (point.parameter_slope() < 0.0) != (from.parameter_slope() < 0.0)
-            && visit(problem, newton, Visit::Turn(from, &point)).is_break()
+            && visit(problem, newton, Visit::Between(from, &point)).is_break()
         {
             return stopped(Stop::Interrupted);
         }
@@ -232,8 +231,8 @@ pub(crate) enum Visit<'a> {
     Point(&'a CurvePoint),
     /// The last point again, with another number of unknowns.
     Again(&'a CurvePoint),
-    /// The parameter turns between these two points.
-    Turn(&'a CurvePoint, &'a CurvePoint),
+    /// The step between these two points.
+    Between(&'a CurvePoint, &'a CurvePoint),
 }
 
 /// A walk that has its first point.

@@ -1,0 +1,102 @@
+//! Odd symmetry, and where a branch loses it.
+//!
+//! Let `S` take an orbit `q(tau)` to `-q(tau + pi)`. If `S` takes solutions of the system to solutions, there are solutions
+//! with `q = S q`, which have odd harmonics only. It does if, besides odd loads and even waves of the stiffness, every contact
+//! either has an odd law, even waves of its directions and odd ones of its offset (then `S` turns the gap's sign), or odd waves
+//! of its directions and even ones of its offset (then `S` keeps the gap).
+//!
+//! At a symmetric solution the Jacobian falls apart into a block of the odd and one of the even harmonics. Where the determinant
+//! of the even block changes its sign, a branch of solutions without the symmetry crosses: a symmetry-breaking branch point.
+//!
+//! Source: Swift and Wiesenfeld (1984), Suppression of period doubling in symmetric systems (the symmetry `S`); Golubitsky,
+//! Stewart and Schaeffer (1988), Singularities and Groups in Bifurcation Theory II, chapter XIII (block structure).
+
+use crate::balance::{Balance, Parity, Resolution};
+use crate::continuation::problem::Problem;
+use crate::jacobian::Jacobian;
+use crate::layout::{ContactLayout, Layout, Term};
+use crate::system::{System, Variable, Wave};
+
+/// Whether solutions with odd harmonics only exist, whatever the value of the variable.
+pub(crate) fn is_odd(
+    system: &dyn System,
+    layout: &Layout,
+    parameters: &[f64],
+    omega: f64,
+    variable: Variable,
+) -> bool {
+    let mut values = vec![0.0; layout.coefficients];
+    let mut slopes = values.clone();
+    system.coefficients(parameters, omega, &mut values);
+    system.coefficients_by(variable, parameters, omega, &mut slopes);
+    let counts = |coefficient: usize| values[coefficient] != 0.0 || slopes[coefficient] != 0.0;
+    let odd = |wave: Wave| wave.harmonic % 2 == 1;
+    let load = layout.load.iter().filter(|entry| counts(entry.coefficient));
+    let stiffness = layout
+        .stiffness
+        .iter()
+        .filter(|entry| counts(entry.coefficient));
+    let contact = |contact: &ContactLayout| {
+        let all = |terms: &[Term], parity: bool| {
+            let mut terms = terms.iter().filter(|term| counts(term.coefficient));
+            terms.all(|term| odd(term.wave) == parity)
+        };
+        let turned = system.law(contact.law).facts().odd
+            && all(&contact.gap, false)
+            && all(&contact.force, false)
+            && all(&contact.offset, true);
+        let kept =
+            all(&contact.gap, true) && all(&contact.force, true) && all(&contact.offset, false);
+        turned || kept
+    };
+    load.into_iter().all(|entry| odd(entry.wave))
+        && stiffness.into_iter().all(|entry| !odd(entry.wave))
+        && layout.contacts.iter().all(contact)
+}
+
+/// The even harmonics at orbits that have none.
+#[derive(Debug)]
+pub(crate) struct EvenBlock<'a> {
+    balance: Balance<'a>,
+    jacobian: Jacobian,
+    residual: Vec<f64>,
+    border: Vec<f64>,
+}
+
+impl<'a> EvenBlock<'a> {
+    /// For orbits of a balance of the odd harmonics.
+    pub(crate) fn new(
+        system: &'a dyn System,
+        parameters: &[f64],
+        omega: f64,
+        variable: Variable,
+        resolution: Resolution,
+    ) -> Self {
+        // Nothing is left out of the block: its determinant is what counts.
+        let resolution = Resolution {
+            parity: Parity::Even,
+            core: resolution.harmonics,
+            ..resolution
+        };
+        let balance = Balance::new(system, parameters, omega, variable, resolution);
+        let n = balance.unknowns();
+        let mut border = vec![0.0; n + 1];
+        border[n] = 1.0;
+        Self {
+            jacobian: Jacobian::new(balance.partition()),
+            residual: vec![0.0; n],
+            border,
+            balance,
+        }
+    }
+
+    /// The determinant of the block at an orbit: its sign, and the logarithm of its size. The sign is zero if the block is
+    /// singular.
+    pub(crate) fn determinant(&mut self, u: &[f64]) -> (f64, f64) {
+        self.jacobian.clear();
+        self.balance
+            .evaluate(u, &mut self.residual, Some(&mut self.jacobian));
+        self.jacobian.set_border(&self.border);
+        self.jacobian.determinant()
+    }
+}
