@@ -22,7 +22,7 @@ fn a_missing_end_is_named() {
             "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`",
         ),
     ] {
-        let error = request.run().err().expect("something is missing");
+        let error = request.run().expect_err("something is missing");
         assert_eq!(error.to_string(), expected);
     }
 }

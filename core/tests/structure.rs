@@ -237,7 +237,7 @@ fn a_parameter_is_varied_within_the_ranges_of_what_it_is_passed_for() {
     assert_eq!(vary(&structure), refused);
     structure.set("n", 1.0).expect("there is one");
     let request = FrequencyResponse::of(&structure).from(0.8).to(0.9);
-    let error = request.run().err().expect("`n` is too small");
+    let error = request.run().expect_err("`n` is too small");
     assert_eq!(
         error.to_string(),
         "parameter n = 1 is outside its range [2, 3]"

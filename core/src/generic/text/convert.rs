@@ -122,7 +122,11 @@ fn facts(member: Member) -> LawFacts {
 
 fn arguments(law: &ir::Law) -> Cow<'static, [ArgumentFacts]> {
     let unbounded = (ir::Bound::Unbounded, ir::Bound::Unbounded);
-    let ranges = law.ranges.iter().copied().chain(std::iter::repeat(unbounded));
+    let ranges = law
+        .ranges
+        .iter()
+        .copied()
+        .chain(std::iter::repeat(unbounded));
     let arguments = law.arguments.iter().cloned().zip(ranges);
     arguments
         .map(|(name, (minimum, maximum))| ArgumentFacts {
