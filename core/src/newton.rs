@@ -230,7 +230,7 @@ impl Newton {
                 subtract(u, &self.update, 1.0);
                 let ratio = size / previous;
                 renew = if previous.is_finite() {
-                    ratio > CHORD && !(renewed && !self.jacobian.is_exact())
+                    ratio > CHORD && (self.jacobian.is_exact() || !renewed)
                 } else {
                     size > CHORD_START
                 };
@@ -324,7 +324,7 @@ impl Newton {
             unscale(&self.norm, self.scale, &mut self.update);
             let change = self.norm.length(self.scale, &self.update);
             // Core and tail may take turns, so that every other change is the larger one.
-            if !(change < 4.0 * before.max(previous)) {
+            if change.is_nan() || change >= 4.0 * before.max(previous) {
                 return;
             }
             subtract(tangent, &self.update, 1.0);

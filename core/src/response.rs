@@ -64,6 +64,7 @@ pub struct FrequencyResponse<'a> {
     period: usize,
     tolerance: f64,
     max_points: usize,
+    largest_step: f64,
     stability: bool,
 }
 
@@ -93,6 +94,7 @@ impl<'a> FrequencyResponse<'a> {
             period: 1,
             tolerance: 1e-6,
             max_points: 20_000,
+            largest_step: StepControl::default().largest,
             stability: true,
         }
     }
@@ -169,6 +171,14 @@ impl<'a> FrequencyResponse<'a> {
     #[must_use]
     pub fn stability(mut self, wanted: bool) -> Self {
         self.stability = wanted;
+        self
+    }
+
+    /// Largest step along the branch, where one is as much as the size of the orbit, or the whole range. Default: 0.1; the
+    /// part of the range in one step is at most 0.15 of it. Steps are shorter where the branch bends.
+    #[must_use]
+    pub fn largest_step(mut self, step: f64) -> Self {
+        self.largest_step = step;
         self
     }
 
@@ -293,7 +303,13 @@ impl<'a> FrequencyResponse<'a> {
             iterations: 12,
             damped: false,
         };
-        let steps = StepControl::default();
+        validate::option(
+            "largest_step",
+            self.largest_step,
+            1e-6..=1.0,
+            "must be from 1e-6 to 1",
+        )?;
+        let steps = StepControl::with_largest(self.largest_step);
         let options = FollowOptions {
             from,
             to,

@@ -209,6 +209,8 @@ fn check_point(point: &Value) {
         "contact_fraction",
         "peak_force",
         "dissipated_power",
+        "harmonics",
+        "error",
     ];
     assert!(numbers(point, &names).all(f64::is_finite));
     let stability = point["stability"].as_str().expect("a verdict");

@@ -54,7 +54,7 @@ impl CurvePoint {
 pub enum Stop {
     /// The parameter reached the end of its range.
     ReachedEnd,
-    /// The branch turned back and left the range where it had begun.
+    /// The branch turned back and left the range where it had passed.
     LeftAtStart,
     /// The branch closed upon itself.
     Closed,
@@ -173,10 +173,10 @@ pub(crate) fn follow<P: Problem>(
         mut point,
         mut first,
         mut previous,
-        begun,
+        passed,
         ended,
     } = Walk::begin(problem, newton, start, options)?;
-    let mut count = begun;
+    let mut count = passed;
     let mut stop = ended;
     let mut again = resumed;
     loop {
@@ -241,7 +241,7 @@ struct Begun {
     point: CurvePoint,
     first: CurvePoint,
     previous: Option<CurvePoint>,
-    begun: usize,
+    passed: usize,
     ended: Option<Stop>,
 }
 
@@ -294,7 +294,7 @@ impl Walk {
                     first: point.clone(),
                     point,
                     previous: None,
-                    begun: 0,
+                    passed: 0,
                     ended: None,
                 })
             }
@@ -317,7 +317,7 @@ impl Walk {
                     point,
                     first,
                     previous,
-                    begun: count,
+                    passed: count,
                     ended,
                 })
             }

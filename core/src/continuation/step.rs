@@ -31,6 +31,17 @@ impl Default for StepControl {
 }
 
 impl StepControl {
+    /// The default with another largest step, and what follows from it.
+    pub(crate) fn with_largest(largest: f64) -> Self {
+        let default = Self::default();
+        Self {
+            initial: default.initial.min(largest),
+            largest,
+            range: default.range / default.largest * largest,
+            ..default
+        }
+    }
+
     /// A step that turned by this angle is tried again, unless it is already short: a kink keeps its angle at any length.
     pub(crate) fn turns_too_far(&self, angle: f64, step: f64) -> bool {
         angle > 3.0 * self.angle && step > 1e-4

@@ -111,7 +111,7 @@ impl Grading {
 
 /// The power that makes an end with these exponents analytic, or else smooth enough: one if all are whole already. The flag
 /// says that a logarithm comes with the power.
-pub(crate) fn power_for(exponents: impl Iterator<Item = (f64, bool)> + Clone) -> u32 {
+pub(crate) fn power_for(exponents: &(impl Iterator<Item = (f64, bool)> + Clone)) -> u32 {
     let singular =
         |(exponent, logarithm): (f64, bool)| logarithm || exponent < 0.0 || exponent.fract() != 0.0;
     if !exponents.clone().any(singular) {
@@ -181,14 +181,14 @@ mod tests {
 
     #[test]
     fn powers_make_exponents_whole() {
-        let power = |exponents: &[f64]| power_for(exponents.iter().map(|e| (*e, false)));
+        let power = |exponents: &[f64]| power_for(&exponents.iter().map(|e| (*e, false)));
         assert_eq!(power(&[1.0, 2.0, 0.0]), 1);
         assert_eq!(power(&[1.5, 0.5, 1.0]), 2);
         assert_eq!(power(&[0.6, -0.4]), 5);
         assert_eq!(power(&[1.0 / 3.0, -2.0 / 3.0]), 3);
         assert_eq!(power(&[0.31, -0.69]), 14);
         assert_eq!(power(&[2.37, 1.37]), 3);
-        assert_eq!(power_for([(1.5, true)].into_iter()), 2);
+        assert_eq!(power_for(&[(1.5, true)].into_iter()), 2);
         assert_eq!(power(&[]), 1);
     }
 }

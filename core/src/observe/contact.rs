@@ -90,6 +90,8 @@ impl ContactReader {
             motion.count += usize::from(now && !before);
             before = now;
         }
+        // The panels of contact that is never lost add up to the period but for rounding.
+        motion.fraction = motion.fraction.min(1.0);
         motion
     }
 

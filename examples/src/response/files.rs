@@ -7,7 +7,7 @@ use std::path::Path;
 use super::records::{PointRecord, Record};
 
 /// Columns of the CSV file; each multiplier has two.
-pub const COLUMNS: [&str; 16] = [
+pub const COLUMNS: [&str; 18] = [
     "omega",
     "drive",
     "peak_to_peak",
@@ -24,6 +24,8 @@ pub const COLUMNS: [&str; 16] = [
     "contacts",
     "peak_force",
     "dissipated_power",
+    "harmonics",
+    "error",
 ];
 
 /// Whether a file can be written there, as far as can be told without touching it.
@@ -95,5 +97,7 @@ fn row(point: &PointRecord) -> Vec<String> {
         point.contacts.to_string(),
         number(point.peak_force),
         number(point.dissipated_power),
+        point.harmonics.to_string(),
+        point.error.map_or(String::new(), number),
     ]
 }

@@ -49,6 +49,8 @@ pub struct PointRecord {
     pub multipliers: Vec<[f64; 2]>,
     /// Number of harmonics of the orbit.
     pub harmonics: usize,
+    /// Estimated relative error of peak-to-peak.
+    pub error: Option<f64>,
     /// Amplitudes of the harmonics, the mean first.
     pub amplitudes: Vec<f64>,
     /// Phase lags of the harmonics, the mean's zero first.
@@ -162,6 +164,7 @@ impl PointRecord {
             stability: point.stability.verdict.to_string(),
             multipliers: multipliers.map(|m| [m.re, m.im]).collect(),
             harmonics: point.orbit.harmonics(),
+            error: point.error,
             amplitudes: amplitudes(series),
             phases: phases(series),
             contact_fraction: contact.map_or(1.0, |contact| contact.fraction),

@@ -3,9 +3,9 @@
 use std::fmt::{self, Write};
 use std::path::Path;
 
-use hertzian::{Branch, Point, Verdict};
+use hertzian::{Branch, EventKind, Point, Verdict};
 
-use super::options::{Options, Sweep};
+use super::options::{Aft, Options, Sweep};
 
 /// As many folds, turns and changes of stability are listed one by one; more of them are counted.
 const LISTED: usize = 6;
@@ -129,14 +129,20 @@ fn equation(text: &mut String, options: &Options) -> fmt::Result {
 fn range(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
     let ends = branch.points.first().zip(branch.points.last());
     if let Some((first, last)) = ends {
+        let all = || branch.points.iter().map(|point| point.orbit.harmonics());
+        let (least, most) = (all().min().unwrap_or(0), all().max().unwrap_or(0));
+        let harmonics = if least == most {
+            format!("{most}")
+        } else {
+            format!("{least} to {most}")
+        };
         writeln!(
             text,
-            "points     {}, {} from {:.6} to {:.6}, {} harmonics",
+            "points     {}, {} from {:.6} to {:.6}, {harmonics} harmonics",
             branch.points.len(),
             branch.varied,
             first.value,
             last.value,
-            first.orbit.harmonics(),
         )?;
     }
     writeln!(text, "ended      {}", branch.stopped)
@@ -159,6 +165,17 @@ fn folds(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
         )
     });
     list(text, "turn", turns)?;
+    let broken = branch
+        .events
+        .iter()
+        .filter(|event| event.kind == EventKind::SymmetryBreaking)
+        .map(|event| {
+            format!(
+                "{} {:.9} (error {:.0e}), broken: a branch without it crosses",
+                branch.varied, event.point.value, event.error
+            )
+        });
+    list(text, "symmetry", broken)?;
     if branch.folds().next().is_none() && branch.turns.is_empty() {
         writeln!(text, "folds      none")?;
     }
@@ -216,7 +233,9 @@ fn list(text: &mut String, label: &str, entries: impl Iterator<Item = String>) -
 
 /// What sampling does to a force that is not smooth.
 fn caution(text: &mut String, options: &Options) -> fmt::Result {
-    let reason = if options.loses_contact() {
+    let reason = if options.aft == Aft::Switched {
+        return Ok(());
+    } else if options.loses_contact() {
         "damping switches with contact"
     } else if options.model.is_none() && options.alpha < 1.0 {
         "the stiffness is unbounded at x = 0"

@@ -47,7 +47,7 @@ impl Affine {
         };
         let point = series::value(input.gap, 0.5 * (first.start + first.end));
         let form = Form::of(input, piece, point);
-        if panels.clone().any(|panel| panel.is_period()) {
+        if panels.clone().any(Panel::is_period) {
             add_everywhere(input, form, piece, point, sums);
             return;
         }

@@ -92,6 +92,24 @@ impl<'s> Changing<'s> {
     }
 }
 
+/// What is wanted at the nodes.
+#[derive(Clone, Copy)]
+enum Wanted<'s> {
+    Force,
+    Slopes,
+    /// The slopes, and what the parameter changes.
+    Changes(Changing<'s>),
+}
+
+impl Wanted<'_> {
+    fn of<'s>(sums: &Sums<'s>) -> Wanted<'s> {
+        match &sums.slopes {
+            None => Wanted::Force,
+            Some(slopes) => slopes.change.map_or(Wanted::Slopes, Wanted::Changes),
+        }
+    }
+}
+
 impl<'s> Slopes<'s> {
     /// Derivatives of the arguments by the parameter; empty if none is asked for.
     fn arguments(&self) -> &'s [f64] {

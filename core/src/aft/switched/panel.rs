@@ -13,7 +13,7 @@
 //! Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8 (decay of coefficients).
 
 use super::cut::{End, Panel};
-use super::{Changing, Sums};
+use super::{Changing, Sums, Wanted};
 use crate::aft::ContactInput;
 use crate::fourier::gauss::{self, Rule};
 use crate::fourier::grading::{Grading, power_for};
@@ -198,12 +198,7 @@ impl Quadrature {
         let largest = gauss::COUNTS[gauss::COUNTS.len() - 1] as f64;
         while wanted <= largest || depth == 0 {
             let rule = self.place(start, end, grading, wanted.ceil() as usize);
-            self.evaluate(
-                input,
-                piece,
-                sums.slopes.as_ref().map(|s| s.change),
-                &stretch,
-            );
+            self.evaluate(input, piece, Wanted::of(sums), &stretch);
             let count = self.rules[rule].count as f64;
             if depth == 0 || self.is_resolved(rule, count, degrees, demand, sums) {
                 self.sum_up(input, piece, sums);
@@ -316,12 +311,12 @@ impl Quadrature {
         })
     }
 
-    /// The law at the nodes; its slopes too where there is a place for the parameter's change.
+    /// The law at the nodes, as far as wanted.
     fn evaluate(
         &mut self,
         input: ContactInput<'_>,
         piece: usize,
-        slopes: Option<Option<Changing<'_>>>,
+        wanted: Wanted<'_>,
         stretch: &Stretch,
     ) {
         evaluate(
@@ -333,11 +328,15 @@ impl Quadrature {
         );
         self.sharpen(input, stretch);
         let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
-        let Some(changing) = slopes else {
-            input
-                .law
-                .force(on, input.arguments, gap, rate, &mut self.force);
-            return;
+        let changing = match wanted {
+            Wanted::Force => {
+                input
+                    .law
+                    .force(on, input.arguments, gap, rate, &mut self.force);
+                return;
+            }
+            Wanted::Slopes => None,
+            Wanted::Changes(changing) => Some(changing),
         };
         let mut changing = changing.into_iter().flat_map(Changing::arguments);
         let out = Derivatives {
@@ -492,7 +491,7 @@ pub(super) fn power_at(
         crate::law::Quantity::ByArgument(index) => changing.get(index).is_some_and(|by| *by != 0.0),
         _ => true,
     });
-    power_for(terms.map(|term| {
+    power_for(&terms.map(|term| {
         let exponent = if upper { term.upper } else { term.lower };
         (exponent.value(arguments), term.logarithm)
     }))

@@ -4,7 +4,7 @@
 //! exponentially (Trefethen and Weideman (2014), The exponentially convergent trapezoidal rule). The samples are doubled until
 //! the upper end of the spectrum has fallen to rounding, or to the largest number.
 
-use super::{Changing, Sums};
+use super::{Changing, Sums, Wanted};
 use crate::aft::ContactInput;
 use crate::fourier::sampled::SampledTransform;
 use crate::fourier::series;
@@ -45,8 +45,7 @@ impl Whole {
         loop {
             let index = self.grid(samples);
             let grid = &mut self.grids[index];
-            let slopes = sums.slopes.as_ref().map(|slopes| slopes.change);
-            if grid.evaluate(input, piece, slopes) || samples >= MOST.max(least) {
+            if grid.evaluate(input, piece, Wanted::of(sums)) || samples >= MOST.max(least) {
                 grid.add(sums);
                 return;
             }
@@ -83,20 +82,19 @@ impl Grid {
     }
 
     /// The law at all samples. Returns whether the samples suffice.
-    fn evaluate(
-        &mut self,
-        input: ContactInput<'_>,
-        piece: usize,
-        slopes: Option<Option<Changing<'_>>>,
-    ) -> bool {
+    fn evaluate(&mut self, input: ContactInput<'_>, piece: usize, wanted: Wanted<'_>) -> bool {
         self.transform.sample(input.gap, &mut self.gap);
         self.transform.sample(input.rate, &mut self.rate);
         let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
-        let Some(changing) = slopes else {
-            input
-                .law
-                .force(on, input.arguments, gap, rate, &mut self.force);
-            return self.transform.is_resolved(&self.force, RESOLVED);
+        let changing = match wanted {
+            Wanted::Force => {
+                input
+                    .law
+                    .force(on, input.arguments, gap, rate, &mut self.force);
+                return self.transform.is_resolved(&self.force, RESOLVED);
+            }
+            Wanted::Slopes => None,
+            Wanted::Changes(changing) => Some(changing),
         };
         let out = Derivatives {
             force: &mut self.force,
