@@ -134,16 +134,18 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
-    /// Relative accuracy asked of peak-to-peak. Default: 1e-6. Harmonics, samples and the tolerance of Newton's method
-    /// follow from it.
+    /// Relative accuracy asked of peak-to-peak. Default: 1e-6. Harmonics and the tolerance of Newton's method follow from it.
+    /// Harmonics are chosen at every point such that its estimated error, [`Point::error`], is below the tolerance; at most 150
+    /// for each period of the excitation.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
     }
 
-    /// Harmonics of the base frequency, which is omega over the divisor of the declaration (one, unless it has fractions of
-    /// omega), for an orbit of period one; an orbit of period `n` has `n` times as many. Default: 20 times the divisor at the
+    /// The same number of harmonics at every point, whatever the tolerance. They are harmonics of the base frequency, which is
+    /// omega over the divisor of the declaration (one, unless it has fractions of omega), for an orbit of period one; an orbit of
+    /// period `n` has `n` times as many. Default: chosen by the tolerance; where the force is sampled, 20 times the divisor at the
     /// default tolerance, twice as many for every two digits more, and between 5 and 100.
     #[must_use]
     pub fn harmonics(mut self, harmonics: usize) -> Self {
@@ -158,8 +160,8 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
-    /// Samples per excitation period, for the methods that sample. Default: at least 200 per harmonic, a power of two. The derivative of a force like
-    /// `g^1.5` has a kink where contact begins; folds feel it as the power -1.5 of the samples.
+    /// Samples per excitation period, for the methods that sample. Default: at least 200 per harmonic, a power of two. The
+    /// derivative of a force like `g^1.5` has a kink where contact begins; folds feel it as the power -1.5 of the samples.
     #[must_use]
     pub fn samples(mut self, samples: usize) -> Self {
         self.samples = Some(samples);

@@ -4,3 +4,4 @@ pub(crate) mod follow;
 pub(crate) mod locate;
 pub mod problem;
 pub(crate) mod step;
+mod walk;

@@ -1,0 +1,405 @@
+//! One step after the other along a curve: the state behind [`follow`](super::follow::follow).
+//!
+//! Numbers of equations are those of [`follow`](super::follow).
+
+use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
+use super::problem::{Problem, Scale};
+use crate::newton::{Border, Newton, NewtonError};
+
+/// A walk that has its first point.
+pub(super) struct Begun {
+    pub(super) walk: Walk,
+    pub(super) point: CurvePoint,
+    pub(super) first: CurvePoint,
+    pub(super) previous: Option<CurvePoint>,
+    pub(super) passed: usize,
+    pub(super) ended: Option<Stop>,
+}
+
+/// State of a walk along a curve; its buffers are reused.
+pub(super) struct Walk {
+    options: FollowOptions,
+    step: f64,
+    border: Vec<f64>,
+    trial: Vec<f64>,
+    scale: Scale,
+    /// Largest oscillation and mean so far.
+    largest: [f64; 2],
+    /// The point before the one from which the next step goes, where the curve between them was smooth.
+    before: Option<Vec<f64>>,
+    /// Half the second derivative by arc length of the curve there.
+    bend: Vec<f64>,
+}
+
+impl Walk {
+    fn new(problem: &impl Problem, options: FollowOptions, u: Vec<f64>) -> Self {
+        let parameter = (options.to - options.from).abs();
+        Self {
+            options,
+            step: options.steps.initial,
+            border: vec![0.0; problem.unknowns() + 1],
+            trial: u,
+            scale: Scale {
+                parameter,
+                ..Scale::UNIT
+            },
+            largest: [0.0; 2],
+            before: None,
+            bend: vec![0.0; problem.unknowns() + 1],
+        }
+    }
+
+    /// Finds the first point, or corrects the one where a walk was halted.
+    pub(super) fn begin<P: Problem>(
+        problem: &mut P,
+        newton: &mut Newton,
+        start: Start,
+        options: FollowOptions,
+    ) -> Result<Begun, NewtonError> {
+        match start {
+            Start::Near(u) => {
+                let mut walk = Self::new(problem, options, u);
+                let point = walk.first(problem, newton)?;
+                Ok(Begun {
+                    walk,
+                    first: point.clone(),
+                    point,
+                    previous: None,
+                    passed: 0,
+                    ended: None,
+                })
+            }
+            Start::At(halted) => {
+                let Halted {
+                    point,
+                    previous,
+                    before,
+                    first,
+                    step,
+                    largest,
+                    count,
+                    ended,
+                } = *halted;
+                let mut walk = Self::new(problem, options, point.u.clone());
+                (walk.step, walk.largest, walk.before) = (step, largest, before);
+                let point = walk.again(problem, newton, &point, ended.is_some())?;
+                Ok(Begun {
+                    walk,
+                    point,
+                    first,
+                    previous,
+                    passed: count,
+                    ended,
+                })
+            }
+        }
+    }
+
+    /// Corrects a point of another number of unknowns, in the plane across its tangent; at an end of the range, there.
+    fn again<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        point: &CurvePoint,
+        at_end: bool,
+    ) -> Result<CurvePoint, NewtonError> {
+        self.scale = point.scale;
+        if at_end || point.parameter() == self.options.from {
+            self.solve_at(problem, newton, point.parameter())?;
+        } else {
+            newton
+                .norm()
+                .linear_form(point.scale, &point.tangent, &mut self.border);
+            let border = Border {
+                row: &self.border,
+                value: crate::linear::dot(&self.border, &point.u),
+            };
+            let options = self.options.newton;
+            newton.correct(problem, &mut self.trial, border, self.scale, options)?;
+        }
+        let mut again = self.point(problem, newton);
+        if newton
+            .norm()
+            .product(point.scale, &again.tangent, &point.tangent)
+            < 0.0
+        {
+            for t in &mut again.tangent {
+                *t = -*t;
+            }
+        }
+        Ok(again)
+    }
+
+    pub(super) fn halted(
+        &self,
+        halt: Halt,
+        point: CurvePoint,
+        previous: Option<CurvePoint>,
+        first: CurvePoint,
+        count: usize,
+        ended: Option<Stop>,
+    ) -> Outcome {
+        if halt == Halt::Stop {
+            return Outcome::Stopped(Stop::Interrupted);
+        }
+        Outcome::Halted(Box::new(Halted {
+            point,
+            previous,
+            before: self.before.clone(),
+            first,
+            step: self.step,
+            largest: self.largest,
+            count,
+            ended,
+        }))
+    }
+
+    /// Solves at the first parameter and points the tangent towards the end of the range.
+    fn first<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+    ) -> Result<CurvePoint, NewtonError> {
+        self.scale = self.scale_at_trial(newton);
+        self.solve_at(problem, newton, self.options.from)?;
+        let mut point = self.point(problem, newton);
+        if point.parameter_slope() * (self.options.to - self.options.from) < 0.0 {
+            for t in &mut point.tangent {
+                *t = -*t;
+            }
+        }
+        Ok(point)
+    }
+
+    /// Solves from `trial` with the parameter held at a value.
+    fn solve_at<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        value: f64,
+    ) -> Result<(), NewtonError> {
+        let last = self.trial.len() - 1;
+        self.trial[last] = value;
+        self.border.fill(0.0);
+        self.border[last] = 1.0 / self.scale.parameter;
+        let border = Border {
+            row: &self.border,
+            value: value / self.scale.parameter,
+        };
+        newton.correct(
+            problem,
+            &mut self.trial,
+            border,
+            self.scale,
+            self.options.newton,
+        )?;
+        self.trial[last] = value;
+        Ok(())
+    }
+
+    /// The point at `trial`, with the tangent from the last matrix of the corrector.
+    fn point<P: Problem>(&mut self, problem: &mut P, newton: &mut Newton) -> CurvePoint {
+        let mut tangent = vec![0.0; self.trial.len()];
+        newton.tangent(problem, &self.trial, &mut tangent, false);
+        let scale = self.scale_at_trial(newton);
+        let norm = newton.norm().length(scale, &tangent);
+        for t in &mut tangent {
+            *t /= norm;
+        }
+        CurvePoint {
+            u: self.trial.clone(),
+            tangent,
+            scale,
+        }
+    }
+
+    fn scale_at_trial(&mut self, newton: &Newton) -> Scale {
+        newton
+            .norm()
+            .scale_at(&self.trial, self.scale.parameter, &mut self.largest)
+    }
+
+    /// One step, shortened until it succeeds.
+    pub(super) fn next<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        from: &CurvePoint,
+    ) -> Result<CurvePoint, Stop> {
+        self.bend_at(newton, from);
+        loop {
+            let result = self.corrected(problem, newton, from, self.step);
+            let reason = match result {
+                Ok((point, distance)) => {
+                    let cosine = newton
+                        .norm()
+                        .product(from.scale, &from.tangent, &point.tangent)
+                        / newton.norm().length(from.scale, &point.tangent);
+                    let angle = cosine.clamp(-1.0, 1.0).acos();
+                    if !self.options.steps.turns_too_far(angle, self.step) {
+                        newton.statistics.accepted_steps += 1;
+                        self.remember(from, angle);
+                        let slope = point.parameter_slope();
+                        self.step = self
+                            .options
+                            .steps
+                            .after_success(self.step, angle, distance, slope);
+                        return Ok(point);
+                    }
+                    None
+                }
+                Err(reason) => Some(reason),
+            };
+            newton.statistics.rejected_steps += 1;
+            self.bend.fill(0.0);
+            match (self.options.steps.after_failure(self.step), reason) {
+                (Some(shorter), _) => self.step = shorter,
+                (None, reason) => {
+                    let parameter = from.parameter();
+                    let reason = reason.unwrap_or(NewtonError::NotConverged {
+                        iterations: 0,
+                        update: self.step,
+                        residual: 0.0,
+                    });
+                    return Err(Stop::StepTooShort {
+                        step: self.step,
+                        parameter,
+                        reason,
+                    });
+                }
+            }
+        }
+    }
+
+    /// The parabola through the point before, and this one with its tangent: at arc length `-h` before,
+    /// `u_0 - h t_0 + h^2 b = u_(-1)`. Zero where there is none.
+    fn bend_at(&mut self, newton: &Newton, from: &CurvePoint) {
+        let Some(before) = self.before.take() else {
+            self.bend.fill(0.0);
+            return;
+        };
+        for (to, (x, y)) in self.bend.iter_mut().zip(before.iter().zip(&from.u)) {
+            *to = x - y;
+        }
+        let h = -newton.norm().product(from.scale, &from.tangent, &self.bend);
+        for (to, t) in self.bend.iter_mut().zip(&from.tangent) {
+            *to = (*to + h * t) / (h * h);
+        }
+        if !(h > 0.0 && self.bend.iter().all(|x| x.is_finite())) {
+            self.bend.fill(0.0);
+        }
+        self.before = Some(before);
+    }
+
+    /// Keeps a point for the next parabola, unless the curve turned sharply behind it.
+    fn remember(&mut self, from: &CurvePoint, angle: f64) {
+        if angle > self.options.steps.angle {
+            self.before = None;
+            return;
+        }
+        match &mut self.before {
+            Some(before) => before.copy_from_slice(&from.u),
+            None => self.before = Some(from.u.clone()),
+        }
+    }
+
+    /// The solution of (1) at arc length `step` from a point, and how far off the predictor was.
+    fn corrected<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        from: &CurvePoint,
+        step: f64,
+    ) -> Result<(CurvePoint, f64), NewtonError> {
+        self.scale = from.scale;
+        for (i, x) in self.trial.iter_mut().enumerate() {
+            *x = from.u[i] + step * (from.tangent[i] + step * self.bend[i]);
+        }
+        newton
+            .norm()
+            .linear_form(from.scale, &from.tangent, &mut self.border);
+        let value = crate::linear::dot(&self.border, &self.trial);
+        let border = Border {
+            row: &self.border,
+            value,
+        };
+        let converged = newton.correct(
+            problem,
+            &mut self.trial,
+            border,
+            self.scale,
+            self.options.newton,
+        )?;
+        Ok((self.point(problem, newton), converged.first))
+    }
+
+    /// If the step went beyond an end of the range, replaces its point by the one at the end.
+    pub(super) fn cut_at_range<P: Problem>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        from: &CurvePoint,
+        next: CurvePoint,
+    ) -> Result<(CurvePoint, Option<Stop>), Stop> {
+        let FollowOptions {
+            from: start,
+            to: end,
+            ..
+        } = self.options;
+        let forwards = (end - start).signum();
+        let (limit, stop) = if (next.parameter() - end) * forwards >= 0.0 {
+            (end, Stop::ReachedEnd)
+        } else if (next.parameter() - start) * forwards < 0.0 {
+            (start, Stop::LeftAtStart)
+        } else {
+            return Ok((next, None));
+        };
+        let part = (limit - from.parameter()) / (next.parameter() - from.parameter());
+        for (i, x) in self.trial.iter_mut().enumerate() {
+            *x = from.u[i] + part * (next.u[i] - from.u[i]);
+        }
+        self.scale = from.scale;
+        // A point beyond the range is never kept: the equations need not make sense there.
+        self.solve_at(problem, newton, limit)
+            .map_err(|reason| Stop::StepTooShort {
+                step: self.step,
+                parameter: from.parameter(),
+                reason,
+            })?;
+        let mut point = self.point(problem, newton);
+        if newton
+            .norm()
+            .product(point.scale, &point.tangent, &next.tangent)
+            < 0.0
+        {
+            for t in &mut point.tangent {
+                *t = -*t;
+            }
+        }
+        Ok((point, Some(stop)))
+    }
+
+    /// Whether the last step passed the first point in the first direction.
+    pub(super) fn closes(
+        &self,
+        newton: &Newton,
+        first: &CurvePoint,
+        from: &CurvePoint,
+        to: &CurvePoint,
+    ) -> bool {
+        let norm = newton.norm();
+        let along = |a: &CurvePoint| {
+            let difference: Vec<f64> = first.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
+            (
+                norm.product(first.scale, &difference, &first.tangent),
+                norm.length(first.scale, &difference),
+            )
+        };
+        let ((ahead, far), (behind, near)) = (along(from), along(to));
+        let step = far + near;
+        ahead > 0.0
+            && behind <= 0.0
+            && step < 2.0 * self.options.steps.largest
+            && norm.product(first.scale, &from.tangent, &first.tangent) > 0.9
+    }
+}
