@@ -1,18 +1,25 @@
 //! The chart of a branch.
 
-use crate::branch::{Branch, Point};
+use crate::branch::{Branch, EventKind, Point};
 use crate::chart::{Chart, Curve, Line, Markers, Run};
 use crate::stability::Verdict;
 
 impl Branch<'_> {
     /// Peak-to-peak of the first coordinate over what the branch varies: stable solid, unstable dashed, undecided
-    /// dotted; folds are marked, and so are turns that were not confirmed as folds. More can be added before it is written.
+    /// dotted; folds and symmetry-breaking points are marked, and so are turns that were not confirmed as folds. More can be
+    /// added before it is written.
     pub fn chart(&self) -> Chart {
         let coordinate = &self.follower.system.facts().coordinates[0];
         let folds = self
             .folds()
             .map(|fold| place(&fold.point))
             .collect::<Vec<_>>();
+        let broken = self
+            .events
+            .iter()
+            .filter(|event| event.kind == EventKind::SymmetryBreaking)
+            .map(|event| place(&event.point))
+            .collect();
         let turns = self.turns.iter().filter_map(|turn| {
             let [before, behind] = [
                 self.points.get(turn.after.checked_sub(1)?)?,
@@ -31,6 +38,10 @@ impl Branch<'_> {
             .markers(Markers {
                 label: "fold".to_owned(),
                 points: folds,
+            })
+            .markers(Markers {
+                label: "symmetry-breaking".to_owned(),
+                points: broken,
             })
             .markers(Markers {
                 label: "turn, unconfirmed".to_owned(),
