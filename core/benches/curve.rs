@@ -109,7 +109,7 @@ fn cheapest(method: Aft, switched: f64) {
     let (mut right, mut tried) = (0, 0);
     let mut best: Option<(f64, usize, usize)> = None;
     for harmonics in [5, 10, 20, 40] {
-        for power in 6..=16 {
+        for power in 6..=14 {
             let samples = 1_usize << power;
             if samples < 4 * harmonics + 2 {
                 continue;
@@ -156,7 +156,7 @@ fn cheapest(method: Aft, switched: f64) {
             1e3 * switched
         ),
         None => {
-            println!("{method:9} none of {tried} survives; {right} were within {ALLOWED:.0e} once")
+            println!("{method:9} none of {tried} survives; {right} were within {ALLOWED:.0e} once");
         }
     }
 }

@@ -293,16 +293,16 @@ mod tests {
         let mut next = |_| random.between(-1.0, 1.0);
         let mut jacobian = Jacobian::new(partition);
         for row in 0..=jacobian.partition.core.len() {
-            jacobian
-                .core
-                .row_mut(row)
-                .iter_mut()
-                .for_each(|x| *x = next(0));
+            for x in jacobian.core.row_mut(row) {
+                *x = next(0);
+            }
         }
         for group in 0..jacobian.groups.len() {
             for row in 0..jacobian.partition.group {
                 let entries = jacobian.group_mut(group).row_mut(row);
-                entries.iter_mut().for_each(|x| *x = next(0));
+                for x in entries.iter_mut() {
+                    *x = next(0);
+                }
                 entries[row] += 3.0;
             }
         }

@@ -271,7 +271,7 @@ mod tests {
         // Just above the level for an eightieth of the period: the force of cos tau - cos(pi / 80), exponent 1, no damping.
         let half: f64 = TAU / 160.0;
         let system = PowerForm::new(true, 1.0, 0.0, 1.0, 1.0);
-        for lag in [0.0, 0.013, 3.0, 6.28] {
+        for lag in [0.0, 0.013, 3.0, 6.2] {
             let gap = [-half.cos(), f64::cos(lag), f64::sin(lag)];
             let motion = read(system.law(0), &[0.0, 1.0], &gap);
             let peak = 1.0 - half.cos();

@@ -32,7 +32,7 @@ impl Case {
         self.system.law(0)
     }
 
-    fn rate(&self, gap: &[f64]) -> Vec<f64> {
+    fn rate(gap: &[f64]) -> Vec<f64> {
         let mut rate = gap.to_vec();
         crate::balance::rate_series(gap, BASE, &mut rate);
         rate
@@ -44,7 +44,7 @@ impl Case {
             law: self.law(),
             arguments,
             gap,
-            rate: &self.rate(gap),
+            rate: &Self::rate(gap),
             base: BASE,
         };
         aft.force(input, &mut force);
@@ -94,7 +94,7 @@ fn by_another_rule(case: &Case) -> Vec<f64> {
         ends.push(0.0);
     }
     ends.push(ends[0] + TAU);
-    let rate = case.rate(&case.gap);
+    let rate = Case::rate(&case.gap);
     let mut force = vec![0.0; case.gap.len()];
     let pieces = if found.is_empty() { 64 } else { 1 };
     for pair in ends.windows(2) {
@@ -178,7 +178,7 @@ fn slope_error(
     by_alpha: f64,
     step: f64,
 ) -> f64 {
-    let rate = case.rate(&case.gap);
+    let rate = Case::rate(&case.gap);
     let length = case.gap.len();
     let (mut force, mut by_parameter) = (vec![0.0; length], vec![0.0; length]);
     let (mut by_gap, mut by_rate) = (vec![0.0; 2 * length - 1], vec![0.0; 2 * length - 1]);
@@ -191,7 +191,7 @@ fn slope_error(
     };
     let change = Change {
         gap: direction,
-        rate: &case.rate(direction),
+        rate: &Case::rate(direction),
         arguments: &[0.0, by_alpha],
         base: 0.0,
     };
@@ -341,7 +341,7 @@ fn stiffness_near_grazing_agrees_with_another_rule() {
         };
         gap[0] += sign * distance - series::value(&gap, extremum.tau);
         let case = Case::new(index % 8 < 4, alpha, gap);
-        let rate = case.rate(&case.gap);
+        let rate = Case::rate(&case.gap);
         let length = case.gap.len();
         let (mut force, mut by_rate) = (vec![0.0; length], vec![0.0; 2 * length - 1]);
         let mut by_gap = vec![0.0; 2 * length - 1];
