@@ -57,8 +57,8 @@ impl PowerForm {
         ]
     }
 
-    /// Multipliers of the periodic orbit near a state, largest modulus first and positive imaginary part first.
-    pub fn multipliers(&self, mut x: f64, mut v: f64) -> [Complex<f64>; 2] {
+    /// The state of the periodic orbit near a state, by three steps of Newton's method.
+    pub fn periodic(&self, mut x: f64, mut v: f64) -> (f64, f64) {
         for _ in 0..3 {
             let [x1, v1, a, c, b, d] = self.flow(x, v);
             let (rx, rv) = (x1 - x, v1 - v);
@@ -66,6 +66,12 @@ impl PowerForm {
             x -= ((d - 1.0) * rx - b * rv) / determinant;
             v -= ((a - 1.0) * rv - c * rx) / determinant;
         }
+        (x, v)
+    }
+
+    /// Multipliers of the periodic orbit near a state, largest modulus first and positive imaginary part first.
+    pub fn multipliers(&self, x: f64, v: f64) -> [Complex<f64>; 2] {
+        let (x, v) = self.periodic(x, v);
         let [_, _, a, c, b, d] = self.flow(x, v);
         let mean = 0.5 * (a + d);
         let square = (0.5 * (a - d)).powi(2) + b * c;

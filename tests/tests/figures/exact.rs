@@ -55,3 +55,117 @@ pub const FIGURE_4A_LOAD_5: [Exact; 2] = [
         peak_to_peak: 2.52464397380281,
     },
 ];
+
+/// Figure 2a below its main resonance; omega from 0.2 to 0.7, orbits with odd symmetry.
+pub const FIGURE_2A_BELOW: [Exact; 2] = [
+    Exact {
+        omega: 0.241956653790653,
+        peak_to_peak: 0.82516070425166,
+    },
+    Exact {
+        omega: 0.252011071022547,
+        peak_to_peak: 0.74770373992845,
+    },
+];
+
+/// As 2a with alpha 0.6; omega from 0.66 to 1.4.
+pub const FIGURE_2B: [Exact; 2] = [
+    Exact {
+        omega: 0.704927892945083,
+        peak_to_peak: 13.95841092159222,
+    },
+    Exact {
+        omega: 1.320305358301798,
+        peak_to_peak: 0.16810907816816,
+    },
+];
+
+/// The same; omega from 0.37 to 0.66, orbits with odd symmetry. There is another pair of folds, see `FIGURE_2B_UNLISTED`.
+pub const FIGURE_2B_BELOW: [Exact; 6] = [
+    Exact {
+        omega: 0.396401365447262,
+        peak_to_peak: 0.08912386642737,
+    },
+    Exact {
+        omega: 0.400955186850763,
+        peak_to_peak: 0.07834108073471,
+    },
+    Exact {
+        omega: 0.401353864568085,
+        peak_to_peak: 0.08501365087996,
+    },
+    Exact {
+        omega: 0.457909272249307,
+        peak_to_peak: 0.052470322683,
+    },
+    Exact {
+        omega: 0.600295303778675,
+        peak_to_peak: 0.16365127739608,
+    },
+    Exact {
+        omega: 0.655311078341127,
+        peak_to_peak: 0.08855353862405,
+    },
+];
+
+/// One-sided, alpha 1, zeta 0.032, drive 0.1, load 1; omega from 0.6 to 1.4.
+pub const FIGURE_5A: [Exact; 2] = [
+    Exact {
+        omega: 0.715119549676419,
+        peak_to_peak: 6.57285386554094,
+    },
+    Exact {
+        omega: 0.96016367187857,
+        peak_to_peak: 2.03840168022514,
+    },
+];
+
+/// The same with alpha 1.5; omega from 0.6 to 1.6.
+pub const FIGURE_5B: [Exact; 2] = [
+    Exact {
+        omega: 0.685842253572486,
+        peak_to_peak: 8.49925607475378,
+    },
+    Exact {
+        omega: 1.144516913788162,
+        peak_to_peak: 1.42840466595153,
+    },
+];
+
+/// The same with alpha 0.6; omega from 0.5 to 1.2.
+pub const FIGURE_5C: [Exact; 4] = [
+    Exact {
+        omega: 0.631308249440869,
+        peak_to_peak: 6.70995724971599,
+    },
+    Exact {
+        omega: 0.765568492941199,
+        peak_to_peak: 2.5062453564083,
+    },
+    Exact {
+        omega: 0.845526217725541,
+        peak_to_peak: 2.04759428540706,
+    },
+    Exact {
+        omega: 0.849176252131873,
+        peak_to_peak: 2.2597031710872,
+    },
+];
+
+/// The larger folds of Fig. 5a in omega at 5, 10, 20, 40 and 80 harmonics, from an independent harmonic balance with contact
+/// forces integrated exactly (Galerkin's equations), to nine digits.
+pub const FIGURE_5A_GALERKIN: [(usize, f64); 5] = [
+    (5, 0.713765891),
+    (10, 0.714851667),
+    (20, 0.715089581),
+    (40, 0.715115544),
+    (80, 0.715119029),
+];
+
+/// Folds in drive of orbits of period two: one-sided, alpha 1, zeta 0.032, load 1, omega 1. From the closed-form flow between
+/// switches, in 60-digit arithmetic.
+pub const PERIOD_2_FOLDS: [f64; 2] = [0.2945288061872165, 2.009554757004068];
+
+/// Folds of Fig. 2b that the exact values do not list: a sweep with longer steps than they are apart passes over both. By
+/// this project, at 120 harmonics; the orbits in between are confirmed by direct integration.
+pub const FIGURE_2B_UNLISTED: [f64; 2] = [0.6394528, 0.6401352];

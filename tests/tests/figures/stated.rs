@@ -1,0 +1,206 @@
+//! What is stated of the error of a fold, against its true error.
+
+use hertzian::{Event, FrequencyResponse};
+
+use crate::direct::PowerForm;
+use crate::exact::{Exact, FIGURE_2B_UNLISTED, PERIOD_2_FOLDS};
+use crate::models::{
+    FIGURE_2A, FIGURE_2A_BELOW, FIGURE_2B, FIGURE_2B_BELOW, FIGURE_4A_LOAD_1, FIGURE_4A_LOAD_5,
+    FIGURE_5A, FIGURE_5B, FIGURE_5C, Figure, OneSided,
+};
+
+/// The tolerance alone, and given harmonics.
+const HARMONICS: [Option<usize>; 5] = [None, Some(5), Some(10), Some(20), Some(40)];
+/// What is stated, times this, is to hold the true error of 95 % of the folds.
+const MARGIN: f64 = 3.0;
+
+/// A fold that was found: where, how many harmonics were asked for, true and stated error.
+struct Row {
+    curve: &'static str,
+    exact: f64,
+    harmonics: Option<usize>,
+    error: f64,
+    stated: f64,
+}
+
+impl Row {
+    fn holds(&self) -> bool {
+        self.error <= MARGIN * self.stated
+    }
+}
+
+impl std::fmt::Display for Row {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let harmonics = self
+            .harmonics
+            .map_or("-".to_owned(), |harmonics| harmonics.to_string());
+        write!(
+            f,
+            "{:10} {:.9} {harmonics:>4} {:9.1e} {:9.1e} {:7.2}",
+            self.curve,
+            self.exact,
+            self.error,
+            self.stated,
+            self.error / self.stated
+        )
+    }
+}
+
+/// The fold that is meant by an exact one: the nearest in value, of the same size within a tenth, and within 0.01 in value.
+/// `None` if there is none, as where harmonics are too few to know it.
+fn meant<'e>(folds: &'e [Event], exact: &Exact) -> Option<&'e Event> {
+    let far = |fold: &Event| (fold.point.value - exact.omega).abs();
+    folds
+        .iter()
+        .filter(|fold| (fold.point.peak_to_peak() / exact.peak_to_peak - 1.0).abs() < 0.1)
+        .filter(|fold| far(fold) < 0.01)
+        .min_by(|a, b| far(a).total_cmp(&far(b)))
+}
+
+/// Rows of one figure, and how many folds were missed.
+fn of_figure(figure: &Figure) -> (Vec<Row>, usize) {
+    let (mut rows, mut missed) = (Vec::new(), 0);
+    for harmonics in HARMONICS {
+        let folds = figure.folds(|request| match harmonics {
+            Some(harmonics) => request.harmonics(harmonics),
+            None => request,
+        });
+        for exact in figure.folds {
+            let Some(fold) = meant(&folds, exact) else {
+                println!(
+                    "{}: nothing at {} with {harmonics:?}",
+                    figure.name, exact.omega
+                );
+                // Seven oscillations of the orbit per period are more than five harmonics tell.
+                assert_eq!(harmonics, Some(5), "{} {exact:?} {folds:?}", figure.name);
+                missed += 1;
+                continue;
+            };
+            rows.push(Row {
+                curve: figure.name,
+                exact: exact.omega,
+                harmonics,
+                error: (fold.point.value - exact.omega).abs(),
+                stated: fold.error,
+            });
+        }
+    }
+    (rows, missed)
+}
+
+/// The folds of the orbits of period two in drive, each from the side that reaches it first.
+fn of_period_2() -> Vec<Row> {
+    let model = OneSided {
+        zeta: 0.032,
+        alpha: 1.0,
+        load: 1.0,
+        drive: 1.0,
+    };
+    let mut rows = Vec::new();
+    for harmonics in HARMONICS {
+        for (exact, from, to) in [(PERIOD_2_FOLDS[0], 1.0, 0.1), (PERIOD_2_FOLDS[1], 1.6, 2.2)] {
+            let request = FrequencyResponse::of(&model).vary("drive").omega(1.0);
+            let request = request.period(2).from(from).to(to).stability(false);
+            let request = match harmonics {
+                Some(harmonics) => request.harmonics(harmonics),
+                None => request,
+            };
+            let branch = request.run().unwrap();
+            let folds: Vec<_> = branch.folds().collect();
+            let [fold] = folds.as_slice() else {
+                panic!("{exact} at {harmonics:?}: {folds:?}");
+            };
+            rows.push(Row {
+                curve: "period 2",
+                exact,
+                harmonics,
+                error: (fold.point.value - exact).abs(),
+                stated: fold.error,
+            });
+        }
+    }
+    rows
+}
+
+#[test]
+fn the_true_error_is_at_most_three_times_the_stated_one() {
+    let figures = [
+        FIGURE_2B_BELOW,
+        FIGURE_2B,
+        FIGURE_2A,
+        FIGURE_2A_BELOW,
+        FIGURE_4A_LOAD_1,
+        FIGURE_4A_LOAD_5,
+        FIGURE_5A,
+        FIGURE_5B,
+        FIGURE_5C,
+    ];
+    let (first, others) = figures.split_at(1);
+    let (mut rows, missed) = std::thread::scope(|scope| {
+        let slowest = scope.spawn(|| of_figure(&first[0]));
+        let (mut rows, mut missed) = (of_period_2(), 0);
+        for figure in others {
+            let (more, misses) = of_figure(figure);
+            rows.extend(more);
+            missed += misses;
+        }
+        let (more, misses) = slowest.join().unwrap();
+        rows.extend(more);
+        (rows, missed + misses)
+    });
+    rows.sort_by(|a, b| a.curve.cmp(b.curve).then(a.exact.total_cmp(&b.exact)));
+    println!("curve      fold           K      true    stated   ratio");
+    for row in &rows {
+        println!("{row}");
+    }
+    let holding = rows.iter().filter(|row| row.holds()).count();
+    println!("{holding} of {} hold, {missed} missed", rows.len());
+    // A fold that is missed does not hold either.
+    let all = rows.len() + missed;
+    assert!(
+        holding as f64 >= 0.95 * all as f64,
+        "{holding} of {all}, {missed} missed"
+    );
+}
+
+/// A pair of folds of Fig. 2b, 0.0007 apart, that the exact values do not list: found, and confirmed by direct
+/// integration of the three orbits in between.
+#[test]
+fn figure_2b_has_another_pair_of_folds() {
+    let narrow = Figure {
+        from: 0.66,
+        to: 0.62,
+        ..FIGURE_2B
+    };
+    let model = narrow.model();
+    let request = narrow.request(&*model).stability(false).harmonics(40);
+    let branch = request.run().unwrap();
+    let folds: Vec<_> = branch.folds().map(|fold| fold.point.value).collect();
+    assert_eq!(folds.len(), 2, "{folds:?}");
+    for (found, value) in folds.iter().zip(FIGURE_2B_UNLISTED) {
+        assert!((found - value).abs() < 1e-5, "{folds:?}");
+    }
+    let omega = 0.6398;
+    let orbits = branch.at(omega).unwrap();
+    assert_eq!(orbits.len(), 3);
+    let system = PowerForm {
+        alpha: narrow.alpha,
+        zeta: narrow.zeta(),
+        drive: 0.1,
+        load: 0.0,
+        omega,
+    };
+    for orbit in &orbits {
+        let (x, v) = orbit.orbit.state(0, 0.0);
+        let (exact_x, exact_v) = system.periodic(x, v);
+        let (again_x, again_v) = system.periodic(exact_x, exact_v);
+        assert!((again_x - exact_x).hypot(again_v - exact_v) < 1e-8);
+        // The unbounded stiffness costs the integration digits, near folds even more: what counts is that there are three.
+        let far = (x - exact_x).hypot(v - exact_v);
+        for other in &orbits {
+            let (other_x, other_v) = other.orbit.state(0, 0.0);
+            let apart = (x - other_x).hypot(v - other_v);
+            assert!(std::ptr::eq(orbit, other) || apart > 10.0 * far);
+        }
+    }
+}
