@@ -85,6 +85,10 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
             .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
             .unwrap_or_default()
     };
+    // Products of entries overflow before the entries do: then nothing is known either.
+    if values.iter().any(|value| !value.norm().is_finite()) {
+        return Vec::new();
+    }
     values.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));
     values
 }
@@ -147,6 +151,12 @@ mod tests {
         assert_eq!(Stability::of(at(0.995), 0.01).verdict, Verdict::Undecided);
         assert_eq!(Stability::of(Vec::new(), 0.0).verdict, Verdict::Undecided);
         assert_eq!(Stability::of(at(f64::NAN), 0.0).verdict, Verdict::Undecided);
+    }
+
+    #[test]
+    fn eigenvalues_that_overflow_are_unknown() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[1e200, 0.0, 0.0, -1e200]);
+        assert_eq!(eigenvalues(&matrix), Vec::new());
     }
 
     #[test]
