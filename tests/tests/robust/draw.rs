@@ -1,0 +1,332 @@
+//! Models, parameters and requests, drawn at random.
+//!
+//! Source of the random numbers: Steele, Lea and Flood (2014), Fast splittable pseudorandom number generators.
+
+use hertzian::{Aft, FrequencyResponse, System};
+
+hertzian::oscillator! {
+    /// A contact that opens, with damping that ends with it.
+    OneSided(x) {
+        param k > 0;
+        param alpha > 0;
+        param c >= 0;
+        param load;
+        param drive;
+        law contact(gap) { gap > 0 => k*gap^alpha + c*dot(gap), else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// A spring of any power.
+    Continuous(x) {
+        param k > 0;
+        param alpha > 0;
+        param c >= 0;
+        param load;
+        param drive;
+        ddot(x) + c*dot(x) + k*sgn(x)*|x|^alpha = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// Play between two flanks.
+    Backlash(x) {
+        param k > 0;
+        param alpha > 0;
+        param play > 0;
+        param c >= 0;
+        param load;
+        param drive;
+        law flanks(gap) {
+            gap > play           => k*(gap - play)^alpha,
+            -play <= gap <= play => 0,
+            gap < -play          => -k*(-gap - play)^alpha,
+        }
+        ddot(x) + c*dot(x) + flanks(x) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// Teeth that are damped where they touch, and whose stiffness varies.
+    Gears(x) {
+        param k > 0;
+        param alpha > 0;
+        param beta > 0;
+        param play > 0;
+        param c >= 0;
+        param mesh in 0.0..1.0;
+        param load;
+        param drive;
+        law teeth(gap) {
+            gap > play           => k*(gap - play)^alpha + c*dot(gap),
+            -play <= gap <= play => 0,
+            gap < -play          => -k*(-gap - play)^beta + c*dot(gap),
+        }
+        ddot(x) + (1 + mesh*cos(omega*t))*teeth(x) = drive*sin(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// A spring and a stop whose force begins with a jump.
+    PreloadedStop(x) {
+        param k > 0;
+        param alpha > 0;
+        param base > 0;
+        param preload >= 0;
+        param distance;
+        param c >= 0;
+        param load;
+        param drive;
+        law stop(gap) { gap >= 0 => preload + k*gap^alpha, else => 0 }
+        ddot(x) + c*dot(x) + base*x + stop(x - distance) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// Damping that grows with the force.
+    HuntCrossley(x) {
+        param k > 0;
+        param alpha > 0;
+        param c >= 0;
+        param distance;
+        param load;
+        param drive;
+        law contact(gap) { gap > 0 => k*gap^alpha*(1 + c*dot(gap)), else => 0 }
+        ddot(x) + contact(x - distance) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// Attraction by a negative power outside of a contact.
+    Attraction(x) {
+        param k > 0;
+        param alpha > 0;
+        param beta > 0;
+        param h > 0;
+        param a > 0;
+        param base > 0;
+        param distance;
+        param c >= 0;
+        param load;
+        param drive;
+        law surface(gap) {
+            gap > 0 => k*gap^alpha - h/a^beta,
+            else    => -h/(a - gap)^beta,
+        }
+        ddot(x) + c*dot(x) + base*x + surface(x - distance) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// Two slopes that meet away from rest.
+    Bilinear(x) {
+        param k > 0;
+        param base > 0;
+        param distance;
+        param c >= 0;
+        param load;
+        param drive;
+        law spring(gap) { gap > 0 => k*gap, else => base*gap }
+        ddot(x) + c*dot(x) + spring(x - distance) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// Two masses that strike each other.
+    TwoMasses(x, y) {
+        param k > 0;
+        param alpha > 0;
+        param base > 0;
+        param distance;
+        param c >= 0;
+        param load;
+        param drive;
+        law contact(gap) { gap > 0 => k*gap^alpha + c*dot(gap), else => 0 }
+        ddot(x) + c*dot(x) + base*x + contact(x - y - distance) = drive*cos(omega*t) + load;
+        2*ddot(y) + c*dot(y) + base*y - contact(x - y - distance) = 0;
+    }
+}
+
+/// `SplitMix64`.
+pub(crate) struct Random(u64);
+
+impl Random {
+    /// Of one case: neighbours have nothing in common.
+    pub(crate) fn of(index: u64) -> Self {
+        let mut random = Self(index.wrapping_mul(0xd134_2543_de82_ef95));
+        random.bits();
+        random
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn below(&mut self, count: u64) -> u64 {
+        self.bits() % count
+    }
+
+    /// True once in so many times.
+    fn once_in(&mut self, count: u64) -> bool {
+        self.below(count) == 0
+    }
+
+    /// Every order of magnitude between two is as probable.
+    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
+    /// Six decades about one.
+    fn decades(&mut self) -> f64 {
+        self.magnitude(1e-3, 1e3)
+    }
+
+    /// Six decades of either sign, or zero.
+    fn signed(&mut self) -> f64 {
+        let size = self.decades();
+        match self.below(6) {
+            0 => 0.0,
+            1 => -size,
+            _ => size,
+        }
+    }
+
+    fn exponent(&mut self) -> f64 {
+        match self.below(8) {
+            0 => 1.0,
+            1 => 1.5,
+            _ => self.between(0.3, 4.0),
+        }
+    }
+}
+
+/// A model with these parameters.
+macro_rules! with {
+    ($model:ident: $($parameter:ident),*) => {
+        Box::new($model { $($parameter),* })
+    };
+}
+
+/// A model, and a frequency that has to do with it.
+pub(crate) fn model(random: &mut Random) -> (Box<dyn System + Send>, f64) {
+    let kind = random.below(9);
+    let (k, alpha, beta) = (random.decades(), random.exponent(), random.exponent());
+    let (load, drive) = (random.signed(), random.decades());
+    let (base, play) = (random.decades(), random.decades());
+    let distance = random.signed();
+    // The stiffness that a static force of that size meets, as a line through the origin.
+    let force = if load == 0.0 { drive } else { load.abs() };
+    let secant = force / (force / k).powf(alpha.recip());
+    let stiffness = match kind {
+        4 | 6 => base,
+        5 | 0..=3 => secant,
+        7 => k,
+        _ => base.max(secant),
+    };
+    let natural = stiffness.sqrt();
+    let zeta = if random.once_in(5) {
+        0.0
+    } else {
+        random.magnitude(1e-3, 0.3)
+    };
+    let c = match kind {
+        5 => zeta,
+        _ => 2.0 * zeta * natural,
+    };
+    let mesh = random.between(0.0, 1.0);
+    let preload = random.signed().max(0.0);
+    let (h, a) = (random.decades(), random.decades());
+    let model: Box<dyn System + Send> = match kind {
+        0 => with!(OneSided: k, alpha, c, load, drive),
+        1 => with!(Continuous: k, alpha, c, load, drive),
+        2 => with!(Backlash: k, alpha, play, c, load, drive),
+        3 => with!(Gears: k, alpha, beta, play, c, mesh, load, drive),
+        4 => with!(PreloadedStop: k, alpha, base, preload, distance, c, load, drive),
+        5 => with!(HuntCrossley: k, alpha, c, distance, load, drive),
+        6 => with!(Attraction: k, alpha, beta, h, a, base, distance, c, load, drive),
+        7 => with!(Bilinear: k, base, distance, c, load, drive),
+        _ => with!(TwoMasses: k, alpha, base, distance, c, load, drive),
+    };
+    (model, natural)
+}
+
+/// What is asked of a model.
+#[derive(Debug)]
+pub(crate) struct Request {
+    /// The drive at both ends and the frequency, or the frequency at both ends.
+    drive_at: Option<f64>,
+    from: f64,
+    to: f64,
+    harmonics: Option<usize>,
+    aft: Aft,
+    period: usize,
+    stability: bool,
+    points: usize,
+}
+
+impl Request {
+    pub(crate) fn draw(random: &mut Random, natural: f64) -> Self {
+        let centre = if random.once_in(4) {
+            random.decades()
+        } else {
+            natural
+        };
+        let drive_at = random.once_in(6).then(|| centre * random.between(0.3, 2.0));
+        let (mut from, mut to) = match drive_at {
+            Some(_) => (random.decades(), random.decades()),
+            None if random.once_in(2) => (centre, centre * random.between(1.001, 1.1)),
+            None => (
+                centre * random.between(0.2, 1.0),
+                centre * random.between(1.0, 3.0),
+            ),
+        };
+        if random.once_in(2) {
+            std::mem::swap(&mut from, &mut to);
+        }
+        // A range takes some 70 points or more, so that few come to its end.
+        let most = if random.once_in(20) { 150 } else { 10 };
+        let points = 3 + usize::try_from(random.below(most)).unwrap();
+        Self {
+            drive_at,
+            from,
+            to,
+            harmonics: random
+                .once_in(3)
+                .then(|| 1 + usize::try_from(random.below(40)).unwrap()),
+            aft: match random.below(8) {
+                0 => Aft::Sampled,
+                1 => Aft::Primitive,
+                _ => Aft::Switched,
+            },
+            period: if random.once_in(20) { 2 } else { 1 },
+            stability: random.once_in(2),
+            points,
+        }
+    }
+
+    pub(crate) fn of<'a>(&self, system: &'a dyn System) -> FrequencyResponse<'a> {
+        let mut response = FrequencyResponse::of(system)
+            .from(self.from)
+            .to(self.to)
+            .aft(self.aft)
+            .period(self.period)
+            .stability(self.stability)
+            .max_points(self.points);
+        if let Some(omega) = self.drive_at {
+            response = response.vary("drive").omega(omega);
+        }
+        match self.harmonics {
+            Some(harmonics) => response.harmonics(harmonics),
+            None => response,
+        }
+    }
+}
