@@ -86,29 +86,24 @@ impl<'a> Follower<'a> {
         })
     }
 
-    /// The same resolution with another number of harmonics.
+    /// The same resolution with another number of harmonics, and with a core if that pays.
     pub(crate) fn with_harmonics(&self, harmonics: usize, core: usize) -> Resolution {
+        let pays = WORTHWHILE * core as f64 <= harmonics as f64;
         Resolution {
             harmonics,
-            core: core.min(harmonics),
+            core: if pays { core } else { harmonics },
             ..self.resolution
         }
     }
 
-    /// The resolution with the core that an orbit asks for: small enough to pay, and large enough that the iteration
-    /// converges fast.
-    pub(crate) fn with_core_for(&self, u: &[f64]) -> Resolution {
+    /// The size of the core that an orbit asks for: large enough that the iteration converges fast.
+    pub(crate) fn core_for(&self, u: &[f64]) -> usize {
         let mut balance = self.balance(self.resolution);
         let mut jacobian = Jacobian::new(balance.partition());
         let mut residual = vec![0.0; u.len() - 1];
         balance.evaluate(u, &mut residual, Some(&mut jacobian));
         let least = LEAST_CORE * self.resolution.period;
-        let core = balance.core_size(COUPLING).max(least);
-        let pays = WORTHWHILE * core as f64 <= self.resolution.harmonics as f64;
-        Resolution {
-            core: if pays { core } else { usize::MAX },
-            ..self.resolution
-        }
+        balance.core_size(COUPLING).max(least)
     }
 
     pub(crate) fn start_request(&self, options: FollowOptions) -> StartRequest<'_> {

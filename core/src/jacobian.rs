@@ -55,8 +55,6 @@ pub struct Jacobian {
     group_lus: Vec<Lu>,
     /// `c`, and after factorisation `D^-1 c`.
     column: Vec<f64>,
-    /// `c` itself, for the transposed system.
-    plain_column: Vec<f64>,
     /// `d`
     border: Vec<f64>,
     room: Vec<f64>,
@@ -77,7 +75,6 @@ impl Jacobian {
                 .collect(),
             group_lus: (0..groups).map(|_| Lu::new(partition.group)).collect(),
             column: vec![0.0; tail],
-            plain_column: vec![0.0; tail],
             border: vec![0.0; tail],
             room: vec![0.0; order],
             tail_room: vec![0.0; tail],
@@ -165,7 +162,6 @@ impl Jacobian {
     /// [`Singular`], with the column in the core, or behind it for a group of the tail.
     pub(crate) fn factorise(&mut self) -> Result<(), Singular> {
         let (order, group) = (self.partition.core.len(), self.partition.group);
-        self.plain_column.copy_from_slice(&self.column);
         for (index, (matrix, lu)) in self.groups.iter_mut().zip(&mut self.group_lus).enumerate() {
             lu.factorise(matrix).map_err(|at| Singular {
                 column: order + index * group + at.column,

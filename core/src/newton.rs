@@ -104,7 +104,7 @@ pub struct Newton {
     scale: Scale,
     /// How far the unknowns have moved since the factors were made, in units of the scale.
     drift: f64,
-    /// Largest ratio of successive updates with factors that were made at the first of them.
+    /// Largest ratio of successive updates in the last correction, where the Jacobian leaves something out.
     contraction: f64,
     /// Work done so far.
     pub statistics: Statistics,

@@ -25,6 +25,8 @@ use crate::validate;
 const MOST_SAMPLES: usize = 10_000_000;
 /// Harmonics that are coupled densely in the search for a first orbit.
 const CORE_AT_START: usize = 40;
+/// Harmonics beyond those of the declaration that are always taken: the estimate of the error takes higher ones for free masses.
+const LEAST_BEYOND: usize = 4;
 /// More harmonics of an excitation period are never chosen, only taken when given.
 const MOST_HARMONICS: usize = 150;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
@@ -263,27 +265,17 @@ impl<'a> FrequencyResponse<'a> {
             (Variable::Parameter(_), None) => return Err(Error::MissingEnd { name: "omega" }),
         };
         validate::parameters(facts, &parameters)?;
-        validate::option(
-            "tolerance",
-            self.tolerance,
-            1e-12..=1e-1,
-            "must be from 1e-12 to 0.1",
-        )?;
-        validate::option(
-            "period",
-            self.period as f64,
-            1.0..=1000.0,
-            "must be from 1 to 1000",
-        )?;
-        validate::option(
-            "max_points",
-            self.max_points as f64,
-            2.0..=1e9,
-            "must be 2 or more",
-        )?;
+        self.check_options()?;
         let mut resolution = self.resolution()?;
         let layout = Layout::of(self.system);
-        let symmetric = is_odd(self.system, &layout, &parameters, omega, variable);
+        let symmetric = is_odd(
+            self.system,
+            &layout,
+            &parameters,
+            omega,
+            variable,
+            [from, to],
+        );
         if symmetric && self.period == 1 {
             resolution.parity = Parity::Odd;
         }
@@ -337,11 +329,34 @@ impl<'a> FrequencyResponse<'a> {
         ))
     }
 
+    /// Checks the numbers among the options.
+    fn check_options(&self) -> Result<(), Error> {
+        validate::option(
+            "tolerance",
+            self.tolerance,
+            1e-12..=1e-1,
+            "must be from 1e-12 to 0.1",
+        )?;
+        validate::option(
+            "period",
+            self.period as f64,
+            1.0..=1000.0,
+            "must be from 1 to 1000",
+        )?;
+        validate::option(
+            "max_points",
+            self.max_points as f64,
+            2.0..=1e9,
+            "must be 2 or more",
+        )?;
+        Ok(())
+    }
+
     /// How harmonics follow the tolerance: unless they were given, or the contacts are sampled.
     fn chooser(&self, resolution: Resolution) -> Option<Chooser> {
         let free = self.harmonics.is_none() && self.aft == Aft::Switched;
         let layout = Layout::of(self.system);
-        let least = (layout.highest_harmonic() + 2) * self.period;
+        let least = (layout.highest_harmonic() + LEAST_BEYOND) * self.period;
         let unknowns_allow = MOST_UNKNOWNS / (2 * layout.coordinates) - 1;
         let most = MOST_HARMONICS * self.period * self.system.facts().divisor as usize;
         free.then(|| {

@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::follower::Follower;
 use crate::fourier::series;
 use crate::harmonics::{Chooser, resize};
-use crate::newton::Newton;
+use crate::newton::{Newton, NewtonError};
 use crate::reader::Reader;
 use crate::statistics::Statistics;
 use crate::symmetry::EvenBlock;
@@ -30,8 +30,8 @@ pub(crate) struct Run<'f, 'a> {
     follower: &'f Follower<'a>,
     options: FollowOptions,
     resolution: Resolution,
-    /// The size of the core that the first orbit asked for.
-    least_core: usize,
+    /// The size of the core, where it pays to have one.
+    core: usize,
     reader: Reader<'a>,
     /// The even harmonics, where the orbits have none.
     even: Option<EvenBlock<'a>>,
@@ -49,12 +49,13 @@ pub(crate) struct Run<'f, 'a> {
 
 impl<'f, 'a> Run<'f, 'a> {
     pub(crate) fn new(follower: &'f Follower<'a>, options: FollowOptions, first: &[f64]) -> Self {
-        let resolution = follower.with_core_for(first);
+        let core = follower.core_for(first);
+        let resolution = follower.with_harmonics(follower.resolution.harmonics, core);
         Self {
             follower,
             options,
             resolution,
-            least_core: resolution.core,
+            core,
             reader: follower.reader(resolution),
             even: follower.even_block(resolution),
             chooser: follower.chooser.clone(),
@@ -102,10 +103,7 @@ impl<'f, 'a> Run<'f, 'a> {
                 }
                 Err(reason) => {
                     let Some((halted, resolution)) = last.take() else {
-                        return Err(Error::NoStart {
-                            parameter: options.from,
-                            reason,
-                        });
+                        return self.lost(reason);
                     };
                     // What was found with the former resolution stands, and is read with its error.
                     self.settle(resolution);
@@ -126,6 +124,21 @@ impl<'f, 'a> Run<'f, 'a> {
             *vector = resize(vector, coordinates, length);
         }
         resized
+    }
+
+    /// No orbit where the walk begins: no branch at all, or the end of the one that there is.
+    fn lost(&self, reason: NewtonError) -> Result<Stop, Error> {
+        match self.points.last() {
+            None => Err(Error::NoStart {
+                parameter: self.options.from,
+                reason,
+            }),
+            Some(point) => Ok(Stop::StepTooShort {
+                step: 0.0,
+                parameter: point.value,
+                reason,
+            }),
+        }
     }
 
     /// Returns to a resolution and keeps it.
@@ -181,29 +194,19 @@ impl<'f, 'a> Run<'f, 'a> {
 
     /// Decides on the resolution of the next point, or of this one again.
     fn choose(&mut self, point: &Point, contraction: f64) {
-        let Resolution {
-            harmonics, core, ..
-        } = self.resolution;
+        let harmonics = self.resolution.harmonics;
         self.slow = if contraction > SLOW { self.slow + 1 } else { 0 };
-        let core = if self.slow >= SLOW_POINTS && core < harmonics {
+        if self.slow >= SLOW_POINTS {
             self.slow = 0;
-            core + core.div_ceil(2)
-        } else {
-            core
-        };
+            self.core += self.core.div_ceil(2);
+        }
         let chosen = self.chooser.as_mut().and_then(|chooser| {
             let error = point.error.unwrap_or(f64::INFINITY);
             chooser.decide(harmonics, error)
         });
-        let core = if core >= harmonics {
-            // Dense so far: it stays dense up to the size that a core would have.
-            core.max(self.least_core)
-        } else {
-            core
-        };
         self.wanted = self
             .follower
-            .with_harmonics(chosen.unwrap_or(harmonics), core);
+            .with_harmonics(chosen.unwrap_or(harmonics), self.core);
     }
 
     /// Locates where the even harmonics become singular between two symmetric orbits.
@@ -275,7 +278,12 @@ impl<'f, 'a> Run<'f, 'a> {
         let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
         let slope = (relative(b) - relative(a)) / (2.0 * step);
         let change = finer[finer.len() - 1] - value - relative(here) / slope;
-        BEYOND * change.abs() + 1e-12 * value.abs()
+        let error = BEYOND * change.abs() + 1e-12 * value.abs();
+        if error.is_finite() {
+            error
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// Locates the fold between two points, or the jump that is there instead.

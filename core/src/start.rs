@@ -327,7 +327,14 @@ fn spread(u: &[f64], to: &Fixed<'_>) -> Vec<f64> {
     for i in 0..coordinates {
         result[i * length..][..shared].copy_from_slice(&u[i * from..][..shared]);
     }
-    result
+    // What is no unknown there, as the mean of a symmetric orbit, is zero.
+    let Partition { core, tail, .. } = to.balance.partition();
+    let last = result.len() - 1;
+    let mut kept = vec![0.0; result.len()];
+    for unknown in core.into_iter().chain(tail).chain([last]) {
+        kept[unknown] = result[unknown];
+    }
+    kept
 }
 
 /// Follows the orbit from rest while the drive grows from nothing.

@@ -17,19 +17,38 @@ use crate::jacobian::Jacobian;
 use crate::layout::{ContactLayout, Layout, Term};
 use crate::system::{System, Variable, Wave};
 
-/// Whether solutions with odd harmonics only exist, whatever the value of the variable.
+/// Values of the variable, as parts of its range, at which coefficients are looked at. A coefficient that vanishes at all of
+/// them, with its derivative, is taken to vanish throughout.
+const LOOKED_AT: [f64; 4] = [0.0, 0.36, 0.73, 1.0];
+
+/// Whether solutions with odd harmonics only exist over a range of the variable.
 pub(crate) fn is_odd(
     system: &dyn System,
     layout: &Layout,
     parameters: &[f64],
     omega: f64,
     variable: Variable,
+    [from, to]: [f64; 2],
 ) -> bool {
+    let mut matters = vec![false; layout.coefficients];
     let mut values = vec![0.0; layout.coefficients];
-    let mut slopes = values.clone();
-    system.coefficients(parameters, omega, &mut values);
-    system.coefficients_by(variable, parameters, omega, &mut slopes);
-    let counts = |coefficient: usize| values[coefficient] != 0.0 || slopes[coefficient] != 0.0;
+    for part in LOOKED_AT {
+        let value = from + part * (to - from);
+        let (mut parameters, mut omega) = (parameters.to_vec(), omega);
+        match variable {
+            Variable::Omega => omega = value,
+            Variable::Parameter(index) => parameters[index] = value,
+        }
+        system.coefficients(&parameters, omega, &mut values);
+        for (matters, value) in matters.iter_mut().zip(&values) {
+            *matters |= *value != 0.0;
+        }
+        system.coefficients_by(variable, &parameters, omega, &mut values);
+        for (matters, slope) in matters.iter_mut().zip(&values) {
+            *matters |= *slope != 0.0;
+        }
+    }
+    let counts = |coefficient: usize| matters[coefficient];
     let odd = |wave: Wave| wave.harmonic % 2 == 1;
     let load = layout.load.iter().filter(|entry| counts(entry.coefficient));
     let stiffness = layout

@@ -13,7 +13,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::balance::{Balance, Resolution};
+use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::problem::Problem;
 use crate::fourier::series;
 use crate::newton::Newton;
@@ -45,7 +45,8 @@ impl<'a> Finer<'a> {
         coarse: Resolution,
     ) -> Self {
         let fine = Resolution {
-            harmonics: 2 * coarse.harmonics,
+            // An orbit of one odd harmonic has its next one at three.
+            harmonics: 2 * coarse.harmonics + usize::from(coarse.parity == Parity::Odd),
             core: 0,
             samples: 2 * coarse.samples,
             ..coarse

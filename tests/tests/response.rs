@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use hertzian::observe::{amplitudes, phases};
-use hertzian::{Error, FrequencyResponse, NewtonError, Stop, System, Verdict};
+use hertzian::{Aft, Error, FrequencyResponse, NewtonError, Stop, System, Verdict};
 
 hertzian::oscillator! {
     /// Nothing but linear terms.
@@ -687,4 +687,75 @@ fn a_vanishing_frequency_ends() {
             assert!(branch.points[0].stability.verdict != Verdict::Unstable);
         }
     }
+}
+
+/// Without multipliers the same points, and nothing is said of stability.
+#[test]
+fn stability_can_be_left_out() {
+    let request = FrequencyResponse::of(&CONTACT)
+        .from(0.9)
+        .to(1.0)
+        .harmonics(5);
+    let (with, without) = (
+        request.run().unwrap(),
+        request.clone().stability(false).run().unwrap(),
+    );
+    assert_eq!(with.points.len(), without.points.len());
+    for (a, b) in with.points.iter().zip(&without.points) {
+        assert_eq!(a.orbit, b.orbit);
+        assert_eq!(b.stability.verdict, Verdict::Undecided);
+        assert!(b.stability.multipliers.is_empty());
+        assert!(a.error.is_some() && b.error.is_none());
+    }
+    assert_eq!(without.statistics.monodromies, 0);
+}
+
+/// No step takes more than 0.15 times the largest step's part of the range.
+#[test]
+fn steps_are_bounded() {
+    let request = FrequencyResponse::of(&CONTACT)
+        .from(0.9)
+        .to(1.0)
+        .harmonics(5)
+        .stability(false);
+    let branch = request.clone().largest_step(0.02).run().unwrap();
+    for pair in branch.points.windows(2) {
+        assert!((pair[1].value - pair[0].value).abs() < 0.1 * 0.15 * 0.02 * 1.5);
+    }
+    assert!(branch.points.len() > request.run().unwrap().points.len());
+    for step in [0.0, -1.0, 2.0, f64::NAN] {
+        assert!(request.clone().largest_step(step).run().is_err());
+    }
+}
+
+/// All three methods agree where contact is not lost.
+#[test]
+fn methods_agree_on_a_smooth_orbit() {
+    let at = |aft| {
+        let request = FrequencyResponse::of(&CONTACT)
+            .from(1.5)
+            .to(1.6)
+            .harmonics(8);
+        let branch = request.aft(aft).stability(false).run().unwrap();
+        branch.points[0].peak_to_peak()
+    };
+    let switched = at(Aft::Switched);
+    for aft in [Aft::Sampled, Aft::Primitive] {
+        assert!((at(aft) / switched - 1.0).abs() < 1e-10, "{aft}");
+    }
+}
+
+/// An odd system with one harmonic is not perfect: its next harmonic is the third.
+#[test]
+fn one_harmonic_of_an_odd_system_states_its_error() {
+    let model = Duffing {
+        zeta: 0.05,
+        drive: 1.0,
+    };
+    let request = FrequencyResponse::of(&model).from(0.5).to(0.6);
+    let one = request.clone().harmonics(1).run().unwrap().points[0].clone();
+    let many = request.harmonics(21).run().unwrap().points[0].clone();
+    let off = (one.peak_to_peak() / many.peak_to_peak() - 1.0).abs();
+    let stated = one.error.unwrap();
+    assert!(off > 0.05 && stated > off / 3.0, "{off} {stated}");
 }

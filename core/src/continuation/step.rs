@@ -34,10 +34,11 @@ impl StepControl {
     /// The default with another largest step, and what follows from it.
     pub(crate) fn with_largest(largest: f64) -> Self {
         let default = Self::default();
+        let range = default.range / default.largest * largest;
         Self {
-            initial: default.initial.min(largest),
+            initial: default.initial.min(range),
             largest,
-            range: default.range / default.largest * largest,
+            range,
             ..default
         }
     }
@@ -45,6 +46,11 @@ impl StepControl {
     /// A step that turned by this angle is tried again, unless it is already short: a kink keeps its angle at any length.
     pub(crate) fn turns_too_far(&self, angle: f64, step: f64) -> bool {
         angle > 3.0 * self.angle && step > 1e-4
+    }
+
+    /// A step whose predictor was this far off is tried again: it may have stepped over a bend.
+    pub(crate) fn is_too_far(&self, distance: f64, step: f64) -> bool {
+        distance > 5.0 * self.distance && step > 1e-4
     }
 
     /// The step after one that converged; `slope` is the part of the range that a unit step takes there.

@@ -236,7 +236,10 @@ impl Walk {
                         .product(from.scale, &from.tangent, &point.tangent)
                         / newton.norm().length(from.scale, &point.tangent);
                     let angle = cosine.clamp(-1.0, 1.0).acos();
-                    if !self.options.steps.turns_too_far(angle, self.step) {
+                    let steps = &self.options.steps;
+                    if !(steps.turns_too_far(angle, self.step)
+                        || steps.is_too_far(distance, self.step))
+                    {
                         newton.statistics.accepted_steps += 1;
                         self.remember(from, angle);
                         let slope = point.parameter_slope();

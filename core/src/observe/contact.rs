@@ -129,7 +129,8 @@ impl ContactReader {
             .sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau).then(order(a).cmp(&order(b))));
         self.panels.clear();
         let Some(&last) = self.switches.last() else {
-            let value = reader.samples().first().copied().unwrap_or(0.0);
+            // It may touch a level, but its mean lies on the piece.
+            let value = reader.series()[0];
             self.panels.push(Panel {
                 start: 0.0,
                 end: TAU,

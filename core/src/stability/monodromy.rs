@@ -66,6 +66,8 @@ struct Contact<'a> {
     levels: Vec<f64>,
     gap: Vec<f64>,
     rate: Vec<f64>,
+    /// Its gap crosses a level.
+    switching: bool,
 }
 
 /// An orbit cut into panels.
@@ -84,15 +86,17 @@ impl<'a> Panels<'a> {
         for entry in &orbit.layout.mass {
             mass[(entry.row, entry.column)] += orbit.coefficients[entry.coefficient];
         }
-        let contacts: Vec<_> = orbit
+        let mut contacts: Vec<_> = orbit
             .layout
             .contacts
             .iter()
             .map(|layout| Contact::new(&orbit, layout))
             .collect();
         let mut switches = Vec::new();
-        for (index, contact) in contacts.iter().enumerate() {
+        for (index, contact) in contacts.iter_mut().enumerate() {
+            let before = switches.len();
             contact.switches(index, &mut switches);
+            contact.switching = switches.len() > before;
         }
         switches.sort_by(|a, b| a.tau.total_cmp(&b.tau));
         Some(Self {
@@ -179,7 +183,7 @@ impl<'a> Panels<'a> {
         let pieces: Vec<usize> = self
             .contacts
             .iter()
-            .map(|contact| contact.piece(0.5 * (start + end)))
+            .map(|contact| contact.piece(contact.switching.then_some(0.5 * (start + end))))
             .collect();
         let constant = self.is_constant(&pieces);
         let steps = if constant {
@@ -393,6 +397,7 @@ impl<'a> Contact<'a> {
             levels,
             gap,
             rate,
+            switching: false,
         }
     }
 
@@ -410,8 +415,9 @@ impl<'a> Contact<'a> {
         }
     }
 
-    fn piece(&self, tau: f64) -> usize {
-        let gap = series::value(&self.gap, tau);
+    /// The piece at a phase between switches; without any, that of the mean, for an orbit may touch a level at the phase.
+    fn piece(&self, tau: Option<f64>) -> usize {
+        let gap = tau.map_or(self.gap[0], |tau| series::value(&self.gap, tau));
         self.levels.iter().filter(|&&level| gap > level).count()
     }
 }

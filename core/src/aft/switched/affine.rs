@@ -32,12 +32,20 @@ struct Form {
     by_rate: f64,
 }
 
+/// A gap on the piece, and the levels.
+#[derive(Debug, Clone, Copy)]
+struct Place<'l> {
+    piece: usize,
+    point: f64,
+    levels: &'l [f64],
+}
+
 impl Affine {
     /// Adds a piece that is affine and its panels.
     pub(super) fn add<'p>(
         &mut self,
         input: ContactInput<'_>,
-        piece: usize,
+        (piece, levels): (usize, &[f64]),
         panels: impl Iterator<Item = &'p Panel> + Clone,
         product: &mut Product,
         sums: &mut Sums<'_>,
@@ -46,9 +54,14 @@ impl Affine {
             return;
         };
         let point = series::value(input.gap, 0.5 * (first.start + first.end));
+        let place = Place {
+            piece,
+            point,
+            levels,
+        };
         let form = Form::of(input, piece, point);
         if panels.clone().any(Panel::is_period) {
-            add_everywhere(input, form, piece, point, sums);
+            add_everywhere(input, form, place, sums);
             return;
         }
         let slopes = sums.slopes.as_ref().map_or(0, |s| s.by_gap.len());
@@ -67,7 +80,7 @@ impl Affine {
             if let Some(changing) = slopes.change {
                 self.inside.clear();
                 self.inside.resize(input.gap.len(), 0.0);
-                form.add_change(input, changing, piece, point, &mut self.inside);
+                form.add_change(input, changing, place, &mut self.inside);
                 product.add(&self.indicator, &self.inside, slopes.by_parameter);
             }
         }
@@ -89,19 +102,13 @@ impl Affine {
 }
 
 /// The orbit never leaves the piece: the answer is the linear one.
-fn add_everywhere(
-    input: ContactInput<'_>,
-    form: Form,
-    piece: usize,
-    point: f64,
-    sums: &mut Sums<'_>,
-) {
+fn add_everywhere(input: ContactInput<'_>, form: Form, place: Place<'_>, sums: &mut Sums<'_>) {
     form.add_to(input, sums.force);
     if let Some(slopes) = &mut sums.slopes {
         slopes.by_gap[0] += form.by_gap;
         slopes.by_rate[0] += form.by_rate;
         if let Some(changing) = slopes.change {
-            form.add_change(input, changing, piece, point, slopes.by_parameter);
+            form.add_change(input, changing, place, slopes.by_parameter);
         }
     }
 }
@@ -157,27 +164,31 @@ impl Form {
         self,
         input: ContactInput<'_>,
         changing: Changing<'_>,
-        piece: usize,
-        point: f64,
+        place: Place<'_>,
         to: &mut [f64],
     ) {
         add_scaled(changing.change.gap, self.by_gap, to);
         add_scaled(changing.change.rate, self.by_rate, to);
         if changing.arguments {
-            by_arguments(input, changing, piece, point).add_to(input, to);
+            by_arguments(input, changing, place).add_to(input, to);
         }
     }
 }
 
 /// The change of the force with the arguments that change: affine as the force is.
-fn by_arguments(input: ContactInput<'_>, changing: Changing<'_>, piece: usize, gap: f64) -> Form {
+fn by_arguments(input: ContactInput<'_>, changing: Changing<'_>, place: Place<'_>) -> Form {
+    let Place {
+        piece,
+        point: gap,
+        levels,
+    } = place;
     let mut sum = Form {
         constant: 0.0,
         by_gap: 0.0,
         by_rate: 0.0,
     };
     // Three points on the piece: the middle of a panel, halfway to the nearest level, and another rate.
-    let level = nearest_level(input, piece, gap);
+    let level = nearest_level(levels, piece, gap);
     let other = level.map_or(gap + gap.abs().max(1.0), |level| 0.5 * (gap + level));
     let gaps = [gap, other, gap];
     let speed = input.base * (gap - other).abs();
@@ -210,15 +221,9 @@ fn by_arguments(input: ContactInput<'_>, changing: Changing<'_>, piece: usize, g
     sum
 }
 
-fn nearest_level(input: ContactInput<'_>, piece: usize, gap: f64) -> Option<f64> {
-    let mut levels = [0.0; 32];
-    let count = input.law.facts().levels.len();
-    if count > levels.len() {
-        return None;
-    }
-    input.law.levels(input.arguments, &mut levels[..count]);
+fn nearest_level(levels: &[f64], piece: usize, gap: f64) -> Option<f64> {
     let below = piece.checked_sub(1).map(|index| levels[index]);
-    let above = (piece < count).then(|| levels[piece]);
+    let above = levels.get(piece).copied();
     let distance = |level: &f64| (level - gap).abs();
     below
         .into_iter()

@@ -112,7 +112,8 @@ impl Cut {
     fn fill_panels(&mut self, gap: &[f64]) {
         self.panels.clear();
         let Some(&last) = self.switches.last() else {
-            let value = series::value(gap, 0.0);
+            // It may touch a level, but its mean lies on the piece.
+            let value = gap[0];
             self.panels.push(Panel {
                 start: 0.0,
                 end: TAU,
@@ -179,9 +180,11 @@ impl Cut {
     fn cut_panel(&mut self, tau: f64, level: usize, sides: [bool; 2]) {
         let middle = End::Near(level);
         let lies_in = |panel: &Panel| {
-            // Panels begin up to a period before the phases of near misses.
-            let tau = if tau < panel.end { tau } else { tau - TAU };
-            (tau > panel.start && tau < panel.end).then_some(tau)
+            // Panels begin up to a period before the phases of near misses, and may end a period behind them.
+            let phases = [tau - TAU, tau, tau + TAU];
+            phases
+                .into_iter()
+                .find(|&tau| tau > panel.start && tau < panel.end)
         };
         let found = self
             .panels

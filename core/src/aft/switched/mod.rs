@@ -176,8 +176,9 @@ impl SwitchedAft {
                 continue;
             }
             if of.affine {
+                let place = (piece, self.cut.levels());
                 self.affine
-                    .add(input, piece, panels(), &mut self.product, sums);
+                    .add(input, place, panels(), &mut self.product, sums);
             } else {
                 for panel in panels() {
                     self.quadrature.add(input, panel, self.cut.levels(), sums);

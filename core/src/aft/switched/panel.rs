@@ -194,13 +194,14 @@ impl Quadrature {
         let grading = ends.balanced();
         let stretch = Stretch { start, end, ends };
         let degrees = 0.5 * width * grading.stretch();
+        let by_rate = input.law.facts().pieces[piece].by_rate == Variation::Varying;
         let mut wanted = 0.5 * degrees * (demand.slopes + demand.own) + MARGIN;
         let largest = gauss::COUNTS[gauss::COUNTS.len() - 1] as f64;
         while wanted <= largest || depth == 0 {
             let rule = self.place(start, end, grading, wanted.ceil() as usize);
             self.evaluate(input, piece, Wanted::of(sums), &stretch);
             let count = self.rules[rule].count as f64;
-            if depth == 0 || self.is_resolved(rule, count, degrees, demand, sums) {
+            if depth == 0 || self.is_resolved(rule, count, degrees, demand, (sums, by_rate)) {
                 self.sum_up(input, piece, sums);
                 return;
             }
@@ -229,7 +230,7 @@ impl Quadrature {
         count: f64,
         degrees: f64,
         demand: Demand,
-        sums: &Sums<'_>,
+        (sums, by_rate): (&Sums<'_>, bool),
     ) -> bool {
         let rule = &self.rules[rule];
         let falls = |values: &[f64], harmonics: f64, error: f64| {
@@ -242,6 +243,7 @@ impl Quadrature {
         };
         falls(&self.force, demand.force, FORCE_ERROR)
             && falls(&self.by_gap, demand.slopes, SLOPE_ERROR)
+            && (!by_rate || falls(&self.by_rate, demand.slopes, SLOPE_ERROR))
             && (!slopes.change.is_some_and(|c| c.arguments)
                 || falls(&self.by_argument, demand.force, SLOPE_ERROR))
     }
@@ -372,7 +374,7 @@ impl Quadrature {
     }
 
     /// Replaces the gap close to a singular end by its Taylor polynomial there: a small distance from the level keeps all its
-    /// digits then, which an exponent below one needs.
+    /// digits then, which an exponent below one needs. (Where the level is not zero, the sum of both is rounded.)
     fn sharpen(&mut self, input: ContactInput<'_>, stretch: &Stretch) {
         let near = NEAR / series::harmonics(input.gap).max(1) as f64;
         let width = stretch.end - stretch.start;
@@ -381,14 +383,16 @@ impl Quadrature {
         if let Some(level) = first.filter(|_| stretch.ends.start > 1) {
             let taylor = Taylor::at(input.gap, stretch.start);
             let nodes = rule.nodes.iter().zip(&mut self.gap);
-            for (node, gap) in nodes.take_while(|(node, _)| **node * width < near) {
+            let close = |node: f64| !node.is_sign_negative() && node * width < near;
+            for (node, gap) in nodes.take_while(|(node, _)| close(**node)) {
                 *gap = taylor.value(level, width * node);
             }
         }
         if let Some(level) = last.filter(|_| stretch.ends.end > 1) {
             let taylor = Taylor::at(input.gap, stretch.end);
             let nodes = rule.nodes.iter().zip(&mut self.gap).rev();
-            for (node, gap) in nodes.take_while(|(node, _)| -**node * width < near) {
+            let close = |node: f64| node.is_sign_negative() && -node * width < near;
+            for (node, gap) in nodes.take_while(|(node, _)| close(**node)) {
                 *gap = taylor.value(level, width * node);
             }
         }

@@ -380,3 +380,36 @@ fn stiffness_near_grazing_agrees_with_another_rule() {
     assert!(worst[0] < 2e-7, "{:e}", worst[0]);
     assert!(worst[1..].iter().all(|error| *error < 1e-7), "{worst:?}");
 }
+
+/// An orbit that touches its level, wherever on the period, stays on the side of its mean.
+#[test]
+fn a_touch_is_no_switch_at_any_phase() {
+    let mut aft = SwitchedAft::default();
+    let mut means = Vec::new();
+    for lag in [0.0, 1.0, PI] {
+        let gap: Vec<f64> = vec![1.0, -f64::cos(lag), -f64::sin(lag)];
+        let case = Case::new(true, 1.5, gap);
+        means.push(case.force(&mut aft, &case.gap, &case.arguments)[0]);
+    }
+    // The mean of (1 - cos t)^1.5 is 2^1.5 times that of |sin|^3, which is 4 / (3 pi).
+    let exact = 2.0_f64.powf(1.5) * 4.0 / (3.0 * PI);
+    for mean in means {
+        assert!((mean - exact).abs() < 1e-9, "{mean} {exact}");
+    }
+}
+
+/// A contact as short as a thousandth of the period: `int (cos t - cos h)^1.5` is nearly that of a parabola.
+#[test]
+fn short_contacts_have_their_closed_form() {
+    let mut aft = SwitchedAft::default();
+    for half in [1e-2_f64, 5e-4, 1e-5] {
+        let case = Case::new(true, 1.5, vec![-half.cos(), 1.0, 0.0]);
+        // Without damping, whose mean vanishes but for rounding, and that would be more than the spring.
+        let force = case.force(&mut aft, &case.gap, &[0.0, 1.5]);
+        // With u = t / h the gap is h^2 (1 - u^2) / 2, to a relative h^2; int (1 - u^2)^1.5 over [-1, 1] is 3 pi / 8.
+        let expected = half * (0.5 * half * half).powf(1.5) * 3.0 * PI / 8.0 / TAU;
+        let allowed = half * half + 1e-13 / (half * half);
+        let error = (force[0] / expected - 1.0).abs();
+        assert!(error < allowed, "{half} {error:e}");
+    }
+}
