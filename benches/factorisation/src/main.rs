@@ -1,4 +1,4 @@
-//! Dense factorisation and one solution, three ways: `cargo bench -p hertzian --bench linear`.
+//! Dense factorisation and one solution, three ways: `cargo run --release` in this folder.
 //!
 //! Each contender copies the matrix, factorises it and solves for one right side. Ours and faer copy into room at hand
 //! and allocate nothing; nalgebra takes its matrix by value, so its copy is a new one, as Newton's loop would need. faer
@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 
 // The module is private to the runtime; what the benchmark does not call is not a mistake here.
 #[allow(dead_code, unused_imports)]
-#[path = "../src/linear.rs"]
+#[path = "../../../core/src/linear.rs"]
 mod linear;
 
 const ORDERS: [usize; 6] = [11, 21, 41, 81, 161, 321];
