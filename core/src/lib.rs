@@ -47,6 +47,7 @@ mod continuation;
 #[doc(hidden)]
 pub mod emitted;
 mod error;
+pub mod flow;
 mod follower;
 pub mod fourier;
 pub mod generic;
