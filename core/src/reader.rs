@@ -5,8 +5,8 @@ use crate::branch::{Orbit, Point};
 use crate::continuation::problem::Problem;
 use crate::newton::Newton;
 use crate::observe::{Motion, Observed, Observer};
-use crate::stability::Stability;
 use crate::stability::judge::Judge;
+use crate::stability::{Method, Stability};
 use crate::truncation::{BEYOND, Finer};
 
 /// Reads orbits of one resolution.
@@ -23,7 +23,7 @@ impl<'a> Reader<'a> {
     pub(crate) fn new(finer: Finer<'a>, stability: bool, estimate: bool) -> Self {
         Self {
             finer,
-            judge: stability.then(Judge::new),
+            judge: stability.then(|| Judge::new(Method::Default)),
             observer: Observer::default(),
             estimate,
         }

@@ -25,29 +25,76 @@
 use std::f64::consts::TAU;
 
 use nalgebra::allocator::Allocator;
-use nalgebra::{Const, DMatrix, DefaultAllocator, Dim, Dyn, OMatrix};
+use nalgebra::{Complex, Const, DMatrix, DefaultAllocator, Dim, Dyn, OMatrix};
 
-use super::magnus;
+use super::method::{Cost, Floquet, Found};
+use super::orbit::Orbit;
+use super::{distance, eigenvalues, magnus};
 use crate::balance::{gap_series, rate_series};
 use crate::fourier::crossings::{Crossing, crossings};
 use crate::fourier::grading::Grading;
 use crate::fourier::series;
 use crate::law::{Derivatives, On, Quantity, TermFacts, Variation};
-use crate::layout::{Layout, Term};
-use crate::system::{Part, System, Wave};
+use crate::layout::Term;
+use crate::system::{Part, Wave};
 
-/// An orbit: the system, its coefficients, and the series of its coordinates.
-#[derive(Clone, Copy)]
-pub(crate) struct Orbit<'a> {
-    pub(crate) system: &'a dyn System,
-    pub(crate) layout: &'a Layout,
-    pub(crate) coefficients: &'a [f64],
-    /// Base frequency.
-    pub(crate) base: f64,
-    /// Excitation periods per period of the orbit.
-    pub(crate) period: usize,
-    /// Coordinate by coordinate.
-    pub(crate) series: &'a [f64],
+/// Steps per period at first.
+const FIRST_DENSITY: f64 = 16.0;
+/// Steps per period at most.
+const LARGEST_DENSITY: f64 = 1024.0;
+
+/// Integrates orbits, one after the other.
+#[derive(Debug)]
+pub(crate) struct Monodromy {
+    /// Steps per period that sufficed for the last orbit.
+    density: f64,
+    cost: Cost,
+}
+
+impl Monodromy {
+    pub(crate) fn new() -> Self {
+        Self {
+            density: FIRST_DENSITY,
+            cost: Cost::default(),
+        }
+    }
+
+    fn integrate(&mut self, panels: &Panels<'_>, density: f64) -> Vec<Complex<f64>> {
+        let matrix = panels.monodromy(density);
+        self.cost.spectra += 1;
+        self.cost.order = self.cost.order.max(matrix.nrows());
+        eigenvalues(&matrix)
+    }
+}
+
+impl Floquet for Monodromy {
+    /// Halves the steps until that changes the multipliers little.
+    fn multipliers(&mut self, orbit: &Orbit<'_>, aim: f64) -> Found {
+        let Some(panels) = Panels::new(*orbit) else {
+            return Found::NOTHING;
+        };
+        let mut density = self.density;
+        let mut coarse = self.integrate(&panels, 0.5 * density);
+        let mut fine = self.integrate(&panels, density);
+        loop {
+            let change = distance(&coarse, &fine);
+            if change <= aim || density >= LARGEST_DENSITY {
+                // Steps that are far shorter than needed are lengthened for the next orbit.
+                let shorter = change < 1e-3 * aim && density > FIRST_DENSITY;
+                self.density = if shorter { 0.5 * density } else { density };
+                return Found {
+                    multipliers: fine,
+                    error: change,
+                };
+            }
+            density *= 2.0;
+            coarse = std::mem::replace(&mut fine, self.integrate(&panels, density));
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        self.cost
+    }
 }
 
 /// A gap crosses a level.

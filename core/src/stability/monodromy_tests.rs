@@ -6,7 +6,8 @@
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
-use super::monodromy::{Orbit, Panels};
+use super::monodromy::Panels;
+use super::orbit::Orbit;
 use crate::by_hand::PowerForm;
 use crate::layout::Layout;
 use crate::system::System;
