@@ -3,7 +3,12 @@
 //! Time is measured by the phase `tau = omega t / divisor` of the system's own waves, so that `2 pi` is its period whatever
 //! the frequency. A state is `(q, dq/dt)`: coordinates, then their derivatives by *time*.
 
+pub mod affine;
+
 use crate::system::Variable;
+
+/// What is shown every smooth stretch of a motion.
+pub type See<'s> = &'s mut (dyn FnMut(&dyn Stretch) + 's);
 
 /// The flow of one system, at values of its parameters and of `omega` that can be changed.
 ///
@@ -26,7 +31,7 @@ pub trait Flow: Send {
         to: f64,
         state: &mut [f64],
         tangent: Option<&mut Tangent>,
-        see: Option<&mut dyn FnMut(&dyn Stretch)>,
+        see: Option<See<'_>>,
     ) -> Result<(), FlowError>;
 
     /// The work done since the flow was made.

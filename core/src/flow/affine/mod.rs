@@ -1,0 +1,261 @@
+//! The flow of systems whose forces are piecewise affine: closed forms from switch to switch.
+//!
+//! While no gap leaves its piece, the motion is that of a linear system with constant coefficients, and
+//! [`table`] holds it exactly. Where a gap meets the end of its piece is found by [`search`] and [`crossing`]; the first meeting
+//! is proven to be the first. There the state is continuous and perturbations jump by the saltation of
+//! [`tangent`].
+//!
+//! A motion that touches an end without crossing it stays on its piece; perturbations do not jump there.
+
+mod crossing;
+mod equations;
+mod model;
+mod search;
+mod table;
+mod tangent;
+#[cfg(test)]
+mod tests;
+
+use std::f64::consts::TAU;
+
+use self::crossing::value_and_slope;
+use self::model::Model;
+use self::table::{COEFFICIENTS, Polynomial, Table};
+use crate::flow::{Flow, FlowError, See, Stretch, Tangent, Work};
+use crate::system::{System, Variable};
+
+/// Switches in one period beyond which the motion is taken for chatter.
+const MOST_SWITCHES: usize = 10_000;
+
+/// The flow of a system of which every piece of every law is affine, and stiffness and directions are constant in time.
+pub struct Affine<'a> {
+    model: Model<'a>,
+    /// The state with the constant and the waves.
+    z: Vec<f64>,
+    rows: Vec<Polynomial>,
+    rows_by: Vec<Polynomial>,
+    /// The piece of every contact, and the level it is at.
+    pieces: Vec<usize>,
+    at: Vec<Option<usize>>,
+    column: Vec<f64>,
+    work: Work,
+}
+
+impl<'a> Affine<'a> {
+    /// The flow at given values; `None` if the system is not of this kind, or `omega` is not positive.
+    pub fn new(system: &'a dyn System, parameters: &[f64], omega: f64) -> Option<Self> {
+        let model = Model::new(system, parameters, omega)?;
+        let (order, contacts) = (model.basis.order(), model.contacts.len());
+        let most = order - 1 - model.basis.coordinates;
+        Some(Self {
+            z: vec![0.0; order],
+            rows: vec![[0.0; COEFFICIENTS]; most],
+            rows_by: vec![[0.0; COEFFICIENTS]; most],
+            pieces: vec![0; contacts],
+            at: vec![None; contacts],
+            column: vec![0.0; order],
+            work: Work::default(),
+            model,
+        })
+    }
+
+    /// Moves over at most one period. `phase` is `from` within the first period.
+    fn advance_period(
+        &mut self,
+        (from, to): (f64, f64),
+        state: &mut [f64],
+        tangent: &mut Option<&mut Tangent>,
+        see: &mut Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        let n = self.model.basis.coordinates;
+        let by = tangent.as_ref().and_then(|tangent| tangent.by);
+        let first = from.rem_euclid(TAU);
+        let mut done = 0.0;
+        let mut switches = 0;
+        self.z[..2 * n].copy_from_slice(state);
+        self.model.basis.write_waves(first, &mut self.z[2 * n..]);
+        self.choose_pieces(from)?;
+        while from + done < to {
+            let phase = from + done;
+            let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
+            let table = &self.model.at(combination).table;
+            let rows = &mut self.rows[..table.rows];
+            let left = (to - from - done) / table.cell;
+            let range = left.min(table.cells as f64);
+            let at = &self.at;
+            let begins = |watch: &table::Watch| at[watch.contact] == Some(watch.level);
+            let hit = table.first_hit(&self.z, range, begins, rows);
+            let length = hit.map_or(range, |hit| hit.at);
+            let ends = hit.is_none() && range == left;
+            let next = if ends {
+                to - from
+            } else {
+                done + length * table.cell
+            };
+            if let Some(tangent) = tangent.as_deref_mut() {
+                let room = (
+                    &mut *rows,
+                    &mut self.rows_by[..table.rows],
+                    &mut self.column[..],
+                );
+                tangent::advance(&self.model, table, &self.z, length, tangent, room);
+            }
+            let piece = Piece {
+                table,
+                z: &self.z,
+                phases: (phase, if ends { to } else { from + next }),
+                base: self.model.terms.base,
+            };
+            piece.at(length, rows, state);
+            if state.iter().any(|x| !x.is_finite()) {
+                return Err(FlowError::NotFinite { phase });
+            }
+            if let Some(see) = see {
+                see(&piece);
+            }
+            self.work.steps += 1;
+            done = next;
+            self.z[..2 * n].copy_from_slice(state);
+            self.model
+                .basis
+                .write_waves(first + done, &mut self.z[2 * n..]);
+            if length > 0.0 {
+                self.at.fill(None);
+            }
+            if let Some(hit) = hit {
+                switches += 1;
+                self.work.switches += 1;
+                if switches > MOST_SWITCHES {
+                    let phase = from + done;
+                    return Err(FlowError::TooManySwitches { phase, switches });
+                }
+                let watch = &table.watches[hit.watch];
+                let (contact, level, upper) = (watch.contact, watch.level, watch.upper);
+                if let Some(tangent) = tangent.as_deref_mut() {
+                    tangent::switch(&self.model, &self.z, (contact, level, upper), tangent);
+                }
+                self.pieces[contact] = if upper { level + 1 } else { level };
+                self.at[contact] = Some(level);
+            }
+        }
+        Ok(())
+    }
+
+    /// The piece that every gap is on, or is about to enter.
+    fn choose_pieces(&mut self, phase: f64) -> Result<(), FlowError> {
+        self.at.fill(None);
+        for index in 0..self.pieces.len() {
+            let (gap, _) = self.model.gap(index, &self.z);
+            let levels = &self.model.contacts[index].levels;
+            self.pieces[index] = levels.iter().filter(|&&level| gap > level).count();
+            self.at[index] = levels.iter().position(|&level| gap == level);
+        }
+        for index in 0..self.pieces.len() {
+            let Some(level) = self.at[index] else {
+                continue;
+            };
+            let (_, rate) = self.model.gap(index, &self.z);
+            self.pieces[index] = level + 1;
+            let rises = rate > 0.0 || (rate == 0.0 && self.rises(index, level, phase)?);
+            self.pieces[index] = level + usize::from(rises);
+        }
+        Ok(())
+    }
+
+    /// Whether a gap at rest at a level is accelerated upwards on the piece above it.
+    fn rises(&mut self, contact: usize, level: usize, phase: f64) -> Result<bool, FlowError> {
+        let combination = self.model.combination(&self.pieces, phase, false)?;
+        let table = &self.model.at(combination).table;
+        let rows = &mut self.rows[..table.rows];
+        table.polynomials(0, &self.z, rows);
+        let mut watches = table.watches.iter();
+        let watch = watches.find(|watch| watch.contact == contact && watch.level == level);
+        Ok(watch.is_some_and(|watch| {
+            crossing::derivatives(&table.distance(watch, rows), -0.5)[2] > 0.0
+        }))
+    }
+}
+
+impl Flow for Affine<'_> {
+    fn coordinates(&self) -> usize {
+        self.model.basis.coordinates
+    }
+
+    fn set(&mut self, variable: Variable, value: f64) {
+        match variable {
+            Variable::Omega => self.model.omega = value,
+            Variable::Parameter(index) => self.model.parameters[index] = value,
+        }
+        self.model.touch();
+    }
+
+    fn advance(
+        &mut self,
+        from: f64,
+        to: f64,
+        state: &mut [f64],
+        mut tangent: Option<&mut Tangent>,
+        mut see: Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        let by = tangent.as_ref().and_then(|tangent| tangent.by);
+        self.model.refresh(by, from)?;
+        if state.iter().any(|x| !x.is_finite()) || !from.is_finite() || !to.is_finite() {
+            return Err(FlowError::NotFinite { phase: from });
+        }
+        let mut begin = from;
+        let mut periods = 0.0;
+        while begin < to {
+            periods += 1.0;
+            let end = (from + periods * TAU).min(to);
+            self.advance_period((begin, end), state, &mut tangent, &mut see)?;
+            begin = end;
+        }
+        Ok(())
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+/// A motion on one combination of pieces, from the phase where its table begins.
+struct Piece<'t> {
+    table: &'t Table,
+    /// Where it begins.
+    z: &'t [f64],
+    phases: (f64, f64),
+    /// `nu`
+    base: f64,
+}
+
+impl Piece<'_> {
+    /// The state after some cells. `rows` is room.
+    fn at(&self, cells: f64, rows: &mut [Polynomial], state: &mut [f64]) {
+        let (cell, s) = self.table.place(cells);
+        self.table.polynomials(cell, self.z, rows);
+        let n = state.len() / 2;
+        for (i, row) in rows[..n].iter().enumerate() {
+            let (value, slope) = value_and_slope(row, s);
+            state[i] = value;
+            state[n + i] = slope * (self.base / self.table.cell);
+        }
+    }
+}
+
+impl Stretch for Piece<'_> {
+    fn phases(&self) -> (f64, f64) {
+        self.phases
+    }
+
+    fn state(&self, phase: f64, state: &mut [f64]) {
+        let cells = (phase - self.phases.0) / self.table.cell;
+        let (cell, s) = self.table.place(cells);
+        let n = state.len() / 2;
+        for i in 0..n {
+            let row = self.table.polynomial(cell, i, self.z);
+            let (value, slope) = value_and_slope(&row, s);
+            state[i] = value;
+            state[n + i] = slope * (self.base / self.table.cell);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! The first end of a piece that a motion meets, within the range of its table.
+//!
+//! A cell of unit length with distances `a, b >= 0` at its ends and `|d''| <= 2 c` in it holds no zero if
+//!
+//! ```text
+//! a (1 - s) + b s - c s (1 - s) > 0  for  0 < s < 1,    for which  a + b > c  suffices                        (1)
+//! ```
+//!
+//! also if `a = 0` because the motion begins at the level. The other cells are searched one by one, see
+//! [`crossing`](super::crossing).
+
+use super::crossing::first_zero;
+use super::table::{COEFFICIENTS, Polynomial, Table, Watch};
+
+/// Cells of the largest table, and one more.
+const ENDS: usize = 17;
+
+/// An end of a piece is met.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hit {
+    /// Which of the watches.
+    pub(super) watch: usize,
+    /// When, in cells.
+    pub(super) at: f64,
+}
+
+impl Table {
+    /// The first end of a piece that is met within a range, in cells. `begins` tells of a watch whether the motion begins at it.
+    pub(super) fn first_hit(
+        &self,
+        z: &[f64],
+        range: f64,
+        begins: impl Fn(&Watch) -> bool,
+        room: &mut [Polynomial],
+    ) -> Option<Hit> {
+        let mut first = None;
+        let mut range = range;
+        for (index, watch) in self.watches.iter().enumerate() {
+            let found = self.first_meeting(watch, z, range, begins(watch), room);
+            if let Some(at) = found.filter(|&at| first.is_none() || at < range) {
+                first = Some(Hit { watch: index, at });
+                range = at;
+            }
+        }
+        first
+    }
+
+    fn first_meeting(
+        &self,
+        watch: &Watch,
+        z: &[f64],
+        range: f64,
+        begins: bool,
+        room: &mut [Polynomial],
+    ) -> Option<f64> {
+        let width = self.cells + 1;
+        let mut ends = [0.0; ENDS];
+        for (column, factor) in watch.ends.chunks_exact(width).zip(z) {
+            for (end, x) in ends.iter_mut().zip(column) {
+                *end += x * factor;
+            }
+        }
+        if begins {
+            ends[0] = 0.0;
+        }
+        let sizes = watch.bound.iter().zip(z);
+        let curved = 0.5 * sizes.map(|(bound, x)| bound * x.abs()).sum::<f64>();
+        for cell in 0..self.cells {
+            let before = cell as f64;
+            if before >= range {
+                break;
+            }
+            let (a, b) = (ends[cell], ends[cell + 1]);
+            if a >= 0.0 && b > 0.0 && a + b > curved {
+                continue;
+            }
+            self.polynomials(cell, z, room);
+            let distance = self.distance(watch, room);
+            let to = (range - before - 0.5).min(0.5);
+            let noise = self.noise(watch, z, cell);
+            let found = first_zero(&distance, -0.5, to, begins && cell == 0, noise);
+            if let Some(s) = found {
+                return Some(before + 0.5 + s);
+            }
+        }
+        None
+    }
+
+    /// The polynomial of a distance from those of the rows.
+    pub(super) fn distance(&self, watch: &Watch, rows: &[Polynomial]) -> Polynomial {
+        let mut sum = [0.0; COEFFICIENTS];
+        for (index, row) in rows.iter().enumerate() {
+            let weight = watch.row[self.entry(index)];
+            for (sum, x) in sum.iter_mut().zip(row) {
+                *sum += weight * x;
+            }
+        }
+        sum[0] += watch.row[self.constant()];
+        sum
+    }
+
+    /// The rounding error of a distance in a cell.
+    fn noise(&self, watch: &Watch, z: &[f64], cell: usize) -> f64 {
+        let columns = watch.ends.chunks_exact(self.cells + 1).zip(z);
+        let sizes =
+            columns.map(|(column, x)| (column[cell].abs() + column[cell + 1].abs()) * x.abs());
+        4.0 * f64::EPSILON * sizes.sum::<f64>()
+    }
+}
