@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# Instructions of generated laws, counted by callgrind: benches/instructions/run.sh [--accept]
+#
+# Fails if a count is 5 % above `baseline.tsv`, or is not in it; `--accept` writes a new baseline. A count depends on the
+# instruction set asked for and on the compiler, not on the processor and what else it does. Valgrind knows no AVX-512.
+# Where there is no valgrind and it cannot be installed, nothing is counted.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+baseline=$here/baseline.tsv
+allowed=5
+
+if [[ $(uname -m) != x86_64 ]]; then
+    echo "no counts: the baseline is of x86-64, this is $(uname -m)"
+    exit 0
+fi
+
+if ! command -v valgrind >/dev/null && command -v apt-get >/dev/null; then
+    as_root=()
+    [[ $EUID -eq 0 ]] || as_root=(sudo -n)
+    echo 'installing valgrind'
+    { "${as_root[@]}" apt-get -qq update && "${as_root[@]}" apt-get -qq install -y valgrind; } >/dev/null 2>&1 || true
+fi
+if ! command -v valgrind >/dev/null; then
+    echo 'no counts: valgrind is not installed, and cannot be installed here'
+    exit 0
+fi
+
+# The versions that the workspace uses; dependencies built for it are used again.
+cp "$here/../../Cargo.lock" "$here/Cargo.lock"
+export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$here/../../target}
+cargo build --quiet --release --manifest-path "$here/Cargo.toml"
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# The C library chooses its functions by the processor too, unless it is told to take those that every one can run.
+export GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-AVX_Fast_Unaligned_Load,-ERMS
+
+sets=(baseline)
+if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
+    sets+=(avx2)
+else
+    echo 'this processor has no AVX2: its counts are not checked'
+fi
+
+# One line for each call: instruction set, law, batch, call, count.
+for set in "${sets[@]}"; do
+    mkdir "$folder/$set"
+    HERTZIAN_INSTRUCTIONS=$set valgrind --tool=callgrind --toggle-collect=measured --dump-after=measured \
+        --callgrind-out-file="$folder/$set/counts" "$CARGO_TARGET_DIR/release/hertzian-instructions" \
+        >"$folder/$set/names" 2>"$folder/$set/log" || { cat "$folder/$set/log" >&2; exit 1; }
+    call=0
+    while IFS= read -r name; do
+        call=$((call + 1))
+        printf '%s\t%s\t%s\n' "$set" "$name" "$(awk '$1 == "totals:" { print $2 }' "$folder/$set/counts.$call")"
+    done <"$folder/$set/names"
+done >"$folder/found"
+
+if [[ ${1:-} == --accept ]]; then
+    {
+        echo "# Instructions of each call at $(git -C "$here" describe --always --dirty), $(rustc --version)"
+        cat "$folder/found"
+    } >"$baseline"
+    echo "written: $(wc -l <"$folder/found") counts"
+    exit 0
+fi
+
+if awk -F '\t' -v allowed=$allowed '
+    /^#/ { next }
+    { name = $1 ": " $2 ", " $3 ", " $4 }
+    NR == FNR { expected[name] = $5; next }
+    !(name in expected) { print "not in the baseline: " name; failed = 1; next }
+    { checked++; change = 100 * ($5 / expected[name] - 1) }
+    change > allowed { printf "%+.1f %%, %d to %d instructions: %s\n", change, expected[name], $5, name; failed = 1 }
+    change < -allowed { fewer++ }
+    END {
+        printf "%d counts compared, %d of them more than %d %% below the baseline\n", checked, fewer, allowed
+        exit failed
+    }
+' "$baseline" "$folder/found"; then
+    exit 0
+fi
+head -n 1 "$baseline"
+echo "# Now: $(rustc --version)"
+echo 'If the change is worth it, accept a new baseline and commit it: benches/instructions/run.sh --accept'
+exit 1
