@@ -105,6 +105,10 @@ pub enum EventKind {
     Fold,
     /// An orbit with odd symmetry loses it: a branch of orbits without it crosses.
     SymmetryBreaking,
+    /// A branch of orbits of twice the period begins; a multiplier is minus one.
+    PeriodDoubling,
+    /// Another branch of orbits crosses or is met; a multiplier is one.
+    BranchPoint,
 }
 
 impl fmt::Display for EventKind {
@@ -112,6 +116,8 @@ impl fmt::Display for EventKind {
         f.write_str(match self {
             Self::Fold => "fold",
             Self::SymmetryBreaking => "symmetry-breaking",
+            Self::PeriodDoubling => "period-doubling",
+            Self::BranchPoint => "branch-point",
         })
     }
 }

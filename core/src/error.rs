@@ -1,5 +1,6 @@
 //! What can be wrong with a request, and why a computation has no answer.
 
+use crate::flow::FlowError;
 use crate::newton::NewtonError;
 
 /// Why there is no result.
@@ -94,6 +95,20 @@ pub enum Error {
         /// What the last attempt said.
         reason: NewtonError,
     },
+    /// There is no orbit: the branch that comes near turns back before.
+    Beyond {
+        /// The value asked for.
+        parameter: f64,
+        /// The fold.
+        fold: f64,
+    },
+    /// The motion from a state cannot be computed.
+    Motion {
+        /// Where.
+        parameter: f64,
+        /// Why.
+        reason: FlowError,
+    },
     /// Orbits were found, but none whose shortest period is the one asked for.
     NoSuchPeriod {
         /// The period asked for, in excitation periods.
@@ -170,6 +185,14 @@ impl std::fmt::Display for Error {
             Self::NoStart { parameter, reason } => {
                 write!(f, "no periodic orbit found at {parameter}: {reason}")
             }
+            Self::Beyond { parameter, fold } => write!(
+                f,
+                "no periodic orbit at {parameter} near the given one: its branch turns back at {fold:.12}, {:.1e} away",
+                (parameter - fold).abs()
+            ),
+            Self::Motion { parameter, reason } => {
+                write!(f, "no periodic orbit found at {parameter}: {reason}")
+            }
             Self::NoSuchPeriod { period, parameter } => {
                 write!(f, "no orbit of period {period} found at {parameter}")
             }
@@ -182,6 +205,7 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::NoStart { reason, .. } => Some(reason),
+            Self::Motion { reason, .. } => Some(reason),
             _ => None,
         }
     }

@@ -4,6 +4,8 @@
 //! the frequency. A state is `(q, dq/dt)`: coordinates, then their derivatives by *time*.
 
 pub mod affine;
+#[cfg(test)]
+pub mod shooting;
 
 use crate::system::Variable;
 

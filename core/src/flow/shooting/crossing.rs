@@ -1,0 +1,193 @@
+//! Locating where branches cross.
+//!
+//! There the matrix of a continuation step is singular, and Newton's method finds nothing close by. But the branch passes
+//! through smoothly, and so do the test functions along it. They are computed at orbits on both sides, at distances `1` to
+//! [`SIDE`] times a width, and interpolated; then once more about the zero, over a smaller width. The orbit itself is
+//! interpolated too, and is as good as any if it solves the equations.
+//!
+//! The curve is parametrised by its arc length along the first tangent, as in [`locate`](crate::continuation::locate).
+//!
+//! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, SIAM Review 46, equation (4.2).
+
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::locate::Located;
+use crate::continuation::problem::Problem;
+use crate::newton::{Border, Newton, NewtonOptions};
+
+/// Orbits on each side.
+const SIDE: usize = 4;
+/// Widths, as parts of the step that passed over the point.
+const WIDTHS: [f64; 2] = [0.1, 0.02];
+/// Fewer orbits than this are not enough.
+const FEWEST: usize = 5;
+const BISECTIONS: usize = 60;
+
+/// A solution with the derivative of the curve by the arc length.
+struct Node {
+    s: f64,
+    u: Vec<f64>,
+    slope: Vec<f64>,
+    test: f64,
+}
+
+/// Where a test function vanishes between two points although the bordered matrix is singular there.
+pub(super) fn locate_crossing<P: Problem>(
+    problem: &mut P,
+    newton: &mut Newton,
+    (a, b): (&CurvePoint, &CurvePoint),
+    options: NewtonOptions,
+    mut test: impl FnMut(&CurvePoint) -> f64,
+) -> Option<Located> {
+    let mut border = vec![0.0; a.u.len()];
+    newton.norm().linear_form(a.scale, &a.tangent, &mut border);
+    let dot = crate::linear::dot;
+    let origin = dot(&border, &a.u);
+    let ends = [a, b].map(|point| {
+        let along = dot(&border, &point.tangent);
+        Node {
+            s: dot(&border, &point.u) - origin,
+            u: point.u.clone(),
+            slope: point.tangent.iter().map(|t| t / along).collect(),
+            test: test(point),
+        }
+    });
+    let length = ends[1].s;
+    let mut zero = length * ends[0].test / (ends[0].test - ends[1].test);
+    let mut nodes: Vec<Node> = Vec::new();
+    for width in WIDTHS {
+        let width = width * length;
+        let mut found = Vec::with_capacity(2 * SIDE);
+        for index in 1..=SIDE {
+            for sign in [-1.0, 1.0] {
+                let s = zero + sign * width * index as f64;
+                let mut u = if nodes.is_empty() {
+                    cubic(&ends, s)
+                } else {
+                    interpolated(&nodes, s, |node| &node.u)
+                };
+                let row = Border {
+                    row: &border,
+                    value: origin + s,
+                };
+                if newton
+                    .correct(problem, &mut u, row, a.scale, options)
+                    .is_err()
+                {
+                    continue;
+                }
+                let mut slope = vec![0.0; u.len()];
+                newton.tangent(problem, &u, &mut slope, true);
+                let point = normalised(newton, a, u, slope.clone());
+                let test = test(&point);
+                let u = point.u;
+                found.push(Node { s, u, slope, test });
+            }
+        }
+        if found.len() < FEWEST {
+            return None;
+        }
+        nodes = found;
+        zero = root(&nodes)?;
+    }
+    let u = interpolated(&nodes, zero, |node| &node.u);
+    let slope = interpolated(&nodes, zero, |node| &node.slope);
+    let point = normalised(newton, a, u, slope);
+    let mut residual = vec![0.0; point.u.len()];
+    problem.evaluate(&point.u, &mut residual[..point.u.len() - 1], None);
+    newton.statistics.residuals += 1;
+    let solves = newton.norm().length(a.scale, &residual) <= options.tolerance;
+    solves.then(|| Located {
+        test: test(&point),
+        vanishes: true,
+        point,
+    })
+}
+
+/// A point in the scale of another, with its tangent made a unit.
+fn normalised(
+    newton: &Newton,
+    like: &CurvePoint,
+    u: Vec<f64>,
+    mut tangent: Vec<f64>,
+) -> CurvePoint {
+    let length = newton.norm().length(like.scale, &tangent);
+    for t in &mut tangent {
+        *t /= length;
+    }
+    CurvePoint {
+        u,
+        tangent,
+        scale: like.scale,
+    }
+}
+
+/// The cubic through two points with their slopes (Hermite's).
+fn cubic([a, b]: &[Node; 2], s: f64) -> Vec<f64> {
+    let h = b.s - a.s;
+    let p = (s - a.s) / h;
+    let (from, to) = (
+        (1.0 + 2.0 * p) * (1.0 - p) * (1.0 - p),
+        p * p * (3.0 - 2.0 * p),
+    );
+    let (leave, arrive) = (h * p * (1.0 - p) * (1.0 - p), h * p * p * (p - 1.0));
+    let entries = 0..a.u.len();
+    entries
+        .map(|i| from * a.u[i] + to * b.u[i] + leave * a.slope[i] + arrive * b.slope[i])
+        .collect()
+}
+
+/// Barycentric weights, divided by the distances from `s`, and their sum. None of the nodes is at `s`.
+fn weights(nodes: &[Node], s: f64) -> (Vec<f64>, f64) {
+    let weights: Vec<f64> = nodes
+        .iter()
+        .map(|node| {
+            let others = nodes.iter().filter(|other| other.s != node.s);
+            let product: f64 = others.map(|other| node.s - other.s).product();
+            1.0 / (product * (s - node.s))
+        })
+        .collect();
+    let sum = weights.iter().sum();
+    (weights, sum)
+}
+
+fn interpolated(nodes: &[Node], s: f64, of: impl Fn(&Node) -> &Vec<f64>) -> Vec<f64> {
+    if let Some(node) = nodes.iter().find(|node| node.s == s) {
+        return of(node).clone();
+    }
+    let (weights, sum) = weights(nodes, s);
+    let mut values = vec![0.0; of(&nodes[0]).len()];
+    for (node, weight) in nodes.iter().zip(&weights) {
+        for (value, x) in values.iter_mut().zip(of(node)) {
+            *value += weight / sum * x;
+        }
+    }
+    values
+}
+
+/// Zero of the interpolated test function between the nodes of opposite sign that are next to each other.
+fn root(nodes: &[Node]) -> Option<f64> {
+    let mut order: Vec<&Node> = nodes.iter().collect();
+    order.sort_by(|x, y| x.s.total_cmp(&y.s));
+    let pair = order
+        .windows(2)
+        .find(|pair| pair[0].test * pair[1].test <= 0.0)?;
+    let value = |s: f64| {
+        let (weights, sum) = weights(nodes, s);
+        let pairs = nodes.iter().zip(&weights);
+        pairs.map(|(node, weight)| weight * node.test).sum::<f64>() / sum
+    };
+    let (mut low, mut high) = (pair[0].s, pair[1].s);
+    let sign = pair[0].test.signum();
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if value(middle) * sign > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(0.5 * (low + high))
+}

@@ -1,0 +1,141 @@
+//! Orbits found by shooting, and branches of them.
+
+use std::fmt;
+use std::time::Duration;
+
+use super::extremes::Extremes;
+use crate::branch::{EventKind, Turn};
+use crate::continuation::follow::Stop;
+use crate::flow::{FlowError, Work};
+use crate::stability::Stability;
+use crate::statistics::Statistics;
+
+/// A periodic orbit, as a state that returns to itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// Value of what is varied: omega or a parameter.
+    pub value: f64,
+    /// Parameters of the system, in the order of its declaration.
+    pub parameters: Vec<f64>,
+    /// Excitation frequency.
+    pub omega: f64,
+    /// Number of periods of the declaration (`2 pi divisor / omega`) in its period.
+    pub period: usize,
+    /// Whether it has odd symmetry: half a period later every coordinate has the opposite sign.
+    pub symmetric: bool,
+    /// States at the beginnings of the segments; see [`Cycle::state`].
+    pub(super) states: Vec<f64>,
+    /// Its stability, with the multipliers over the whole period.
+    pub stability: Stability,
+    /// Extremes of every coordinate.
+    pub extremes: Vec<Extremes>,
+    /// Estimated error of the state, of velocities in units of omega: from the tolerance of the flow and from rounding.
+    /// Not a number where no stability was asked for.
+    pub error: f64,
+    /// Updates of Newton's method that it took from the guess; zero on a branch.
+    pub iterations: usize,
+}
+
+impl Cycle {
+    /// The state `(q, dq/dt)` at phase zero.
+    pub fn state(&self) -> &[f64] {
+        &self.states[..2 * self.extremes.len()]
+    }
+
+    /// Largest less smallest value of the first coordinate.
+    pub fn peak_to_peak(&self) -> f64 {
+        self.extremes[0].peak_to_peak()
+    }
+}
+
+/// A special orbit of a branch, located until its test function vanished.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CycleEvent {
+    /// What happens there.
+    pub kind: EventKind,
+    /// The orbit.
+    pub cycle: Cycle,
+    /// Estimated error of [`Cycle::value`], from the tolerance of the flow and from rounding.
+    pub error: f64,
+    /// Value of the test function that was reached.
+    pub test: f64,
+    /// Number of orbits of the branch before it.
+    pub after: usize,
+}
+
+impl fmt::Display for CycleEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            kind, cycle, error, ..
+        } = self;
+        write!(
+            f,
+            "{kind} at {:.12} (error {error:.0e}), peak-to-peak {:.9}",
+            cycle.value,
+            cycle.peak_to_peak()
+        )
+    }
+}
+
+/// Why a branch ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum End {
+    /// Following it ended.
+    Stopped(Stop),
+    /// It met a branch of more regular orbits, at the branch point that is its last event.
+    Joined {
+        /// Shortest period of these, in periods of the declaration.
+        period: usize,
+        /// Whether they have odd symmetry.
+        symmetric: bool,
+    },
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stopped(stop) => stop.fmt(f),
+            Self::Joined {
+                period,
+                symmetric: false,
+            } => write!(f, "met a branch of orbits of period {period}"),
+            Self::Joined {
+                period,
+                symmetric: true,
+            } => write!(f, "met a branch of symmetric orbits of period {period}"),
+        }
+    }
+}
+
+/// A branch of orbits in the order in which it was followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CycleBranch {
+    /// The orbits.
+    pub cycles: Vec<Cycle>,
+    /// Special orbits.
+    pub events: Vec<CycleEvent>,
+    /// Places where a test function changes its sign, but jumps instead of vanishing, as where an orbit grazes a level.
+    pub turns: Vec<Turn>,
+    /// Why it ended.
+    pub end: End,
+    /// Why the last motion could not be computed, if that is why it ended.
+    pub failure: Option<FlowError>,
+    /// What the continuation cost.
+    pub statistics: Statistics,
+    /// What the motions cost.
+    pub work: Work,
+    /// Time of the computation.
+    pub elapsed: Duration,
+}
+
+impl CycleBranch {
+    /// The events of one kind.
+    pub fn events(&self, kind: EventKind) -> impl Iterator<Item = &CycleEvent> {
+        self.events.iter().filter(move |event| event.kind == kind)
+    }
+
+    /// The folds.
+    pub fn folds(&self) -> impl Iterator<Item = &CycleEvent> {
+        self.events(EventKind::Fold)
+    }
+}

@@ -1,0 +1,23 @@
+//! Periodic orbits by shooting: a state that returns to itself, found by Newton's method on a [`Flow`](super::Flow).
+//!
+//! Nothing is left out of an orbit but the error of the flow, which its tolerance bounds; where the flow is in closed form, only
+//! rounding. So shooting refines what a balance has found, and follows branches of orbits with their folds and period doublings
+//! by the same continuation.
+
+mod beyond;
+mod companion;
+mod compute;
+mod crossing;
+mod cycle;
+mod equations;
+mod extremes;
+mod recurrence;
+mod run;
+mod setting;
+mod solve;
+mod start;
+#[cfg(test)]
+mod tests;
+
+pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
+pub use extremes::Extremes;
