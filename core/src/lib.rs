@@ -68,6 +68,8 @@ mod reader;
 mod response;
 mod run;
 pub mod stability;
+#[doc(hidden)]
+pub mod stages;
 mod start;
 mod statistics;
 pub mod structure;

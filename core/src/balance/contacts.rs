@@ -102,7 +102,7 @@ impl Balance<'_> {
     }
 
     /// Evaluates one contact and its derivatives into the scratch series. Returns whether it depends on the variable.
-    pub(super) fn contact_derivatives(&mut self, u: &[f64], contact: usize) -> bool {
+    pub(crate) fn contact_derivatives(&mut self, u: &[f64], contact: usize) -> bool {
         let (base, base_by) = (self.base(), self.base_by());
         let (length, period) = (self.length(), self.resolution.period);
         let layout = &self.layout.contacts[contact];
