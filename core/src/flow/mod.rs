@@ -7,7 +7,13 @@ pub mod affine;
 #[cfg(test)]
 pub mod shooting;
 
-use crate::system::Variable;
+mod field;
+mod integrated;
+
+pub use integrated::Integrated;
+
+use crate::error::Error;
+use crate::system::{System, Variable};
 
 /// What is shown every smooth stretch of a motion.
 pub type See<'s> = &'s mut (dyn FnMut(&dyn Stretch) + 's);
@@ -38,6 +44,79 @@ pub trait Flow: Send {
 
     /// The work done since the flow was made.
     fn work(&self) -> Work;
+}
+
+/// How a flow is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// The error allowed in a state, relative to the largest states of the motion; from `1e-14` to `1e-2`. A closed form is
+    /// always exact to rounding.
+    pub tolerance: f64,
+}
+
+impl Default for Options {
+    /// A tolerance of `1e-10`.
+    fn default() -> Self {
+        Self { tolerance: 1e-10 }
+    }
+}
+
+/// The flow of a system at a frequency, at the values that its parameters have: in closed form if every force is affine on
+/// each of its pieces and nothing else varies in time, otherwise by numerical integration.
+///
+/// ```
+/// use std::f64::consts::TAU;
+/// use hertzian::flow::{self, Options, Tangent};
+///
+/// hertzian::oscillator! {
+///     Contact(x) {
+///         param zeta in 0.0..;
+///         param drive;
+///         law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^1.5, else => 0 }
+///         ddot(x) + contact(x) = 1 + drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Contact { zeta: 0.05, drive: 0.5 };
+/// let mut flow = flow::of(&model, 0.8, Options::default())?;
+/// let mut state = [1.0, 0.0];
+/// for _ in 0..200 {
+///     flow.advance(0.0, TAU, &mut state, None, None)?;
+/// }
+/// // The motion has settled: it comes back after a period, and its derivatives by where it began are those of a contraction.
+/// let before = state;
+/// let mut tangent = Tangent::of_state(1, None);
+/// flow.advance(0.0, TAU, &mut state, Some(&mut tangent), None)?;
+/// assert!((state[0] - before[0]).abs() < 1e-8);
+/// let [a, b, c, d] = tangent.columns[..] else { unreachable!() };
+/// assert!(a * d - b * c < 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If a parameter, the frequency or the tolerance is outside its range, the levels of a law are out of order, or the mass
+/// matrix is singular.
+pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn Flow + '_>, Error> {
+    let mut values = vec![0.0; system.facts().parameters.len()];
+    system.values(&mut values);
+    at(system, &values, omega, options)
+}
+
+/// As [`of`], at given values of the parameters.
+///
+/// # Errors
+/// As [`of`].
+pub fn at<'a>(
+    system: &'a dyn System,
+    values: &[f64],
+    omega: f64,
+    options: Options,
+) -> Result<Box<dyn Flow + 'a>, Error> {
+    let integrated = Integrated::new(system, values, omega, options.tolerance)?;
+    Ok(match affine::Affine::new(system, values, omega) {
+        Some(affine) => Box::new(affine),
+        None => Box::new(integrated),
+    })
 }
 
 /// Derivatives of a state, moved along with it.
@@ -107,6 +186,16 @@ pub enum FlowError {
         /// How many.
         switches: usize,
     },
+    /// The motion rests on a level at which the force jumps, held by the jump: it sticks.
+    Rests {
+        /// Where.
+        phase: f64,
+    },
+    /// A gap touches a level at which the force jumps, without speed: the motion has no derivative there.
+    Grazes {
+        /// Where.
+        phase: f64,
+    },
     /// The mass matrix is singular.
     SingularMass {
         /// Its determinant.
@@ -127,6 +216,14 @@ impl std::fmt::Display for FlowError {
                     "{switches} switches within one period at the phase {phase}"
                 )
             }
+            Self::Rests { phase } => write!(
+                f,
+                "the motion rests on a level at which the force jumps, at the phase {phase}"
+            ),
+            Self::Grazes { phase } => write!(
+                f,
+                "a gap touches a level at which the force jumps, at the phase {phase}: the motion has no derivative there"
+            ),
             Self::SingularMass { determinant } => {
                 write!(
                     f,

@@ -1,0 +1,124 @@
+//! Where a gap first leaves its piece on a step.
+//!
+//! Distances from the levels of a piece are polynomials in `u` through their values at both ends and at the nodes, in
+//! Bernstein form, so that a pair of crossings within one step is not missed. At an end that stands on the level itself the
+//! distance is divided by the part of the step that has passed, or is left: its zero there is taken out.
+
+use crate::flow::field::Gap;
+
+use super::engine::Engine;
+use super::roots;
+
+/// Rounding of a polynomial's coefficients, in parts of its largest value.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// A gap leaves its piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Found {
+    pub(super) contact: usize,
+    pub(super) level: usize,
+    /// Where on the step.
+    pub(super) u: f64,
+    /// It stands on that level and leaves without having been on the piece.
+    pub(super) at_once: bool,
+}
+
+impl<const S: usize> Engine<'_, S> {
+    /// The first crossing on the trial, if any; not the one that it ends on.
+    pub(super) fn crossing(&mut self) -> Option<Found> {
+        let mut first: Option<Found> = None;
+        let end = self.phase() + self.trial.width;
+        for contact in 0..self.here.on.len() {
+            let gap = self.field.gap(contact, &self.trial.q, &self.trial.v, end);
+            let piece = self.here.pieces[contact];
+            let count = self.field.contacts[contact].levels.len();
+            let lower = piece.checked_sub(1);
+            let upper = (piece < count).then_some(piece);
+            for (level, sign) in [(lower, 1.0), (upper, -1.0)] {
+                let Some(level) = level else { continue };
+                let Some((u, at_once)) = self.leaves(contact, level, sign, gap) else {
+                    continue;
+                };
+                if first.is_none_or(|found| u < found.u) {
+                    first = Some(Found {
+                        contact,
+                        level,
+                        u,
+                        at_once,
+                    });
+                }
+            }
+        }
+        first
+    }
+
+    /// Where `sign` times the distance from a level becomes negative, and whether that is at the start.
+    fn leaves(&mut self, contact: usize, level: usize, sign: f64, end: Gap) -> Option<(f64, bool)> {
+        let value = self.field.contacts[contact].levels[level];
+        let start = self.here.gaps[contact];
+        let starts = self.here.on[contact] == Some(level);
+        let ends = self.trial.landing == Some((contact, level));
+        let time = self.time();
+        let tables = &self.tables[self.trial.table];
+        let base = self.anchors[contact].gap - value;
+        let rise = &self.batch.contacts[contact].rise;
+        let values = &mut self.values;
+        for j in 0..S {
+            values[j + 1] = sign * (base + rise[j]);
+        }
+        values[0] = sign * (start.value - value);
+        values[S + 1] = sign * (end.value - value);
+        let size = start.size.max(end.size);
+        let graded = tables.map.power() > 1;
+        let accuracy = if graded {
+            self.tolerance * size.max(self.field.gap_scale(contact, &self.here.sizes))
+        } else {
+            0.0
+        };
+        if starts {
+            let slope = sign * start.rate * time;
+            let distances = values[1..=S].iter_mut();
+            take_out(distances.zip(&tables.passed), slope, accuracy);
+            values[0] = slope;
+        }
+        if ends {
+            let slope = -sign * end.rate * time;
+            let distances = values[1..=S].iter_mut().rev();
+            take_out(distances.zip(tables.left.iter().rev()), slope, accuracy);
+            values[S + 1] = slope;
+        }
+        let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let noise = ROUNDING * largest.max(if starts || ends { 0.0 } else { size });
+        // Far from the level nothing need be looked for.
+        let least = values.iter().fold(f64::INFINITY, |m, &x| m.min(x));
+        if least > 0.0 && largest == 0.0 {
+            return None;
+        }
+        let order = values.len();
+        for (coefficient, row) in self
+            .coefficients
+            .iter_mut()
+            .zip(self.rule.bernstein.chunks_exact(order))
+        {
+            let sum: f64 = row.iter().zip(&*values).map(|(w, x)| w * x).sum();
+            *coefficient = sum + noise;
+        }
+        let u = roots::first(&self.coefficients)?;
+        let inside = roots::value(&self.coefficients, 0.5 * u) - noise;
+        Some((u, starts && inside <= 2.0 * noise))
+    }
+}
+
+/// Divides distances from a level by the parts of the step between, in order from the level. Beside it, distances that are
+/// within the accuracy of the motion are those of its slope there.
+fn take_out<'a>(
+    distances: impl Iterator<Item = (&'a mut f64, &'a f64)>,
+    slope: f64,
+    accuracy: f64,
+) {
+    let mut beside = true;
+    for (distance, part) in distances {
+        beside &= distance.abs() <= accuracy;
+        *distance = if beside { slope } else { *distance / part };
+    }
+}
