@@ -52,7 +52,7 @@ pub(super) fn first_zero(
 }
 
 /// A bound on the change of the slope between the middle and the ends of the cell.
-fn slope_variation(p: &Polynomial) -> f64 {
+pub(super) fn slope_variation(p: &Polynomial) -> f64 {
     let mut sum = 0.0;
     let mut power = 0.5;
     for k in 2..COEFFICIENTS {

@@ -10,6 +10,7 @@
 mod crossing;
 mod equations;
 mod model;
+mod scalar;
 mod search;
 mod table;
 mod tangent;
@@ -20,6 +21,7 @@ use std::f64::consts::TAU;
 
 use self::crossing::value_and_slope;
 use self::model::Model;
+use self::scalar::{Scalar, Span};
 use self::table::{COEFFICIENTS, Polynomial, Table};
 use crate::flow::{Flow, FlowError, See, Stretch, Tangent, Work};
 use crate::system::{System, Variable};
@@ -30,6 +32,8 @@ const MOST_SWITCHES: usize = 10_000;
 /// The flow of a system of which every piece of every law is affine, and stiffness and directions are constant in time.
 pub struct Affine<'a> {
     model: Model<'a>,
+    /// The same for one coordinate under at most one harmonic, once it is needed at the present values.
+    scalar: Option<Scalar>,
     /// The state with the constant and the waves.
     z: Vec<f64>,
     rows: Vec<Polynomial>,
@@ -38,6 +42,8 @@ pub struct Affine<'a> {
     pieces: Vec<usize>,
     at: Vec<Option<usize>>,
     column: Vec<f64>,
+    /// The state at the end of a stretch.
+    next: Vec<f64>,
     work: Work,
 }
 
@@ -54,79 +60,82 @@ impl<'a> Affine<'a> {
             pieces: vec![0; contacts],
             at: vec![None; contacts],
             column: vec![0.0; order],
+            next: vec![0.0; 2 * model.basis.coordinates],
             work: Work::default(),
+            scalar: None,
             model,
         })
     }
 
-    /// Moves over at most one period. `phase` is `from` within the first period.
-    fn advance_period(
+    /// Moves over at most one period.
+    fn advance_span(
         &mut self,
-        (from, to): (f64, f64),
+        span: Span,
         state: &mut [f64],
         tangent: &mut Option<&mut Tangent>,
         see: &mut Option<See<'_>>,
     ) -> Result<(), FlowError> {
         let n = self.model.basis.coordinates;
         let by = tangent.as_ref().and_then(|tangent| tangent.by);
-        let first = from.rem_euclid(TAU);
+        let Span {
+            begin,
+            end,
+            first,
+            length,
+        } = span;
         let mut done = 0.0;
         let mut switches = 0;
         self.z[..2 * n].copy_from_slice(state);
         self.model.basis.write_waves(first, &mut self.z[2 * n..]);
-        self.choose_pieces(from)?;
-        while from + done < to {
-            let phase = from + done;
+        self.choose_pieces(begin)?;
+        loop {
+            let phase = begin + done;
             let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
             let table = &self.model.at(combination).table;
             let rows = &mut self.rows[..table.rows];
-            let left = (to - from - done) / table.cell;
-            let range = left.min(table.cells as f64);
+            let left = (length - done) / table.cell;
+            let range = left.min(table.range());
             let at = &self.at;
             let begins = |watch: &table::Watch| at[watch.contact] == Some(watch.level);
             let hit = table.first_hit(&self.z, range, begins, rows);
-            let length = hit.map_or(range, |hit| hit.at);
-            let ends = hit.is_none() && range == left;
-            let next = if ends {
-                to - from
-            } else {
-                done + length * table.cell
-            };
-            if let Some(tangent) = tangent.as_deref_mut() {
-                let room = (
-                    &mut *rows,
-                    &mut self.rows_by[..table.rows],
-                    &mut self.column[..],
-                );
-                tangent::advance(&self.model, table, &self.z, length, tangent, room);
-            }
+            let cells = hit.map_or(range, |hit| hit.at);
+            let last = hit.is_none() && range == left;
+            let next = done + cells * table.cell;
             let piece = Piece {
                 table,
                 z: &self.z,
-                phases: (phase, if ends { to } else { from + next }),
+                phases: (phase, if last { end } else { begin + next }),
                 base: self.model.terms.base,
             };
-            piece.at(length, rows, state);
-            if state.iter().any(|x| !x.is_finite()) {
+            piece.at(cells, rows, &mut self.next);
+            if self.next.iter().any(|x| !x.is_finite()) {
                 return Err(FlowError::NotFinite { phase });
+            }
+            state.copy_from_slice(&self.next);
+            if let Some(tangent) = tangent.as_deref_mut() {
+                let rows_by = &mut self.rows_by[..table.rows];
+                let room = (&mut *rows, rows_by, &mut self.column[..]);
+                tangent::advance(&self.model, table, &self.z, cells, tangent, room);
             }
             if let Some(see) = see {
                 see(&piece);
             }
             self.work.steps += 1;
+            if last {
+                return Ok(());
+            }
             done = next;
             self.z[..2 * n].copy_from_slice(state);
-            self.model
-                .basis
-                .write_waves(first + done, &mut self.z[2 * n..]);
-            if length > 0.0 {
+            let waves = &mut self.z[2 * n..];
+            self.model.basis.write_waves(first + done, waves);
+            if cells > 0.0 {
                 self.at.fill(None);
             }
             if let Some(hit) = hit {
                 switches += 1;
                 self.work.switches += 1;
                 if switches > MOST_SWITCHES {
-                    let phase = from + done;
+                    let phase = begin + done;
                     return Err(FlowError::TooManySwitches { phase, switches });
                 }
                 let watch = &table.watches[hit.watch];
@@ -138,7 +147,6 @@ impl<'a> Affine<'a> {
                 self.at[contact] = Some(level);
             }
         }
-        Ok(())
     }
 
     /// The piece that every gap is on, or is about to enter.
@@ -170,9 +178,8 @@ impl<'a> Affine<'a> {
         table.polynomials(0, &self.z, rows);
         let mut watches = table.watches.iter();
         let watch = watches.find(|watch| watch.contact == contact && watch.level == level);
-        Ok(watch.is_some_and(|watch| {
-            crossing::derivatives(&table.distance(watch, rows), -0.5)[2] > 0.0
-        }))
+        Ok(watch
+            .is_some_and(|watch| crossing::derivatives(&table.distance(watch, rows), 0.0)[2] > 0.0))
     }
 }
 
@@ -187,6 +194,7 @@ impl Flow for Affine<'_> {
             Variable::Parameter(index) => self.model.parameters[index] = value,
         }
         self.model.touch();
+        self.scalar = None;
     }
 
     fn advance(
@@ -202,13 +210,19 @@ impl Flow for Affine<'_> {
         if state.iter().any(|x| !x.is_finite()) || !from.is_finite() || !to.is_finite() {
             return Err(FlowError::NotFinite { phase: from });
         }
-        let mut begin = from;
-        let mut periods = 0.0;
-        while begin < to {
-            periods += 1.0;
-            let end = (from + periods * TAU).min(to);
-            self.advance_period((begin, end), state, &mut tangent, &mut see)?;
-            begin = end;
+        if see.is_none() && by.is_none() && self.scalar.is_none() {
+            self.scalar = Scalar::new(&mut self.model, from)?;
+        }
+        for span in spans(from, to) {
+            match &self.scalar {
+                Some(scalar) if see.is_none() && by.is_none() => {
+                    let columns = tangent.as_mut().map(|tangent| &mut tangent.columns[..]);
+                    let columns = columns.unwrap_or(&mut []).as_chunks_mut().0;
+                    let (state, _) = state.as_chunks_mut();
+                    scalar.advance(span, &mut state[0], columns, &mut self.work)?;
+                }
+                _ => self.advance_span(span, state, &mut tangent, &mut see)?,
+            }
         }
         Ok(())
     }
@@ -216,6 +230,22 @@ impl Flow for Affine<'_> {
     fn work(&self) -> Work {
         self.work
     }
+}
+
+/// The periods from a phase to a later one, and what is left. Lengths are not differences of phases, which grow without end.
+fn spans(from: f64, to: f64) -> impl Iterator<Item = Span> {
+    let resolution = 2.0 * f64::EPSILON * (from.abs() + to.abs());
+    let periods = ((to - from + resolution) / TAU).floor().max(0.0);
+    let rest = to - from - periods * TAU;
+    let count = periods as usize + usize::from(rest > resolution);
+    let first = from.rem_euclid(TAU);
+    let phase = move |k: usize| from + k as f64 * TAU;
+    (0..count).map(move |k| Span {
+        begin: phase(k),
+        end: if k + 1 == count { to } else { phase(k + 1) },
+        first,
+        length: if (k as f64) < periods { TAU } else { rest },
+    })
 }
 
 /// A motion on one combination of pieces, from the phase where its table begins.

@@ -51,7 +51,7 @@ pub(super) struct Model<'a> {
     variable: Option<Variable>,
     pub(super) contacts: Vec<Contact>,
     /// An offset depends on the phase.
-    moving: bool,
+    pub(super) moving: bool,
     /// Nothing belongs to the present values yet.
     stale: bool,
     combinations: Vec<Combination>,
@@ -282,6 +282,12 @@ impl<'a> Model<'a> {
             combination.differentiated = true;
         }
         Ok(())
+    }
+
+    /// The gap direction and the constant offset of a contact, of one coordinate.
+    pub(super) fn position(&self, contact: usize) -> (f64, f64) {
+        let contact = &self.terms.contacts[contact];
+        (contact.gap[0], contact.offset[0])
     }
 
     /// A gap and its rate.

@@ -1,9 +1,9 @@
 //! The first end of a piece that a motion meets, within the range of its table.
 //!
-//! A cell of unit length with distances `a, b >= 0` at its ends and `|d''| <= 2 c` in it holds no zero if
+//! An interval of length `l` with distances `a, b >= 0` at its ends and `|d''| <= 2 c` in it holds no zero if
 //!
 //! ```text
-//! a (1 - s) + b s - c s (1 - s) > 0  for  0 < s < 1,    for which  a + b > c  suffices                        (1)
+//! a (1 - s) + b s - c l^2 s (1 - s) > 0  for  0 < s < 1,    for which  a + b > c l^2  suffices                (1)
 //! ```
 //!
 //! also if `a = 0` because the motion begins at the level. The other cells are searched one by one, see
@@ -66,21 +66,26 @@ impl Table {
         let sizes = watch.bound.iter().zip(z);
         let curved = 0.5 * sizes.map(|(bound, x)| bound * x.abs()).sum::<f64>();
         for cell in 0..self.cells {
-            let before = cell as f64;
-            if before >= range {
+            let (from, bound) = if cell == 0 {
+                (0.0, 0.25 * curved)
+            } else {
+                (-0.5, curved)
+            };
+            let middle = cell as f64;
+            if middle + from >= range {
                 break;
             }
             let (a, b) = (ends[cell], ends[cell + 1]);
-            if a >= 0.0 && b > 0.0 && a + b > curved {
+            if a >= 0.0 && b > 0.0 && a + b > bound {
                 continue;
             }
             self.polynomials(cell, z, room);
             let distance = self.distance(watch, room);
-            let to = (range - before - 0.5).min(0.5);
+            let to = (range - middle).min(0.5);
             let noise = self.noise(watch, z, cell);
-            let found = first_zero(&distance, -0.5, to, begins && cell == 0, noise);
+            let found = first_zero(&distance, from, to, begins && cell == 0, noise);
             if let Some(s) = found {
-                return Some(before + 0.5 + s);
+                return Some(middle + s);
             }
         }
         None

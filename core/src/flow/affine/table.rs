@@ -1,19 +1,22 @@
 //! The motion on one combination of pieces, tabulated: exact at any phase, with few operations.
 //!
-//! From `dz/dtau = A z` ([`equations`](super::equations)) a coordinate is a row of `exp(A tau) z(0)`. The phase is divided into cells
-//! of length `h`, and in the cell `j` about its middle, with `s` in cells,
+//! From `dz/dtau = A z` ([`equations`](super::equations)) a coordinate is a row of `exp(A tau) z(0)`. About every multiple `j` of a
+//! phase `h` there is a cell that reaches half as far to either side, and in it, with `s` in units of `h`,
 //!
 //! ```text
-//! q_i(s) = sum_k X_ik (s - j - 1/2)^k,    X_ik = e_i (A h)^k / k! exp(A h (j + 1/2)) z(0)                     (1)
+//! q_i(s) = sum_k X_ik (s - j)^k,    X_ik = e_i (A h)^k / k! exp(A h j) z(0)                                   (1)
 //! ```
+//!
+//! The first cell begins in its middle, so that a motion much shorter than a cell is a series in small numbers. The range of the
+//! table ends at the right end of the last cell.
 //!
 //! The cells are so short, compared with the fastest rate of the system, that the series ends below rounding after
 //! [`COEFFICIENTS`] terms. The rows of (1) are tabulated for all cells, so a motion is a few products with `z(0)`. Nothing here
 //! divides by a difference of frequencies or by a stiffness: resonance, critical damping, no stiffness and the neighbourhood of
 //! each keep their digits.
 //!
-//! A *watch* is the distance of a gap from one end of its piece, positive inside. Its values at the ends of the cells are
-//! tabulated too, and a bound on its second derivative, `|d''| <= bound . |z(0)|` in the unit of a cell.
+//! A *watch* is the distance of a gap from one end of its piece, positive inside. Its values at the beginning and at the ends of
+//! the cells are tabulated too, and a bound on its second derivative, `|d''| <= bound . |z(0)|` in the unit of a cell.
 //!
 //! Source: Moler and Van Loan (2003), Nineteen dubious ways to compute the exponential of a matrix, SIAM Review 45, method 3
 //! (scaling and squaring).
@@ -21,15 +24,16 @@
 use super::equations::Basis;
 
 /// Terms of the series (1).
-pub(super) const COEFFICIENTS: usize = 12;
+pub(super) const COEFFICIENTS: usize = 13;
 
-/// Length of a cell, in units of the fastest rate: `0.225^12 / 12! = 4e-17` is the first term left out at its ends.
+/// Length of a cell, in units of the fastest rate: at its ends `0.225^12 / 12! = 4e-17` is the first term left out of a
+/// velocity.
 const CELL: f64 = 0.45;
 
-/// Terms of the exponential over half a cell: `0.225^15 / 15! = 1e-22`.
-const TERMS: usize = 15;
+/// Terms of the exponential over half a cell: `0.225^14 / 14! = 1e-20` is left out.
+const TERMS: usize = 13;
 
-/// The coefficients of a polynomial in the phase about the middle of a cell, in cells.
+/// The coefficients of a polynomial in the phase from the middle of a cell, in cells.
 pub(super) type Polynomial = [f64; COEFFICIENTS];
 
 /// The distance of a gap from one end of its piece.
@@ -41,7 +45,7 @@ pub(super) struct Watch {
     pub(super) upper: bool,
     /// The distance as a row of `z`.
     pub(super) row: Vec<f64>,
-    /// Its values at the ends of cells, `cells + 1` of them for every entry of `z`.
+    /// Its values at the beginning and at the ends of cells, `cells + 1` of them for every entry of `z`.
     pub(super) ends: Vec<f64>,
     /// `|d''| <= bound . |z(0)|`
     pub(super) bound: Vec<f64>,
@@ -73,20 +77,21 @@ pub(super) struct Room {
     /// `A h`
     scaled: Vec<f64>,
     scaled_by: Vec<f64>,
-    /// `exp(A h / 2)`, the exponentials over 1, 2, 4, ... cells, and those up to the middle of every cell; with derivatives.
+    /// `exp(A h / 2)`, the exponentials over 1, 2, 4, ... cells, and those up to the middle of every cell.
     half: Pair,
     powers: Vec<Pair>,
     middles: Vec<Pair>,
-    term: Pair,
     next: Pair,
-    /// `e_i (A h)^k / k!`, by term and row.
-    rows: Vec<f64>,
-    rows_by: Vec<f64>,
+    /// `e_i (A h)^k / k!` for the tabulated rows, by row and column: a polynomial for every entry.
+    rows: Vec<Polynomial>,
+    rows_by: Vec<Polynomial>,
     row: Vec<f64>,
     other: Vec<f64>,
+    row_by: Vec<f64>,
+    other_by: Vec<f64>,
 }
 
-/// A matrix and its derivative by a variable.
+/// An exponential less the unit matrix, so that rounding errors are relative to what it changes; and its derivative by a variable.
 #[derive(Debug, Clone)]
 struct Pair {
     value: Vec<f64>,
@@ -125,7 +130,7 @@ impl Table {
         room.set(matrix, None, self.cell);
         room.exponentials(false);
         room.taylor(self, false);
-        fill_series(&mut self.series, self.rows, &room.rows, &room.middles);
+        fill_series(&mut self.series, &room.rows, &room.middles);
         let coordinates = self.coordinates;
         for watch in &mut self.watches {
             watch.fill(&self.series, self.rows, coordinates, room);
@@ -139,13 +144,18 @@ impl Table {
         room.set(matrix, Some(by), self.cell);
         room.exponentials(true);
         room.taylor(self, true);
-        fill_derivatives(&mut self.series_by, self.rows, room);
+        fill_derivatives(&mut self.series_by, room);
     }
 
     /// The cell that a phase lies in, in cells, and where in it.
     pub(super) fn place(&self, cells: f64) -> (usize, f64) {
-        let cell = (cells.max(0.0) as usize).min(self.cells - 1);
-        (cell, cells - cell as f64 - 0.5)
+        let cell = ((cells + 0.5).max(0.0) as usize).min(self.cells - 1);
+        (cell, cells - cell as f64)
+    }
+
+    /// Where the table ends, in cells.
+    pub(super) fn range(&self) -> f64 {
+        self.cells as f64 - 0.5
     }
 
     /// The polynomial of one row in a cell.
@@ -168,7 +178,7 @@ impl Table {
 }
 
 /// Cells of a table. Fewer for large systems, whose tables would not fit into a cache.
-pub(super) fn cells(order: usize) -> usize {
+pub(super) const fn cells(order: usize) -> usize {
     if order <= 16 { 16 } else { 4 }
 }
 
@@ -200,13 +210,15 @@ impl Watch {
     /// Tabulates the distance at the ends of cells, and the bound on its second derivative.
     fn fill(&mut self, series: &[Polynomial], rows: usize, coordinates: usize, room: &mut Room) {
         let (order, width) = (self.row.len(), room.middles.len() + 1);
-        row_times(&self.row, &room.half.value, &mut room.row);
+        room.row.copy_from_slice(&self.row);
+        add_row_times(&self.row, &room.half.value, &mut room.row);
         self.ends.resize(order * width, 0.0);
         for (m, &x) in self.row.iter().enumerate() {
             self.ends[m * width] = x;
         }
         for (j, middle) in room.middles.iter().enumerate() {
-            row_times(&room.row, &middle.value, &mut room.other);
+            room.other.copy_from_slice(&room.row);
+            add_row_times(&room.row, &middle.value, &mut room.other);
             for (m, &x) in room.other.iter().enumerate() {
                 self.ends[m * width + j + 1] = x;
             }
@@ -225,15 +237,22 @@ impl Watch {
     }
 }
 
+/// `k (k - 1) / 2^(k - 2)`
+const SECOND: Polynomial = {
+    let mut weights = [0.0; COEFFICIENTS];
+    let (mut k, mut power) = (2, 1.0);
+    while k < COEFFICIENTS {
+        weights[k] = (k * (k - 1)) as f64 * power;
+        power *= 0.5;
+        k += 1;
+    }
+    weights
+};
+
 /// A bound on the second derivative within the cell.
-fn second_derivative_bound(polynomial: &Polynomial) -> f64 {
-    let terms = polynomial.iter().enumerate().skip(2);
-    let sizes = terms.scan(1.0, |power, (k, x)| {
-        let size = (k * (k - 1)) as f64 * x.abs() * *power;
-        *power *= 0.5;
-        Some(size)
-    });
-    sizes.sum()
+pub(super) fn second_derivative_bound(polynomial: &Polynomial) -> f64 {
+    let sizes = polynomial.iter().zip(&SECOND);
+    sizes.map(|(x, weight)| x.abs() * weight).sum()
 }
 
 impl Room {
@@ -251,12 +270,13 @@ impl Room {
             half: pair.clone(),
             powers: vec![pair.clone(); cells.ilog2() as usize],
             middles: vec![pair.clone(); cells],
-            term: pair.clone(),
             next: pair,
-            rows: vec![0.0; COEFFICIENTS * rows * order],
-            rows_by: vec![0.0; COEFFICIENTS * rows * order],
+            rows: vec![[0.0; COEFFICIENTS]; rows * order],
+            rows_by: vec![[0.0; COEFFICIENTS]; rows * order],
             row: vec![0.0; order],
             other: vec![0.0; order],
+            row_by: vec![0.0; order],
+            other_by: vec![0.0; order],
         }
     }
 
@@ -271,21 +291,24 @@ impl Room {
 
     /// The exponentials over half a cell, over powers of two of cells, and up to the middle of every cell.
     fn exponentials(&mut self, derivatives: bool) {
-        let order = self.scaled.len().isqrt();
-        self.term.set_identity(order);
-        self.half.set_identity(order);
-        for k in 1..=TERMS {
+        // exp(X) - 1 = X/1 (1 + X/2 (1 + X/3 (...)))
+        self.half.value.fill(0.0);
+        self.half.by.fill(0.0);
+        for k in (1..=TERMS).rev() {
             let factor = 0.5 / k as f64;
-            product(&self.term.value, &self.scaled, &mut self.next.value);
+            self.next.value.copy_from_slice(&self.scaled);
+            add_products(&self.scaled, &self.half.value, &mut self.next.value);
+            scale(&mut self.next.value, factor);
             if derivatives {
-                product(&self.term.by, &self.scaled, &mut self.next.by);
-                add_products(&self.term.value, &self.scaled_by, &mut self.next.by);
+                self.next.by.copy_from_slice(&self.scaled_by);
+                add_products(&self.scaled_by, &self.half.value, &mut self.next.by);
+                add_products(&self.scaled, &self.half.by, &mut self.next.by);
+                scale(&mut self.next.by, factor);
             }
-            std::mem::swap(&mut self.term, &mut self.next);
-            self.term.scale(factor);
-            self.half.add(&self.term);
+            std::mem::swap(&mut self.half, &mut self.next);
         }
-        self.middles[0].clone_from(&self.half);
+        self.middles[0].value.fill(0.0);
+        self.middles[0].by.fill(0.0);
         self.powers[0].set_product(&self.half, &self.half, derivatives);
         for m in 1..self.powers.len() {
             let (before, after) = self.powers.split_at_mut(m);
@@ -300,96 +323,82 @@ impl Room {
 
     /// The rows `e_i (A h)^k / k!`.
     fn taylor(&mut self, table: &Table, derivatives: bool) {
-        let (order, count) = (table.order, table.rows);
-        self.rows.fill(0.0);
-        self.rows_by.fill(0.0);
-        for row in 0..count {
-            self.rows[row * order + table.entry(row)] = 1.0;
-        }
-        for k in 1..COEFFICIENTS {
-            let (before, after) = self.rows.split_at_mut(k * count * order);
-            let before = &before[(k - 1) * count * order..];
-            for row in 0..count {
-                let from = &before[row * order..][..order];
-                let out = &mut after[row * order..][..order];
-                row_times(from, &self.scaled, out);
-                scale(out, 1.0 / k as f64);
-            }
-            if derivatives {
-                let (before_by, after_by) = self.rows_by.split_at_mut(k * count * order);
-                let before_by = &before_by[(k - 1) * count * order..];
-                for row in 0..count {
-                    let out = &mut after_by[row * order..][..order];
-                    row_times(&before_by[row * order..][..order], &self.scaled, out);
-                    add_row_times(&before[row * order..][..order], &self.scaled_by, out);
-                    scale(out, 1.0 / k as f64);
+        let order = table.order;
+        for index in 0..table.rows {
+            self.row.fill(0.0);
+            self.row[table.entry(index)] = 1.0;
+            self.row_by.fill(0.0);
+            for k in 0..COEFFICIENTS {
+                let entries = index * order..(index + 1) * order;
+                for (polynomial, x) in self.rows[entries.clone()].iter_mut().zip(&self.row) {
+                    polynomial[k] = *x;
                 }
+                for (polynomial, x) in self.rows_by[entries].iter_mut().zip(&self.row_by) {
+                    polynomial[k] = *x;
+                }
+                let factor = 1.0 / (k + 1) as f64;
+                row_times(&self.row, &self.scaled, &mut self.other);
+                scale(&mut self.other, factor);
+                if derivatives {
+                    row_times(&self.row_by, &self.scaled, &mut self.other_by);
+                    add_row_times(&self.row, &self.scaled_by, &mut self.other_by);
+                    scale(&mut self.other_by, factor);
+                    std::mem::swap(&mut self.row_by, &mut self.other_by);
+                }
+                std::mem::swap(&mut self.row, &mut self.other);
             }
         }
     }
 }
 
 impl Pair {
-    fn set_identity(&mut self, order: usize) {
-        self.by.fill(0.0);
-        self.value.fill(0.0);
-        for i in 0..order {
-            self.value[i * order + i] = 1.0;
-        }
-    }
-
-    fn scale(&mut self, factor: f64) {
-        scale(&mut self.value, factor);
-        scale(&mut self.by, factor);
-    }
-
-    fn add(&mut self, other: &Self) {
-        for (out, x) in self.value.iter_mut().zip(&other.value) {
-            *out += x;
-        }
-        for (out, x) in self.by.iter_mut().zip(&other.by) {
-            *out += x;
-        }
-    }
-
+    /// `(1 + a) (1 + b) - 1`
     fn set_product(&mut self, a: &Self, b: &Self, derivatives: bool) {
-        product(&a.value, &b.value, &mut self.value);
+        sum(&a.value, &b.value, &mut self.value);
+        add_products(&a.value, &b.value, &mut self.value);
         if derivatives {
-            product(&a.by, &b.value, &mut self.by);
+            sum(&a.by, &b.by, &mut self.by);
+            add_products(&a.by, &b.value, &mut self.by);
             add_products(&a.value, &b.by, &mut self.by);
         }
     }
 }
 
+fn sum(a: &[f64], b: &[f64], out: &mut [f64]) {
+    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+        *out = a + b;
+    }
+}
+
 /// The series of every cell: rows times the exponential up to its middle.
-fn fill_series(series: &mut [Polynomial], count: usize, rows: &[f64], middles: &[Pair]) {
-    let order = middles[0].value.len().isqrt();
-    series.fill([0.0; COEFFICIENTS]);
-    for (cell, middle) in series.chunks_exact_mut(count * order).zip(middles) {
-        add_series(cell, count, rows, &middle.value);
+fn fill_series(series: &mut [Polynomial], rows: &[Polynomial], middles: &[Pair]) {
+    for (cell, middle) in series.chunks_exact_mut(rows.len()).zip(middles) {
+        cell.copy_from_slice(rows);
+        add_series(cell, rows, &middle.value);
     }
 }
 
 /// The derivatives of the series of every cell.
-fn fill_derivatives(series: &mut [Polynomial], count: usize, room: &Room) {
-    let order = room.half.value.len().isqrt();
-    series.fill([0.0; COEFFICIENTS]);
-    for (cell, middle) in series.chunks_exact_mut(count * order).zip(&room.middles) {
-        add_series(cell, count, &room.rows_by, &middle.value);
-        add_series(cell, count, &room.rows, &middle.by);
+fn fill_derivatives(series: &mut [Polynomial], room: &Room) {
+    let cells = series.chunks_exact_mut(room.rows.len());
+    for (cell, middle) in cells.zip(&room.middles) {
+        cell.copy_from_slice(&room.rows_by);
+        add_series(cell, &room.rows_by, &middle.value);
+        add_series(cell, &room.rows, &middle.by);
     }
 }
 
-fn add_series(cell: &mut [Polynomial], count: usize, rows: &[f64], middle: &[f64]) {
+fn add_series(cell: &mut [Polynomial], rows: &[Polynomial], middle: &[f64]) {
     let order = middle.len().isqrt();
-    for (index, row) in rows.chunks_exact(order).enumerate() {
-        let (k, i) = (index / count, index % count);
-        for (factor, from) in row.iter().zip(middle.chunks_exact(order)) {
-            if *factor == 0.0 {
-                continue;
-            }
-            for (m, x) in from.iter().enumerate() {
-                cell[i * order + m][k] += factor * x;
+    for (out, row) in cell.chunks_exact_mut(order).zip(rows.chunks_exact(order)) {
+        for (polynomial, factors) in row.iter().zip(middle.chunks_exact(order)) {
+            for (out, factor) in out.iter_mut().zip(factors) {
+                if *factor == 0.0 {
+                    continue;
+                }
+                for (out, x) in out.iter_mut().zip(polynomial) {
+                    *out += factor * x;
+                }
             }
         }
     }
@@ -416,13 +425,6 @@ fn add_row_times(row: &[f64], matrix: &[f64], out: &mut [f64]) {
         for (out, x) in out.iter_mut().zip(from) {
             *out += factor * x;
         }
-    }
-}
-
-fn product(a: &[f64], b: &[f64], out: &mut [f64]) {
-    let order = a.len().isqrt();
-    for (row, out) in a.chunks_exact(order).zip(out.chunks_exact_mut(order)) {
-        row_times(row, b, out);
     }
 }
 

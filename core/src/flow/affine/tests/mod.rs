@@ -1,4 +1,10 @@
-//! The closed forms against values known from elsewhere.
+//! The flow against values known from elsewhere, against closed forms, and against an independent integration.
+
+mod conservation;
+mod linear;
+mod random;
+mod reference;
+mod touch;
 
 use std::f64::consts::TAU;
 
