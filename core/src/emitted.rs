@@ -17,10 +17,15 @@
 // Short functions that are meaningless unless merged into the loop that calls them.
 #![allow(clippy::inline_always)]
 
+mod batch;
 pub mod constants;
 mod law;
+mod parts;
+mod room;
 
-pub use law::{Batch, ByArgument, Declared, Generated, Kernels, Primitive, Spring};
+pub use batch::{Batch, Group, Raising, Uses, group, uses};
+pub use law::{ByArgument, Declared, Generated, Kernels};
+pub use parts::{Primitive, Spring};
 
 /// Guarded power `base^exponent` for a base that the declaration proves is not negative.
 #[inline(always)]

@@ -62,6 +62,7 @@ mod newton;
 pub mod observe;
 #[cfg(feature = "plot")]
 mod picture;
+pub mod power;
 #[cfg(test)]
 mod random;
 mod reader;

@@ -1,10 +1,8 @@
-//! What every generated law has in common: its kernels of one sample become batches here.
-//!
-//! A batch takes the kernel that it is to run and merges
-//! with it into one loop over slices of one length; values that the loop does not store are not computed.
+//! What every generated law has in common.
 
 use std::marker::PhantomData;
 
+use super::batch::{Batch, Call, Force, Samples, Slopes, SlopesAndBy};
 use crate::generic::LawData;
 use crate::law::{Derivatives, Law, LawFacts, On, Parts};
 
@@ -24,12 +22,6 @@ pub trait Kernels<const A: usize, const L: usize, const V: usize>: 'static {
 
     /// Makes a call with the position, among the values of a kernel, of the derivative by one argument.
     fn by_argument(argument: usize, call: impl ByArgument);
-}
-
-/// Samples, and where to write values; runs a kernel on them.
-pub trait Batch<const A: usize, const V: usize> {
-    /// Runs a kernel, a function of arguments, gap and rate.
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]);
 }
 
 /// A call that needs the position of the derivative by an argument.
@@ -90,7 +82,14 @@ impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> Law
 
     fn force(&self, on: On, arguments: &[f64], gap: &[f64], rate: &[f64], force: &mut [f64]) {
         let samples = Samples::new(arguments, gap, rate);
-        K::on(on, Force { samples, force });
+        samples.check(force);
+        K::on(
+            on,
+            Call {
+                samples,
+                outputs: Force(force),
+            },
+        );
     }
 
     fn derivatives(
@@ -102,7 +101,14 @@ impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> Law
         out: Derivatives<'_>,
     ) {
         let samples = Samples::new(arguments, gap, rate);
-        K::on(on, Slopes { samples, out });
+        samples.check_all(&out);
+        K::on(
+            on,
+            Call {
+                samples,
+                outputs: Slopes(out),
+            },
+        );
     }
 
     fn derivatives_and_by(
@@ -115,10 +121,13 @@ impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> Law
         out: Derivatives<'_>,
         by_argument: &mut [f64],
     ) {
-        let call = Call {
+        let samples = Samples::new(arguments, gap, rate);
+        samples.check_all(&out);
+        samples.check(by_argument);
+        let call = CallBy {
             kernels: PhantomData::<K>,
             on,
-            samples: Samples::new(arguments, gap, rate),
+            samples,
             out,
             by_argument,
         };
@@ -187,138 +196,8 @@ impl<T: Declared> Law for T {
     }
 }
 
-/// The spring `f` of a law: the law at zero rate.
-pub struct Spring<K>(PhantomData<fn() -> K>);
-
-/// The primitive `G` of the rate term of a law.
-pub struct Primitive<K>(PhantomData<fn() -> K>);
-
-/// Declares the kernels of a part: those of the whole law, run through a batch that changes their values.
-macro_rules! part {
-    ($name:ident, $batch:ident) => {
-        impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> Kernels<A, L, V>
-            for $name<K>
-        {
-            fn levels(arguments: [f64; A]) -> [f64; L] {
-                K::levels(arguments)
-            }
-
-            fn levels_by(argument: usize, arguments: [f64; A]) -> [f64; L] {
-                K::levels_by(argument, arguments)
-            }
-
-            fn on(on: On, batch: impl Batch<A, V>) {
-                K::on(on, $batch(batch));
-            }
-
-            fn by_argument(argument: usize, call: impl ByArgument) {
-                K::by_argument(argument, call);
-            }
-        }
-    };
-}
-
-part!(Spring, AtRest);
-part!(Primitive, Integrated);
-
-/// A batch whose kernel is run at zero rate.
-struct AtRest<B>(B);
-
-impl<B: Batch<A, V>, const A: usize, const V: usize> Batch<A, V> for AtRest<B> {
-    #[inline(always)]
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
-        self.0.run(|arguments, gap, _| {
-            let mut values = kernel(arguments, gap, 0.0);
-            values[2] = 0.0;
-            values
-        });
-    }
-}
-
-/// A batch that sees the primitive, its derivative by the gap, which is the law's by its rate, and those by arguments.
-struct Integrated<B>(B);
-
-impl<B: Batch<A, V>, const A: usize, const V: usize> Batch<A, V> for Integrated<B> {
-    #[inline(always)]
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
-        self.0.run(|arguments, gap, _| {
-            let whole = kernel(arguments, gap, 0.0);
-            let mut values = [0.0; V];
-            values[0] = whole[3 + A];
-            values[1] = whole[2];
-            for argument in 0..A {
-                values[3 + argument] = whole[4 + A + argument];
-            }
-            values
-        });
-    }
-}
-
-/// The inputs of a batch.
-struct Samples<'a, const A: usize> {
-    arguments: [f64; A],
-    gap: &'a [f64],
-    rate: &'a [f64],
-}
-
-impl<'a, const A: usize> Samples<'a, A> {
-    #[inline(always)]
-    fn new(arguments: &[f64], gap: &'a [f64], rate: &'a [f64]) -> Self {
-        let arguments = super::arguments(arguments);
-        assert_eq!(rate.len(), gap.len(), "gap and rate differ in length");
-        Self {
-            arguments,
-            gap,
-            rate,
-        }
-    }
-
-    /// An output, of which it is then known that it is as long as the samples.
-    #[inline(always)]
-    fn output<'b>(&self, output: &'b mut [f64]) -> &'b mut [f64] {
-        let count = self.gap.len();
-        assert_eq!(
-            output.len(),
-            count,
-            "an output differs in length from the samples"
-        );
-        &mut output[..count]
-    }
-}
-
-struct Force<'a, const A: usize> {
-    samples: Samples<'a, A>,
-    force: &'a mut [f64],
-}
-
-impl<const A: usize, const V: usize> Batch<A, V> for Force<'_, A> {
-    #[inline(always)]
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
-        let Self { samples, force } = self;
-        write_1(&samples, samples.output(force), kernel);
-    }
-}
-
-struct Slopes<'a, const A: usize> {
-    samples: Samples<'a, A>,
-    out: Derivatives<'a>,
-}
-
-impl<const A: usize, const V: usize> Batch<A, V> for Slopes<'_, A> {
-    #[inline(always)]
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
-        let Self { samples, out } = self;
-        write_3(
-            &samples,
-            samples.output(out.force),
-            samples.output(out.by_gap),
-            samples.output(out.by_rate),
-            kernel,
-        );
-    }
-}
-
-struct Call<'a, K, const A: usize, const L: usize, const V: usize> {
+/// A call that is made once it is known where the derivative by an argument is.
+struct CallBy<'a, K, const A: usize, const L: usize, const V: usize> {
     kernels: PhantomData<K>,
     on: On,
     samples: Samples<'a, A>,
@@ -327,94 +206,28 @@ struct Call<'a, K, const A: usize, const L: usize, const V: usize> {
 }
 
 impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> ByArgument
-    for Call<'_, K, A, L, V>
+    for CallBy<'_, K, A, L, V>
 {
-    #[inline(always)]
+    #[inline]
     fn run<const AT: usize>(self) {
-        let batch = SlopesAndBy::<A, AT> {
-            samples: self.samples,
-            out: self.out,
-            by_argument: self.by_argument,
-        };
-        K::on(self.on, batch);
-    }
-}
-
-struct SlopesAndBy<'a, const A: usize, const AT: usize> {
-    samples: Samples<'a, A>,
-    out: Derivatives<'a>,
-    by_argument: &'a mut [f64],
-}
-
-impl<const A: usize, const V: usize, const AT: usize> Batch<A, V> for SlopesAndBy<'_, A, AT> {
-    #[inline(always)]
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
         let Self {
-            samples,
-            out,
-            by_argument,
+            out, by_argument, ..
         } = self;
-        write_4::<AT, A, V>(
-            &samples,
-            samples.output(out.force),
-            samples.output(out.by_gap),
-            samples.output(out.by_rate),
-            samples.output(by_argument),
-            kernel,
+        let outputs = SlopesAndBy::<AT> { out, by_argument };
+        K::on(
+            self.on,
+            Call {
+                samples: self.samples,
+                outputs,
+            },
         );
-    }
-}
-
-// Every output is a parameter of its own, so that the compiler knows that they do not overlap.
-
-#[inline(always)]
-fn write_1<const A: usize, const V: usize>(
-    samples: &Samples<'_, A>,
-    force: &mut [f64],
-    kernel: impl Fn([f64; A], f64, f64) -> [f64; V],
-) {
-    for i in 0..samples.gap.len() {
-        force[i] = kernel(samples.arguments, samples.gap[i], samples.rate[i])[0];
-    }
-}
-
-#[inline(always)]
-fn write_3<const A: usize, const V: usize>(
-    samples: &Samples<'_, A>,
-    force: &mut [f64],
-    by_gap: &mut [f64],
-    by_rate: &mut [f64],
-    kernel: impl Fn([f64; A], f64, f64) -> [f64; V],
-) {
-    for i in 0..samples.gap.len() {
-        let values = kernel(samples.arguments, samples.gap[i], samples.rate[i]);
-        force[i] = values[0];
-        by_gap[i] = values[1];
-        by_rate[i] = values[2];
-    }
-}
-
-#[inline(always)]
-fn write_4<const AT: usize, const A: usize, const V: usize>(
-    samples: &Samples<'_, A>,
-    force: &mut [f64],
-    by_gap: &mut [f64],
-    by_rate: &mut [f64],
-    by_argument: &mut [f64],
-    kernel: impl Fn([f64; A], f64, f64) -> [f64; V],
-) {
-    for i in 0..samples.gap.len() {
-        let values = kernel(samples.arguments, samples.gap[i], samples.rate[i]);
-        force[i] = values[0];
-        by_gap[i] = values[1];
-        by_rate[i] = values[2];
-        by_argument[i] = values[AT];
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::emitted::{Primitive, Spring};
 
     /// `phi = a g^2 + 3 g r` and its primitive `3 g^2 / 2`, on two pieces that meet at `a`.
     struct Square;

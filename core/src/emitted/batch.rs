@@ -1,0 +1,419 @@
+//! Batches: kernels of one sample become loops over slices of one length, compiled for every instruction set.
+//!
+//! A kernel without powers is merged into one loop; values that the loop does not store are not computed. Of a kernel with
+//! powers, every block of samples is gone over three times: its bases, then their logarithms and powers (in
+//! [`power`](crate::power), compiled once and not for each law), then its values.
+
+// Merged into the loops of every instruction set.
+#![allow(clippy::inline_always)]
+
+use std::f64::consts::LN_2;
+use std::marker::PhantomData;
+
+use super::room::{BLOCK, Column, Plan, Room, raise};
+use crate::law::Derivatives;
+use crate::power::{Available, Work};
+
+/// Samples, and where to write values; runs a kernel on them.
+pub trait Batch<const A: usize, const V: usize> {
+    /// Runs a kernel, a function of arguments, gap and rate.
+    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]);
+
+    /// Runs a kernel with powers.
+    fn raise<K, const B: usize, const G: usize, const P: usize>(self, kernel: K)
+    where
+        K: Raising<A, V, B, G, P>;
+}
+
+/// A kernel with `P` powers in `G` groups, of `B` bases.
+pub trait Raising<const A: usize, const V: usize, const B: usize, const G: usize, const P: usize> {
+    /// Which powers share an exponential.
+    const GROUPS: [Group; G];
+
+    /// What each value depends on.
+    const USES: [Uses; V];
+
+    /// The bases at a sample.
+    fn bases(arguments: [f64; A], gap: f64, rate: f64) -> [f64; B];
+
+    /// The exponents of the powers.
+    fn exponents(arguments: [f64; A]) -> [f64; P];
+
+    /// The values at a sample, from the natural logarithms of the bases and the powers.
+    fn values(
+        arguments: [f64; A],
+        gap: f64,
+        rate: f64,
+        logarithms: [f64; B],
+        powers: [f64; P],
+    ) -> [f64; V];
+}
+
+/// Powers of one base whose exponents count up by one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Group {
+    /// The position of the base.
+    pub base: usize,
+    /// The position of the lowest power.
+    pub first: usize,
+    /// How many there are.
+    pub count: usize,
+}
+
+/// A group of powers.
+pub const fn group(base: usize, first: usize, count: usize) -> Group {
+    Group { base, first, count }
+}
+
+/// Sets of logarithms and of powers, by position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Uses {
+    logarithms: u64,
+    powers: u64,
+}
+
+/// The sets of the given positions, each below 64.
+pub const fn uses(logarithms: &[u32], powers: &[u32]) -> Uses {
+    Uses {
+        logarithms: set(logarithms),
+        powers: set(powers),
+    }
+}
+
+const fn set(positions: &[u32]) -> u64 {
+    let (mut set, mut index) = (0, 0);
+    while index < positions.len() {
+        set |= 1 << positions[index];
+        index += 1;
+    }
+    set
+}
+
+impl Uses {
+    /// Nothing.
+    pub(super) const NOTHING: Self = uses(&[], &[]);
+
+    pub(super) const fn logarithm(self, position: usize) -> bool {
+        self.logarithms >> position & 1 == 1
+    }
+
+    pub(super) const fn power(self, position: usize) -> bool {
+        self.powers >> position & 1 == 1
+    }
+
+    /// What is in either.
+    const fn and(self, other: Self) -> Self {
+        Self {
+            logarithms: self.logarithms | other.logarithms,
+            powers: self.powers | other.powers,
+        }
+    }
+}
+
+/// The inputs of a batch.
+#[derive(Clone, Copy)]
+pub(super) struct Samples<'a, const A: usize> {
+    arguments: [f64; A],
+    gap: &'a [f64],
+    rate: &'a [f64],
+}
+
+impl<'a, const A: usize> Samples<'a, A> {
+    #[inline]
+    pub(super) fn new(arguments: &[f64], gap: &'a [f64], rate: &'a [f64]) -> Self {
+        let arguments = super::arguments(arguments);
+        assert_eq!(rate.len(), gap.len(), "gap and rate differ in length");
+        Self {
+            arguments,
+            gap,
+            rate,
+        }
+    }
+
+    /// Whether an output is as long as the samples.
+    #[inline]
+    pub(super) fn check(&self, output: &[f64]) {
+        assert_eq!(
+            output.len(),
+            self.gap.len(),
+            "an output differs in length from the samples"
+        );
+    }
+
+    #[inline]
+    pub(super) fn check_all(&self, out: &Derivatives<'_>) {
+        self.check(out.force);
+        self.check(out.by_gap);
+        self.check(out.by_rate);
+    }
+
+    #[inline(always)]
+    fn block(&self, start: usize, count: usize) -> Self {
+        Self {
+            arguments: self.arguments,
+            gap: &self.gap[start..][..count],
+            rate: &self.rate[start..][..count],
+        }
+    }
+}
+
+/// Where some of the values of a kernel go.
+pub(super) trait Outputs<const V: usize> {
+    /// What the written ones of all values depend on.
+    fn needs(uses: &[Uses; V]) -> Uses;
+
+    /// Writes the values of `count` samples from `start` on.
+    fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]);
+}
+
+/// A batch to be run.
+pub(super) struct Call<'a, O, const A: usize, const V: usize> {
+    pub(super) samples: Samples<'a, A>,
+    pub(super) outputs: O,
+}
+
+impl<O: Outputs<V>, const A: usize, const V: usize> Batch<A, V> for Call<'_, O, A, V> {
+    #[inline]
+    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
+        Available::in_use().run(Plain { call: self, kernel });
+    }
+
+    #[inline]
+    fn raise<K, const B: usize, const G: usize, const P: usize>(self, _: K)
+    where
+        K: Raising<A, V, B, G, P>,
+    {
+        let mut room = Room::take(3 * B + P);
+        Available::in_use().run_short(Powers::<'_, _, K, A, V, B, G, P> {
+            call: self,
+            columns: room.columns(),
+            kernel: PhantomData,
+        });
+        room.give_back();
+    }
+}
+
+/// The loop of a kernel without powers.
+struct Plain<'a, O, F, const A: usize, const V: usize> {
+    call: Call<'a, O, A, V>,
+    kernel: F,
+}
+
+impl<O, F, const A: usize, const V: usize> Work for Plain<'_, O, F, A, V>
+where
+    O: Outputs<V>,
+    F: Fn([f64; A], f64, f64) -> [f64; V],
+{
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Self { call, kernel } = self;
+        let Call {
+            samples,
+            mut outputs,
+        } = call;
+        let count = samples.gap.len();
+        let rate = &samples.rate[..count];
+        outputs.write(0, count, |i| {
+            kernel(samples.arguments, samples.gap[i], rate[i])
+        });
+    }
+}
+
+/// The loops of a kernel with powers.
+struct Powers<
+    'a,
+    O,
+    K,
+    const A: usize,
+    const V: usize,
+    const B: usize,
+    const G: usize,
+    const P: usize,
+> {
+    call: Call<'a, O, A, V>,
+    columns: &'a mut [Column],
+    kernel: PhantomData<K>,
+}
+
+impl<O, K, const A: usize, const V: usize, const B: usize, const G: usize, const P: usize> Work
+    for Powers<'_, O, K, A, V, B, G, P>
+where
+    O: Outputs<V>,
+    K: Raising<A, V, B, G, P>,
+{
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Call {
+            samples,
+            mut outputs,
+        } = self.call;
+        let needs = O::needs(&K::USES);
+        let exponents = K::exponents(samples.arguments);
+        let all = samples.gap.len();
+        for start in (0..all).step_by(BLOCK) {
+            let count = BLOCK.min(all - start);
+            let Samples {
+                arguments,
+                gap,
+                rate,
+            } = samples.block(start, count);
+            let columns = &mut *self.columns;
+            for (base, column) in columns[..B].iter_mut().enumerate() {
+                for (i, x) in column.0[..count].iter_mut().enumerate() {
+                    *x = K::bases(arguments, gap[i], rate[i])[base];
+                }
+            }
+            let plan = Plan {
+                bases: B,
+                needs,
+                groups: &K::GROUPS,
+                exponents: &exponents,
+            };
+            raise(columns, count, plan);
+            let Some((_, columns)) = columns.split_first_chunk::<B>() else {
+                return;
+            };
+            let Some((whole, columns)) = columns.split_first_chunk::<B>() else {
+                return;
+            };
+            let Some((part, columns)) = columns.split_first_chunk::<B>() else {
+                return;
+            };
+            let Some((power, _)) = columns.split_first_chunk::<P>() else {
+                return;
+            };
+            outputs.write(start, count, |i| {
+                let logarithms = std::array::from_fn(|base| {
+                    if needs.logarithm(base) {
+                        (whole[base].0[i] + part[base].0[i]) * LN_2
+                    } else {
+                        0.0
+                    }
+                });
+                let powers = std::array::from_fn(|index| {
+                    if needs.power(index) {
+                        power[index].0[i]
+                    } else {
+                        0.0
+                    }
+                });
+                K::values(arguments, gap[i], rate[i], logarithms, powers)
+            });
+        }
+    }
+}
+
+/// The force alone.
+pub(super) struct Force<'a>(pub(super) &'a mut [f64]);
+
+impl<const V: usize> Outputs<V> for Force<'_> {
+    #[inline(always)]
+    fn needs(uses: &[Uses; V]) -> Uses {
+        uses[0]
+    }
+
+    #[inline(always)]
+    fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]) {
+        write_1(&mut self.0[start..][..count], values);
+    }
+}
+
+/// Force, by gap and by rate.
+pub(super) struct Slopes<'a>(pub(super) Derivatives<'a>);
+
+impl<const V: usize> Outputs<V> for Slopes<'_> {
+    #[inline(always)]
+    fn needs(uses: &[Uses; V]) -> Uses {
+        uses[0].and(uses[1]).and(uses[2])
+    }
+
+    #[inline(always)]
+    fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]) {
+        let Derivatives {
+            force,
+            by_gap,
+            by_rate,
+        } = &mut self.0;
+        write_3(
+            &mut force[start..][..count],
+            &mut by_gap[start..][..count],
+            &mut by_rate[start..][..count],
+            values,
+        );
+    }
+}
+
+/// Force, by gap and by rate, and the value at a position, a derivative by an argument.
+pub(super) struct SlopesAndBy<'a, const AT: usize> {
+    pub(super) out: Derivatives<'a>,
+    pub(super) by_argument: &'a mut [f64],
+}
+
+impl<const V: usize, const AT: usize> Outputs<V> for SlopesAndBy<'_, AT> {
+    #[inline(always)]
+    fn needs(uses: &[Uses; V]) -> Uses {
+        uses[0].and(uses[1]).and(uses[2]).and(uses[AT])
+    }
+
+    #[inline(always)]
+    fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]) {
+        let Derivatives {
+            force,
+            by_gap,
+            by_rate,
+        } = &mut self.out;
+        write_4::<AT, V>(
+            &mut force[start..][..count],
+            &mut by_gap[start..][..count],
+            &mut by_rate[start..][..count],
+            &mut self.by_argument[start..][..count],
+            values,
+        );
+    }
+}
+
+// Every output is a parameter of its own, so that the compiler knows that they do not overlap.
+
+#[inline(always)]
+fn write_1<const V: usize>(force: &mut [f64], values: impl Fn(usize) -> [f64; V]) {
+    for i in 0..force.len() {
+        force[i] = values(i)[0];
+    }
+}
+
+#[inline(always)]
+fn write_3<const V: usize>(
+    force: &mut [f64],
+    by_gap: &mut [f64],
+    by_rate: &mut [f64],
+    values: impl Fn(usize) -> [f64; V],
+) {
+    let count = force.len();
+    let (by_gap, by_rate) = (&mut by_gap[..count], &mut by_rate[..count]);
+    for i in 0..count {
+        let values = values(i);
+        force[i] = values[0];
+        by_gap[i] = values[1];
+        by_rate[i] = values[2];
+    }
+}
+
+#[inline(always)]
+fn write_4<const AT: usize, const V: usize>(
+    force: &mut [f64],
+    by_gap: &mut [f64],
+    by_rate: &mut [f64],
+    by_argument: &mut [f64],
+    values: impl Fn(usize) -> [f64; V],
+) {
+    let count = force.len();
+    let (by_gap, by_rate) = (&mut by_gap[..count], &mut by_rate[..count]);
+    let by_argument = &mut by_argument[..count];
+    for i in 0..count {
+        let values = values(i);
+        force[i] = values[0];
+        by_gap[i] = values[1];
+        by_rate[i] = values[2];
+        by_argument[i] = values[AT];
+    }
+}

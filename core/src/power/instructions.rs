@@ -1,0 +1,224 @@
+//! Instruction sets, chosen at run time: one compilation of the same loops for each.
+
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// The environment variable that chooses the instruction set.
+const VARIABLE: &str = "HERTZIAN_INSTRUCTIONS";
+
+/// Whether a product and a sum are one operation on the baseline. Where they are not, `mul_add` is a slow function.
+const FUSED_BASELINE: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
+/// An instruction set that inner loops are compiled for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Instructions {
+    /// What every processor of the target has: on x86-64, vectors of two numbers.
+    Baseline,
+    /// AVX2 and fused multiply-add: vectors of four numbers.
+    Avx2,
+    /// AVX-512 (F, DQ, VL, BW) as well: vectors of eight numbers.
+    Avx512,
+}
+
+impl Instructions {
+    /// All of them, each with more than the one before.
+    pub const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
+
+    /// Its name in the environment variable.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baseline => "baseline",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+
+    /// Whether this processor has it.
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                Self::Avx2.is_available()
+                    && is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512vl")
+                    && is_x86_feature_detected!("avx512bw")
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => false,
+        }
+    }
+
+    /// The instruction set that generated laws use. It is the last that the processor has, unless [`Instructions::pin`]
+    /// or, when it is first asked for, the environment variable `HERTZIAN_INSTRUCTIONS` (`baseline`, `avx2` or
+    /// `avx512`) says otherwise.
+    pub fn in_use() -> Self {
+        Available::in_use().0
+    }
+
+    /// Makes all generated laws of this process use this instruction set from now on, or, where the processor does not
+    /// have it, the last before it that it has. Returns the one in use.
+    ///
+    /// Forces differ between instruction sets in their last digits, because products and sums are fused where that is
+    /// possible. So it is to be called before a run, not during one.
+    #[allow(
+        clippy::return_self_not_must_use,
+        reason = "who pins the baseline knows what is returned"
+    )]
+    pub fn pin(self) -> Self {
+        let available = Available::at_most(self);
+        IN_USE.store(available.0 as u8 + 1, Ordering::Relaxed);
+        available.0
+    }
+}
+
+/// The set in use, by its position plus one; zero as long as it has not been asked for.
+static IN_USE: AtomicU8 = AtomicU8::new(0);
+
+/// An instruction set that this processor has: no other can be made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Available(Instructions);
+
+impl Available {
+    /// The last that the processor has, up to the given one.
+    pub(crate) fn at_most(wanted: Instructions) -> Self {
+        let mut sets = Instructions::ALL.into_iter().rev();
+        let found = sets.find(|set| *set <= wanted && set.is_available());
+        Self(found.unwrap_or(Instructions::Baseline))
+    }
+
+    /// The set in use.
+    #[inline]
+    pub fn in_use() -> Self {
+        match IN_USE.load(Ordering::Relaxed) {
+            // What was stored is the position of an available set.
+            1 => Self(Instructions::Baseline),
+            2 => Self(Instructions::Avx2),
+            3 => Self(Instructions::Avx512),
+            _ => Self::first(),
+        }
+    }
+
+    /// Chooses and stores the set. Two threads that do so at once store the same.
+    #[cold]
+    fn first() -> Self {
+        let named = std::env::var(VARIABLE).ok();
+        let chosen = Self::at_most(wanted(named.as_deref()));
+        // A set that was pinned in the meantime stays.
+        let free =
+            IN_USE.compare_exchange(0, chosen.0 as u8 + 1, Ordering::Relaxed, Ordering::Relaxed);
+        match free {
+            Ok(_) => chosen,
+            Err(_) => Self::in_use(),
+        }
+    }
+
+    /// Runs work that was compiled for this set.
+    #[inline]
+    pub fn run<W: Work>(self, work: W) {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the set is available, by the construction of `Available`.
+            Instructions::Avx512 => unsafe { avx512(work) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Instructions::Avx2 => unsafe { avx2(work) },
+            _ => work.run::<FUSED_BASELINE>(),
+        }
+    }
+
+    /// As [`Available::run`], with vectors of at most four numbers: less code to compile, for loops that mostly move
+    /// numbers, which longer vectors hardly speed up.
+    #[inline]
+    pub fn run_short<W: Work>(self, work: W) {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the set is available, by the construction of `Available`, and AVX-512 only where AVX2 is.
+            Instructions::Avx512 | Instructions::Avx2 => unsafe { avx2(work) },
+            _ => work.run::<FUSED_BASELINE>(),
+        }
+    }
+}
+
+/// The set that a value of the environment variable asks for; without one, or with an unknown one, the last.
+fn wanted(named: Option<&str>) -> Instructions {
+    let mut sets = Instructions::ALL.into_iter();
+    let found = sets.find(|set| named.is_some_and(|name| name.eq_ignore_ascii_case(set.name())));
+    found.unwrap_or(Instructions::Avx512)
+}
+
+/// Loops to be compiled for several instruction sets. Everything they call has to be merged into them
+/// (`#[inline(always)]`): a function that is called is compiled for the baseline.
+pub trait Work {
+    /// Does the work. `FUSED`: `mul_add` is one operation.
+    fn run<const FUSED: bool>(self);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn avx2<W: Work>(work: W) {
+    work.run::<true>();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl,avx512bw")]
+fn avx512<W: Work>(work: W) {
+    work.run::<true>();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_asked_for_in_the_environment() {
+        assert_eq!(wanted(Some("baseline")), Instructions::Baseline);
+        assert_eq!(wanted(Some("AVX2")), Instructions::Avx2);
+        assert_eq!(wanted(Some("avx512")), Instructions::Avx512);
+        for unknown in [None, Some(""), Some("neon"), Some("avx-512")] {
+            assert_eq!(wanted(unknown), Instructions::Avx512);
+        }
+    }
+
+    #[test]
+    fn only_available_sets_are_made() {
+        for wanted in Instructions::ALL {
+            let Available(found) = Available::at_most(wanted);
+            assert!(found <= wanted && found.is_available());
+            let better = Instructions::ALL.into_iter();
+            let mut better = better.filter(|set| found < *set && *set <= wanted);
+            assert!(better.all(|set| !set.is_available()));
+        }
+        assert!(Instructions::in_use().is_available());
+    }
+
+    /// Work runs once, on every set that is present.
+    #[test]
+    fn work_is_done_on_every_set() {
+        struct Square<'a>(&'a mut [f64]);
+        impl Work for Square<'_> {
+            #[inline(always)]
+            #[allow(clippy::inline_always, reason = "compiled anew for each set")]
+            fn run<const FUSED: bool>(self) {
+                for x in self.0 {
+                    *x = if FUSED {
+                        x.mul_add(*x, 1.0)
+                    } else {
+                        *x * *x + 1.0
+                    };
+                }
+            }
+        }
+        for wanted in Instructions::ALL {
+            let mut x: [f64; 37] = std::array::from_fn(|i| i as f64);
+            Available::at_most(wanted).run(Square(&mut x));
+            Available::at_most(wanted).run_short(Square(&mut x));
+            for (i, x) in x.into_iter().enumerate() {
+                let once = (i * i + 1) as f64;
+                assert_eq!(x, once * once + 1.0);
+            }
+        }
+    }
+}
