@@ -95,6 +95,13 @@ pub enum Error {
         /// What the last attempt said.
         reason: NewtonError,
     },
+    /// A state has another number of entries than the system.
+    State {
+        /// Entries given.
+        entries: usize,
+        /// Twice the number of coordinates.
+        expected: usize,
+    },
     /// There is no orbit: the branch that comes near turns back before.
     Beyond {
         /// The value asked for.
@@ -185,6 +192,10 @@ impl std::fmt::Display for Error {
             Self::NoStart { parameter, reason } => {
                 write!(f, "no periodic orbit found at {parameter}: {reason}")
             }
+            Self::State { entries, expected } => write!(
+                f,
+                "the state has {entries} entries instead of {expected}: all positions, then all velocities"
+            ),
             Self::Beyond { parameter, fold } => write!(
                 f,
                 "no periodic orbit at {parameter} near the given one: its branch turns back at {fold:.12}, {:.1e} away",

@@ -83,6 +83,7 @@ pub use aft::Aft;
 pub use branch::{Branch, Event, EventKind, Orbit, Point, Turn};
 pub use continuation::follow::Stop;
 pub use error::Error;
+pub use flow::shooting::Shooting;
 pub use hertzian_macros::{law, oscillator};
 pub use linear::Singular;
 pub use nalgebra::Complex;

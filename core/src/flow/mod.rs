@@ -4,7 +4,6 @@
 //! the frequency. A state is `(q, dq/dt)`: coordinates, then their derivatives by *time*.
 
 pub mod affine;
-#[cfg(test)]
 pub mod shooting;
 
 mod field;

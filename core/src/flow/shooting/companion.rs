@@ -76,12 +76,6 @@ impl<'a> Companion<'a> {
         })
     }
 
-    /// How exactly a test function must vanish here.
-    pub(super) fn vanishing(&self, fine: f64) -> f64 {
-        // Far below what differs.
-        (1e-3 * fine / self.part).min(1e-3)
-    }
-
     /// The verdict on the orbit `u` with the map `M`, and its error.
     pub(super) fn judge(&mut self, u: &[f64], map: &DMatrix<f64>) -> Judged {
         let half = self.equations.span.half;
@@ -124,13 +118,7 @@ impl<'a> Companion<'a> {
         )
         .ok()?;
         let map = self.equations.map(&other, &mut |_| {}).ok()?;
-        let order = self.equations.order();
-        let omega = self.equations.frame.omega;
-        let pairs = u[..u.len() - 1].iter().zip(&other).enumerate();
-        let moved = pairs.fold(0.0, |m: f64, (i, (x, y))| {
-            let unit = if i % order < order / 2 { 1.0 } else { omega };
-            m.max((x - y).abs() / unit)
-        });
+        let moved = self.equations.apart(u, &other);
         Some((multipliers(&map, self.equations.span.half), moved))
     }
 

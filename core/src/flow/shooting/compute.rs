@@ -65,17 +65,16 @@ pub(super) fn branch(
         cycles,
         events,
         turns,
-        failure,
         statistics,
         work,
         ..
     } = run;
     Ok(CycleBranch {
+        varied: setting.varied.clone(),
         cycles,
         events,
         turns,
         end,
-        failure,
         statistics,
         work,
         elapsed: started.elapsed(),

@@ -10,7 +10,6 @@
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, SIAM Review 46, equation (4.2).
 
 use crate::continuation::follow::CurvePoint;
-use crate::continuation::locate::Located;
 use crate::continuation::problem::Problem;
 use crate::newton::{Border, Newton, NewtonOptions};
 
@@ -21,6 +20,8 @@ const WIDTHS: [f64; 2] = [0.1, 0.02];
 /// Fewer orbits than this are not enough.
 const FEWEST: usize = 5;
 const BISECTIONS: usize = 60;
+/// Errors of all orbits together, in units of what the worst of them does to the result when it is left out.
+const LEFT_OUT: f64 = 4.0;
 
 /// A solution with the derivative of the curve by the arc length.
 struct Node {
@@ -30,6 +31,15 @@ struct Node {
     test: f64,
 }
 
+/// Where branches cross.
+pub(super) struct Crossing {
+    pub(super) point: CurvePoint,
+    /// Value of the test function there.
+    pub(super) test: f64,
+    /// What the interpolation leaves in the parameter.
+    pub(super) error: f64,
+}
+
 /// Where a test function vanishes between two points although the bordered matrix is singular there.
 pub(super) fn locate_crossing<P: Problem>(
     problem: &mut P,
@@ -37,7 +47,7 @@ pub(super) fn locate_crossing<P: Problem>(
     (a, b): (&CurvePoint, &CurvePoint),
     options: NewtonOptions,
     mut test: impl FnMut(&CurvePoint) -> f64,
-) -> Option<Located> {
+) -> Option<Crossing> {
     let mut border = vec![0.0; a.u.len()];
     newton.norm().linear_form(a.scale, &a.tangent, &mut border);
     let dot = crate::linear::dot;
@@ -96,9 +106,17 @@ pub(super) fn locate_crossing<P: Problem>(
     problem.evaluate(&point.u, &mut residual[..point.u.len() - 1], None);
     newton.statistics.residuals += 1;
     let solves = newton.norm().length(a.scale, &residual) <= options.tolerance;
-    solves.then(|| Located {
+    let mut error = 0.0_f64;
+    for left_out in 0..nodes.len() {
+        let node = nodes.remove(left_out);
+        let zero = root(&nodes)?;
+        let other = interpolated(&nodes, zero, |node| &node.u);
+        error = error.max((other[other.len() - 1] - point.parameter()).abs());
+        nodes.insert(left_out, node);
+    }
+    solves.then(|| Crossing {
         test: test(&point),
-        vanishes: true,
+        error: LEFT_OUT * error,
         point,
     })
 }

@@ -89,6 +89,13 @@ pub enum End {
         /// Whether they have odd symmetry.
         symmetric: bool,
     },
+    /// The motion near the last orbit, or the one that would be next, cannot be computed.
+    Motion {
+        /// Value at the last orbit.
+        parameter: f64,
+        /// Why.
+        reason: FlowError,
+    },
 }
 
 impl fmt::Display for End {
@@ -103,6 +110,9 @@ impl fmt::Display for End {
                 period,
                 symmetric: true,
             } => write!(f, "met a branch of symmetric orbits of period {period}"),
+            Self::Motion { parameter, reason } => {
+                write!(f, "no further motion computed at {parameter}: {reason}")
+            }
         }
     }
 }
@@ -110,6 +120,8 @@ impl fmt::Display for End {
 /// A branch of orbits in the order in which it was followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleBranch {
+    /// Name of what it varies.
+    pub varied: String,
     /// The orbits.
     pub cycles: Vec<Cycle>,
     /// Special orbits.
@@ -118,8 +130,6 @@ pub struct CycleBranch {
     pub turns: Vec<Turn>,
     /// Why it ended.
     pub end: End,
-    /// Why the last motion could not be computed, if that is why it ended.
-    pub failure: Option<FlowError>,
     /// What the continuation cost.
     pub statistics: Statistics,
     /// What the motions cost.

@@ -77,7 +77,8 @@ pub(super) struct Equations<'a> {
     pub(super) flow: Box<dyn Flow + 'a>,
     pub(super) span: Span,
     pub(super) frame: Frame,
-    /// Added to every position equation, and times the frequency to every velocity equation, with alternating signs.
+    /// Added to every position equation, and times the frequency to every velocity equation, with alternating signs. All
+    /// segments are disturbed alike: what a shift by a period turns into itself, still is.
     pub(super) disturbance: f64,
     /// Why the last evaluation has no value.
     pub(super) failure: Option<FlowError>,
@@ -187,6 +188,17 @@ impl<'a> Equations<'a> {
         self.flow.advance(0.0, to, state, None, None)
     }
 
+    /// The largest difference between the states of two orbits, of velocities in units of the frequency.
+    pub(super) fn apart(&self, a: &[f64], b: &[f64]) -> f64 {
+        let order = self.order();
+        let pairs = a[..a.len() - 1].iter().zip(b).enumerate();
+        pairs.fold(0.0, |m: f64, (i, (x, y))| {
+            let velocity = i % order >= order / 2;
+            let unit = if velocity { self.frame.omega } else { 1.0 };
+            m.max((x - y).abs() / unit)
+        })
+    }
+
     /// Sets `state` to the beginning of a segment, and the tangent to the unit matrix.
     fn begin(&mut self, u: &[f64], segment: usize) {
         let order = self.order();
@@ -227,11 +239,7 @@ impl<'a> Equations<'a> {
             } else {
                 self.frame.omega
             };
-            let alternating = if (segment + i).is_multiple_of(2) {
-                1.0
-            } else {
-                -1.0
-            };
+            let alternating = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             residual[segment * order + i] =
                 self.state[i] - target + alternating * unit * self.disturbance;
         }

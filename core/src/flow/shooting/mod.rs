@@ -10,8 +10,10 @@ mod compute;
 mod crossing;
 mod cycle;
 mod equations;
+mod events;
 mod extremes;
 mod recurrence;
+mod request;
 mod run;
 mod setting;
 mod solve;
@@ -21,3 +23,4 @@ mod tests;
 
 pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
 pub use extremes::Extremes;
+pub use request::Shooting;

@@ -22,6 +22,8 @@ pub(super) struct Source<'a> {
 /// The system, what is varied, and how.
 pub(super) struct Setting<'a> {
     pub(super) source: Source<'a>,
+    /// Name of what is varied.
+    pub(super) varied: String,
     /// Parameters; what is varied has any value.
     pub(super) parameters: Vec<f64>,
     /// Frequency, unless it is varied.

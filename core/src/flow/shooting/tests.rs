@@ -188,6 +188,7 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting<'sta
             exact: false,
             tolerance: 1e-9,
         },
+        varied: "something".to_owned(),
         parameters: parameters.to_vec(),
         omega,
         variable,

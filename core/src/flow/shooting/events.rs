@@ -1,0 +1,294 @@
+//! Events of a branch: what changed its sign in a step, and where it vanishes.
+//!
+//! With the map `M` of [`equations`](super::equations) and the slope `l'` of the parameter along the branch:
+//!
+//! | event | test function |
+//! |---|---|
+//! | fold | `l'` vanishes, and `det(M - I)` changes its sign with it |
+//! | branch point | `det(M - I)` vanishes and `l'` does not; or `l'` does, and `det(M - I)` keeps its sign: a branch that ends on another one, as of twice the period at a period doubling |
+//! | period doubling | `det(M + I)` vanishes; with odd symmetry the symmetry breaks there |
+//!
+//! The bordered matrix of Newton's method has the determinant `det(M - I) / l'`, so these branch points are where it
+//! changes its sign.
+//!
+//! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions);
+//! Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems, for the determinant.
+
+use std::cell::RefCell;
+
+use nalgebra::{Complex, DMatrix};
+
+use super::companion::{Companion, multipliers};
+use super::crossing::locate_crossing;
+use super::cycle::CycleEvent;
+use super::equations::Equations;
+use super::run::{Run, add};
+use crate::branch::{EventKind, Turn};
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::locate::locate;
+use crate::newton::{Newton, NewtonOptions};
+use crate::stability::{Stability, distance};
+
+/// Brackets of an event are narrowed until rounding stops it, or this is reached.
+const VANISHED: f64 = 1e-14;
+/// What rounding leaves in the value of an event.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// The test functions at one orbit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tests {
+    slope: f64,
+    /// `det(M - I)`
+    minus: f64,
+    /// `det(M + I)`
+    plus: f64,
+}
+
+/// Which of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Test {
+    Slope,
+    Minus,
+    Plus,
+}
+
+/// A test function that changed its sign, and what that means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Change {
+    pub(super) test: Test,
+    pub(super) kind: EventKind,
+}
+
+impl Change {
+    /// A branch that another one meets or crosses.
+    pub(super) const BRANCHES: Self = Self {
+        test: Test::Minus,
+        kind: EventKind::BranchPoint,
+    };
+}
+
+/// Where it is zero.
+struct Place {
+    point: CurvePoint,
+    test: f64,
+    /// What the search leaves in the parameter.
+    error: f64,
+}
+
+/// What is wrong with an event at most.
+struct Errors {
+    value: f64,
+    states: f64,
+    multipliers: f64,
+}
+
+impl Errors {
+    const UNKNOWN: Self = Self {
+        value: f64::INFINITY,
+        states: f64::INFINITY,
+        multipliers: f64::INFINITY,
+    };
+}
+
+impl Tests {
+    pub(super) fn of(map: Option<&DMatrix<f64>>, slope: f64) -> Self {
+        let determinant = |shift: f64| {
+            map.map_or(f64::NAN, |map| {
+                let shifted = map + DMatrix::identity(map.nrows(), map.ncols()) * shift;
+                shifted.determinant()
+            })
+        };
+        Self {
+            slope,
+            minus: determinant(-1.0),
+            plus: determinant(1.0),
+        }
+    }
+
+    fn value(&self, test: Test) -> f64 {
+        match test {
+            Test::Slope => self.slope,
+            Test::Minus => self.minus,
+            Test::Plus => self.plus,
+        }
+    }
+
+    /// What changes its sign from one orbit to the next. Without maps every turn counts as a fold.
+    pub(super) fn changes(a: Self, b: Self, half: bool) -> Vec<Change> {
+        let turned = (a.slope < 0.0) != (b.slope < 0.0);
+        let minus = a.minus * b.minus < 0.0;
+        let known = !a.minus.is_nan() && !b.minus.is_nan();
+        let mut changes = Vec::new();
+        if turned {
+            let kind = if minus || !known {
+                EventKind::Fold
+            } else {
+                EventKind::BranchPoint
+            };
+            let test = Test::Slope;
+            changes.push(Change { test, kind });
+        } else if minus {
+            changes.push(Change::BRANCHES);
+        }
+        if a.plus * b.plus < 0.0 {
+            let kind = if half {
+                EventKind::SymmetryBreaking
+            } else {
+                EventKind::PeriodDoubling
+            };
+            let test = Test::Plus;
+            changes.push(Change { test, kind });
+        }
+        changes
+    }
+}
+
+impl<'a> Run<'_, 'a> {
+    /// Locates an event between two points.
+    pub(super) fn event(
+        &mut self,
+        equations: &mut Equations<'a>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+        change: Change,
+    ) {
+        let options = self.options;
+        // The point behind the event has been stored already.
+        let after = self.cycles.len() - 1;
+        let place = self.place(equations, newton, between, options, change, VANISHED);
+        let Some(place) = place else {
+            let value = 0.5 * (between.0.parameter() + between.1.parameter());
+            let test = f64::NAN;
+            self.turns.push(Turn { value, test, after });
+            return;
+        };
+        let (value, test) = (place.point.parameter(), place.test);
+        // A slope is relative to the range, and rounding to the value.
+        let unit = match change.test {
+            Test::Slope => (value.abs() / place.point.scale.parameter).max(1.0),
+            Test::Minus | Test::Plus => 1.0,
+        };
+        let vanishes = test.abs() <= self.setting.vanishing() * unit;
+        let event = vanishes.then(|| self.event_at(equations, between, change, &place));
+        match event.flatten() {
+            Some(event) => self.events.push(CycleEvent { after, ..event }),
+            None => self.turns.push(Turn { value, test, after }),
+        }
+    }
+
+    /// Where a test function of these equations vanishes.
+    fn place(
+        &mut self,
+        equations: &mut Equations<'a>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+        options: NewtonOptions,
+        change: Change,
+        vanished: f64,
+    ) -> Option<Place> {
+        // The problem is busy while a test function is evaluated.
+        let other = RefCell::new(equations.again(self.setting).ok()?);
+        let value = |point: &CurvePoint| {
+            if change.test == Test::Slope {
+                return point.parameter_slope();
+            }
+            let map = other.borrow_mut().map(&point.u, &mut |_| {}).ok();
+            Tests::of(map.as_ref(), 0.0).value(change.test)
+        };
+        let place = if change.kind == EventKind::BranchPoint {
+            locate_crossing(equations, newton, between, options, value).map(|crossing| Place {
+                point: crossing.point,
+                test: crossing.test,
+                error: crossing.error,
+            })
+        } else {
+            locate(equations, newton, between, options, vanished, value).map(|located| Place {
+                point: located.point,
+                test: located.test,
+                error: 0.0,
+            })
+        };
+        add(&mut self.work, other.borrow().flow.work());
+        place
+    }
+
+    /// The event at a place.
+    fn event_at(
+        &mut self,
+        equations: &mut Equations<'a>,
+        between: (&CurvePoint, &CurvePoint),
+        change: Change,
+        place: &Place,
+    ) -> Option<CycleEvent> {
+        let (mut cycle, map) = self.observe(equations, &place.point.u).ok()?;
+        let half = equations.span.half;
+        let found = map.map(|map| multipliers(&map, half)).unwrap_or_default();
+        let (span, frame) = (equations.span, equations.frame.clone());
+        let size = between.0.scale.oscillation;
+        let other = Companion::new(self.setting, span, frame, size).ok();
+        let errors = other.and_then(|other| self.errors(other, between, change, place, &found));
+        let Errors {
+            value,
+            states,
+            multipliers,
+        } = errors.unwrap_or(Errors::UNKNOWN);
+        cycle.stability = Stability::of(found, multipliers);
+        cycle.error = states;
+        Some(CycleEvent {
+            kind: change.kind,
+            cycle,
+            error: value,
+            test: place.test,
+            after: 0,
+        })
+    }
+
+    /// Errors of an event: the companion's event is as much further off as its equations are more wrong.
+    fn errors(
+        &mut self,
+        other: Companion<'a>,
+        between: (&CurvePoint, &CurvePoint),
+        change: Change,
+        place: &Place,
+        found: &[Complex<f64>],
+    ) -> Option<Errors> {
+        let Companion {
+            mut equations,
+            mut newton,
+            options,
+            part,
+            ..
+        } = other;
+        let u = &place.point.u;
+        let value = place.point.parameter();
+        let vanished = 1e-3 * self.setting.vanishing() / part;
+        let moved = self.place(
+            &mut equations,
+            &mut newton,
+            between,
+            options,
+            change,
+            vanished,
+        );
+        self.statistics += newton.statistics;
+        let errors = moved.and_then(|moved| {
+            let map = equations.map(&moved.point.u, &mut |_| {}).ok()?;
+            let there = multipliers(&map, equations.span.half);
+            // One of them is known.
+            let critical = match change.kind {
+                EventKind::PeriodDoubling => -1.0,
+                _ => 1.0,
+            };
+            let nearest = found.iter().map(|m| (m - critical).norm());
+            let off = nearest.fold(f64::INFINITY, f64::min);
+            let by = (moved.point.parameter() - value).abs();
+            Some(Errors {
+                value: part * by + place.error + ROUNDING * value.abs(),
+                states: part * equations.apart(u, &moved.point.u),
+                multipliers: part * distance(found, &there) + off,
+            })
+        });
+        add(&mut self.work, equations.flow.work());
+        errors
+    }
+}

@@ -1,0 +1,4 @@
+//! Shooting against exact values, and against the harmonic balance.
+
+mod affine;
+mod integrated;
