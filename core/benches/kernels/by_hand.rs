@@ -1,8 +1,9 @@
 //! Exponent 3/2 written by hand: a loop over structure of arrays that a compiler vectorises, compiled for each instruction
 //! set. What AVX-512 allows beyond that is in `newton`.
 
+use hertzian::power::Instructions;
+
 use super::dual::Sides;
-use super::processor::Instructions;
 use super::samples::Samples;
 
 /// `FUSED`: products and sums in one operation, where the processor has it.
@@ -80,7 +81,7 @@ clone!(
     continuous_avx512,
     continuous,
     true,
-    "avx512f,avx512vl,avx512dq,fma"
+    "avx2,fma,avx512f,avx512dq,avx512vl,avx512bw"
 );
 clone!(one_sided_baseline, one_sided, false);
 clone!(one_sided_avx2, one_sided, true, "avx2,fma");
@@ -88,7 +89,7 @@ clone!(
     one_sided_avx512,
     one_sided,
     true,
-    "avx512f,avx512vl,avx512dq,fma"
+    "avx2,fma,avx512f,avx512dq,avx512vl,avx512bw"
 );
 
 /// Runs the loop that was compiled for an instruction set.
@@ -103,7 +104,7 @@ pub fn run(sides: Sides, instructions: Instructions, zeta: f64, samples: &mut Sa
     } = samples;
     let inputs = [*gap, *rate];
     let one = sides == Sides::One;
-    assert!(instructions.is_present());
+    assert!(instructions.is_available());
     match instructions {
         Instructions::Baseline if one => one_sided_baseline(zeta, inputs, force, by_gap, by_rate),
         Instructions::Baseline => continuous_baseline(zeta, inputs, force, by_gap, by_rate),

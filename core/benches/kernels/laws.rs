@@ -39,6 +39,17 @@ pub struct Subject {
     pub sides: Option<Sides>,
 }
 
+impl Subject {
+    /// Everything that is asked of it.
+    pub fn calls(&self) -> [Call; 3] {
+        [
+            Call::Force,
+            Call::Derivatives,
+            Call::ByArgument(self.argument),
+        ]
+    }
+}
+
 pub static SUBJECTS: [Subject; 5] = [
     Subject {
         name: "continuous, 3/2",

@@ -18,8 +18,9 @@ use std::arch::x86_64::{
     _mm512_setzero_pd, _mm512_sqrt_pd, _mm512_storeu_pd,
 };
 
+use hertzian::power::Instructions;
+
 use super::dual::Sides;
-use super::processor::Instructions;
 use super::samples::Samples;
 
 /// Runs the loop.
@@ -27,7 +28,7 @@ use super::samples::Samples;
 /// # Panics
 /// If the processor lacks the instructions, or the samples are no multiple of sixteen.
 pub fn run(sides: Sides, zeta: f64, samples: &mut Samples) {
-    assert!(Instructions::Avx512.is_present());
+    assert!(Instructions::Avx512.is_available());
     assert_eq!(samples.gap.len() % 16, 0);
     // SAFETY: the processor has the instructions, and all arrays of `Samples` have one length.
     unsafe {
@@ -40,7 +41,7 @@ pub fn run(sides: Sides, zeta: f64, samples: &mut Samples) {
 
 /// # Safety
 /// The arrays have one length, a multiple of sixteen.
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,fma")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl,avx512bw")]
 unsafe fn both<const ONE_SIDED: bool>(zeta: f64, samples: &mut Samples) {
     let damping = _mm512_set1_pd(2.0 * zeta);
     for first in (0..samples.gap.len()).step_by(16) {
@@ -55,7 +56,7 @@ unsafe fn both<const ONE_SIDED: bool>(zeta: f64, samples: &mut Samples) {
 /// # Safety
 /// There are `at + 8` samples.
 #[inline]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,fma")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl,avx512bw")]
 unsafe fn group<const ONE_SIDED: bool, const NEWTON: bool>(
     damping: __m512d,
     samples: &mut Samples,

@@ -1,129 +1,123 @@
 //! The times as tables in Markdown.
 
-use std::collections::BTreeMap;
+use hertzian::power::Instructions;
 
-use super::contenders::Times;
-use super::laws::{Call, SUBJECTS, Subject};
-use super::processor::{self, Instructions};
+use super::laws::{SUBJECTS, Subject};
+use super::processor;
+use super::race::{TURNS, Times};
 use super::samples::COUNT;
 
-type All = BTreeMap<Instructions, Times>;
-
-pub fn print(times: &All) {
-    println!(
-        "Nanoseconds per sample, medians, {COUNT} samples. {}.\n",
-        processor::description()
-    );
+pub fn print(times: &Times) {
+    println!("Nanoseconds per sample, medians of {TURNS} turns, {COUNT} samples.");
+    println!("{}.\n", processor::description());
     three_halves(times);
     exponents(times);
     calls(times);
 }
 
+/// Heads of columns, and a line below them; the first `left` hold text, as does the last if it is a `verdict`.
+fn head(columns: &str, left: usize, verdict: bool) {
+    println!("| {columns} |");
+    let count = columns.split(" | ").count();
+    let right = count - left - usize::from(verdict);
+    let last = if verdict { "---|" } else { "" };
+    println!("|{}{}{last}", "---|".repeat(left), "---:|".repeat(right));
+}
+
+/// The laws of the aims, with one argument or two, on every instruction set.
+fn rows(arguments: usize) -> impl Iterator<Item = (&'static Subject, Instructions)> {
+    let subjects = SUBJECTS.iter();
+    let compared = subjects.filter(move |s| s.sides.is_some() && s.arguments.len() == arguments);
+    compared.flat_map(|subject| processor::instructions().map(move |set| (subject, set)))
+}
+
 /// Exponent 3/2, against loops written by hand.
-fn three_halves(times: &All) {
-    println!(
-        "| law | instructions | generated | by hand | with Newton | num-dual | interpreted | generated / best | at most 1.10 |"
-    );
-    println!("|---|---|---:|---:|---:|---:|---:|---:|---|");
-    for subject in SUBJECTS
-        .iter()
-        .filter(|s| s.sides.is_some() && s.arguments.len() == 1)
-    {
-        for (instructions, times) in times {
-            let time = |name| times.median(subject.name, subject.aim, name);
-            let generated = time("generated").unwrap_or(f64::NAN);
-            let by_hand = [time("by hand"), time("Newton")];
-            let best = by_hand.into_iter().flatten().fold(f64::INFINITY, f64::min);
-            let ratio = generated / best;
-            println!(
-                "{} {} | {} | {} | {} | {} | {ratio:.2} | {} |",
-                start(subject, *instructions),
-                number(Some(generated)),
-                number(by_hand[0]),
-                number(by_hand[1]),
-                number(time("num-dual")),
-                number(time("interpreted")),
-                verdict(ratio <= 1.10),
-            );
-        }
+fn three_halves(times: &Times) {
+    let columns = "law | instructions | generated | by hand | with Newton | num-dual | interpreted | \
+                   generated / by hand | generated / best | at most 1.10";
+    head(columns, 2, true);
+    for (subject, set) in rows(1) {
+        let time = |name| times.get(subject, subject.aim, name, set);
+        let ratio = |other: f64| time("generated").unwrap_or(f64::NAN) / other;
+        let hand = time("by hand").unwrap_or(f64::NAN);
+        let best = time("Newton").map_or(hand, |newton| newton.min(hand));
+        let names = ["generated", "by hand", "Newton", "num-dual", "interpreted"];
+        println!(
+            "{} {} | {:.2} | {:.2} | {} |",
+            start(subject, set),
+            names.map(|name| number(time(name))).join(" | "),
+            ratio(hand),
+            ratio(best),
+            verdict(ratio(best) <= 1.10),
+        );
     }
     println!();
 }
 
 /// An exponent that is an argument, against what evaluates sample by sample or node by node.
-fn exponents(times: &All) {
-    println!(
-        "| law | instructions | generated | powf | num-dual | interpreted | powf / generated | num-dual / generated | interpreted / generated | at least 6, 6, 4 |"
-    );
-    println!("|---|---|---:|---:|---:|---:|---:|---:|---:|---|");
-    for subject in SUBJECTS
-        .iter()
-        .filter(|s| s.sides.is_some() && s.arguments.len() == 2)
-    {
-        for (instructions, times) in times {
-            let time = |name| {
-                times
-                    .median(subject.name, subject.aim, name)
-                    .unwrap_or(f64::NAN)
-            };
-            let others = ["powf", "num-dual", "interpreted"].map(time);
-            let ratios = others.map(|other| other / time("generated"));
-            let holds = [6.0, 6.0, 4.0]
-                .iter()
-                .zip(&ratios)
-                .all(|(aim, ratio)| ratio >= aim);
-            let numbers = |of: [f64; 3]| of.map(|x| number(Some(x))).join(" | ");
-            println!(
-                "{} {} | {} | {} | {} |",
-                start(subject, *instructions),
-                number(Some(time("generated"))),
-                numbers(others),
-                numbers(ratios),
-                verdict(holds),
-            );
-        }
+fn exponents(times: &Times) {
+    let columns = "law | instructions | generated | fast | powf | num-dual | interpreted | powf / generated | \
+                   num-dual / generated | interpreted / generated | at least 6, 6, 4";
+    head(columns, 2, true);
+    for (subject, set) in rows(2) {
+        let time = |name| times.get(subject, subject.aim, name, set);
+        let ratio = |name| {
+            time(name)
+                .zip(time("generated"))
+                .map_or(f64::NAN, |(a, b)| a / b)
+        };
+        let ratios = ["powf", "num-dual", "interpreted"].map(ratio);
+        let holds = ratios
+            .iter()
+            .zip([6.0, 6.0, 4.0])
+            .all(|(ratio, aim)| *ratio >= aim);
+        let names = ["generated", "fast", "powf", "num-dual", "interpreted"];
+        println!(
+            "{} {} | {} | {} |",
+            start(subject, set),
+            names.map(|name| number(time(name))).join(" | "),
+            ratios.map(|ratio| number(Some(ratio))).join(" | "),
+            verdict(holds),
+        );
     }
     println!();
 }
 
 /// What the outputs cost: every law, call by call.
-fn calls(times: &All) {
-    let sets: Vec<&str> = times.keys().map(|set| set.name()).collect();
-    println!(
-        "| law | call | {} | interpreted | interpreted / generated |",
-        sets.join(" | ")
+fn calls(times: &Times) {
+    let sets: Vec<Instructions> = processor::instructions().collect();
+    let names: Vec<&str> = sets.iter().map(|set| set.name()).collect();
+    let columns = names.join(" | ");
+    head(
+        &format!("law | call | {columns} | interpreted | interpreted / generated"),
+        2,
+        false,
     );
-    println!("|---|---|{}---:|---:|", "---:|".repeat(sets.len()));
     for subject in &SUBJECTS {
-        for call in [
-            Call::Force,
-            Call::Derivatives,
-            Call::ByArgument(subject.argument),
-        ] {
-            let time = |times: &Times, name| times.median(subject.name, call, name);
-            let generated = times.values().map(|times| number(time(times, "generated")));
-            let generated = generated.collect::<Vec<_>>().join(" | ");
-            let last = |name| {
-                times
-                    .values()
-                    .next_back()
-                    .and_then(|times| time(times, name))
-            };
-            let interpreted = last("interpreted");
-            let ratio = interpreted.zip(last("generated")).map(|(i, g)| i / g);
+        for call in subject.calls() {
+            let time = |name, set: &Instructions| times.get(subject, call, name, *set);
+            let generated: Vec<String> = sets
+                .iter()
+                .map(|set| number(time("generated", set)))
+                .collect();
+            let last = |name| sets.last().and_then(|set| time(name, set));
+            let ratio = last("interpreted")
+                .zip(last("generated"))
+                .map(|(i, g)| i / g);
             println!(
-                "| {} | {} | {generated} | {} | {} |",
+                "| {} | {} | {} | {} | {} |",
                 subject.name,
                 call.name(),
-                number(interpreted),
+                generated.join(" | "),
+                number(last("interpreted")),
                 number(ratio),
             );
         }
     }
 }
 
-fn start(subject: &Subject, instructions: Instructions) -> String {
-    format!("| {} | {} |", subject.name, instructions.name())
+fn start(subject: &Subject, set: Instructions) -> String {
+    format!("| {} | {} |", subject.name, set.name())
 }
 
 fn number(time: Option<f64>) -> String {
