@@ -42,7 +42,7 @@ pub(super) fn search<'a>(
     let mut search = Search {
         newton: Newton::new(equations),
         start: setting.newton_at_start(),
-        options: setting.follow(value, value).newton,
+        options: setting.newton(setting.source.tolerance, 1.0),
         equations,
         value,
         held: 0,

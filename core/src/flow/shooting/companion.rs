@@ -6,7 +6,8 @@
 //! [`SAFETY`].
 //!
 //! For multipliers of a closed form a bound takes less time. Rounding moves the entries of `M` by
-//! `delta = eps |M|`, and the orbit by `eps |s| / min |1 - mu|`, which changes `M` by about `|M|^2` times as much.
+//! `eps |M|`, and the orbit by `eps |M| |s| / min |1 - mu|`, relative to its size, which changes `M` by about `|M|` times as
+//! much.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -63,13 +64,13 @@ impl<'a> Companion<'a> {
         let mut equations = Equations::new(setting, tolerance, span, frame)?;
         let part = if exact {
             equations.disturbance = DISTURBANCE * size;
-            SAFETY * ROUNDING / DISTURBANCE
+            SAFETY * ROUNDING * equations.frame.ratio / DISTURBANCE
         } else {
             SAFETY * fine / tolerance
         };
         Ok(Self {
             newton: Newton::new(&equations),
-            options: setting.newton(tolerance),
+            options: setting.newton(tolerance, equations.frame.ratio),
             equations,
             part: part.min(1.0),
             exact,
@@ -89,7 +90,8 @@ impl<'a> Companion<'a> {
         let size = u[..u.len() - 1]
             .iter()
             .fold(0.0, |m: f64, x| m.max(x.abs()));
-        let (by_rounding, mut error) = rounding(map, &multipliers, half);
+        let ratio = self.equations.frame.ratio;
+        let (by_rounding, mut error) = rounding(map, &multipliers, half, ratio);
         error *= size;
         let mut spread = by_rounding;
         if !self.exact {
@@ -138,15 +140,20 @@ pub(super) fn multipliers(map: &DMatrix<f64>, half: bool) -> Vec<Complex<f64>> {
     values
 }
 
-/// Errors that rounding leaves in the multipliers, and in the states relative to their size.
-fn rounding(map: &DMatrix<f64>, multipliers: &[Complex<f64>], half: bool) -> (f64, f64) {
+/// Errors that rounding leaves in the multipliers, and in the states relative to the size of their oscillation.
+fn rounding(
+    map: &DMatrix<f64>,
+    multipliers: &[Complex<f64>],
+    half: bool,
+    ratio: f64,
+) -> (f64, f64) {
     let size = map.norm().max(1.0);
     let nearest = multipliers
         .iter()
         .map(|m| (m - 1.0).norm())
         .fold(f64::INFINITY, f64::min);
     // Where a multiplier is one, an error moves the orbit by its root only: the branch bends away.
-    let states = ROUNDING * size / nearest.max(ROUNDING.sqrt());
+    let states = ROUNDING * ratio * size / nearest.max(ROUNDING.sqrt());
     let delta = ROUNDING * size + states * size;
     let disturbed = |sign: f64| {
         let entries = DMatrix::from_fn(map.nrows(), map.ncols(), |i, j| {

@@ -59,7 +59,7 @@ pub(super) fn branch(
             mut equations, u, ..
         },
     ) = run(setting, found, from, to)?;
-    let options = setting.follow(from, to);
+    let options = setting.follow(from, to, equations.frame.ratio);
     let end = run.follow(&mut equations, u, options, visit)?;
     let Run {
         cycles,
@@ -93,6 +93,6 @@ fn run<'r, 'a>(
     } = &found;
     let frame = equations.frame.clone();
     let companion = Companion::new(setting, equations.span, frame, *size)?;
-    let options = setting.follow(from, to).newton;
+    let options = setting.follow(from, to, equations.frame.ratio).newton;
     Ok((Run::new(setting, options, companion, *size), found))
 }

@@ -70,6 +70,8 @@ pub(super) struct Frame {
     pub(super) reference: Vec<f64>,
     /// A frequency: velocities count by it.
     pub(super) omega: f64,
+    /// The largest state in units of the oscillation's size: rounding and the error of a flow are relative to it.
+    pub(super) ratio: f64,
 }
 
 /// The equations of one system, as a problem of continuation.

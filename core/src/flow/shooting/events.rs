@@ -168,7 +168,7 @@ impl<'a> Run<'_, 'a> {
             Test::Slope => (value.abs() / place.point.scale.parameter).max(1.0),
             Test::Minus | Test::Plus => 1.0,
         };
-        let vanishes = test.abs() <= self.setting.vanishing() * unit;
+        let vanishes = test.abs() <= self.setting.vanishing(equations.frame.ratio) * unit;
         let event = vanishes.then(|| self.event_at(equations, between, change, &place));
         match event.flatten() {
             Some(event) => self.events.push(CycleEvent { after, ..event }),
@@ -261,7 +261,7 @@ impl<'a> Run<'_, 'a> {
         } = other;
         let u = &place.point.u;
         let value = place.point.parameter();
-        let vanished = 1e-3 * self.setting.vanishing() / part;
+        let vanished = 1e-3 * self.setting.vanishing(equations.frame.ratio) / part;
         let moved = self.place(
             &mut equations,
             &mut newton,

@@ -51,64 +51,51 @@ impl<'a> Setting<'a> {
         (self.source.make)(tolerance)
     }
 
-    /// Options of Newton's method on equations with a flow of this tolerance: an update as small as the error of the flow
-    /// means nothing.
-    pub(super) fn newton(&self, tolerance: f64) -> NewtonOptions {
-        let by_flow = if self.source.exact {
-            0.0
-        } else {
-            100.0 * tolerance
-        };
+    /// What the flow and rounding leave in a state, in units of the oscillation, of which the largest state is `ratio` times
+    /// the size.
+    fn noise(&self, tolerance: f64, ratio: f64) -> f64 {
+        let flow = if self.source.exact { 0.0 } else { tolerance };
+        (flow + f64::EPSILON) * ratio
+    }
+
+    /// Options of Newton's method on equations with a flow of this tolerance: an update as small as the noise means nothing.
+    pub(super) fn newton(&self, tolerance: f64, ratio: f64) -> NewtonOptions {
         NewtonOptions {
-            tolerance: by_flow.clamp(1e-10, 1e-3),
+            tolerance: (100.0 * self.noise(tolerance, ratio)).clamp(1e-10, 1e-3),
             iterations: ITERATIONS,
             damped: false,
         }
     }
 
-    /// The same from a guess.
+    /// The same from a guess, when nothing is known of the oscillation.
     pub(super) fn newton_at_start(&self) -> NewtonOptions {
         NewtonOptions {
             iterations: ITERATIONS_AT_START,
             damped: true,
-            ..self.newton(self.source.tolerance)
+            ..self.newton(self.source.tolerance, 1.0)
         }
     }
 
     /// How exactly a test function must vanish.
-    pub(super) fn vanishing(&self) -> f64 {
-        let by_flow = if self.source.exact {
-            0.0
-        } else {
-            1e3 * self.source.tolerance
-        };
-        by_flow.max(1e-10)
+    pub(super) fn vanishing(&self, ratio: f64) -> f64 {
+        let noise = self.noise(self.source.tolerance, ratio);
+        (1e3 * noise).clamp(1e-10, 1e-3)
     }
 
-    /// Options to follow a branch. Updates are relative to the range, and what rounding and the flow leave to the value.
-    pub(super) fn follow(&self, from: f64, to: f64) -> FollowOptions {
-        let newton = self.newton(self.source.tolerance);
+    /// Options to follow a branch. Updates are relative to the range too, and the noise to the value.
+    pub(super) fn follow(&self, from: f64, to: f64, ratio: f64) -> FollowOptions {
         let range = (to - from).abs();
         let narrow = if range > 0.0 {
             from.abs().max(to.abs()) / range
         } else {
             1.0
         };
-        let by_range = narrow
-            * if self.source.exact {
-                1e-12
-            } else {
-                newton.tolerance
-            };
         FollowOptions {
             from,
             to,
             points: self.points,
             steps: self.steps,
-            newton: NewtonOptions {
-                tolerance: newton.tolerance.max(by_range).min(1e-3),
-                ..newton
-            },
+            newton: self.newton(self.source.tolerance, ratio.max(narrow)),
         }
     }
 

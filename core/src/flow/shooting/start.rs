@@ -47,6 +47,7 @@ pub(super) fn first<'a>(
         variable: setting.variable,
         reference: vec![0.0; coordinates],
         omega,
+        ratio: 1.0,
     };
     let mut equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
     let motion = |reason| Error::Motion {
@@ -128,6 +129,9 @@ impl First<'_> {
         let largest = |m: f64, extremes: &Extremes| m.max(0.5 * extremes.peak_to_peak());
         let size = extremes.iter().fold(0.0, largest);
         self.size = if size > 0.0 { size } else { 1.0 };
+        let frame = &mut self.equations.frame;
+        let farthest = |m: f64, x: &f64| m.max(x.abs());
+        frame.ratio = 1.0 + frame.reference.iter().fold(0.0, farthest) / self.size;
         Ok(())
     }
 
@@ -141,6 +145,7 @@ impl First<'_> {
         let mut state = self.equations.states_of(&self.u);
         state.truncate(self.equations.order());
         self.equations.frame.reference.fill(0.0);
+        self.equations.frame.ratio = 1.0;
         let span = Span {
             half: true,
             segments: self.equations.span.segments.div_ceil(2),
@@ -150,7 +155,7 @@ impl First<'_> {
         let states = self.equations.states_from(&state, value).map_err(motion)?;
         self.u = self.equations.unknowns_of(&states, value);
         let mut newton = Newton::new(&self.equations);
-        let options = setting.newton(setting.source.tolerance);
+        let options = setting.newton(setting.source.tolerance, 1.0);
         solve::at_value(&mut self.equations, &mut newton, &mut self.u, options)
             .map_err(|reason| no_orbit(value, reason, self.equations.failure))?;
         Ok(())

@@ -229,6 +229,7 @@ fn jacobian_agrees_with_differences() {
                 variable,
                 reference: vec![0.2],
                 omega: 0.9,
+                ratio: 1.0,
             };
             let mut equations = Equations::new(&setting, 1e-6, span, frame).unwrap();
             let n = equations.unknowns();
