@@ -39,7 +39,7 @@ hertzian::oscillator! {
 /// What the exact values leave open.
 const EXACT: f64 = 1e-12;
 
-fn continuous(alpha: f64, load: f64) -> Box<dyn System> {
+pub fn continuous(alpha: f64, load: f64) -> Box<dyn System> {
     let (zeta, drive) = (0.01, 0.1);
     Box::new(Continuous {
         zeta,
@@ -49,7 +49,7 @@ fn continuous(alpha: f64, load: f64) -> Box<dyn System> {
     })
 }
 
-fn one_sided(alpha: f64) -> Box<dyn System> {
+pub fn one_sided(alpha: f64) -> Box<dyn System> {
     let (zeta, load, drive) = (0.032, 1.0, 0.1);
     Box::new(OneSided {
         zeta,

@@ -1,4 +1,6 @@
 //! Shooting against exact values, and against the harmonic balance.
 
 mod affine;
+mod coupled;
 mod integrated;
+mod stated;

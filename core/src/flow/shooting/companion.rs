@@ -1,13 +1,11 @@
 //! What the error of the flow does to an orbit, its multipliers and its events.
 //!
-//! A flow with a tolerance is compared with one of a tolerance [`RATIO`] times as large: what that changes is `RATIO` times the
-//! error, as long as errors are proportional to the tolerance. A closed form errs by rounding only; what rounding does is seen
-//! from equations that are [disturbed](super::equations::Equations::disturbance) by much more. Both are multiplied by
-//! [`SAFETY`].
+//! A flow with a tolerance is compared with a finer one: the orbit is corrected for it, and what that changes is the error. What
+//! is reported then is the corrected orbit, so that the error stated is rather that of the orbit before.
 //!
-//! For multipliers of a closed form a bound takes less time. Rounding moves the entries of `M` by
-//! `eps |M|`, and the orbit by `eps |M| |s| / min |1 - mu|`, relative to its size, which changes `M` by about `|M|` times as
-//! much.
+//! A closed form errs by rounding only. What that does is seen from equations that are
+//! [disturbed](super::equations::Equations::disturbance) by much more. Besides, rounding moves the entries of `M` by `eps |M|`,
+//! and the orbit by `eps |M| / min |1 - mu|` relative to its size, which changes `M` by about `|M|` times as much.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -16,34 +14,39 @@ use super::setting::Setting;
 use crate::error::Error;
 use crate::flow::Work;
 use crate::newton::{Newton, NewtonOptions};
-use crate::stability::{Stability, distance, eigenvalues};
+use crate::stability::{distance, eigenvalues};
 
 /// Ratio of the two tolerances.
-const RATIO: f64 = 1e4;
-/// No flow is asked for a larger tolerance.
-const LOOSEST: f64 = 1e-4;
-/// By how much the error may be larger than the ratio says.
+const FINER: f64 = 1e-2;
+/// No flow is asked for a smaller tolerance.
+const FINEST: f64 = 1e-14;
+/// By how much an error may be larger than a tolerance.
 const SAFETY: f64 = 10.0;
-/// Rounding errors of a closed form over a period, together, in units of the largest state.
+/// Rounding errors of a flow over a period, together, in units of the largest state.
 const ROUNDING: f64 = 50.0 * f64::EPSILON;
 /// Disturbance of a closed form, in the same units.
 const DISTURBANCE: f64 = 1e-9;
+/// An update of this size leaves the square of it.
+const ONE_UPDATE: f64 = 1e-3;
 
-/// Equations that are as wrong as those of an orbit, many times over.
+/// Equations of the same orbits that are finer, or, of a closed form, disturbed.
 pub(super) struct Companion<'a> {
     pub(super) equations: Equations<'a>,
     pub(super) newton: Newton,
     pub(super) options: NewtonOptions,
-    /// Errors of the orbit are this part of what differs here.
+    /// Errors of events are this part of what differs here.
     pub(super) part: f64,
-    exact: bool,
+    /// The flow is in closed form.
+    pub(super) exact: bool,
+    /// Errors that the flow leaves, in units of the oscillation.
+    pub(super) noise: f64,
 }
 
-/// What is known of an orbit's accuracy.
-pub(super) struct Judged {
-    pub(super) stability: Stability,
-    /// Error of the states, of velocities in units of the frequency.
-    pub(super) error: f64,
+/// An orbit of the companion's equations.
+pub(super) struct Corrected {
+    pub(super) u: Vec<f64>,
+    /// Multipliers before the correction.
+    pub(super) multipliers: Vec<Complex<f64>>,
 }
 
 impl<'a> Companion<'a> {
@@ -55,73 +58,62 @@ impl<'a> Companion<'a> {
         size: f64,
     ) -> Result<Self, Error> {
         let exact = setting.source.exact;
-        let fine = setting.source.tolerance;
-        let tolerance = if exact {
-            fine
-        } else {
-            (RATIO * fine).min(LOOSEST)
-        };
+        let tolerance = (FINER * setting.source.tolerance).max(FINEST);
+        let rounding = ROUNDING * frame.ratio;
         let mut equations = Equations::new(setting, tolerance, span, frame)?;
-        let part = if exact {
+        let (part, noise) = if exact {
             equations.disturbance = DISTURBANCE * size;
-            SAFETY * ROUNDING * equations.frame.ratio / DISTURBANCE
+            ((SAFETY * rounding / DISTURBANCE).min(1.0), rounding)
         } else {
-            SAFETY * fine / tolerance
+            (1.0, rounding + SAFETY * tolerance)
         };
         Ok(Self {
             newton: Newton::new(&equations),
             options: setting.newton(tolerance, equations.frame.ratio),
             equations,
-            part: part.min(1.0),
+            part,
             exact,
+            noise,
         })
     }
 
-    /// The verdict on the orbit `u` with the map `M`, and its error.
-    pub(super) fn judge(&mut self, u: &[f64], map: &DMatrix<f64>) -> Judged {
-        let half = self.equations.span.half;
-        let multipliers = multipliers(map, half);
-        if multipliers.is_empty() {
-            return Judged {
-                stability: Stability::unknown(),
-                error: f64::INFINITY,
-            };
-        }
-        let size = u[..u.len() - 1]
-            .iter()
-            .fold(0.0, |m: f64, x| m.max(x.abs()));
-        let ratio = self.equations.frame.ratio;
-        let (by_rounding, mut error) = rounding(map, &multipliers, half, ratio);
-        error *= size;
-        let mut spread = by_rounding;
-        if !self.exact {
-            if let Some((other, moved)) = self.differing(u) {
-                spread += self.part * distance(&multipliers, &other);
-                error += self.part * moved;
-            } else {
-                spread = f64::INFINITY;
-                error = f64::INFINITY;
-            }
-        }
-        Judged {
-            stability: Stability::of(multipliers, spread),
-            error,
-        }
+    /// The orbit of these equations near `u`, at the same parameter.
+    pub(super) fn correct(&mut self, u: &[f64]) -> Option<Corrected> {
+        let mut corrected = u.to_vec();
+        let options = NewtonOptions {
+            tolerance: self.options.tolerance.max(ONE_UPDATE),
+            ..self.options
+        };
+        let (equations, newton) = (&mut self.equations, &mut self.newton);
+        super::solve::at_value(equations, newton, &mut corrected, options).ok()?;
+        Some(Corrected {
+            u: corrected,
+            multipliers: multipliers(&equations.product, equations.span.half),
+        })
     }
 
-    /// The multipliers of these equations at the same parameter, and how far the orbit moved.
-    fn differing(&mut self, u: &[f64]) -> Option<(Vec<Complex<f64>>, f64)> {
-        let mut other = u.to_vec();
-        super::solve::at_value(
-            &mut self.equations,
-            &mut self.newton,
-            &mut other,
-            self.options,
+    /// The multipliers that those of an orbit are compared with: before the correction, or after the disturbance.
+    pub(super) fn multipliers_beside(&mut self, corrected: &Corrected) -> Vec<Complex<f64>> {
+        if !self.exact {
+            return corrected.multipliers.clone();
+        }
+        let map = self.equations.map(&corrected.u, &mut |_| {});
+        map.map_or_else(
+            |_| Vec::new(),
+            |map| multipliers(&map, self.equations.span.half),
         )
-        .ok()?;
-        let map = self.equations.map(&other, &mut |_| {}).ok()?;
-        let moved = self.equations.apart(u, &other);
-        Some((multipliers(&map, self.equations.span.half), moved))
+    }
+
+    /// Errors that the flow leaves in the multipliers of a map, and in the states relative to the size of their oscillation.
+    pub(super) fn errors(&self, map: &DMatrix<f64>, multipliers: &[Complex<f64>]) -> (f64, f64) {
+        let half = self.equations.span.half;
+        let size = map.norm().max(1.0);
+        let nearest = multipliers.iter().map(|m| (m - 1.0).norm());
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        // Where a multiplier is one, an error moves the orbit by its root only: the branch bends away.
+        let states = self.noise * size / nearest.max(self.noise.sqrt());
+        let delta = (self.noise + states) * size;
+        (moved(map, multipliers, half, delta), states)
     }
 
     pub(super) fn work(&self) -> Work {
@@ -140,27 +132,14 @@ pub(super) fn multipliers(map: &DMatrix<f64>, half: bool) -> Vec<Complex<f64>> {
     values
 }
 
-/// Errors that rounding leaves in the multipliers, and in the states relative to the size of their oscillation.
-fn rounding(
-    map: &DMatrix<f64>,
-    multipliers: &[Complex<f64>],
-    half: bool,
-    ratio: f64,
-) -> (f64, f64) {
-    let size = map.norm().max(1.0);
-    let nearest = multipliers
-        .iter()
-        .map(|m| (m - 1.0).norm())
-        .fold(f64::INFINITY, f64::min);
-    // Where a multiplier is one, an error moves the orbit by its root only: the branch bends away.
-    let states = ROUNDING * ratio * size / nearest.max(ROUNDING.sqrt());
-    let delta = ROUNDING * size + states * size;
+/// How far multipliers move when the entries of their map do.
+pub(super) fn moved(map: &DMatrix<f64>, multipliers: &[Complex<f64>], half: bool, by: f64) -> f64 {
     let disturbed = |sign: f64| {
         let entries = DMatrix::from_fn(map.nrows(), map.ncols(), |i, j| {
             let alternating = if (i + j).is_multiple_of(2) { 1.0 } else { sign };
-            map[(i, j)] + delta * alternating
+            map[(i, j)] + by * alternating
         });
         distance(multipliers, &self::multipliers(&entries, half))
     };
-    (disturbed(1.0).max(disturbed(-1.0)), states)
+    disturbed(1.0).max(disturbed(-1.0))
 }

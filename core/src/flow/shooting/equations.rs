@@ -19,7 +19,7 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView};
 
 use super::setting::Setting;
 use crate::continuation::problem::Problem;
@@ -82,6 +82,10 @@ pub(super) struct Equations<'a> {
     /// Added to every position equation, and times the frequency to every velocity equation, with alternating signs. All
     /// segments are disturbed alike: what a shift by a period turns into itself, still is.
     pub(super) disturbance: f64,
+    /// `M` at the last unknowns where derivatives were asked for.
+    pub(super) product: DMatrix<f64>,
+    /// Room for the next.
+    room: DMatrix<f64>,
     /// Why the last evaluation has no value.
     pub(super) failure: Option<FlowError>,
     /// Tolerance of the flow.
@@ -107,6 +111,8 @@ impl<'a> Equations<'a> {
             tangent: Tangent::of_state(coordinates, Some(frame.variable)),
             state: vec![0.0; order],
             column: vec![0.0; order * span.segments],
+            product: DMatrix::zeros(order, order),
+            room: DMatrix::zeros(order, order),
             flow,
             span,
             frame,
@@ -273,16 +279,29 @@ impl<'a> Equations<'a> {
         u: &[f64],
         see: &mut dyn FnMut(&dyn Stretch),
     ) -> Result<DMatrix<f64>, FlowError> {
-        let order = self.order();
         self.flow.set(self.frame.variable, u[u.len() - 1]);
-        let mut product = DMatrix::identity(order, order);
         for segment in 0..self.span.segments {
             self.begin(u, segment);
             self.advance(segment, true, Some(see))?;
-            let columns = &self.tangent.columns[..order * order];
-            product = DMatrix::from_column_slice(order, order, columns) * product;
+            self.multiply(segment);
         }
-        Ok(product * self.span.sign())
+        Ok(self.product.clone())
+    }
+
+    /// Takes the tangent of one segment into the product (3).
+    fn multiply(&mut self, segment: usize) {
+        let order = self.order();
+        let last = segment + 1 == self.span.segments;
+        let sign = if last { self.span.sign() } else { 1.0 };
+        let columns = &self.tangent.columns[..order * order];
+        let tangent = DMatrixView::from_slice(columns, order, order);
+        if segment == 0 {
+            self.room.copy_from(&tangent);
+            self.room *= sign;
+        } else {
+            self.room.gemm(sign, &tangent, &self.product, 0.0);
+        }
+        std::mem::swap(&mut self.product, &mut self.room);
     }
 
     /// Shows the orbit `u` to `see`, stretch by stretch.
@@ -320,6 +339,7 @@ impl Problem for Equations<'_> {
             }
             self.close(u, segment, residual);
             if let Some(jacobian) = &mut jacobian {
+                self.multiply(segment);
                 self.fill(segment, jacobian);
             }
         }

@@ -16,13 +16,14 @@
 
 use std::cell::RefCell;
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
-use super::companion::{Companion, multipliers};
+use super::companion::{self, Companion, multipliers};
 use super::crossing::locate_crossing;
-use super::cycle::CycleEvent;
+use super::cycle::{Cycle, CycleEvent};
 use super::equations::Equations;
-use super::run::{Run, add};
+use super::run::{Run, add, observe};
+use super::setting::Setting;
 use crate::branch::{EventKind, Turn};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
@@ -73,21 +74,6 @@ struct Place {
     test: f64,
     /// What the search leaves in the parameter.
     error: f64,
-}
-
-/// What is wrong with an event at most.
-struct Errors {
-    value: f64,
-    states: f64,
-    multipliers: f64,
-}
-
-impl Errors {
-    const UNKNOWN: Self = Self {
-        value: f64::INFINITY,
-        states: f64::INFINITY,
-        multipliers: f64::INFINITY,
-    };
 }
 
 impl Tests {
@@ -212,7 +198,7 @@ impl<'a> Run<'_, 'a> {
         place
     }
 
-    /// The event at a place.
+    /// The event at a place, compared with that of the companion.
     fn event_at(
         &mut self,
         equations: &mut Equations<'a>,
@@ -220,75 +206,74 @@ impl<'a> Run<'_, 'a> {
         change: Change,
         place: &Place,
     ) -> Option<CycleEvent> {
-        let (mut cycle, map) = self.observe(equations, &place.point.u).ok()?;
-        let half = equations.span.half;
-        let found = map.map(|map| multipliers(&map, half)).unwrap_or_default();
         let (span, frame) = (equations.span, equations.frame.clone());
         let size = between.0.scale.oscillation;
-        let other = Companion::new(self.setting, span, frame, size).ok();
-        let errors = other.and_then(|other| self.errors(other, between, change, place, &found));
-        let Errors {
-            value,
-            states,
-            multipliers,
-        } = errors.unwrap_or(Errors::UNKNOWN);
-        cycle.stability = Stability::of(found, multipliers);
-        cycle.error = states;
-        Some(CycleEvent {
-            kind: change.kind,
-            cycle,
-            error: value,
-            test: place.test,
-            after: 0,
-        })
-    }
-
-    /// Errors of an event: the companion's event is as much further off as its equations are more wrong.
-    fn errors(
-        &mut self,
-        other: Companion<'a>,
-        between: (&CurvePoint, &CurvePoint),
-        change: Change,
-        place: &Place,
-        found: &[Complex<f64>],
-    ) -> Option<Errors> {
         let Companion {
-            mut equations,
+            equations: mut others,
             mut newton,
             options,
             part,
-            ..
-        } = other;
-        let u = &place.point.u;
-        let value = place.point.parameter();
-        let vanished = 1e-3 * self.setting.vanishing(equations.frame.ratio) / part;
-        let moved = self.place(
-            &mut equations,
-            &mut newton,
-            between,
-            options,
-            change,
-            vanished,
-        );
+            exact,
+            noise,
+        } = Companion::new(self.setting, span, frame, size).ok()?;
+        let moved = self.place(&mut others, &mut newton, between, options, change, VANISHED);
         self.statistics += newton.statistics;
-        let errors = moved.and_then(|moved| {
-            let map = equations.map(&moved.point.u, &mut |_| {}).ok()?;
-            let there = multipliers(&map, equations.span.half);
-            // One of them is known.
-            let critical = match change.kind {
-                EventKind::PeriodDoubling => -1.0,
-                _ => 1.0,
-            };
-            let nearest = found.iter().map(|m| (m - critical).norm());
-            let off = nearest.fold(f64::INFINITY, f64::min);
-            let by = (moved.point.parameter() - value).abs();
-            Some(Errors {
-                value: part * by + place.error + ROUNDING * value.abs(),
-                states: part * equations.apart(u, &moved.point.u),
-                multipliers: part * distance(found, &there) + off,
-            })
-        });
-        add(&mut self.work, equations.flow.work());
-        errors
+        let (event, test) = match &moved {
+            None => {
+                let (cycle, _) = observe(self.setting, equations, &place.point.u).ok()?;
+                ((cycle, f64::INFINITY), place.test)
+            }
+            Some(moved) => {
+                let (here, there) = ((equations, place), (&mut others, moved));
+                // What is reported is the finer one, or the one that is not disturbed.
+                let (best, other) = if exact { (here, there) } else { (there, here) };
+                let test = best.1.test;
+                (
+                    compared(self.setting, change.kind, best, other, (part, noise))?,
+                    test,
+                )
+            }
+        };
+        add(&mut self.work, others.flow.work());
+        let (cycle, error) = event;
+        Some(CycleEvent {
+            kind: change.kind,
+            cycle,
+            error,
+            test,
+            after: 0,
+        })
     }
+}
+
+/// An event of some equations with its errors, and the error of its value: a part of what it is in others.
+fn compared(
+    setting: &Setting<'_>,
+    kind: EventKind,
+    (equations, place): (&mut Equations<'_>, &Place),
+    (others, moved): (&mut Equations<'_>, &Place),
+    (part, noise): (f64, f64),
+) -> Option<(Cycle, f64)> {
+    let half = equations.span.half;
+    let u = &place.point.u;
+    let (mut cycle, map) = observe(setting, equations, u).ok()?;
+    let by = (moved.point.parameter() - cycle.value).abs();
+    let error = part * by + place.error + moved.error + ROUNDING * cycle.value.abs();
+    cycle.error = part * equations.apart(u, &moved.point.u);
+    if let Some(map) = map {
+        let found = multipliers(&map, half);
+        let there = others.map(&moved.point.u, &mut |_| {}).ok()?;
+        let there = multipliers(&there, half);
+        // One of them is known.
+        let critical = match kind {
+            EventKind::PeriodDoubling => -1.0,
+            _ => 1.0,
+        };
+        let nearest = found.iter().map(|m| (m - critical).norm());
+        let spread = part * distance(&found, &there)
+            + nearest.fold(f64::INFINITY, f64::min)
+            + companion::moved(&map, &found, half, noise * map.norm().max(1.0));
+        cycle.stability = Stability::of(found, spread);
+    }
+    Some((cycle, error))
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::DMatrix;
 
-use super::companion::Companion;
+use super::companion::{Companion, multipliers};
 use super::cycle::{Cycle, CycleEvent, End};
 use super::equations::Equations;
 use super::events::{Change, Tests};
@@ -18,7 +18,7 @@ use crate::continuation::follow::{
 use crate::error::Error;
 use crate::flow::{FlowError, Stretch, Work};
 use crate::newton::{Newton, NewtonError, NewtonOptions};
-use crate::stability::Stability;
+use crate::stability::{Stability, distance};
 use crate::statistics::Statistics;
 
 /// What a run has gathered.
@@ -183,58 +183,85 @@ impl<'r, 'a> Run<'r, 'a> {
         Continue::Continue(())
     }
 
-    /// An orbit with everything that is read off it, and its map if the stability is wanted.
+    /// An orbit with everything that is read off it, and its map if the stability is wanted. With a flow that has a tolerance, it
+    /// is the orbit corrected for that.
     pub(super) fn read(
         &mut self,
         equations: &mut Equations<'a>,
         u: &[f64],
     ) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
-        let (mut cycle, map) = self.observe(equations, u)?;
-        if let Some(map) = &map {
-            let judged = self.companion.judge(u, map);
-            (cycle.stability, cycle.error) = (judged.stability, judged.error);
+        let Self {
+            setting, companion, ..
+        } = self;
+        if !setting.stability {
+            return observe(setting, equations, u);
         }
-        Ok((cycle, map))
-    }
-
-    /// An orbit, without its stability.
-    pub(super) fn observe(
-        &mut self,
-        equations: &mut Equations<'a>,
-        u: &[f64],
-    ) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
-        let value = u[u.len() - 1];
-        let setting = self.setting;
-        let rate = setting.rate_at(value);
-        let mut extremes = vec![Extremes::NONE; equations.order() / 2];
-        let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
-        let map = if setting.stability {
-            self.statistics.monodromies += 1;
-            Some(equations.map(u, see)?)
+        self.statistics.monodromies += 1;
+        let corrected = companion.correct(u);
+        let finer = corrected.as_ref().filter(|_| !companion.exact);
+        let (at, known) = match finer {
+            Some(finer) => (&mut companion.equations, &finer.u[..]),
+            None => (equations, u),
+        };
+        let (mut cycle, map) = observe(setting, at, known)?;
+        let Some(map) = map else {
+            return Ok((cycle, None));
+        };
+        let found = multipliers(&map, companion.equations.span.half);
+        let (mut spread, relative) = companion.errors(&map, &found);
+        cycle.error = relative * self.size;
+        if let Some(corrected) = &corrected {
+            let other = companion.multipliers_beside(corrected);
+            spread += companion.part * distance(&found, &other);
+            cycle.error += companion.part * companion.equations.apart(u, &corrected.u);
         } else {
-            equations.trace(u, see)?;
-            None
-        };
-        let half = equations.span.half;
-        if half {
-            for extremes in &mut extremes {
-                *extremes = extremes.mirrored();
-            }
+            spread = f64::INFINITY;
+            cycle.error = f64::INFINITY;
         }
-        let cycle = Cycle {
-            value,
-            parameters: setting.parameters_at(value),
-            omega: setting.omega_at(value),
-            period: equations.span.period,
-            symmetric: half,
-            states: equations.states_of(u),
-            stability: Stability::unknown(),
-            extremes,
-            error: f64::NAN,
-            iterations: 0,
+        cycle.stability = if found.is_empty() {
+            Stability::unknown()
+        } else {
+            Stability::of(found, spread)
         };
-        Ok((cycle, map))
+        Ok((cycle, Some(map)))
     }
+}
+
+/// An orbit without its stability, and its map if the stability is wanted.
+pub(super) fn observe(
+    setting: &Setting<'_>,
+    equations: &mut Equations<'_>,
+    u: &[f64],
+) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
+    let value = u[u.len() - 1];
+    let rate = setting.rate_at(value);
+    let mut extremes = vec![Extremes::NONE; equations.order() / 2];
+    let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
+    let map = if setting.stability {
+        Some(equations.map(u, see)?)
+    } else {
+        equations.trace(u, see)?;
+        None
+    };
+    let half = equations.span.half;
+    if half {
+        for extremes in &mut extremes {
+            *extremes = extremes.mirrored();
+        }
+    }
+    let cycle = Cycle {
+        value,
+        parameters: setting.parameters_at(value),
+        omega: setting.omega_at(value),
+        period: equations.span.period,
+        symmetric: half,
+        states: equations.states_of(u),
+        stability: Stability::unknown(),
+        extremes,
+        error: f64::NAN,
+        iterations: 0,
+    };
+    Ok((cycle, map))
 }
 
 /// Why there is no orbit.

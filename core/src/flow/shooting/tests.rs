@@ -170,7 +170,7 @@ impl Flow for RungeKutta {
 
 /// Steps in a period that leave this error about.
 fn steps(tolerance: f64) -> usize {
-    (30.0 * tolerance.powf(-0.25)) as usize
+    (10.0 * tolerance.powf(-0.25)) as usize
 }
 
 fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting<'static> {
@@ -186,7 +186,7 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting<'sta
         source: Source {
             make: Box::new(make),
             exact: false,
-            tolerance: 1e-9,
+            tolerance: 1e-8,
         },
         varied: "something".to_owned(),
         parameters: parameters.to_vec(),
@@ -282,7 +282,7 @@ fn folds_of_a_smooth_oscillator_are_those_of_the_balance() {
             error < by_shooting.error + by_balance.error,
             "{by_shooting} {by_balance}"
         );
-        assert!(by_shooting.error < 1e-11, "{by_shooting}");
+        assert!(by_shooting.error < 1e-10, "{by_shooting}");
         let (a, b) = (
             by_shooting.cycle.peak_to_peak(),
             by_balance.point.peak_to_peak(),
@@ -362,7 +362,7 @@ fn symmetry_breaks_where_the_balance_says() {
             assert_eq!((event.kind, event.cycle.symmetric), (kind, odd));
             let error = (event.cycle.value - expected.point.value).abs();
             assert!(error < event.error + expected.error, "{event} {expected}");
-            assert!(event.error < 1e-8 && error < 1e-9, "{event} {error}");
+            assert!(event.error < 1e-6 && error < 1e-8, "{event} {error}");
             let one = event.cycle.stability.multipliers[0];
             assert!((one - 1.0).norm() < 1e-9, "{one}");
         }
