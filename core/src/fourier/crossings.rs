@@ -13,6 +13,7 @@ use super::series;
 
 mod finder;
 mod grid;
+pub(crate) mod levels;
 mod pieces;
 mod roots;
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::ContactMotion;
 use super::peak::Batch;
 use super::reader::{Reader, largest};
 use crate::balance::{Balance, rate_series};
-use crate::fourier::crossings::Crossing;
+use crate::fourier::crossings::levels::Cuts;
 use crate::law::{Law, RateDependence, Variation};
 use crate::layout::ContactLayout;
 
@@ -22,27 +22,11 @@ pub(super) fn is_idle(balance: &Balance<'_>, contact: usize) -> bool {
 pub(super) struct ContactReader {
     arguments: Vec<f64>,
     levels: Vec<f64>,
-    found: Vec<Crossing>,
-    switches: Vec<Switch>,
+    cuts: Cuts,
     panels: Vec<Panel>,
     rate: Vec<f64>,
     rates: Vec<f64>,
     batch: Batch,
-}
-
-/// The gap crosses a level.
-#[derive(Debug, Clone, Copy)]
-struct Switch {
-    tau: f64,
-    level: usize,
-    rising: bool,
-}
-
-impl Switch {
-    /// The piece that begins here.
-    fn piece(self) -> usize {
-        self.level + usize::from(self.rising)
-    }
 }
 
 /// A part of the period on which the gap stays on one piece.
@@ -110,50 +94,17 @@ impl ContactReader {
     fn cut(&mut self, law: &dyn Law, reader: &Reader) {
         self.levels.resize(law.facts().levels.len(), 0.0);
         law.levels(&self.arguments, &mut self.levels);
-        self.switches.clear();
-        for (level, &value) in self.levels.iter().enumerate() {
-            self.found.clear();
-            if let Some(finder) = reader.finder() {
-                finder.crossings(value, &mut self.found);
-            }
-            let found = self.found.iter();
-            self.switches
-                .extend(found.map(|&Crossing { tau, rising }| Switch { tau, level, rising }));
-        }
-        // Levels that coincide are crossed in their order when the gap rises, and in the opposite one when it falls.
-        let order = |switch: &Switch| {
-            let level = switch.level as isize;
-            if switch.rising { level } else { -level }
-        };
-        self.switches
-            .sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau).then(order(a).cmp(&order(b))));
+        self.cuts
+            .apply(reader.finder(), reader.series(), &self.levels);
         self.panels.clear();
-        let Some(&last) = self.switches.last() else {
-            // It may touch a level, but its mean lies on the piece.
-            let value = reader.series()[0];
-            self.panels.push(Panel {
-                start: 0.0,
-                end: TAU,
-                piece: self.levels.iter().filter(|&&level| value > level).count(),
-                levels: None,
-            });
-            return;
-        };
-        let mut from = Switch {
-            tau: last.tau - TAU,
-            ..last
-        };
-        for &to in &self.switches {
-            if to.tau > from.tau {
-                self.panels.push(Panel {
-                    start: from.tau,
-                    end: to.tau,
-                    piece: from.piece(),
-                    levels: Some([self.levels[from.level], self.levels[to.level]]),
-                });
-            }
-            from = to;
-        }
+        let levels = &self.levels;
+        let panels = self.cuts.stretches().iter().map(|stretch| Panel {
+            start: stretch.start,
+            end: stretch.end,
+            piece: stretch.piece,
+            levels: stretch.levels.map(|ends| ends.map(|level| levels[level])),
+        });
+        self.panels.extend(panels);
     }
 }
 

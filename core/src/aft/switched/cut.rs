@@ -7,28 +7,14 @@ use std::f64::consts::TAU;
 
 use super::panel::power_at;
 use crate::aft::ContactInput;
-use crate::fourier::crossings::{Crossing, CrossingFinder, NearMiss};
+use crate::fourier::crossings::levels::{Cuts, Stretch, Switch};
+use crate::fourier::crossings::{CrossingFinder, NearMiss};
 use crate::fourier::series;
 
 /// Singularities farther from the real axis than this cost fewer nodes than a cut.
 const NEAR: f64 = 0.15;
 /// Where near misses are looked for, in parts of the size of the gap's oscillation.
 const REACH: f64 = 0.05;
-
-/// The gap crosses a level.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Switch {
-    pub(super) tau: f64,
-    pub(super) level: usize,
-    pub(super) rising: bool,
-}
-
-impl Switch {
-    /// The piece that begins here.
-    fn piece(self) -> usize {
-        self.level + usize::from(self.rising)
-    }
-}
 
 /// What bounds a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,15 +46,33 @@ impl Panel {
     }
 }
 
+impl From<&Stretch> for Panel {
+    fn from(stretch: &Stretch) -> Self {
+        let &Stretch {
+            start,
+            end,
+            piece,
+            levels,
+        } = stretch;
+        let [from, to] = levels.map_or([End::Period; 2], |levels| levels.map(End::Level));
+        Self {
+            start,
+            end,
+            piece,
+            from,
+            to,
+        }
+    }
+}
+
 /// Switches and panels of the gap cut last.
 #[derive(Debug, Default)]
 pub(super) struct Cut {
     finder: Option<CrossingFinder>,
     levels: Vec<f64>,
     levels_by: Vec<f64>,
-    found: Vec<Crossing>,
+    cuts: Cuts,
     misses: Vec<NearMiss>,
-    switches: Vec<Switch>,
     panels: Vec<Panel>,
 }
 
@@ -78,66 +82,19 @@ impl Cut {
         let count = input.law.facts().levels.len();
         self.levels.resize(count, 0.0);
         input.law.levels(input.arguments, &mut self.levels);
-        self.switches.clear();
         if count > 0 {
-            self.find(input);
+            let harmonics = series::harmonics(input.gap);
+            self.finder
+                .get_or_insert_with(|| CrossingFinder::new(harmonics))
+                .sample(input.gap);
         }
-        self.fill_panels(input.gap);
+        let finder = self.finder.as_ref().filter(|_| count > 0);
+        self.cuts.apply(finder, input.gap, &self.levels);
+        self.panels.clear();
+        self.panels
+            .extend(self.cuts.stretches().iter().map(Panel::from));
         for level in 0..count {
             self.cut_near(input, level);
-        }
-    }
-
-    fn find(&mut self, input: ContactInput<'_>) {
-        let finder = self
-            .finder
-            .get_or_insert_with(|| CrossingFinder::new(series::harmonics(input.gap)));
-        finder.sample(input.gap);
-        for (level, &value) in self.levels.iter().enumerate() {
-            self.found.clear();
-            finder.crossings(value, &mut self.found);
-            let found = self.found.iter();
-            self.switches
-                .extend(found.map(|&Crossing { tau, rising }| Switch { tau, level, rising }));
-        }
-        // Levels that coincide are crossed in their order when the gap rises, and in the opposite one when it falls.
-        let order = |switch: &Switch| {
-            let level = switch.level as isize;
-            if switch.rising { level } else { -level }
-        };
-        self.switches
-            .sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau).then(order(a).cmp(&order(b))));
-    }
-
-    fn fill_panels(&mut self, gap: &[f64]) {
-        self.panels.clear();
-        let Some(&last) = self.switches.last() else {
-            // It may touch a level, but its mean lies on the piece.
-            let value = gap[0];
-            self.panels.push(Panel {
-                start: 0.0,
-                end: TAU,
-                piece: self.levels.iter().filter(|&&level| value > level).count(),
-                from: End::Period,
-                to: End::Period,
-            });
-            return;
-        };
-        let mut from = Switch {
-            tau: last.tau - TAU,
-            ..last
-        };
-        for &to in &self.switches {
-            if to.tau > from.tau {
-                self.panels.push(Panel {
-                    start: from.tau,
-                    end: to.tau,
-                    piece: from.piece(),
-                    from: End::Level(from.level),
-                    to: End::Level(to.level),
-                });
-            }
-            from = to;
         }
     }
 
@@ -223,7 +180,7 @@ impl Cut {
     }
 
     pub(super) fn switches(&self) -> &[Switch] {
-        &self.switches
+        self.cuts.switches()
     }
 
     pub(super) fn levels(&self) -> &[f64] {

@@ -28,16 +28,18 @@
 mod affine;
 mod cut;
 mod panel;
+mod spectrum;
 #[cfg(test)]
 mod tests;
 mod whole;
 
 use super::{Change, ContactDerivatives, ContactInput};
+use crate::fourier::crossings::levels::Switch;
 use crate::fourier::kernels::Product;
 use crate::fourier::series;
 use crate::law::{On, Variation};
 use affine::Affine;
-use cut::{Cut, Switch};
+use cut::Cut;
 use panel::Quadrature;
 use whole::Whole;
 

@@ -4,15 +4,10 @@
 //! an exponent. The map of [`grading`](crate::fourier::grading) makes all of them smooth at once, so one set of nodes serves
 //! the force and every derivative, whatever the exponents.
 //!
-//! Between its ends the graded integrand is the product of the law and of a harmonic. A Gauss rule of `N` nodes is exact to
-//! degree `2 N - 1`. The harmonic `k` of a panel of width `w` takes about `k w / 2` degrees; the law takes as many as its
-//! Legendre coefficients need to fall to rounding, which those of the highest degrees at hand show. If they are still too large,
-//! the next larger rule is taken, or the panel is cut in two.
-//!
-//! Source: Trefethen (2008), Is Gauss quadrature better than Clenshaw-Curtis?, sections 2 and 7 (exactness and degrees);
-//! Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8 (decay of coefficients).
+//! How many nodes suffice, [`spectrum`](super::spectrum) tells. Where there is no rule of so many, the panel is cut in two.
 
 use super::cut::{End, Panel};
+use super::spectrum::Spectrum;
 use super::{Changing, Sums, Wanted};
 use crate::aft::ContactInput;
 use crate::fourier::gauss::{self, Rule};
@@ -23,7 +18,7 @@ use crate::law::{Derivatives, On, PieceFacts, Variation};
 
 /// Nodes beyond those that the harmonics take, at first.
 const MARGIN: f64 = 12.0;
-/// Error aimed at in the harmonics of the force, relative to the largest force.
+/// Error aimed at in the harmonics of the force, relative to the largest force on the panel.
 const FORCE_ERROR: f64 = 1e-15;
 /// Error aimed at in the harmonics of the derivatives.
 const SLOPE_ERROR: f64 = 1e-11;
@@ -74,6 +69,16 @@ struct Stretch {
     ends: Grading,
 }
 
+/// A part of a panel, and what is known of the part that it is a half of.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    ends: (f64, f64),
+    grading: Grading,
+    /// It may be cut in two so many times.
+    depth: u32,
+    spectra: [Spectrum; 4],
+}
+
 /// Derivatives of a gap at a switch, each divided by its factorial.
 #[derive(Debug, Clone, Copy)]
 struct Taylor([f64; 4]);
@@ -113,27 +118,6 @@ struct Demand {
     own: f64,
 }
 
-impl GradedRule {
-    /// The largest of the highest Legendre coefficients of values times the slope of the map, relative to the largest value.
-    fn highest_coefficient(&self, values: &[f64]) -> f64 {
-        let mut largest = 0.0_f64;
-        let mut sums = [0.0; gauss::CHECKED];
-        for (j, (value, slope)) in values.iter().zip(&self.slopes).enumerate() {
-            let graded = value * slope;
-            largest = largest.max(graded.abs());
-            for (sum, coefficients) in sums.iter_mut().zip(&self.plain.highest) {
-                *sum += coefficients[j] * graded;
-            }
-        }
-        let highest = sums.iter().fold(0.0_f64, |m, sum| m.max(sum.abs()));
-        if largest > 0.0 {
-            highest / largest
-        } else {
-            0.0
-        }
-    }
-}
-
 impl Quadrature {
     /// Adds the integrals over a panel.
     pub(super) fn add(
@@ -164,92 +148,95 @@ impl Quadrature {
             slopes: top as f64,
             own: series::harmonics(input.gap) as f64,
         };
-        self.part(
-            input,
-            panel.piece,
-            (panel.start, panel.end),
+        let part = Part {
+            ends: (panel.start, panel.end),
             grading,
-            demand,
-            sums,
-            DEPTH,
-        );
+            depth: DEPTH,
+            spectra: [Spectrum::UNKNOWN; 4],
+        };
+        self.part(input, panel.piece, part, demand, sums);
     }
 
     /// Adds the integrals over a part of a panel.
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "the panel, what it holds, and what is wanted of it"
-    )]
     fn part(
         &mut self,
         input: ContactInput<'_>,
         piece: usize,
-        (start, end): (f64, f64),
-        ends: Grading,
+        part: Part,
         demand: Demand,
         sums: &mut Sums<'_>,
-        depth: u32,
     ) {
+        let Part {
+            ends: (start, end),
+            grading: ends,
+            depth,
+            mut spectra,
+        } = part;
         let width = end - start;
         let grading = ends.balanced();
         let stretch = Stretch { start, end, ends };
         let degrees = 0.5 * width * grading.stretch();
-        let by_rate = input.law.facts().pieces[piece].by_rate == Variation::Varying;
+        let facts = &input.law.facts().pieces[piece];
         let mut wanted = 0.5 * degrees * (demand.slopes + demand.own) + MARGIN;
         let largest = gauss::COUNTS[gauss::COUNTS.len() - 1] as f64;
         while wanted <= largest || depth == 0 {
-            let rule = self.place(start, end, grading, wanted.ceil() as usize);
+            self.place(start, end, grading, wanted.ceil() as usize);
             self.evaluate(input, piece, Wanted::of(sums), &stretch);
-            let count = self.rules[rule].count as f64;
-            if depth == 0 || self.is_resolved(rule, count, degrees, demand, (sums, by_rate)) {
+            let count = self.rules[self.current].count as f64;
+            let needed;
+            (needed, spectra) = self.needed(facts, (width, degrees), demand, sums, &part.spectra);
+            if depth == 0 || needed <= count {
                 self.sum_up(input, piece, sums);
                 return;
             }
-            wanted = count + 1.0;
+            wanted = needed.max(count + 1.0);
         }
         let middle = 0.5 * (start + end);
-        let first = Grading { end: 1, ..ends };
-        let second = Grading { start: 1, ..ends };
-        self.part(
-            input,
-            piece,
-            (start, middle),
-            first,
-            demand,
-            sums,
-            depth - 1,
-        );
-        self.part(input, piece, (middle, end), second, demand, sums, depth - 1);
+        let half = |ends, grading| Part {
+            ends,
+            grading,
+            depth: depth - 1,
+            spectra,
+        };
+        let first = half((start, middle), Grading { end: 1, ..ends });
+        let second = half((middle, end), Grading { start: 1, ..ends });
+        self.part(input, piece, first, demand, sums);
+        self.part(input, piece, second, demand, sums);
     }
 
-    /// Whether the nodes suffice: the Legendre coefficients of the graded law, continued as they fall, have reached the error
-    /// aimed at where the harmonics leave off.
-    fn is_resolved(
+    /// What the values at the nodes say, and how many nodes they ask for.
+    fn needed(
         &self,
-        rule: usize,
-        count: f64,
-        degrees: f64,
+        piece: &PieceFacts,
+        (width, degrees): (f64, f64),
         demand: Demand,
-        (sums, by_rate): (&Sums<'_>, bool),
-    ) -> bool {
-        let rule = &self.rules[rule];
-        let falls = |values: &[f64], harmonics: f64, error: f64| {
-            let left = (2.0 * count - degrees * harmonics).max(1.0);
-            let allowed = error.powf(((count - 2.0) / left).min(1.0));
-            rule.highest_coefficient(values) <= allowed
+        sums: &Sums<'_>,
+        parent: &[Spectrum; 4],
+    ) -> (f64, [Spectrum; 4]) {
+        let rule = &self.rules[self.current];
+        let mut spectra = [Spectrum::UNKNOWN; 4];
+        let mut most = 0.0_f64;
+        let mut look = |which: usize, values: &[f64], harmonics: f64, error: f64| {
+            let parent = parent[which];
+            let spectrum = Spectrum::of(values, &rule.slopes, rule.plain, width, parent);
+            most = most.max(spectrum.nodes(parent, degrees * harmonics, error));
+            spectra[which] = spectrum;
         };
-        let Some(slopes) = &sums.slopes else {
-            return falls(&self.force, demand.force, FORCE_ERROR);
-        };
-        falls(&self.force, demand.force, FORCE_ERROR)
-            && falls(&self.by_gap, demand.slopes, SLOPE_ERROR)
-            && (!by_rate || falls(&self.by_rate, demand.slopes, SLOPE_ERROR))
-            && (!slopes.change.is_some_and(|c| c.arguments)
-                || falls(&self.by_argument, demand.force, SLOPE_ERROR))
+        look(0, &self.force, demand.force, FORCE_ERROR);
+        if let Some(slopes) = &sums.slopes {
+            look(1, &self.by_gap, demand.slopes, SLOPE_ERROR);
+            if piece.by_rate == Variation::Varying {
+                look(2, &self.by_rate, demand.slopes, SLOPE_ERROR);
+            }
+            if slopes.change.is_some_and(|change| change.arguments) {
+                look(3, &self.by_argument, demand.force, SLOPE_ERROR);
+            }
+        }
+        (most, spectra)
     }
 
-    /// Puts nodes on a part of a panel; returns the rule.
-    fn place(&mut self, start: f64, end: f64, grading: Grading, count: usize) -> usize {
+    /// Puts nodes on a part of a panel.
+    fn place(&mut self, start: f64, end: f64, grading: Grading, count: usize) {
         let index = self.rule(grading, count);
         let rule = &self.rules[index];
         let nodes = padded(rule.nodes.len());
@@ -282,7 +269,6 @@ impl Quadrature {
             self.weights[j] = 0.0;
         }
         self.current = index;
-        index
     }
 
     fn rule(&mut self, grading: Grading, count: usize) -> usize {
