@@ -116,12 +116,25 @@ pub enum Error {
         /// Why.
         reason: FlowError,
     },
+    /// No orbit was found at the start of the range with the work that a search may take.
+    SearchLimit {
+        /// Where.
+        parameter: f64,
+        /// Evaluations of the balance.
+        evaluations: usize,
+        /// The limit that was reached: multiplications, as estimated.
+        multiplications: u64,
+        /// What the last attempt said.
+        reason: NewtonError,
+    },
     /// Orbits were found, but none whose shortest period is the one asked for.
     NoSuchPeriod {
         /// The period asked for, in excitation periods.
         period: usize,
         /// Where.
         parameter: f64,
+        /// What the attempts to find one came to.
+        attempts: Attempts,
     },
     /// A file could not be written.
     File {
@@ -130,6 +143,42 @@ pub enum Error {
         /// What the system said.
         reason: String,
     },
+}
+
+/// What attempts to find an orbit of a longer period came to.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Attempts {
+    /// As many as there are disturbances to begin with.
+    pub planned: usize,
+    /// Fewer if they took the work that a search is allowed.
+    pub made: usize,
+    /// Those that led to an orbit of a shorter period.
+    pub shorter: usize,
+    /// Evaluations of the balance.
+    pub evaluations: usize,
+}
+
+impl std::fmt::Display for Attempts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self {
+            planned,
+            made,
+            shorter,
+            evaluations,
+        } = self;
+        if made < planned {
+            write!(
+                f,
+                "a search may take no more work after {made} of {planned} attempts and {evaluations} evaluations of the balance; {shorter}"
+            )?;
+        } else {
+            write!(f, "{shorter} of {made} attempts")?;
+        }
+        write!(
+            f,
+            " led to an orbit of a shorter period, the others to none"
+        )
+    }
 }
 
 impl std::fmt::Display for Error {
@@ -204,9 +253,24 @@ impl std::fmt::Display for Error {
             Self::Motion { parameter, reason } => {
                 write!(f, "no periodic orbit found at {parameter}: {reason}")
             }
-            Self::NoSuchPeriod { period, parameter } => {
-                write!(f, "no orbit of period {period} found at {parameter}")
-            }
+            Self::SearchLimit {
+                parameter,
+                evaluations,
+                multiplications,
+                reason,
+            } => write!(
+                f,
+                "no periodic orbit found at {parameter} in {evaluations} evaluations of the balance, which took the {:.0e} multiplications that a search is allowed; the last attempt: {reason}",
+                *multiplications as f64
+            ),
+            Self::NoSuchPeriod {
+                period,
+                parameter,
+                attempts,
+            } => write!(
+                f,
+                "no orbit of period {period} found at {parameter}: {attempts}; start where there is one, and follow it from there"
+            ),
             Self::File { path, reason } => write!(f, "cannot write {path}: {reason}"),
         }
     }
@@ -215,8 +279,8 @@ impl std::fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Self::NoStart { reason, .. } => Some(reason),
             Self::Motion { reason, .. } => Some(reason),
+            Self::NoStart { reason, .. } | Self::SearchLimit { reason, .. } => Some(reason),
             _ => None,
         }
     }

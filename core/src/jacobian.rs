@@ -87,6 +87,12 @@ impl Jacobian {
         self.partition.tail.is_empty()
     }
 
+    /// Multiplications of a factorisation, about.
+    pub(crate) fn operations(&self) -> u64 {
+        let cube = |n: usize| (n as u64).pow(3) / 3;
+        cube(self.partition.core.len()) + self.groups.len() as u64 * cube(self.partition.group)
+    }
+
     pub(crate) fn clear(&mut self) {
         self.core.clear();
         self.groups.iter_mut().for_each(Matrix::clear);

@@ -108,6 +108,8 @@ pub struct Newton {
     contraction: f64,
     /// Work done so far.
     pub statistics: Statistics,
+    /// The same in multiplications, estimated.
+    pub operations: u64,
 }
 
 /// What may be left after the last update, as a part of the tolerance.
@@ -153,12 +155,25 @@ impl Newton {
             drift: f64::INFINITY,
             contraction: 0.0,
             statistics: Statistics::default(),
+            operations: 0,
         }
     }
 
     /// The problem's norm.
     pub fn norm(&self) -> &Norm {
         &self.norm
+    }
+
+    /// Size of the residual of the equations alone, which is written.
+    pub fn size_of_residual(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &[f64],
+        values: &mut [f64],
+    ) -> f64 {
+        let work = (&mut self.statistics, &mut self.operations);
+        residual(problem, u, values, work);
+        norm(values)
     }
 
     /// Solves (1) repeatedly until the update is small; `u` is the start and becomes the solution. The factors of the
@@ -360,8 +375,10 @@ impl Newton {
     ) -> Result<(), NewtonError> {
         let n = self.norm.unknowns();
         self.jacobian.clear();
+        let before = problem.operations();
         problem.evaluate(u, &mut self.residual[..n], Some(&mut self.jacobian));
         self.statistics.jacobians += 1;
+        self.operations += problem.operations() - before + self.jacobian.operations();
         self.close(u, border)?;
         self.border.copy_from_slice(border.row);
         self.jacobian.set_border(border.row);
@@ -382,8 +399,8 @@ impl Newton {
         border: Border<'_>,
     ) -> Result<(), NewtonError> {
         let n = self.norm.unknowns();
-        problem.evaluate(u, &mut self.residual[..n], None);
-        self.statistics.residuals += 1;
+        let work = (&mut self.statistics, &mut self.operations);
+        residual(problem, u, &mut self.residual[..n], work);
         self.close(u, border)
     }
 
@@ -406,8 +423,8 @@ impl Newton {
         for _ in 0..12 {
             self.trial.copy_from_slice(u);
             subtract(&mut self.trial, &self.update, factor);
-            problem.evaluate(&self.trial, &mut self.residual[..n], None);
-            self.statistics.residuals += 1;
+            let work = (&mut self.statistics, &mut self.operations);
+            residual(problem, &self.trial, &mut self.residual[..n], work);
             self.residual[n] = dot(border.row, &self.trial) - border.value;
             if norm(&self.residual) < (1.0 - 1e-4 * factor) * before {
                 break;
@@ -426,6 +443,19 @@ impl NewtonError {
             other @ Self::NotConverged { .. } => other,
         }
     }
+}
+
+/// Evaluates the residual alone, and counts that.
+fn residual(
+    problem: &mut impl Problem,
+    u: &[f64],
+    residual: &mut [f64],
+    (statistics, operations): (&mut Statistics, &mut u64),
+) {
+    let before = problem.operations();
+    problem.evaluate(u, residual, None);
+    statistics.residuals += 1;
+    *operations += problem.operations() - before;
 }
 
 /// From units of the scale to the units of the unknowns.

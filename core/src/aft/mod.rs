@@ -51,6 +51,15 @@ impl Engine {
         }
     }
 
+    /// About how many multiplications all evaluations so far have taken.
+    pub(crate) fn operations(&self) -> u64 {
+        match self {
+            Self::Switched(aft) => aft.operations(),
+            Self::Sampled(aft) => aft.operations(),
+            Self::Primitive(aft) => aft.operations(),
+        }
+    }
+
     /// Writes the series of the force.
     pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
         match self {
@@ -75,6 +84,9 @@ impl Engine {
         }
     }
 }
+
+/// Multiplications that a law and its share of the transforms take at one of many equally spaced samples, about.
+const PER_SAMPLE: u64 = 64;
 
 /// The gap of one contact, and how the answer shall change with the continuation parameter.
 #[derive(Clone, Copy)]

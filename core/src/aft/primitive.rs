@@ -41,6 +41,11 @@ impl PrimitiveAft {
         }
     }
 
+    /// About how many multiplications all evaluations so far have taken.
+    pub(crate) fn operations(&self) -> u64 {
+        self.sampled.operations()
+    }
+
     /// Writes the series of the force.
     pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
         let Some(Parts { spring, primitive }) = input.law.parts() else {

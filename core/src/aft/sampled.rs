@@ -11,7 +11,7 @@
 //! derivative that jumps between two samples is not seen to move: on one-sided contact the residual is then
 //! discontinuous in the unknowns, and its Jacobian misses the jump.
 
-use super::{Change, ContactDerivatives, ContactInput};
+use super::{Change, ContactDerivatives, ContactInput, PER_SAMPLE};
 use crate::fourier::sampled::SampledTransform;
 use crate::law::{Derivatives, On, Variation};
 
@@ -27,6 +27,7 @@ pub(crate) struct SampledAft {
     by_argument: Vec<f64>,
     by_parameter: Vec<f64>,
     change: Vec<f64>,
+    evaluated: u64,
 }
 
 impl SampledAft {
@@ -42,7 +43,13 @@ impl SampledAft {
             by_argument: zeros(),
             by_parameter: zeros(),
             change: zeros(),
+            evaluated: 0,
         }
+    }
+
+    /// About how many multiplications all evaluations so far have taken.
+    pub(crate) fn operations(&self) -> u64 {
+        PER_SAMPLE * self.evaluated
     }
 
     /// Writes the series of the force.
@@ -120,6 +127,7 @@ impl SampledAft {
     fn sample_input(&mut self, input: ContactInput<'_>) {
         self.transform.sample(input.gap, &mut self.gap);
         self.transform.sample(input.rate, &mut self.rate);
+        self.evaluated += self.gap.len() as u64;
     }
 
     fn analyse_unless(&mut self, zero: bool, which: Which, series: &mut [f64]) {

@@ -138,6 +138,10 @@ impl Problem for Balance<'_> {
         unknown.is_multiple_of(self.length())
     }
 
+    fn operations(&self) -> u64 {
+        self.aft.operations()
+    }
+
     /// The mean square of the orbit over time and coordinates, by Parseval's identity.
     fn weights(&self, weights: &mut [f64]) {
         let length = self.length();

@@ -31,6 +31,11 @@ pub trait Problem {
 
     /// Whether an unknown is the mean of a coordinate, which is measured apart from what oscillates about it.
     fn is_mean(&self, unknown: usize) -> bool;
+
+    /// About how many multiplications all evaluations so far have taken, for a search whose work is limited.
+    fn operations(&self) -> u64 {
+        0
+    }
 }
 
 /// The lengths that count as one.

@@ -22,6 +22,8 @@ use crate::law::{Derivatives, On};
 pub(super) struct Affine {
     indicator: Vec<f64>,
     inside: Vec<f64>,
+    /// Multiplications so far, about.
+    pub(super) operations: u64,
 }
 
 /// `c_0 + c_1 g + c_2 r`
@@ -66,6 +68,7 @@ impl Affine {
         }
         let slopes = sums.slopes.as_ref().map_or(0, |s| s.by_gap.len());
         let needed = (sums.force.len() + input.gap.len() - 1).max(slopes);
+        self.operations += (sums.force.len() * input.gap.len()) as u64;
         self.indicator.clear();
         self.indicator.resize(needed, 0.0);
         for panel in panels {

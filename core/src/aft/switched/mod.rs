@@ -121,6 +121,11 @@ impl<'s> Slopes<'s> {
 }
 
 impl SwitchedAft {
+    /// About how many multiplications all evaluations so far have taken.
+    pub(crate) fn operations(&self) -> u64 {
+        self.affine.operations + self.quadrature.operations + self.whole.operations
+    }
+
     /// Writes the series of the force.
     pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
         force.fill(0.0);

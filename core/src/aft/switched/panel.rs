@@ -45,6 +45,8 @@ pub(super) struct Quadrature {
     levels: [Option<f64>; 2],
     /// The phases while they are rotated.
     rotated: [Vec<f64>; 2],
+    /// Multiplications so far, about.
+    pub(super) operations: u64,
 }
 
 /// A rule on `[0, 1]`, nodes measured from the nearer end.
@@ -307,6 +309,8 @@ impl Quadrature {
         wanted: Wanted<'_>,
         stretch: &Stretch,
     ) {
+        // At each node two series and what is projected on harmonics, sine and cosine, and the law.
+        self.operations += (self.gap.len() * (4 * input.gap.len() + 64)) as u64;
         evaluate(
             [input.gap, input.rate],
             &self.cosines,

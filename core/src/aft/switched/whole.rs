@@ -5,7 +5,7 @@
 //! the upper end of the spectrum has fallen to rounding, or to the largest number.
 
 use super::{Changing, Sums, Wanted};
-use crate::aft::ContactInput;
+use crate::aft::{ContactInput, PER_SAMPLE};
 use crate::fourier::sampled::SampledTransform;
 use crate::fourier::series;
 use crate::law::{Derivatives, On, Variation};
@@ -20,6 +20,8 @@ const MOST: usize = 1 << 15;
 #[derive(Debug, Default)]
 pub(super) struct Whole {
     grids: Vec<Grid>,
+    /// Multiplications so far, about.
+    pub(super) operations: u64,
 }
 
 #[derive(Debug)]
@@ -45,6 +47,7 @@ impl Whole {
         loop {
             let index = self.grid(samples);
             let grid = &mut self.grids[index];
+            self.operations += PER_SAMPLE * samples as u64;
             if grid.evaluate(input, piece, Wanted::of(sums)) || samples >= MOST.max(least) {
                 grid.add(sums);
                 return;

@@ -8,7 +8,7 @@ use super::setting::{Setting, Source};
 use super::start::Guess;
 use crate::branch::Orbit;
 use crate::continuation::step::StepControl;
-use crate::error::Error;
+use crate::error::{Attempts, Error};
 use crate::flow::affine::Affine;
 use crate::flow::{self, Options};
 use crate::layout::Layout;
@@ -359,6 +359,7 @@ impl<'a> Shooting<'a> {
             .ok_or(Error::NoSuchPeriod {
                 period: self.period,
                 parameter: from,
+                attempts: Attempts::default(),
             })
     }
 

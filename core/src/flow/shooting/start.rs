@@ -7,7 +7,7 @@ use super::run::no_orbit;
 use super::setting::Setting;
 use super::{beyond, solve};
 use crate::branch::Orbit;
-use crate::error::Error;
+use crate::error::{Attempts, Error};
 use crate::flow::{FlowError, Stretch};
 use crate::newton::Newton;
 
@@ -81,6 +81,12 @@ pub(super) fn first<'a>(
         return Err(Error::NoSuchPeriod {
             period: setting.period,
             parameter: value,
+            attempts: Attempts {
+                planned: 1,
+                made: 1,
+                shorter: 1,
+                evaluations: 0,
+            },
         });
     }
     if recurrence.odd {

@@ -1,0 +1,87 @@
+//! Equivalent linearisation: the balance in the harmonics of the load alone, from amplitudes in geometric sequence and both
+//! phases. Of several solutions the one of smallest amplitude comes first, which is the one that small drives lead to.
+//!
+//! Source: Krylov and Bogoliubov (1943), Introduction to Non-Linear Mechanics.
+
+use super::StartRequest;
+use super::effort::Effort;
+use super::fixed::{Fixed, geometric, oscillation, spread};
+use crate::layout::Layout;
+
+/// Solutions in the harmonics of the load alone, smallest amplitude first.
+pub(super) fn equivalent_linearisation(
+    request: StartRequest<'_>,
+    rest: Option<&[f64]>,
+    effort: &mut Effort,
+) -> Vec<Vec<f64>> {
+    let load = Layout::of(request.system).load_harmonic();
+    let harmonics = load.clamp(1, request.resolution.harmonics.max(1));
+    let mut fixed = Fixed::new(request, harmonics);
+    let origin = rest.map_or_else(|| fixed.zeros(), |rest| spread(rest, &fixed));
+    let mut pattern = load_pattern(&mut fixed);
+    if pattern.iter().all(|x| *x == 0.0) {
+        pattern[1] = 1.0;
+    }
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    for mut u in valleys(&mut fixed, &origin, &pattern, effort) {
+        if effort.is_spent() {
+            break;
+        }
+        if fixed.solve(&mut u, request.damped(60), effort).is_ok() {
+            found.push(u);
+        }
+    }
+    let length = fixed.balance.length();
+    found.sort_by(|a, b| oscillation(a, length).total_cmp(&oscillation(b, length)));
+    found
+}
+
+/// Where the residual is smaller than at the neighbours, along a pattern from the origin and back.
+fn valleys(
+    fixed: &mut Fixed<'_>,
+    origin: &[f64],
+    pattern: &[f64],
+    effort: &mut Effort,
+) -> Vec<Vec<f64>> {
+    let mut starts = Vec::new();
+    for sign in [1.0, -1.0] {
+        let along: Vec<_> = geometric()
+            .map(|a| {
+                let u: Vec<f64> = origin
+                    .iter()
+                    .zip(pattern)
+                    .map(|(x, p)| x + sign * a * p)
+                    .collect();
+                (fixed.residual(&u, effort), u)
+            })
+            .collect();
+        let valleys = along
+            .windows(3)
+            .filter(|w| w[1].0 <= w[0].0 && w[1].0 <= w[2].0);
+        starts.extend(valleys.map(|w| w[1].1.clone()));
+    }
+    starts
+}
+
+/// The oscillating part of the load as a unit vector of the extended unknowns.
+fn load_pattern(fixed: &mut Fixed<'_>) -> Vec<f64> {
+    let mut pattern = fixed.zeros();
+    let n = pattern.len() - 1;
+    pattern[n] = 0.0;
+    fixed.balance.set(fixed.value);
+    let coefficients = fixed.balance.coefficients();
+    fixed.balance.add_load(coefficients, 1.0, &mut pattern[..n]);
+    let length = fixed.balance.length();
+    for (index, x) in pattern[..n].iter_mut().enumerate() {
+        if index % length == 0 {
+            *x = 0.0;
+        }
+    }
+    let norm = crate::linear::dot(&pattern, &pattern).sqrt();
+    if norm > 0.0 {
+        for x in &mut pattern {
+            *x /= norm;
+        }
+    }
+    pattern
+}
