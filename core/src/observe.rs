@@ -106,6 +106,11 @@ pub(crate) struct Observer {
 }
 
 impl Observer {
+    /// Reads the motion of one coordinate off a series.
+    pub(crate) fn motion(&mut self, series: &[f64]) -> Motion {
+        Motion::read(&mut self.reader, series)
+    }
+
     /// Reads everything off an orbit, at the variable that the balance was set to last.
     pub(crate) fn observe(&mut self, balance: &mut Balance<'_>, u: &[f64]) -> Observed {
         let length = balance.length();

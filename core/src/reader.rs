@@ -4,10 +4,10 @@ use crate::balance::Balance;
 use crate::branch::{Orbit, Point};
 use crate::continuation::problem::Problem;
 use crate::newton::Newton;
-use crate::observe::{Motion, Observed, Observer};
+use crate::observe::{Observed, Observer};
 use crate::stability::judge::Judge;
 use crate::stability::{Method, Stability};
-use crate::truncation::{BEYOND, Finer};
+use crate::truncation::{BEYOND, Finer, NOTHING};
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
@@ -15,6 +15,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) finer: Finer<'a>,
     pub(crate) judge: Option<Judge>,
     observer: Observer,
+    /// Reads corrected orbits, which have more harmonics.
+    fine: Observer,
     /// The error is wanted, whether or not the stability is.
     estimate: bool,
 }
@@ -25,6 +27,7 @@ impl<'a> Reader<'a> {
             finer,
             judge: stability.then(|| Judge::new(Method::Default)),
             observer: Observer::default(),
+            fine: Observer::default(),
             estimate,
         }
     }
@@ -72,13 +75,16 @@ impl<'a> Reader<'a> {
     }
 
     /// Largest change of a coordinate's peak-to-peak by the correction, relative to the largest peak-to-peak.
-    fn error(&self, observed: &Observed) -> f64 {
+    fn error(&mut self, observed: &Observed) -> f64 {
+        if self.finer.change() <= NOTHING {
+            return self.finer.change();
+        }
         let series = self.finer.series();
         let length = series.len() / observed.motions.len();
         let mut change = 0.0_f64;
         let mut size = 0.0_f64;
         for (motion, corrected) in observed.motions.iter().zip(series.chunks_exact(length)) {
-            let corrected = Motion::of(corrected).peak_to_peak();
+            let corrected = self.fine.motion(corrected).peak_to_peak();
             change = change.max((corrected - motion.peak_to_peak()).abs());
             size = size.max(motion.peak_to_peak());
         }

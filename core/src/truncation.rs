@@ -8,11 +8,15 @@
 //! v_k = M^-1 R_k(u, 0) / (k Omega)^2,  k > K;        du = -B^-1 [ R_1..K(u, v) ; 0 ]                          (1)
 //! ```
 //!
+//! Where contact forces are integrated exactly, the orbit leaves no residual in the first `K` harmonics, `R_1..K(u, 0) = 0`. Then
+//! only what depends on the tail is evaluated: the contacts, and the stiffness that varies.
+//!
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
+use crate::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::problem::Problem;
 use crate::fourier::series;
@@ -21,6 +25,8 @@ use crate::system::{System, Variable};
 
 /// The change by the harmonics from `K` to `2 K` times this is that by all above `K`, where it falls as `K^-1.6` or faster.
 pub(crate) const BEYOND: f64 = 1.5;
+/// A correction smaller than this part of the orbit is below what Newton's method leaves.
+pub(crate) const NOTHING: f64 = 1e-13;
 /// Relative error of an event that rounding and the last updates leave.
 const ROUNDING: f64 = 1e-12;
 
@@ -34,6 +40,16 @@ pub(crate) struct Finer<'a> {
     residual: Vec<f64>,
     /// Residual in the harmonics of the coarse balance, extended by a zero.
     core: Vec<f64>,
+    /// `M^-1`, row by row.
+    inverse_mass: Vec<f64>,
+    /// The coarse balance, where contact forces are exact.
+    plain: Option<Balance<'a>>,
+    /// Series of a contact force; so much of it reaches the coarse harmonics.
+    force: Vec<f64>,
+    short: usize,
+    /// The tail alone.
+    without_core: Vec<f64>,
+    change: f64,
 }
 
 impl<'a> Finer<'a> {
@@ -51,15 +67,22 @@ impl<'a> Finer<'a> {
             samples: 2 * coarse.samples,
             ..coarse
         };
-        let balance = Balance::new(system, parameters, omega, variable, fine);
+        let of = |resolution| Balance::new(system, parameters, omega, variable, resolution);
+        let (balance, plain) = (of(fine), of(coarse));
         let unknowns = balance.unknowns();
         let coordinates = balance.layout().coordinates;
         Self {
-            balance,
             coarse,
             orbit: vec![0.0; unknowns + 1],
             residual: vec![0.0; unknowns],
             core: vec![0.0; coordinates * series::length(coarse.harmonics) + 1],
+            inverse_mass: Vec::new(),
+            force: vec![0.0; series::length(balance.force_harmonics())],
+            short: series::length(plain.force_harmonics()),
+            plain: (coarse.aft == Aft::Switched).then_some(plain),
+            without_core: Vec::new(),
+            change: f64::INFINITY,
+            balance,
         }
     }
 
@@ -89,37 +112,125 @@ impl<'a> Finer<'a> {
         }
         let last = self.orbit.len() - 1;
         self.orbit[last] = u[u.len() - 1];
-        self.balance.evaluate(&self.orbit, &mut self.residual, None);
-        self.solve_tail(coarse, fine)?;
-        self.balance.evaluate(&self.orbit, &mut self.residual, None);
-        newton.statistics.residuals += 2;
-        for i in 0..coordinates {
-            self.core[i * coarse..][..coarse].copy_from_slice(&self.residual[i * fine..][..coarse]);
+        if self.plain.is_some() {
+            self.exact_tail(u)?;
+        } else {
+            self.sampled_tail()?;
         }
-        let end = self.core.len() - 1;
-        self.core[end] = 0.0;
+        newton.statistics.residuals += 2;
         self.core
             .iter()
             .all(|x| x.is_finite())
             .then_some(&mut self.core)
     }
 
-    fn solve_tail(&mut self, coarse: usize, fine: usize) -> Option<()> {
-        let coordinates = self.balance.layout().coordinates;
-        let mut mass: DMatrix<f64> = DMatrix::zeros(coordinates, coordinates);
-        for entry in &self.balance.layout().mass {
-            mass[(entry.row, entry.column)] += self.balance.coefficients()[entry.coefficient];
-        }
-        let inverse = mass.try_inverse()?;
-        let base = self.balance.base();
-        for index in coarse..fine {
-            let frequency = base * index.div_ceil(2) as f64;
-            let residual = DVector::from_fn(coordinates, |i, _| self.residual[i * fine + index]);
-            let tail: DVector<f64> = &inverse * residual / (frequency * frequency);
-            for i in 0..coordinates {
-                self.orbit[i * fine + index] = tail[i];
+    /// By residuals with all terms.
+    fn sampled_tail(&mut self) -> Option<()> {
+        self.balance.evaluate(&self.orbit, &mut self.residual, None);
+        self.solve_tail()?;
+        self.balance.evaluate(&self.orbit, &mut self.residual, None);
+        self.core.fill(0.0);
+        self.add_core(1.0);
+        Some(())
+    }
+
+    /// By contacts alone, where the orbit leaves no residual in the coarse harmonics.
+    fn exact_tail(&mut self, u: &[f64]) -> Option<()> {
+        let value = u[u.len() - 1];
+        self.balance.set(value);
+        self.residual.fill(0.0);
+        if let Some(plain) = &mut self.plain {
+            plain.set(value);
+            for contact in 0..plain.layout().contacts.len() {
+                plain.contact_force(u, contact, &mut self.force);
+                self.balance
+                    .add_in_direction(contact, &self.force, &mut self.residual);
             }
         }
+        self.core.fill(0.0);
+        self.add_core(-1.0);
+        self.add_stiffness();
+        self.solve_tail()?;
+        self.residual.fill(0.0);
+        for contact in 0..self.balance.layout().contacts.len() {
+            let force = &mut self.force[..self.short];
+            self.balance.contact_force(&self.orbit, contact, force);
+            self.balance
+                .add_in_direction(contact, force, &mut self.residual);
+        }
+        self.add_stiffness_of_tail();
+        self.add_core(1.0);
+        Some(())
+    }
+
+    /// Adds the stiffness where it varies: elsewhere it does not couple harmonics.
+    fn add_stiffness(&mut self) {
+        let entries = &self.balance.layout().stiffness;
+        if entries.iter().any(|entry| entry.wave.harmonic > 0) {
+            let coefficients = self.balance.coefficients();
+            self.balance
+                .add_stiffness(coefficients, &self.orbit, &mut self.residual);
+        }
+    }
+
+    /// The same, of the tail alone.
+    fn add_stiffness_of_tail(&mut self) {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
+        self.without_core.clone_from(&self.orbit);
+        for series in self.without_core.chunks_exact_mut(fine) {
+            series[..coarse].fill(0.0);
+        }
+        std::mem::swap(&mut self.orbit, &mut self.without_core);
+        self.add_stiffness();
+        std::mem::swap(&mut self.orbit, &mut self.without_core);
+    }
+
+    /// Adds a multiple of the residual in the coarse harmonics to that of the core.
+    fn add_core(&mut self, factor: f64) {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
+        let rows = self.core.chunks_exact_mut(coarse);
+        for (to, from) in rows.zip(self.residual.chunks_exact(fine)) {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to += factor * from;
+            }
+        }
+    }
+
+    /// `v` of (1), from the residual.
+    fn solve_tail(&mut self) -> Option<()> {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
+        self.invert_mass()?;
+        let coordinates = self.balance.layout().coordinates;
+        let base = self.balance.base();
+        for (i, row) in self.inverse_mass.chunks_exact(coordinates).enumerate() {
+            let tail = &mut self.orbit[i * fine..][..fine];
+            for (index, to) in tail.iter_mut().enumerate().skip(coarse) {
+                let frequency = base * index.div_ceil(2) as f64;
+                let residual = self.residual[index..].iter().step_by(fine);
+                let sum: f64 = row.iter().zip(residual).map(|(m, r)| m * r).sum();
+                *to = sum / (frequency * frequency);
+            }
+        }
+        Some(())
+    }
+
+    /// Writes `M^-1`, row by row; `None` if there is none.
+    fn invert_mass(&mut self) -> Option<()> {
+        let layout = self.balance.layout();
+        let coefficients = self.balance.coefficients();
+        self.inverse_mass.clear();
+        if layout.coordinates == 1 {
+            let masses = layout.mass.iter();
+            let mass: f64 = masses.map(|entry| coefficients[entry.coefficient]).sum();
+            self.inverse_mass.push(1.0 / mass);
+            return (mass != 0.0).then_some(());
+        }
+        let mut mass: DMatrix<f64> = DMatrix::zeros(layout.coordinates, layout.coordinates);
+        for entry in &layout.mass {
+            mass[(entry.row, entry.column)] += coefficients[entry.coefficient];
+        }
+        let inverse = mass.try_inverse()?.transpose();
+        self.inverse_mass.extend_from_slice(inverse.as_slice());
         Some(())
     }
 
@@ -139,7 +250,27 @@ impl<'a> Finer<'a> {
         let last = self.orbit.len() - 1;
         self.orbit[last] -= self.core[self.core.len() - 1];
         self.balance.set(self.orbit[last]);
+        self.measure(u);
         self.orbit.iter().all(|x| x.is_finite())
+    }
+
+    /// Compares the corrected orbit with the other one.
+    fn measure(&mut self, u: &[f64]) {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
+        let mut largest = (0.0_f64, 0.0_f64);
+        for (corrected, plain) in self.orbit.chunks_exact(fine).zip(u.chunks_exact(coarse)) {
+            let (same, tail) = corrected.split_at(coarse);
+            let core = same.iter().zip(plain).map(|(a, b)| (a - b).abs());
+            let change: f64 = core.chain(tail.iter().map(|x| x.abs())).sum();
+            let size: f64 = plain[1..].iter().map(|x| x.abs()).sum();
+            largest = (largest.0.max(change), largest.1.max(size));
+        }
+        self.change = largest.0 / largest.1;
+    }
+
+    /// A bound on the change of a coordinate by the last correction, relative to the size of the largest oscillation.
+    pub(crate) fn change(&self) -> f64 {
+        self.change
     }
 
     /// Estimated error of the parameter at a fold, whose factors Newton's method holds.

@@ -8,10 +8,6 @@
 //! Source: Davis and Rabinowitz (1984), Methods of Numerical Integration, section 2.12; Sidi (1993), A new variable
 //! transformation for numerical integration.
 
-/// The order that the graded integrand shall allow.
-const ORDER: f64 = 6.0;
-/// Largest power: beyond it the nodes crowd so much at the ends that rounding shows.
-const LARGEST: u32 = 8;
 /// Largest power that is tried to make exponents whole.
 const LARGEST_WHOLE: u32 = 10;
 /// `p (beta + 1)` where no power makes the exponents whole: a Gauss rule of `N` nodes then errs as `N^(-2 * 5)` at worst.
@@ -28,30 +24,9 @@ pub(crate) struct Grading {
     pub(crate) end: u32,
 }
 
-/// A phase on a panel, and its derivative with respect to `s`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Graded {
-    pub(crate) tau: f64,
-    pub(crate) slope: f64,
-}
-
 impl Grading {
     /// No grading.
     pub(crate) const NONE: Self = Self { start: 1, end: 1 };
-
-    /// At both ends alike, for an integrand that behaves as the power `exponent` of the distance from an end; infinity if
-    /// it is smooth.
-    pub(crate) fn for_exponent(exponent: f64) -> Self {
-        if exponent == f64::INFINITY {
-            return Self::NONE;
-        }
-        let wanted = (ORDER / (exponent + 1.0).max(0.1)).ceil();
-        let power = (wanted as u32).clamp(2, LARGEST);
-        Self {
-            start: power,
-            end: power,
-        }
-    }
 
     /// Graded at both ends alike where only one needs it: with `q = 1` the nodes would be `p` times sparser at that end.
     pub(crate) fn balanced(self) -> Self {
@@ -61,22 +36,6 @@ impl Grading {
                 end: power,
             },
             _ => self,
-        }
-    }
-
-    /// The phase of `s` in `[0, 1]` on the panel from `start` to `end`. It is measured from the nearer end, so that a
-    /// small distance from a singular end is not rounded away.
-    pub(crate) fn map(self, s: f64, start: f64, end: f64) -> Graded {
-        let width = end - start;
-        let (distance, slope, from_start) = self.distance(s);
-        let tau = if from_start {
-            start + width * distance
-        } else {
-            end - width * distance
-        };
-        Graded {
-            tau,
-            slope: width * slope,
         }
     }
 
@@ -159,17 +118,19 @@ mod tests {
 
     #[test]
     fn maps_run_from_end_to_end_with_the_right_slope() {
-        for start in 1..=LARGEST {
-            for end in 1..=LARGEST {
+        for start in 1..=LARGEST_WHOLE {
+            for end in 1..=LARGEST_WHOLE {
                 let grading = Grading { start, end };
-                assert!((grading.map(0.0, 2.0, 5.0).tau - 2.0).abs() < 1e-14);
-                assert!((grading.map(1.0, 2.0, 5.0).tau - 5.0).abs() < 1e-14);
+                let at = |s: f64| {
+                    let (distance, slope, from_start) = grading.distance(s);
+                    (if from_start { distance } else { 1.0 - distance }, slope)
+                };
+                assert!(at(0.0).0.abs() < 1e-14);
+                assert!((at(1.0).0 - 1.0).abs() < 1e-14);
                 for s in [0.1, 0.3, 0.5, 0.7, 0.9] {
                     let h = 1e-5;
-                    let difference = (grading.map(s + h, 2.0, 5.0).tau
-                        - grading.map(s - h, 2.0, 5.0).tau)
-                        / (2.0 * h);
-                    let slope = grading.map(s, 2.0, 5.0).slope;
+                    let difference = (at(s + h).0 - at(s - h).0) / (2.0 * h);
+                    let slope = at(s).1;
                     assert!(
                         (difference - slope).abs() < 1e-7 * slope.max(1e-3),
                         "{grading:?} {s}"

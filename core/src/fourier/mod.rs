@@ -4,5 +4,6 @@ pub mod crossings;
 pub(crate) mod gauss;
 pub(crate) mod grading;
 pub(crate) mod kernels;
+pub(crate) mod phases;
 pub mod sampled;
 pub mod series;

@@ -23,6 +23,10 @@ pub struct Answer {
     pub by_method: f64,
     /// Estimated error from what the harmonics and samples of the orbit leave out.
     pub by_truncation: f64,
+    /// A bound on the error of the monodromy matrix of the corrected orbit (of the orbit, if it was not corrected), with
+    /// displacements and velocities scaled to be alike. Only [`Method::KoopmanHill`] has one, and only for orbits whose
+    /// stiffness and damping are smooth enough that their Fourier coefficients fall exponentially: never where a contact opens.
+    pub bound: Option<f64>,
     /// What it cost, both orbits together.
     pub cost: Cost,
 }

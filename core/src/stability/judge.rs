@@ -8,25 +8,45 @@ use super::method::{Floquet, Found};
 use super::orbit::Orbit;
 use super::{Answer, Method, Stability, distance};
 use crate::balance::Balance;
-use crate::truncation::Finer;
+use crate::truncation::{Finer, NOTHING};
 
-/// Error of the method that is aimed at.
-const TOLERANCE: f64 = 1e-7;
+/// Error of the method that is aimed at by default, and when it is asked for by name.
+const TOLERANCE: f64 = 1e-6;
+const TIGHT: f64 = 1e-10;
+/// The same, as a part of the error of the orbit; and the part that is accepted.
+const PART: f64 = 0.3;
+const ACCEPTED: f64 = 1.0;
+/// A first attempt may miss the error aimed at by this factor.
+const LENIENCE: f64 = 3.0;
+/// The same, as a part of the distance from a verdict's boundary, and at least.
+const MARGIN: f64 = 0.1;
+const LEAST: f64 = 1e-11;
 
 /// Judges the orbits of one branch, one after the other.
 #[derive(Debug)]
 pub(crate) struct Judge {
     method: Method,
     engine: Box<dyn Floquet>,
+    /// Error of the method that is aimed at.
+    tolerance: f64,
+    /// Error of the method that sufficed for the last orbit.
+    aim: f64,
     /// Orbits judged.
     pub(crate) computed: usize,
 }
 
 impl Judge {
     pub(crate) fn new(method: Method) -> Self {
+        let tolerance = if method == Method::Default {
+            TOLERANCE
+        } else {
+            TIGHT
+        };
         Self {
             method,
             engine: method.engine(),
+            tolerance,
+            aim: tolerance,
             computed: 0,
         }
     }
@@ -49,17 +69,37 @@ impl Judge {
         u: &[f64],
     ) -> Answer {
         self.computed += 1;
-        let plain = Orbit::of(balance, &u[..u.len() - 1]);
-        let plain = self.engine.multipliers(&plain, TOLERANCE);
-        let corrected = finer.map_or(Found::NOTHING, |finer| {
-            let orbit = Orbit::of(finer.balance(), finer.series());
-            self.engine.multipliers(&orbit, TOLERANCE)
-        });
-        let known = !plain.multipliers.is_empty() && !corrected.multipliers.is_empty();
-        let (by_method, by_truncation, stability) = if known {
-            let by_truncation = distance(&plain.multipliers, &corrected.multipliers);
-            let stability = Stability::of(corrected.multipliers, corrected.error + by_truncation);
-            (corrected.error, by_truncation, stability)
+        let orbit = Orbit::of(balance, &u[..u.len() - 1]);
+        let plain;
+        let corrected = match finer {
+            None => {
+                plain = self.engine.multipliers(&orbit, self.aim);
+                None
+            }
+            Some(finer) if self.engine.knows_its_error() && finer.change() <= NOTHING => {
+                let by_truncation = |_: &Found| finer.change();
+                plain = self.sharp(&orbit, by_truncation);
+                Some((plain.clone(), finer.change()))
+            }
+            Some(finer) => {
+                plain = self.engine.multipliers(&orbit, LENIENCE * self.aim);
+                let orbit = Orbit::of(finer.balance(), finer.series());
+                let by_truncation =
+                    |found: &Found| distance(&plain.multipliers, &found.multipliers);
+                let corrected = self.sharp(&orbit, by_truncation);
+                let by_truncation = by_truncation(&corrected);
+                Some((corrected, by_truncation))
+            }
+        };
+        let known = |found: &Found| !found.multipliers.is_empty();
+        let corrected = corrected.filter(|(found, _)| known(found) && known(&plain));
+        let bound = corrected
+            .as_ref()
+            .map_or(plain.bound, |(found, _)| found.bound);
+        let (by_method, by_truncation, stability) = if let Some((found, by_truncation)) = corrected
+        {
+            let stability = Stability::of(found.multipliers, found.error + by_truncation);
+            (found.error, by_truncation, stability)
         } else {
             let multipliers = plain.multipliers.clone();
             let stability = Stability {
@@ -74,7 +114,31 @@ impl Judge {
             uncorrected: plain.multipliers,
             by_method,
             by_truncation,
+            bound,
             cost: self.engine.cost(),
         }
+    }
+
+    /// Multipliers so exact that the method adds little to the error of the orbit, and does not stand between the largest of
+    /// them and a verdict.
+    fn sharp(&mut self, orbit: &Orbit<'_>, by_truncation: impl Fn(&Found) -> f64) -> Found {
+        let found = self.engine.multipliers(orbit, LENIENCE * self.aim);
+        let Some(largest) = found.multipliers.first() else {
+            return found;
+        };
+        let by_truncation = by_truncation(&found);
+        let margin = (largest.norm() - 1.0).abs();
+        let part = |part: f64| self.tolerance.max(part * by_truncation.min(1.0));
+        let (aim, accepted) = (part(PART), part(ACCEPTED));
+        self.aim = aim;
+        let wanted = if margin > found.error + by_truncation {
+            accepted
+        } else {
+            aim.min(MARGIN * margin).max(LEAST)
+        };
+        if found.error <= wanted || !self.engine.knows_its_error() {
+            return found;
+        }
+        self.engine.multipliers(orbit, wanted)
     }
 }

@@ -2,6 +2,8 @@
 
 use nalgebra::Complex;
 
+use super::hill::Hill;
+use super::koopman_hill::KoopmanHill;
 use super::monodromy::Monodromy;
 use super::orbit::Orbit;
 
@@ -14,6 +16,30 @@ pub enum Method {
     Default,
     /// The monodromy matrix, integrated from switch to switch: the authority.
     Monodromy,
+    /// Eigenvalues of the Hill matrix.
+    Hill(Sorting),
+    /// An exponential of the Hill matrix.
+    KoopmanHill(Projection),
+}
+
+/// Which eigenvalues of the Hill matrix are taken for Floquet exponents.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Sorting {
+    /// Those with the smallest imaginary part by size. Two real negative multipliers can come out as one of them twice.
+    ImaginaryPart,
+    /// Those whose eigenvectors have their weighted mean closest to the middle (Guillot et al. 2020).
+    WeightedMean,
+    /// The same, but none that is a shifted copy of another.
+    Symmetry,
+}
+
+/// How the solution is read off the exponential of the Hill matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Projection {
+    /// From its mean.
+    Direct,
+    /// From all harmonics and those of half the frequency: twice the cost, and squared error where the orbit is smooth.
+    Subharmonic,
 }
 
 impl Method {
@@ -21,6 +47,8 @@ impl Method {
     pub(crate) fn engine(self) -> Box<dyn Floquet> {
         match self {
             Self::Default | Self::Monodromy => Box::new(Monodromy::new()),
+            Self::Hill(sorting) => Box::new(Hill::new(sorting)),
+            Self::KoopmanHill(projection) => Box::new(KoopmanHill::new(projection)),
         }
     }
 }
@@ -30,6 +58,11 @@ impl std::fmt::Display for Method {
         f.write_str(match self {
             Self::Default => "default",
             Self::Monodromy => "monodromy",
+            Self::Hill(Sorting::ImaginaryPart) => "hill-imaginary-part",
+            Self::Hill(Sorting::WeightedMean) => "hill-weighted-mean",
+            Self::Hill(Sorting::Symmetry) => "hill-symmetry",
+            Self::KoopmanHill(Projection::Direct) => "koopman-hill",
+            Self::KoopmanHill(Projection::Subharmonic) => "koopman-hill-subharmonic",
         })
     }
 }
@@ -39,6 +72,8 @@ impl std::fmt::Display for Method {
 pub struct Cost {
     /// Evaluations of the derivatives of a contact's force at one instant.
     pub slopes: usize,
+    /// Contacts whose slopes were made into Fourier coefficients.
+    pub contacts: usize,
     /// Exponentials of a matrix.
     pub exponentials: usize,
     /// Matrices whose eigenvalues were computed.
@@ -50,6 +85,7 @@ pub struct Cost {
 impl std::ops::AddAssign for Cost {
     fn add_assign(&mut self, other: Self) {
         self.slopes += other.slopes;
+        self.contacts += other.contacts;
         self.exponentials += other.exponentials;
         self.spectra += other.spectra;
         self.order = self.order.max(other.order);
@@ -60,8 +96,8 @@ impl std::fmt::Display for Cost {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "{} slopes, {} exponentials, {} spectra, order {}",
-            self.slopes, self.exponentials, self.spectra, self.order
+            "{} slopes, {} contacts, {} exponentials, {} spectra, order {}",
+            self.slopes, self.contacts, self.exponentials, self.spectra, self.order
         )
     }
 }
@@ -73,6 +109,8 @@ pub(crate) struct Found {
     pub(crate) multipliers: Vec<Complex<f64>>,
     /// Estimated error of the method.
     pub(crate) error: f64,
+    /// A bound on the error of the monodromy matrix, where there is one.
+    pub(crate) bound: Option<f64>,
 }
 
 impl Found {
@@ -80,6 +118,7 @@ impl Found {
     pub(crate) const NOTHING: Self = Self {
         multipliers: Vec::new(),
         error: f64::INFINITY,
+        bound: None,
     };
 }
 
@@ -87,6 +126,10 @@ impl Found {
 pub(crate) trait Floquet: std::fmt::Debug {
     /// Multipliers of an orbit. An error below `aim` is of no use to the caller.
     fn multipliers(&mut self, orbit: &Orbit<'_>, aim: f64) -> Found;
+
+    /// Whether the error of what is [found](Found) is all that the method leaves. Otherwise it shows only when the orbit is given
+    /// more harmonics.
+    fn knows_its_error(&self) -> bool;
 
     /// The work done so far.
     fn cost(&self) -> Cost;

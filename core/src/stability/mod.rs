@@ -4,17 +4,26 @@
 //! the same orbit corrected for what its harmonics and samples leave out, and adds the method's own error.
 
 mod answer;
+mod exponential;
+mod hill;
+mod hill_matrix;
 pub(crate) mod judge;
+mod koopman_hill;
+mod linearised;
 mod magnus;
 mod method;
-pub(crate) mod monodromy;
+mod monodromy;
 mod orbit;
+mod path;
 mod spectrum;
+mod triangular;
+mod two;
+mod walk;
 
 use nalgebra::Complex;
 
 pub use answer::Answer;
-pub use method::{Cost, Method};
+pub use method::{Cost, Method, Projection, Sorting};
 pub(crate) use spectrum::{distance, eigenvalues};
 
 /// What is known of the stability of an orbit.
@@ -83,6 +92,8 @@ impl Stability {
     }
 }
 
+#[cfg(test)]
+mod method_tests;
 #[cfg(test)]
 mod monodromy_tests;
 

@@ -1,5 +1,6 @@
 //! An orbit as the methods of this room see it.
 
+use crate::aft::Aft;
 use crate::balance::Balance;
 use crate::layout::Layout;
 use crate::system::System;
@@ -16,6 +17,9 @@ pub(crate) struct Orbit<'a> {
     pub(crate) period: usize,
     /// Coordinate by coordinate.
     pub(crate) series: &'a [f64],
+    /// How its contact forces were found, and with how many samples where they were sampled.
+    pub(crate) aft: Aft,
+    pub(crate) samples: usize,
 }
 
 impl<'a> Orbit<'a> {
@@ -28,6 +32,8 @@ impl<'a> Orbit<'a> {
             base: balance.base(),
             period: balance.resolution().period,
             series,
+            aft: balance.resolution().aft,
+            samples: balance.resolution().samples,
         }
     }
 }

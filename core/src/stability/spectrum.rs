@@ -2,20 +2,29 @@
 
 use nalgebra::{Complex, DMatrix, Schur};
 
+/// More iterations for eigenvalues are never made.
+pub(super) const ITERATIONS: usize = 10_000;
+
 /// Eigenvalues, largest modulus first; of a pair of equal modulus the one with positive imaginary part first.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     if matrix.iter().any(|x| !x.is_finite()) {
         return Vec::new();
     }
-    let mut values: Vec<_> = if matrix.nrows() == 2 {
-        eigenvalues_of_two(matrix).to_vec()
-    } else {
-        // With a bound on the iterations, which the plain call does not have.
-        Schur::try_new(matrix.clone(), f64::EPSILON, 10_000)
-            .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
-            .unwrap_or_default()
-    };
-    // Products of entries overflow before the entries do: then nothing is known either.
+    if matrix.nrows() == 2 {
+        let [a, c, b, d] = [0, 1, 2, 3].map(|index| matrix[index]);
+        let values = eigenvalues_of_two([[a, b], [c, d]], a * d - b * c);
+        return values.map_or(Vec::new(), |values| values.to_vec());
+    }
+    // With a bound on the iterations, which the plain call does not have.
+    let values: Vec<_> = Schur::try_new(matrix.clone(), f64::EPSILON, ITERATIONS)
+        .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
+        .unwrap_or_default();
+    sort(values)
+}
+
+/// Sorts multipliers as [`eigenvalues`] does; none if one is not finite: products of entries overflow before the entries do,
+/// and then nothing is known.
+pub(super) fn sort(mut values: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
     if values.iter().any(|value| !value.norm().is_finite()) {
         return Vec::new();
     }
@@ -23,18 +32,16 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     values
 }
 
-/// Both roots of `z^2 - trace z + determinant`, the smaller one from the product so that it keeps its digits.
-fn eigenvalues_of_two(matrix: &DMatrix<f64>) -> [Complex<f64>; 2] {
-    let (a, b, c, d) = (
-        matrix[(0, 0)],
-        matrix[(0, 1)],
-        matrix[(1, 0)],
-        matrix[(1, 1)],
-    );
+/// Both roots of `z^2 - trace z + determinant`, largest modulus first, for a matrix whose determinant may be known better than its
+/// entries tell: the smaller one comes from it, so that it keeps its digits. `None` if they are not finite.
+pub(super) fn eigenvalues_of_two(
+    [[a, b], [c, d]]: [[f64; 2]; 2],
+    determinant: f64,
+) -> Option<[Complex<f64>; 2]> {
     let mean = 0.5 * (a + d);
     let half = 0.5 * (a - d);
     let square = half * half + b * c;
-    if square < 0.0 {
+    let values = if square < 0.0 {
         let root = (-square).sqrt();
         [Complex::new(mean, root), Complex::new(mean, -root)]
     } else {
@@ -42,14 +49,21 @@ fn eigenvalues_of_two(matrix: &DMatrix<f64>) -> [Complex<f64>; 2] {
         let second = if first == 0.0 {
             0.0
         } else {
-            (a * d - b * c) / first
+            determinant / first
         };
         [Complex::new(first, 0.0), Complex::new(second, 0.0)]
-    }
+    };
+    let finite = values.iter().all(|value| value.norm().is_finite());
+    finite.then_some(values)
 }
 
 /// Largest distance between the multipliers of two approximations, each matched with its nearest.
 pub(crate) fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
+    if let ([a, c], [b, d]) = (a, b) {
+        let straight = (a - b).norm().max((c - d).norm());
+        let crossed = (a - d).norm().max((c - b).norm());
+        return straight.min(crossed);
+    }
     let mut free: Vec<_> = b.to_vec();
     let mut largest = if a.len() == b.len() {
         0.0_f64

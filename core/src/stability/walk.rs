@@ -1,0 +1,222 @@
+//! The solution of the linearised equation as it is built up, step by step.
+
+use nalgebra::{Complex, DMatrix};
+
+use super::magnus::Magnus;
+use super::spectrum::eigenvalues_of_two;
+use super::two::{self, Square};
+use super::{distance, eigenvalues};
+
+/// The matrix `q L` of [`monodromy`](super::monodromy) is the error of `P` to about this factor.
+const SAFETY: f64 = 1.5;
+
+/// What has been integrated, for matrices of some order. Matrices are slices, column by column.
+pub(super) trait Walk {
+    /// Room for the matrix at one of the three nodes of a step, times the step.
+    fn scaled(&mut self, node: usize) -> &mut [f64];
+
+    /// A step in which the matrix is constant: that of the first node.
+    fn constant(&mut self);
+
+    /// A step with the matrices at the nodes.
+    fn step(&mut self);
+
+    /// The solution, and what the fourth order lacks in it, for a jump.
+    fn matrices(&mut self) -> [&mut [f64]; 2];
+
+    /// Multipliers of the solution, and their error.
+    fn multipliers(&self) -> (Vec<Complex<f64>>, f64);
+}
+
+/// Traces of the exponents, and sizes of commutators.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    /// `int trace A`
+    trace: f64,
+    /// `sum |C_k/12|` and `sum |D_k|`
+    sizes: [f64; 2],
+}
+
+impl Sums {
+    fn add(&mut self, trace: f64, sizes: [f64; 2]) {
+        self.trace += trace;
+        self.sizes[0] += sizes[0];
+        self.sizes[1] += sizes[1];
+    }
+
+    /// `q`
+    fn part(&self) -> f64 {
+        let [first, second] = self.sizes;
+        if first > 0.0 {
+            (second / first).min(1.0)
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Of one coordinate.
+#[derive(Debug)]
+pub(super) struct WalkOfTwo {
+    scaled: [Square; 3],
+    product: Square,
+    lack: Square,
+    sums: Sums,
+}
+
+impl WalkOfTwo {
+    pub(super) fn new() -> Self {
+        Self {
+            scaled: [[0.0; 4]; 3],
+            product: two::IDENTITY,
+            lack: [0.0; 4],
+            sums: Sums::default(),
+        }
+    }
+}
+
+impl Walk for WalkOfTwo {
+    fn scaled(&mut self, node: usize) -> &mut [f64] {
+        &mut self.scaled[node]
+    }
+
+    fn constant(&mut self) {
+        let propagator = two::exponential(self.scaled[0]);
+        self.sums
+            .add(self.scaled[0][0] + self.scaled[0][3], [0.0; 2]);
+        self.product = two::product(&propagator, &self.product);
+        self.lack = two::product(&propagator, &self.lack);
+    }
+
+    fn step(&mut self) {
+        let step = two::step(&self.scaled);
+        self.sums.add(step.trace, step.sizes);
+        self.product = two::product(&step.propagator, &self.product);
+        self.lack = two::product(&step.propagator, &self.lack);
+        let lacking = two::product(&step.lack, &self.product);
+        for (to, from) in self.lack.iter_mut().zip(lacking) {
+            *to += from;
+        }
+    }
+
+    fn matrices(&mut self) -> [&mut [f64]; 2] {
+        [&mut self.product, &mut self.lack]
+    }
+
+    fn multipliers(&self) -> (Vec<Complex<f64>>, f64) {
+        let determinant = self.sums.trace.exp();
+        let of = |[a, c, b, d]: Square| eigenvalues_of_two([[a, b], [c, d]], determinant);
+        let Some(multipliers) = of(self.product) else {
+            return (Vec::new(), f64::INFINITY);
+        };
+        let part = SAFETY * self.sums.part();
+        if part == 0.0 {
+            return (multipliers.to_vec(), 0.0);
+        }
+        let mut error = 0.0_f64;
+        for signs in SIGNS {
+            let mut other = self.product;
+            for (index, to) in other.iter_mut().enumerate() {
+                *to += part * signs[index] * self.lack[index];
+            }
+            error = match of(other) {
+                Some(others) => error.max(distance(&multipliers, &others)),
+                None => f64::INFINITY,
+            };
+        }
+        (multipliers.to_vec(), error)
+    }
+}
+
+/// Signs of the blocks of the error: as it is, and with those of its second half of columns and of rows changed.
+const SIGNS: [[f64; 4]; 3] = [
+    [1.0, 1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0, -1.0],
+    [1.0, -1.0, 1.0, -1.0],
+];
+
+/// Of several coordinates.
+#[derive(Debug)]
+pub(super) struct WalkOfMany {
+    magnus: Magnus,
+    product: DMatrix<f64>,
+    lack: DMatrix<f64>,
+    room: DMatrix<f64>,
+    sums: Sums,
+}
+
+impl WalkOfMany {
+    pub(super) fn new(order: usize) -> Self {
+        let zeros = || DMatrix::zeros(order, order);
+        Self {
+            magnus: Magnus::new(order),
+            product: zeros(),
+            lack: zeros(),
+            room: zeros(),
+            sums: Sums::default(),
+        }
+    }
+
+    pub(super) fn order(&self) -> usize {
+        self.product.nrows()
+    }
+
+    /// Begins anew.
+    pub(super) fn begin(&mut self) {
+        self.product.fill_with_identity();
+        self.lack.fill(0.0);
+        self.sums = Sums::default();
+    }
+
+    /// Multiplies by the propagator.
+    fn advance(&mut self) {
+        for matrix in [&mut self.product, &mut self.lack] {
+            self.room.gemm(1.0, &self.magnus.propagator, matrix, 0.0);
+            matrix.copy_from(&self.room);
+        }
+    }
+}
+
+impl Walk for WalkOfMany {
+    fn scaled(&mut self, node: usize) -> &mut [f64] {
+        self.magnus.scaled[node].as_mut_slice()
+    }
+
+    fn constant(&mut self) {
+        self.magnus.constant();
+        self.sums.add(self.magnus.scaled[0].trace(), [0.0; 2]);
+        self.advance();
+    }
+
+    fn step(&mut self) {
+        let sizes = self.magnus.step();
+        self.sums.add(self.magnus.omega.trace(), sizes);
+        self.advance();
+        self.lack.gemm(1.0, &self.magnus.lack, &self.product, 1.0);
+    }
+
+    fn matrices(&mut self) -> [&mut [f64]; 2] {
+        [self.product.as_mut_slice(), self.lack.as_mut_slice()]
+    }
+
+    fn multipliers(&self) -> (Vec<Complex<f64>>, f64) {
+        let multipliers = eigenvalues(&self.product);
+        let part = SAFETY * self.sums.part();
+        if part == 0.0 || multipliers.is_empty() {
+            return (multipliers, 0.0);
+        }
+        let half = self.order() / 2;
+        let mut error = 0.0_f64;
+        for signs in SIGNS {
+            let mut other = self.product.clone();
+            for j in 0..self.order() {
+                for i in 0..self.order() {
+                    let sign = signs[2 * usize::from(j >= half) + usize::from(i >= half)];
+                    other[(i, j)] += part * sign * self.lack[(i, j)];
+                }
+            }
+            error = error.max(distance(&multipliers, &eigenvalues(&other)));
+        }
+        (multipliers, error)
+    }
+}
