@@ -235,16 +235,25 @@ impl Flow for Affine<'_> {
 /// The periods from a phase to a later one, and what is left. Lengths are not differences of phases, which grow without end.
 fn spans(from: f64, to: f64) -> impl Iterator<Item = Span> {
     let resolution = 2.0 * f64::EPSILON * (from.abs() + to.abs());
-    let periods = ((to - from + resolution) / TAU).floor().max(0.0);
-    let rest = to - from - periods * TAU;
-    let count = periods as usize + usize::from(rest > resolution);
-    let first = from.rem_euclid(TAU);
+    let length = to - from;
+    let periods = if length < TAU - resolution {
+        0
+    } else {
+        ((length + resolution) / TAU) as usize
+    };
+    let rest = length - periods as f64 * TAU;
+    let count = periods + usize::from(rest > resolution);
+    let first = if (0.0..TAU).contains(&from) {
+        from
+    } else {
+        from.rem_euclid(TAU)
+    };
     let phase = move |k: usize| from + k as f64 * TAU;
     (0..count).map(move |k| Span {
         begin: phase(k),
         end: if k + 1 == count { to } else { phase(k + 1) },
         first,
-        length: if (k as f64) < periods { TAU } else { rest },
+        length: if k < periods { TAU } else { rest },
     })
 }
 

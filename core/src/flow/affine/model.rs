@@ -11,7 +11,7 @@ use crate::layout::Layout;
 use crate::system::{Place, System, Variable, Wave};
 
 /// Cells in a period at most. Beyond, the fastest rate of the system is so high that the phase hardly resolves it.
-const FINEST: f64 = 1e9;
+const FINEST: f64 = 1e8;
 
 /// Every contact on one of its pieces.
 #[derive(Debug)]
@@ -249,38 +249,26 @@ impl<'a> Model<'a> {
             self.lines_by[contact] = self.contacts[contact].lines_by[piece];
         }
         self.assembly.assemble(basis, terms, &self.lines);
-        if !combination.filled {
-            for watch in &mut combination.table.watches {
-                let contact = &terms.contacts[watch.contact];
-                let level = self.contacts[watch.contact].levels[watch.level];
-                let sign = if watch.upper { -1.0 } else { 1.0 };
-                let (state, waves) = watch.row.split_at_mut(2 * basis.coordinates);
-                for (out, d) in state.iter_mut().zip(&contact.gap) {
-                    *out = sign * d;
-                }
-                for (out, delta) in waves.iter_mut().zip(&contact.offset) {
-                    *out = -sign * delta;
-                }
-                waves[0] -= sign * level;
-            }
-            let rate = self.assembly.rate(basis, terms);
-            let table = &mut combination.table;
-            table.fill(&self.assembly.matrix, rate, &mut self.room);
-            let resolved = table.cell * FINEST > std::f64::consts::TAU;
-            if !resolved {
-                let step = table.cell;
-                return Err(FlowError::StepTooShort { phase, step });
-            }
-            combination.filled = true;
+        let cell = Table::cell_for(self.assembly.rate(basis, terms));
+        let resolved = cell * FINEST > std::f64::consts::TAU;
+        if !resolved {
+            return Err(FlowError::StepTooShort { phase, step: cell });
         }
         if derivatives {
             let (lines, lines_by) = (&self.lines[..], &self.lines_by[..]);
-            self.assembly
-                .differentiate(basis, (terms, lines), (&self.terms_by, lines_by));
-            let (matrix, by) = (&self.assembly.matrix, &self.assembly.derivative);
-            combination.table.differentiate(matrix, by, &mut self.room);
-            combination.differentiated = true;
+            let by = (&self.terms_by, lines_by);
+            self.assembly.differentiate(basis, (terms, lines), by);
         }
+        for watch in &mut combination.table.watches {
+            let contact = &terms.contacts[watch.contact];
+            let level = self.contacts[watch.contact].levels[watch.level];
+            watch.set_row(&contact.gap, &contact.offset, level);
+        }
+        let matrix = &self.assembly.matrix;
+        let by = derivatives.then_some(&self.assembly.derivative[..]);
+        combination.table.fill(matrix, by, cell, &mut self.room);
+        combination.filled = true;
+        combination.differentiated = derivatives;
         Ok(())
     }
 

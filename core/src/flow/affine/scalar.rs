@@ -1,16 +1,16 @@
 //! One coordinate under at most one harmonic: the tables of [`table`](super::table) in arrays of fixed size.
 //!
 //! Every level is then a position, and the pieces are intervals between positions. With `z = (x, x', 1, cos h tau, sin h tau)`, the
-//! end of an interval is met in three steps: positions at the ends of all cells at once, the first cell that may hold a meeting
-//! ([`search`](super::search), equation (1)), and the zero in it. Where the distance is monotone over that cell, which is proven
-//! by its coefficients, the zero is found by
+//! end of an interval is met in three steps: the distances from it at the ends of all cells at once, the first cell that may hold
+//! a meeting ([`search`](super::search), equation (1)), and the zero in it. Where the distance is monotone or concave over that
+//! cell, which its coefficients prove, the zero is found by
 //!
 //! ```text
 //! s  <-  s - d d' / (d'^2 - d d'' / 2)                                                                        (1)
 //! ```
 //!
-//! from the secant, twice, and one step of Newton's method; otherwise by [`crossing`](super::crossing). Waves turn with the
-//! motion, from their values at its beginning.
+//! from the secant or from the parabola about the middle, and one step of Newton's method; otherwise by
+//! [`crossing`](super::crossing). Waves turn with the motion, from their values at its beginning.
 //!
 //! Source of (1): Halley (1694); see Traub (1964), Iterative Methods for the Solution of Equations, section 5.21.
 
@@ -54,8 +54,6 @@ struct Boundary {
 /// The motion on one interval.
 #[derive(Debug, Clone)]
 struct Interval {
-    lower: f64,
-    upper: f64,
     /// Phase of one cell, and cells per phase.
     cell: f64,
     density: f64,
@@ -65,20 +63,29 @@ struct Interval {
     turn: f64,
     /// The coefficients of the position in every cell, by entry of `z`.
     series: Vec<[Polynomial; ORDER]>,
-    /// The position at the beginning and at the ends of cells, by entry of `z`.
-    ends: [[f64; ENDS]; ORDER],
     /// Half of the bound on the second derivative.
     curved: [f64; ORDER],
     /// Cosine and sine of the angle of the wave at the middle of every cell.
     middles: [[f64; 2]; CELLS],
+    /// Where it ends.
+    ends: Vec<End>,
 }
 
-/// Where an interval ends: the cell, the motion and the place in it, and whether it is the upper end.
+/// An end of an interval.
+#[derive(Debug, Clone)]
+struct End {
+    upper: bool,
+    at: f64,
+    /// The distance from it at the beginning and at the ends of cells, by entry of `z`; positive inside.
+    distances: [[f64; ENDS]; ORDER],
+}
+
+/// Where an interval ends: the cell and the place in it, the velocity, and which end.
 #[derive(Debug, Clone, Copy)]
 struct Meeting {
     cell: usize,
-    motion: Polynomial,
     s: f64,
+    velocity: f64,
     upper: bool,
 }
 
@@ -144,20 +151,16 @@ impl Scalar {
             let interval = &self.intervals[index];
             let left = (span.length - done) * interval.density;
             let range = left.min(RANGE);
-            let meeting = interval.meeting(&z, range, begins);
-            let (cell, motion, s) = match &meeting {
-                Some(meeting) => (meeting.cell, meeting.motion, meeting.s),
-                None => interval.end(&z, range),
-            };
-            let next = interval.state(&motion, s);
-            let phase = span.begin + done;
-            if !(next[0].is_finite() && next[1].is_finite()) {
-                return Err(FlowError::NotFinite { phase });
-            }
             work.steps += 1;
-            interval.advance_columns(cell, s, columns);
-            *state = next;
-            let Some(meeting) = meeting else {
+            let Some(meeting) = interval.meeting(&z, range, begins) else {
+                let (cell, s) = place(range);
+                let next = interval.state(cell, s, &z);
+                if !(next[0].is_finite() && next[1].is_finite()) {
+                    let phase = span.begin + done;
+                    return Err(FlowError::NotFinite { phase });
+                }
+                *state = next;
+                interval.advance_columns(cell, s, columns);
                 if range == left {
                     return Ok(());
                 }
@@ -166,15 +169,25 @@ impl Scalar {
                 begins = false;
                 continue;
             };
-            let boundary = &self.boundaries[index - usize::from(!meeting.upper)];
-            z = interval.advance(cell, s, [boundary.at, next[1]], &z);
+            let Meeting {
+                cell,
+                s,
+                velocity,
+                upper,
+            } = meeting;
+            let boundary = &self.boundaries[index - usize::from(!upper)];
+            z = interval.advance(cell, s, [boundary.at, velocity], &z);
             done += (cell as f64 + s) * interval.cell;
-            boundary.switch(z[1], meeting.upper, columns);
-            index = if meeting.upper { index + 1 } else { index - 1 };
+            if !columns.is_empty() {
+                interval.advance_columns(cell, s, columns);
+                boundary.switch(velocity, upper, columns);
+            }
+            index = if upper { index + 1 } else { index - 1 };
             begins = true;
             switches += 1;
             work.switches += 1;
             if switches > super::MOST_SWITCHES {
+                *state = [z[0], z[1]];
                 let phase = span.begin + done;
                 return Err(FlowError::TooManySwitches { phase, switches });
             }
@@ -197,9 +210,6 @@ impl Scalar {
 impl Boundary {
     /// The saltation of perturbations, see [`tangent`](super::tangent), equation (1).
     fn switch(&self, velocity: f64, upwards: bool, columns: &mut [[f64; 2]]) {
-        if columns.is_empty() {
-            return;
-        }
         let steepness = if self.constant == 0.0 {
             self.by_velocity
         } else {
@@ -222,23 +232,34 @@ impl Interval {
             entries
         });
         let mut interval = Self {
-            lower,
-            upper,
             cell: table.cell,
             density: 1.0 / table.cell,
             speed: model.terms.base / table.cell,
             turn: harmonic * table.cell,
             series: series.collect(),
-            ends: [[0.0; ENDS]; ORDER],
             curved: [0.0; ORDER],
             middles: [[0.0; 2]; CELLS],
+            ends: Vec::new(),
         };
-        interval.ends[0][0] = 1.0;
+        let mut positions = [[0.0; ENDS]; ORDER];
+        positions[0][0] = 1.0;
         for (cell, entries) in interval.series.iter().enumerate() {
             for (m, polynomial) in entries.iter().enumerate() {
-                interval.ends[m][cell + 1] = value(polynomial, 0.5);
+                positions[m][cell + 1] = value(polynomial, 0.5);
                 let half = 0.5 * table::second_derivative_bound(polynomial);
                 interval.curved[m] = interval.curved[m].max(half);
+            }
+        }
+        for (at, upper) in [(lower, false), (upper, true)] {
+            if at.is_finite() {
+                let sign = if upper { -1.0 } else { 1.0 };
+                let mut distances = positions.map(|entries| entries.map(|x| sign * x));
+                distances[2].iter_mut().for_each(|x| *x -= sign * at);
+                interval.ends.push(End {
+                    upper,
+                    at,
+                    distances,
+                });
             }
         }
         for (cell, middle) in interval.middles.iter_mut().enumerate() {
@@ -251,17 +272,42 @@ impl Interval {
     /// The first meeting with an end within a range, in cells. `begins`: the motion may begin at an end.
     #[inline]
     fn meeting(&self, z: &[f64; ORDER], range: f64, begins: bool) -> Option<Meeting> {
-        let mut ends = [0.0; ENDS];
-        for (j, end) in ends.iter_mut().enumerate() {
-            *end = (self.ends[2][j] + self.ends[0][j] * z[0])
-                + (self.ends[1][j] * z[1] + self.ends[3][j] * z[3])
-                + self.ends[4][j] * z[4];
-        }
         let sizes = self.curved.iter().zip(z);
         let curved: f64 = sizes.map(|(bound, x)| bound * x.abs()).sum();
-        let mut open = self.is_open(ends[0], ends[1], 0.25 * curved);
+        let mut first = None;
+        let mut range = range;
+        for end in &self.ends {
+            if let Some(meeting) = self.meeting_with(end, z, (range, curved), begins) {
+                range = meeting.cell as f64 + meeting.s;
+                first = Some(meeting);
+            }
+        }
+        first
+    }
+
+    /// The first meeting with one end.
+    #[inline]
+    fn meeting_with(
+        &self,
+        end: &End,
+        z: &[f64; ORDER],
+        (range, curved): (f64, f64),
+        begins: bool,
+    ) -> Option<Meeting> {
+        let table = &end.distances;
+        let mut distances = [0.0; ENDS];
+        for (j, distance) in distances.iter_mut().enumerate() {
+            *distance = (table[2][j] + table[0][j] * z[0])
+                + (table[1][j] * z[1] + table[3][j] * z[3])
+                + table[4][j] * z[4];
+        }
+        // Without branches; a number that is none shows nothing.
+        let is_open = |a: f64, b: f64, bound: f64| {
+            1 - (u32::from(a >= 0.0) & u32::from(b > 0.0) & u32::from(a + b > bound))
+        };
+        let mut open = is_open(distances[0], distances[1], 0.25 * curved);
         for cell in 1..CELLS {
-            open |= self.is_open(ends[cell], ends[cell + 1], curved) << cell;
+            open |= is_open(distances[cell], distances[cell + 1], curved) << cell;
         }
         while open != 0 {
             let cell = open.trailing_zeros() as usize;
@@ -269,109 +315,27 @@ impl Interval {
             if cell as f64 - 0.5 >= range {
                 return None;
             }
-            let pair = [ends[cell], ends[cell + 1]];
-            let found = self.meeting_in(cell, pair, z, begins && cell == 0);
-            if let Some(meeting) = found {
-                return (cell as f64 + meeting.s <= range).then_some(meeting);
+            let pair = [distances[cell], distances[cell + 1]];
+            let begins = begins && cell == 0 && z[0] == end.at;
+            let motion = (cell, &self.series[cell]);
+            if let Some((s, slope)) = end.zero(motion, pair, z, begins) {
+                let sign = if end.upper { -1.0 } else { 1.0 };
+                return (cell as f64 + s <= range).then_some(Meeting {
+                    cell,
+                    s,
+                    velocity: sign * slope * self.speed,
+                    upper: end.upper,
+                });
             }
         }
         None
     }
 
-    /// Zero if positions at the ends of a cell show that it holds no meeting, one otherwise: without a branch, and a number that
-    /// is none shows nothing.
+    /// The state at a place in a cell, of a motion that begins at `z`.
     #[inline]
-    fn is_open(&self, a: f64, b: f64, curved: f64) -> u32 {
-        let safe = u32::from(a >= self.lower)
-            & u32::from(a <= self.upper)
-            & u32::from(b > self.lower)
-            & u32::from(b < self.upper)
-            & u32::from(a + b > 2.0 * self.lower + curved)
-            & u32::from(a + b < 2.0 * self.upper - curved);
-        1 - safe
-    }
-
-    /// The first meeting in a cell.
-    #[inline]
-    fn meeting_in(
-        &self,
-        cell: usize,
-        [a, b]: [f64; 2],
-        z: &[f64; ORDER],
-        begins: bool,
-    ) -> Option<Meeting> {
+    fn state(&self, cell: usize, s: f64, z: &[f64; ORDER]) -> [f64; 2] {
         let p = combine(&self.series[cell], z);
-        let upper = p[1] > 0.0;
-        let end = if upper { self.upper } else { self.lower };
-        let monotone = p[1].abs() > crossing::slope_variation(&p);
-        let clear = !begins || a != end;
-        if monotone && clear && a >= self.lower && a <= self.upper {
-            let missed = if upper { b < end } else { b > end };
-            if missed {
-                return None;
-            }
-            let from = if cell == 0 { 0.0 } else { -0.5 };
-            let guess = 0.5 - (0.5 - from) * (b - end) / (b - a);
-            if let Some(s) = halley(&p, end, guess).filter(|&s| s >= from) {
-                return Some(Meeting {
-                    cell,
-                    motion: p,
-                    s,
-                    upper,
-                });
-            }
-        }
-        self.slow_meeting(cell, &p, z, begins)
-    }
-
-    /// The same where the motion may turn within the cell.
-    #[cold]
-    fn slow_meeting(
-        &self,
-        cell: usize,
-        p: &Polynomial,
-        z: &[f64; ORDER],
-        begins: bool,
-    ) -> Option<Meeting> {
-        let columns = self.ends.iter().zip(z);
-        let sizes = columns.map(|(ends, x)| (ends[cell].abs() + ends[cell + 1].abs()) * x.abs());
-        let noise = 4.0 * f64::EPSILON * sizes.sum::<f64>();
-        let from = if cell == 0 { 0.0 } else { -0.5 };
-        let mut first: Option<Meeting> = None;
-        for (end, upper) in [(self.lower, false), (self.upper, true)] {
-            if !end.is_finite() {
-                continue;
-            }
-            let sign = if upper { -1.0 } else { 1.0 };
-            let mut distance = p.map(|x| sign * x);
-            distance[0] -= sign * end;
-            let begins = begins && z[0] == end;
-            let to = first.map_or(0.5, |meeting| meeting.s);
-            let found = crossing::first_zero(&distance, from, to, begins, noise);
-            if let Some(s) = found {
-                first = Some(Meeting {
-                    cell,
-                    motion: *p,
-                    s,
-                    upper,
-                });
-            }
-        }
-        first
-    }
-
-    /// The place at the end of a range, and the motion in its cell.
-    #[inline]
-    fn end(&self, z: &[f64; ORDER], range: f64) -> (usize, Polynomial, f64) {
-        let cell = ((range + 0.5).max(0.0) as usize).min(CELLS - 1);
-        let s = range - cell as f64;
-        (cell, combine(&self.series[cell], z), s)
-    }
-
-    /// The state at a place in a cell.
-    #[inline]
-    fn state(&self, motion: &Polynomial, s: f64) -> [f64; 2] {
-        [value(motion, s), value(&slopes(motion), s) * self.speed]
+        [value(&p, s), value(&slopes(&p), s) * self.speed]
     }
 
     /// `z` at a place in a cell, from the state there and from `z` at the beginning.
@@ -393,11 +357,11 @@ impl Interval {
     fn advance_columns(&self, cell: usize, s: f64, columns: &mut [[f64; 2]]) {
         let series = &self.series[cell];
         for column in columns {
-            let mut motion = [0.0; COEFFICIENTS];
-            for (k, x) in motion.iter_mut().enumerate() {
+            let mut p = [0.0; COEFFICIENTS];
+            for (k, x) in p.iter_mut().enumerate() {
                 *x = series[0][k] * column[0] + series[1][k] * column[1];
             }
-            *column = self.state(&motion, s);
+            *column = [value(&p, s), value(&slopes(&p), s) * self.speed];
         }
     }
 
@@ -405,6 +369,65 @@ impl Interval {
     fn accelerates_up(&self, z: &[f64; ORDER]) -> bool {
         crossing::derivatives(&combine(&self.series[0], z), 0.0)[2] > 0.0
     }
+}
+
+impl End {
+    /// The first zero of a distance in a cell, and its slope there.
+    #[inline]
+    fn zero(
+        &self,
+        (cell, series): (usize, &[Polynomial; ORDER]),
+        [a, b]: [f64; 2],
+        z: &[f64; ORDER],
+        begins: bool,
+    ) -> Option<(f64, f64)> {
+        let sign = if self.upper { -1.0 } else { 1.0 };
+        let mut p = combine(series, z).map(|x| sign * x);
+        p[0] -= sign * self.at;
+        let from = if cell == 0 { 0.0 } else { -0.5 };
+        let monotone = p[1].abs() > crossing::slope_variation(&p);
+        // Its curvature has one sign; with that of the chord it has one zero.
+        let curved = 4.0 * p[2].abs() > table::second_derivative_bound(&p);
+        let rises = monotone && p[1] > 0.0;
+        if a >= 0.0 && b >= 0.0 && (rises || (curved && p[2] < 0.0)) {
+            return None;
+        }
+        if a >= 0.0 && b < 0.0 && (monotone || curved) && !begins {
+            let guess = if monotone {
+                0.5 - (0.5 - from) * b / (b - a)
+            } else {
+                falling_zero_of_parabola(&p).clamp(from, 0.5)
+            };
+            let falls = |&(s, slope): &(f64, f64)| s >= from && slope < 0.0;
+            if let Some(found) = halley(&p, guess).filter(falls) {
+                return Some(found);
+            }
+        }
+        self.slow_zero(cell, &p, z, begins)
+    }
+
+    /// The same where the motion may turn within the cell.
+    #[cold]
+    fn slow_zero(
+        &self,
+        cell: usize,
+        p: &Polynomial,
+        z: &[f64; ORDER],
+        begins: bool,
+    ) -> Option<(f64, f64)> {
+        let columns = self.distances.iter().zip(z);
+        let sizes = columns.map(|(ends, x)| (ends[cell].abs() + ends[cell + 1].abs()) * x.abs());
+        let noise = 4.0 * f64::EPSILON * sizes.sum::<f64>();
+        let from = if cell == 0 { 0.0 } else { -0.5 };
+        let s = crossing::first_zero(p, from, 0.5, begins, noise)?;
+        Some((s, crossing::value_and_slope(p, s).1))
+    }
+}
+
+/// The cell that a phase lies in, in cells, and where in it.
+fn place(cells: f64) -> (usize, f64) {
+    let cell = ((cells + 0.5) as usize).min(CELLS - 1);
+    (cell, cells - cell as f64)
 }
 
 /// The positions where pieces meet, in increasing order.
@@ -492,22 +515,32 @@ fn value(p: &Polynomial, s: f64) -> f64 {
     (four(0) + four(4) * s4) + (four(8) + p[12] * s4) * (s4 * s4)
 }
 
-/// Where a polynomial that is monotone over the cell has a value; `None` if the iteration has not converged within it.
+/// The zero of a polynomial that is monotone over the cell, and the slope there; `None` if the iteration has not converged.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "as above")]
-fn halley(p: &Polynomial, target: f64, guess: f64) -> Option<f64> {
-    let mut p = *p;
-    p[0] -= target;
-    let q = slopes(&p);
+fn halley(p: &Polynomial, guess: f64) -> Option<(f64, f64)> {
+    let q = slopes(p);
     let mut s = guess;
     for _ in 0..2 {
-        let (d, slope) = (value(&p, s), value(&q, s));
+        let (d, slope) = (value(p, s), value(&q, s));
         let half_curvature = p[2] + 3.0 * p[3] * s + 6.0 * p[4] * (s * s);
         s -= d * slope / (slope * slope - d * half_curvature);
     }
-    let step = value(&p, s) / value(&q, s);
+    let step = value(p, s) / value(&q, s);
     s -= step;
-    (step.abs() <= CONVERGED && s <= 0.5).then_some(s)
+    (step.abs() <= CONVERGED && s <= 0.5).then(|| (s, value(&q, s)))
+}
+
+/// The zero of the parabola about the middle at which it falls; its vertex if it has none.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "as above")]
+fn falling_zero_of_parabola(p: &Polynomial) -> f64 {
+    let root = (p[1] * p[1] - 4.0 * p[0] * p[2]).max(0.0).sqrt();
+    if p[1] > 0.0 {
+        (p[1] + root) / (-2.0 * p[2])
+    } else {
+        2.0 * p[0] / (root - p[1])
+    }
 }
 
 /// Cosine and sine of an angle of at most half a cell: the first terms left out are below `4e-17`.

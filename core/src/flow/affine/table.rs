@@ -124,27 +124,26 @@ impl Table {
         2 * self.coordinates
     }
 
-    /// Fills the table from `A`, whose fastest rate is known, and the rows of its watches.
-    pub(super) fn fill(&mut self, matrix: &[f64], rate: f64, room: &mut Room) {
-        self.cell = CELL / rate;
-        room.set(matrix, None, self.cell);
-        room.exponentials(false);
-        room.taylor(self, false);
-        fill_series(&mut self.series, &room.rows, &room.middles);
-        let coordinates = self.coordinates;
-        for watch in &mut self.watches {
-            watch.fill(&self.series, self.rows, coordinates, room);
-        }
+    /// Phase of a cell for a fastest rate.
+    pub(super) fn cell_for(rate: f64) -> f64 {
+        CELL / rate
     }
 
-    /// Fills the derivatives by a variable; `by` is the derivative of the matrix that the table was filled from.
-    pub(super) fn differentiate(&mut self, matrix: &[f64], by: &[f64], room: &mut Room) {
-        let length = self.series.len();
-        self.series_by.resize(length, [0.0; COEFFICIENTS]);
-        room.set(matrix, Some(by), self.cell);
-        room.exponentials(true);
-        room.taylor(self, true);
-        fill_derivatives(&mut self.series_by, room);
+    /// Fills the table from `A` and the rows of its watches, and its derivatives if that of `A` is given.
+    pub(super) fn fill(&mut self, matrix: &[f64], by: Option<&[f64]>, cell: f64, room: &mut Room) {
+        self.cell = cell;
+        room.set(matrix, by, cell);
+        room.exponentials(by.is_some());
+        room.taylor(self, by.is_some());
+        fill_series(&mut self.series, &room.rows, &room.middles);
+        for watch in &mut self.watches {
+            watch.fill(&self.series, self.rows, self.coordinates, room);
+        }
+        if by.is_some() {
+            let length = self.series.len();
+            self.series_by.resize(length, [0.0; COEFFICIENTS]);
+            fill_derivatives(&mut self.series_by, room);
+        }
     }
 
     /// The cell that a phase lies in, in cells, and where in it.
@@ -207,6 +206,19 @@ fn add_combination(series: &[Polynomial], z: &[f64], out: &mut [Polynomial]) {
 }
 
 impl Watch {
+    /// Sets the row from the direction and the waves of the gap, and from the level.
+    pub(super) fn set_row(&mut self, gap: &[f64], offset: &[f64], level: f64) {
+        let sign = if self.upper { -1.0 } else { 1.0 };
+        let (state, waves) = self.row.split_at_mut(2 * gap.len());
+        for (out, d) in state.iter_mut().zip(gap) {
+            *out = sign * d;
+        }
+        for (out, delta) in waves.iter_mut().zip(offset) {
+            *out = -sign * delta;
+        }
+        waves[0] -= sign * level;
+    }
+
     /// Tabulates the distance at the ends of cells, and the bound on its second derivative.
     fn fill(&mut self, series: &[Polynomial], rows: usize, coordinates: usize, room: &mut Room) {
         let (order, width) = (self.row.len(), room.middles.len() + 1);
