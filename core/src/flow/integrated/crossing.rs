@@ -69,56 +69,25 @@ impl<const S: usize> Engine<'_, S> {
         values[0] = sign * (start.value - value);
         values[S + 1] = sign * (end.value - value);
         let size = start.size.max(end.size);
-        let graded = tables.map.power() > 1;
-        let accuracy = if graded {
-            self.tolerance * size.max(self.field.gap_scale(contact, &self.here.sizes))
-        } else {
-            0.0
-        };
         if starts {
-            let slope = sign * start.rate * time;
-            let distances = values[1..=S].iter_mut();
-            take_out(distances.zip(&tables.passed), slope, accuracy);
-            values[0] = slope;
+            let parts = values[1..=S].iter_mut().zip(&tables.passed);
+            parts.for_each(|(distance, part)| *distance /= part);
+            values[0] = sign * start.rate * time;
         }
         if ends {
-            let slope = -sign * end.rate * time;
-            let distances = values[1..=S].iter_mut().rev();
-            take_out(distances.zip(tables.left.iter().rev()), slope, accuracy);
-            values[S + 1] = slope;
+            let parts = values[1..=S].iter_mut().zip(&tables.left);
+            parts.for_each(|(distance, part)| *distance /= part);
+            values[S + 1] = -sign * end.rate * time;
         }
         let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let noise = ROUNDING * largest.max(if starts || ends { 0.0 } else { size });
-        // Far from the level nothing need be looked for.
-        let least = values.iter().fold(f64::INFINITY, |m, &x| m.min(x));
-        if least > 0.0 && largest == 0.0 {
+        if largest == 0.0 {
             return None;
         }
-        let order = values.len();
-        for (coefficient, row) in self
-            .coefficients
-            .iter_mut()
-            .zip(self.rule.bernstein.chunks_exact(order))
-        {
-            let sum: f64 = row.iter().zip(&*values).map(|(w, x)| w * x).sum();
-            *coefficient = sum + noise;
-        }
+        self.rule
+            .in_bernstein_form(values, noise, &mut self.coefficients);
         let u = roots::first(&self.coefficients)?;
         let inside = roots::value(&self.coefficients, 0.5 * u) - noise;
         Some((u, starts && inside <= 2.0 * noise))
-    }
-}
-
-/// Divides distances from a level by the parts of the step between, in order from the level. Beside it, distances that are
-/// within the accuracy of the motion are those of its slope there.
-fn take_out<'a>(
-    distances: impl Iterator<Item = (&'a mut f64, &'a f64)>,
-    slope: f64,
-    accuracy: f64,
-) {
-    let mut beside = true;
-    for (distance, part) in distances {
-        beside &= distance.abs() <= accuracy;
-        *distance = if beside { slope } else { *distance / part };
     }
 }

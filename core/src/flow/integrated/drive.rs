@@ -6,22 +6,47 @@ use super::crossing::Found;
 use super::engine::Engine;
 use super::map::{Map, Tables};
 use super::rule::Rule;
-use super::step::Solved;
+use super::step::{Solved, larger};
 
 /// The aim of a step's error, as a factor of its width.
 const SAFETY: f64 = 0.9;
 /// Least and largest factor from one width to the next.
 const FACTORS: (f64, f64) = (0.2, 3.0);
+/// The first width, in parts of what a vibration would allow; and that of a graded step, in parts of that.
+const FIRST: f64 = 0.6;
+const GRADED: f64 = 0.3;
 /// Attempts at one step.
 const MOST_ATTEMPTS: usize = 200;
+/// The factor of a step that could not be solved.
+const SHORTEN: f64 = 0.4;
 /// A step is not tried if it is shorter than this, in parts of the phase and in radians.
 const SHORTEST: f64 = 1e-15;
 
-/// What became of a landing.
-enum Landed {
-    Yes,
-    /// First a step of this width.
-    Shorter(f64),
+/// What is tried next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Plan {
+    /// A step of this width.
+    Span(f64),
+    /// A step to a level, about this far away.
+    Land(Aim),
+}
+
+/// A level that the motion is about to reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Aim {
+    contact: usize,
+    level: usize,
+    distance: f64,
+    /// From the trial that showed it, or else from the acceleration here.
+    seen: bool,
+}
+
+/// What became of a trial.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Tried {
+    Solved,
+    /// Try this instead.
+    Instead(Plan),
 }
 
 impl<const S: usize> Engine<'_, S> {
@@ -64,7 +89,7 @@ impl<const S: usize> Engine<'_, S> {
             self.column_sizes
                 .resize(tangent.columns.len() / order, [0.0; 2]);
         }
-        self.widths = [self.first_width(span); 2];
+        self.first_widths(span);
         while self.here.passed != span {
             self.step(span, tangent.as_deref(), &mut columns)?;
             if let Some(see) = &mut see {
@@ -89,9 +114,9 @@ impl<const S: usize> Engine<'_, S> {
         Ok(())
     }
 
-    /// The angle of a vibration that the nodes resolve: the coefficients of `exp(i theta u)` fall as
-    /// `(theta / 2)^n / (2 n - 1)!!`.
-    fn first_width(&mut self, span: f64) -> f64 {
+    /// Widths to begin with, from the angle of a vibration that the nodes resolve: the coefficients of `exp(i theta u)`
+    /// fall as `(theta / 2)^n / (2 n - 1)!!`.
+    fn first_widths(&mut self, span: f64) {
         let odd = (1..=S).fold(1.0, |product, n| product * (2 * n - 1) as f64);
         let angle = 2.0 * (self.tolerance * odd).powf(1.0 / S as f64);
         self.accelerate_here();
@@ -111,12 +136,13 @@ impl<const S: usize> Engine<'_, S> {
             .sqrt()
             .max(row(&self.slopes_here.by_v));
         let base = self.field.base().abs();
-        let width = angle / (frequency / base).max(self.field.highest_harmonic());
-        if width.is_finite() {
+        let width = FIRST * angle / (frequency / base).max(self.field.highest_harmonic());
+        let width = if width.is_finite() {
             width.min(span.abs())
         } else {
             span.abs()
-        }
+        };
+        self.widths = [width, GRADED * width, GRADED * width];
     }
 
     /// Finds a step that is accurate, and stays on the pieces or ends on a level.
@@ -127,130 +153,198 @@ impl<const S: usize> Engine<'_, S> {
         columns: &mut [f64],
     ) -> Result<(), FlowError> {
         let left = span - self.here.passed;
-        let power = self.start_power();
-        let table = self.table(Map::FromStart(power));
-        let graded = usize::from(power > 1);
-        let mut width = self.widths[graded].min(left.abs()).copysign(left);
-        // Two steps of equal width rather than a short last one.
-        if width != left && left.abs() < 2.0 * width.abs() {
-            width = 0.5 * left;
-        }
-        let mut limited = width.abs() < self.widths[graded];
-        let mut turned = 0;
         self.accelerate_here();
+        let mut plan = self.first_plan(left);
+        let mut turned = 0;
         for _ in 0..MOST_ATTEMPTS {
-            if width.abs() <= SHORTEST * self.phase().abs().max(1.0) && width != left {
-                return Err(FlowError::StepTooShort {
-                    phase: self.phase(),
-                    step: width,
-                });
-            }
-            if self.solve(width, table) == Solved::No {
-                self.work.rejected += 1;
-                width *= 0.4;
-                limited = false;
-                continue;
-            }
-            let mut error = self.error();
-            // Close to its start a graded step shows crossings only once it is accurate.
-            let trusted = power == 1 || error <= 1.0;
-            if trusted && let Some(found) = self.crossing() {
-                if found.at_once {
-                    turned += 1;
-                    if turned > 2 {
-                        return Err(FlowError::Rests {
-                            phase: self.phase(),
-                        });
-                    }
-                    self.cross(found.contact, found.level, None)?;
-                    self.accelerate_here();
-                    continue;
-                }
-                match self.reach(found, power, left) {
-                    Landed::Yes => {}
-                    Landed::Shorter(shorter) => {
-                        limited = true;
-                        width = shorter;
-                        continue;
-                    }
-                }
-            }
-            if self.trial.landing.is_some() {
-                error = self.error();
-            }
-            if error <= 1.0
-                && let Some(tangent) = tangent
-            {
-                self.linearise(tangent)?;
-                error = error.max(self.carry(tangent, columns));
-            }
-            if !error.is_finite() {
-                self.work.rejected += 1;
-                width *= 0.4;
-                continue;
-            }
-            let factor = SAFETY * error.powf(-1.0 / (S + 1) as f64);
-            let factor = factor.clamp(FACTORS.0, FACTORS.1);
-            let tried = self.trial.width.abs();
-            if error <= 1.0 {
-                let landed = self.trial.landing.is_some();
-                let next = tried * factor;
-                let known = self.widths[graded];
-                self.widths[graded] = if limited || landed {
-                    next.max(known)
-                } else {
-                    next
-                };
-                if graded == 1 {
-                    self.widths[0] = next;
-                }
-                return Ok(());
-            }
-            self.work.rejected += 1;
-            limited = false;
-            width = if self.trial.landing.is_some() {
-                // Land from where it will be accurate.
-                limited = true;
-                (tried * (1.0 - 0.8 * factor.min(1.0)))
-                    .min(0.5 * tried)
-                    .copysign(width)
-            } else {
-                (tried * factor.min(0.9)).copysign(width)
+            let tried = match plan {
+                Plan::Span(width) => self.try_span(width, left, &mut turned)?,
+                Plan::Land(aim) => self.try_landing(aim, left),
+            };
+            plan = match tried {
+                Tried::Instead(plan) => plan,
+                Tried::Solved => match self.judge(tangent, columns)? {
+                    None => return Ok(()),
+                    Some(plan) => plan,
+                },
             };
         }
-        Err(FlowError::StepTooShort {
+        Err(self.too_short())
+    }
+
+    /// To the level that is about to be reached, or as far as steps went before.
+    fn first_plan(&mut self, left: f64) -> Plan {
+        let graded = usize::from(self.start_power() > 1);
+        let most = self.widths[graded];
+        if let Some(aim) = self.aim.take()
+            && aim.distance.abs() <= most.max(self.widths[2])
+        {
+            return Plan::Land(aim);
+        }
+        if left.abs() <= most {
+            Plan::Span(left)
+        } else {
+            // Two steps of equal width rather than a short last one.
+            Plan::Span(most.min(0.5 * left.abs()).copysign(left))
+        }
+    }
+
+    fn too_short(&self) -> FlowError {
+        FlowError::StepTooShort {
             phase: self.phase(),
-            step: width,
+            step: self.trial.width,
+        }
+    }
+
+    /// Tries a step of a width.
+    fn try_span(&mut self, width: f64, left: f64, turned: &mut usize) -> Result<Tried, FlowError> {
+        if width.abs() <= SHORTEST * self.phase().abs().max(1.0) && width != left {
+            return Err(self.too_short());
+        }
+        let table = self.table(Map::FromStart(self.start_power()));
+        let mut solved = self.solve(width, table, true);
+        if solved == Solved::No {
+            self.work.rejected += 1;
+            return Ok(Tried::Instead(Plan::Span(SHORTEN * width)));
+        }
+        let mut crossing = self.crossing();
+        if solved == Solved::Strays && crossing.is_none() {
+            solved = self.solve(width, table, false);
+            crossing = self.crossing();
+        }
+        Ok(match crossing {
+            None if solved == Solved::No => {
+                self.work.rejected += 1;
+                Tried::Instead(Plan::Span(SHORTEN * width))
+            }
+            None => Tried::Solved,
+            Some(found) if found.at_once => {
+                *turned += 1;
+                if *turned > 2 {
+                    let phase = self.phase();
+                    return Err(FlowError::Rests { phase });
+                }
+                self.cross(found.contact, found.level, None)?;
+                self.accelerate_here();
+                Tried::Instead(Plan::Span(width))
+            }
+            Some(found) => Tried::Instead(self.towards(found)),
         })
     }
 
-    /// Ends the step on a level that it was found to cross, or on one that it crosses before.
-    fn reach(&mut self, mut found: Found, start: u32, left: f64) -> Landed {
-        for _ in 0..8 {
-            let map = self.tables[self.trial.table].map;
-            let distance = self.trial.width * map.place(found.u);
-            let power = self.power(found.contact, found.level);
-            if start > 1 && power > 1 {
-                return Landed::Shorter(0.5 * distance);
-            }
-            let map = if power > 1 {
-                Map::ToEnd(power)
-            } else {
-                Map::FromStart(start)
-            };
-            let table = self.table(map);
-            if self.land(distance, table, found.contact, found.level) == Solved::No
-                || self.trial.width.abs() > left.abs()
-            {
-                self.work.rejected += 1;
-                return Landed::Shorter(0.8 * distance);
-            }
-            match self.crossing() {
-                None => return Landed::Yes,
-                Some(earlier) => found = earlier,
-            }
+    /// To a level that the trial crosses. If both ends are to be graded, half of the way first; if the end is, first to
+    /// where a step that ends there is accurate.
+    fn towards(&mut self, found: Found) -> Plan {
+        let map = self.tables[self.trial.table].map;
+        let distance = self.trial.width * map.place(found.u);
+        let aim = Aim {
+            contact: found.contact,
+            level: found.level,
+            distance,
+            seen: true,
+        };
+        if self.power(found.contact, found.level) == 1 {
+            return Plan::Land(aim);
         }
-        Landed::Shorter(0.5 * self.trial.width)
+        let last = if self.start_power() > 1 {
+            self.widths[2].min(0.5 * distance.abs())
+        } else {
+            self.widths[2]
+        };
+        if distance.abs() <= last {
+            return Plan::Land(aim);
+        }
+        let distance = last.max(0.1 * distance.abs()).copysign(distance);
+        self.aim = Some(Aim {
+            distance,
+            seen: false,
+            ..aim
+        });
+        Plan::Span(aim.distance - distance)
+    }
+
+    /// Tries a step that ends on a level.
+    fn try_landing(&mut self, aim: Aim, left: f64) -> Tried {
+        let power = self.power(aim.contact, aim.level);
+        let map = if power > 1 {
+            Map::ToEnd(power)
+        } else {
+            Map::FromStart(self.start_power())
+        };
+        let table = self.table(map);
+        if aim.seen {
+            self.resample(aim.distance, table);
+        } else {
+            self.guess(aim.distance, table);
+        }
+        let solved = self.land(aim.distance, table, aim.contact, aim.level);
+        if solved != Solved::Yes || self.trial.width.abs() > left.abs() {
+            self.work.rejected += 1;
+            return Tried::Instead(Plan::Span(0.8 * aim.distance));
+        }
+        match self.crossing() {
+            None => Tried::Solved,
+            Some(found) => Tried::Instead(self.towards(found)),
+        }
+    }
+
+    /// Whether the trial is accurate, and otherwise what to try.
+    fn judge(
+        &mut self,
+        tangent: Option<&Tangent>,
+        columns: &mut [f64],
+    ) -> Result<Option<Plan>, FlowError> {
+        let mut error = self.error();
+        if error <= 1.0
+            && let Some(tangent) = tangent
+        {
+            self.linearise(tangent)?;
+            error = larger(error, self.carry(tangent, columns));
+        }
+        let width = self.trial.width;
+        if !error.is_finite() {
+            self.work.rejected += 1;
+            return Ok(Some(Plan::Span(SHORTEN * width)));
+        }
+        // Where t = T u^p, an error of degree S + 1 in u is one of degree (S + 1) / p in T.
+        let map = self.tables[self.trial.table].map;
+        let factor = SAFETY * error.powf(-f64::from(map.power()) / (S + 1) as f64);
+        let factor = factor.clamp(FACTORS.0, FACTORS.1);
+        if error <= 1.0 {
+            self.remember(width.abs() * factor);
+            return Ok(None);
+        }
+        self.work.rejected += 1;
+        let Some((contact, level)) = self.trial.landing else {
+            return Ok(Some(Plan::Span(width * factor.min(0.9))));
+        };
+        // Land from where it will be accurate.
+        let part = (1.0 - factor).clamp(0.2, 0.9);
+        let last = (1.0 - part) * width;
+        self.widths[2] = self.widths[2].min(last.abs());
+        self.aim = Some(Aim {
+            contact,
+            level,
+            distance: last,
+            seen: false,
+        });
+        Ok(Some(Plan::Span(part * width)))
+    }
+
+    /// Notes how wide the next steps may be, by one that was accurate.
+    fn remember(&mut self, next: f64) {
+        let map = self.tables[self.trial.table].map;
+        let kind = match map {
+            Map::FromStart(1) | Map::ToEnd(1) => 0,
+            Map::FromStart(_) => 1,
+            Map::ToEnd(_) => 2,
+        };
+        let cut = self.trial.landing.is_some() || self.aim.is_some();
+        let known = self.widths[kind];
+        self.widths[kind] = if cut { next.max(known) } else { next };
+        if kind == 1 {
+            self.widths[0] = next;
+        }
     }
 }
 

@@ -2,13 +2,16 @@
 
 use std::f64::consts::TAU;
 
-use crate::flow::field::{Anchor, Batch, End, Field, Gap, Slopes};
+use crate::flow::field::batch::{Anchor, Batch, End};
+use crate::flow::field::slopes::Slopes;
+use crate::flow::field::{Field, Gap};
 use crate::flow::{FlowError, Work};
 use crate::fourier::grading;
 use crate::law::{Quantity, TermFacts};
 use crate::linear::{Lu, Matrix};
 use crate::system::Variable;
 
+use super::drive::Aim;
 use super::map::{Map, Tables};
 use super::rule::Rule;
 
@@ -48,6 +51,8 @@ pub(super) struct Trial {
     pub(super) landing: Option<(usize, usize)>,
     pub(super) q: Vec<f64>,
     pub(super) v: Vec<f64>,
+    /// The sizes of the motion so far, with this step.
+    pub(super) sizes: Vec<[f64; 2]>,
 }
 
 pub(super) struct Engine<'a, const S: usize> {
@@ -76,8 +81,12 @@ pub(super) struct Engine<'a, const S: usize> {
     pub(super) right: Vec<f64>,
     /// Sizes of the columns of the tangent so far, `(by q, by v)`.
     pub(super) column_sizes: Vec<[f64; 2]>,
-    /// Widths to try next: of a plain step, and of one that is graded at its start.
-    pub(super) widths: [f64; 2],
+    /// What errors of coordinates and rates are relative to.
+    pub(super) scales: Vec<[f64; 2]>,
+    /// Widths to try next: of a plain step, and of steps that are graded at their start and at their end.
+    pub(super) widths: [f64; 3],
+    /// A level that the next step is to reach.
+    pub(super) aim: Option<Aim>,
     /// Switches, and where they began to be counted.
     pub(super) switches: (usize, f64),
     pub(super) work: Work,
@@ -116,6 +125,7 @@ impl<'a, const S: usize> Engine<'a, S> {
                 landing: None,
                 q: vec![0.0; n],
                 v: vec![0.0; n],
+                sizes: vec![[0.0; 2]; n],
             },
             batch: Batch::new(&field),
             instant: Batch::new(&field),
@@ -136,7 +146,9 @@ impl<'a, const S: usize> Engine<'a, S> {
             lu: Lu::new(n * S),
             right: vec![0.0; n * S],
             column_sizes: Vec::new(),
-            widths: [0.0; 2],
+            scales: vec![[0.0; 2]; n],
+            widths: [0.0; 3],
+            aim: None,
             switches: (0, 0.0),
             work: Work::default(),
             rule,
@@ -171,7 +183,9 @@ impl<'a, const S: usize> Engine<'a, S> {
         for i in 0..n {
             here.sizes[i] = [here.q[i].abs(), here.v[i].abs()];
         }
+        write_scales(&self.here.sizes, self.field.base(), &mut self.scales);
         self.switches = (0, 0.0);
+        self.aim = None;
         for contact in 0..self.here.on.len() {
             self.here.on[contact] = None;
             let gap = self.field.gap(contact, &self.here.q, &self.here.v, from);
@@ -262,22 +276,11 @@ impl<'a, const S: usize> Engine<'a, S> {
         })
     }
 
-    /// The scales that errors of a coordinate and of its rate are relative to, from sizes.
-    pub(super) fn scales(&self, sizes: &[[f64; 2]], i: usize) -> [f64; 2] {
-        let largest = |part: usize| sizes.iter().fold(0.0_f64, |m, size| m.max(size[part]));
-        let base = self.field.base().abs();
-        let position = sizes[i][0].max(LEAST_SCALE * largest(0));
-        let rate = sizes[i][1]
-            .max(LEAST_SCALE * largest(1))
-            .max(base * position);
-        [position.max(f64::MIN_POSITIVE), rate.max(f64::MIN_POSITIVE)]
-    }
-
     /// Evaluates the acceleration here.
     pub(super) fn accelerate_here(&mut self) {
         let phase = self.phase();
         let batch = &mut self.instant;
-        self.field.place(batch, phase, 0.0, &[0.0], &[1.0]);
+        self.field.place(batch, phase, 0.0, (&[0.0], &[1.0]));
         for i in 0..self.here.q.len() {
             (batch.q[i], batch.v[i]) = ([self.here.q[i]], [self.here.v[i]]);
             batch.shift[0][i] = [0.0];
@@ -309,6 +312,17 @@ impl<'a, const S: usize> Engine<'a, S> {
             });
         }
         Ok(())
+    }
+}
+
+/// The scales that errors of each coordinate and of its rate are relative to, from sizes.
+pub(super) fn write_scales(sizes: &[[f64; 2]], base: f64, scales: &mut [[f64; 2]]) {
+    let largest = |part: usize| sizes.iter().fold(0.0_f64, |m, size| m.max(size[part]));
+    let [q, v] = [0, 1].map(|part| LEAST_SCALE * largest(part));
+    for (scale, size) in scales.iter_mut().zip(sizes) {
+        let position = size[0].max(q);
+        let rate = size[1].max(v).max(base.abs() * position);
+        *scale = [position.max(f64::MIN_POSITIVE), rate.max(f64::MIN_POSITIVE)];
     }
 }
 

@@ -30,12 +30,14 @@ pub(super) struct Rule<const S: usize> {
     pub(super) after: [[f64; S]; S],
     /// Weights of the coefficients (2) of the highest degrees, `S - 1` first.
     pub(super) highest: [[f64; S]; HIGHEST],
+    /// Legendre polynomials at the nodes.
+    legendre: [Vec<f64>; S],
     /// Both ends and the nodes between them.
     pub(super) points: Vec<f64>,
     /// Weights of barycentric interpolation on them.
     pub(super) barycentric: Vec<f64>,
-    /// From values at the points to Bernstein coefficients, row by row.
-    pub(super) bernstein: Vec<f64>,
+    /// From values at the points to Bernstein coefficients: one column for each point.
+    bernstein: Vec<f64>,
 }
 
 impl<const S: usize> Rule<S> {
@@ -72,7 +74,19 @@ impl<const S: usize> Rule<S> {
             highest,
             barycentric: barycentric(&points),
             bernstein: bernstein(&points),
+            legendre,
             points,
+        }
+    }
+
+    /// Bernstein coefficients, on `[0, 1]`, of the polynomial with these values at the points, raised by a number.
+    pub(super) fn in_bernstein_form(&self, values: &[f64], raise: f64, coefficients: &mut [f64]) {
+        coefficients.fill(raise);
+        let columns = self.bernstein.chunks_exact(values.len());
+        for (column, value) in columns.zip(values) {
+            for (coefficient, weight) in coefficients.iter_mut().zip(column) {
+                *coefficient += weight * value;
+            }
         }
     }
 
@@ -90,6 +104,17 @@ impl<const S: usize> Rule<S> {
         }
         for weight in weights {
             *weight /= sum;
+        }
+    }
+}
+
+impl<const S: usize> Rule<S> {
+    /// Lagrange's polynomials of the nodes at `u`, by the Legendre polynomials: `l_k = b_k sum_n (2 n + 1) P_n(u_k) P_n`.
+    pub(super) fn lagrange(&self, u: f64, values: &mut [f64; S]) {
+        let at = polynomials::<S>(u);
+        for k in 0..S {
+            let terms = (0..S).map(|n| (2 * n + 1) as f64 * self.legendre[k][n] * at[n]);
+            values[k] = self.weights[k] * terms.sum::<f64>();
         }
     }
 }
@@ -114,7 +139,7 @@ fn barycentric(points: &[f64]) -> Vec<f64> {
     (0..points.len()).map(weight).collect()
 }
 
-/// The inverse of the values of the Bernstein polynomials at the points.
+/// The inverse of the values of the Bernstein polynomials at the points, by columns.
 fn bernstein(points: &[f64]) -> Vec<f64> {
     let order = points.len();
     let degree = order - 1;
@@ -126,11 +151,11 @@ fn bernstein(points: &[f64]) -> Vec<f64> {
         let u = points[row];
         choose[i] * u.powi(i as i32) * (1.0 - u).powi((degree - i) as i32)
     });
-    // Distinct points make it regular; rows in order are those of the transpose, column by column.
+    // Distinct points make it regular.
     let inverse = values
         .try_inverse()
         .unwrap_or_else(|| DMatrix::zeros(order, order));
-    inverse.transpose().as_slice().to_vec()
+    inverse.as_slice().to_vec()
 }
 
 #[cfg(test)]
@@ -161,9 +186,10 @@ mod tests {
         let order = rule.points.len();
         // u^2 = sum_i (i choose 2) / (n choose 2) B_i, n = order - 1.
         let n = (order - 1) as f64;
-        for i in 0..order {
-            let row = &rule.bernstein[i * order..][..order];
-            let coefficient: f64 = row.iter().zip(&rule.points).map(|(w, u)| w * u * u).sum();
+        let values: Vec<f64> = rule.points.iter().map(|u| u * u).collect();
+        let mut coefficients = vec![0.0; order];
+        rule.in_bernstein_form(&values, 0.0, &mut coefficients);
+        for (i, coefficient) in coefficients.iter().enumerate() {
             let exact = (i * i.saturating_sub(1)) as f64 / (n * (n - 1.0));
             assert!(
                 (coefficient - exact).abs() < 1e-9,

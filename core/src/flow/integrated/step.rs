@@ -19,17 +19,23 @@
 use multiversion::multiversion;
 
 use crate::flow::FlowError;
-use crate::flow::field::{Anchor, End};
+use crate::flow::field::batch::{Anchor, End};
 
-use super::engine::Engine;
+use super::engine::{Engine, write_scales};
 use super::map::Tables;
+use super::rule::HIGHEST;
 
 /// Sweeps before a step is given up.
 const MOST_SWEEPS: usize = 30;
 /// Sweeps that may grow.
 const FIRST_SWEEPS: usize = 6;
+/// Sweeps after which a gap off its piece is likely to stay there, if it is off by a part of what it moves on the step.
+const WATCH_FROM: usize = 3;
+const CLEARLY: f64 = 0.05;
 /// What is left of the iteration, in parts of the tolerance.
 const ITERATED: f64 = 0.01;
+/// Rounding of the width of a landing, in parts of what it is made of.
+const SETTLED: f64 = 4.0 * f64::EPSILON;
 /// The largest change of the width in one correction (1).
 const LARGEST_CORRECTION: f64 = 0.3;
 
@@ -38,6 +44,8 @@ const LARGEST_CORRECTION: f64 = 0.3;
 pub(super) enum Solved {
     Yes,
     No,
+    /// Not to the end: a gap leaves its piece.
+    Strays,
 }
 
 /// The convergence of an iteration.
@@ -70,32 +78,47 @@ impl Convergence {
 }
 
 impl<const S: usize> Engine<'_, S> {
-    /// Solves the step of a given width.
-    pub(super) fn solve(&mut self, width: f64, table: usize) -> Solved {
-        self.trial.width = width;
-        self.trial.table = table;
-        self.trial.landing = None;
-        let tables = &self.tables[table];
-        let phase = self.here.from + self.here.passed;
-        self.field
-            .place(&mut self.batch, phase, width, &tables.passed, &tables.left);
-        for (a, here) in self.batch.a.iter_mut().zip(&self.instant.a) {
-            *a = [here[0]; S];
-        }
-        self.anchor(None);
+    /// Solves the step of a given width. If asked to, ends early where a gap leaves its piece.
+    pub(super) fn solve(&mut self, width: f64, table: usize, watch: bool) -> Solved {
+        self.guess(width, table);
         let mut convergence = Convergence::NEW;
         loop {
             self.integrate();
             let change = self.sweep();
-            if let Some(solved) = convergence.next(change, ITERATED * self.tolerance) {
+            let solved = convergence.next(change, ITERATED * self.tolerance);
+            let strays = watch && convergence.sweep >= WATCH_FROM && self.strays();
+            if solved.is_some() || strays {
                 self.integrate();
                 self.finish();
-                return solved;
+                return solved.unwrap_or(Solved::Strays);
             }
         }
     }
 
-    /// Solves the step that ends on a level of a contact, from a guess of its width and the states of the last trial.
+    /// Starts a step of a width with the acceleration that it has at its start.
+    pub(super) fn guess(&mut self, width: f64, table: usize) {
+        self.trial.width = width;
+        self.trial.table = table;
+        self.trial.landing = None;
+        self.place();
+        for (a, here) in self.batch.a.iter_mut().zip(&self.instant.a) {
+            *a = [here[0]; S];
+        }
+        self.anchor(None);
+        self.integrate();
+        self.finish();
+    }
+
+    /// Puts the nodes where they are.
+    fn place(&mut self) {
+        let phase = self.phase();
+        let tables = &self.tables[self.trial.table];
+        let parts = (&tables.passed, &tables.left);
+        self.field
+            .place(&mut self.batch, phase, self.trial.width, parts);
+    }
+
+    /// Solves the step that ends on a level of a contact, from a guess of its width and of its states.
     pub(super) fn land(
         &mut self,
         guess: f64,
@@ -103,40 +126,103 @@ impl<const S: usize> Engine<'_, S> {
         contact: usize,
         level: usize,
     ) -> Solved {
-        self.resample(guess, table);
         self.trial.width = guess;
         self.trial.table = table;
         self.trial.landing = Some((contact, level));
-        self.anchor(Some((contact, level)));
-        let phase = self.here.from + self.here.passed;
+        self.anchor(None);
+        self.place();
+        let start = self.phase();
         let value = self.field.contacts[contact].levels[level];
-        let mut convergence = Convergence::NEW;
-        for _ in 0..MOST_SWEEPS + 10 {
-            let tables = &self.tables[table];
-            let width = self.trial.width;
-            self.field
-                .place(&mut self.batch, phase, width, &tables.passed, &tables.left);
+        let mut before = f64::INFINITY;
+        for sweep in 0..MOST_SWEEPS {
             let change = self.sweep();
             self.integrate();
             self.finish();
+            let width = self.trial.width;
             let gap = self
                 .field
-                .gap(contact, &self.trial.q, &self.trial.v, phase + width);
+                .gap(contact, &self.trial.q, &self.trial.v, start + width);
             let by_phase = gap.rate / self.field.base();
             let correction = (value - gap.value) / by_phase;
-            let rounding =
-                4.0 * f64::EPSILON * ((gap.size + value.abs()) / by_phase.abs() + width.abs());
-            let solved = convergence.next(change, ITERATED * self.tolerance);
-            if solved == Some(Solved::No) || !correction.is_finite() {
+            if !correction.is_finite() || !change.is_finite() {
                 return Solved::No;
             }
-            if correction.abs() <= rounding && solved == Some(Solved::Yes) {
+            let size = gap.size.max(self.here.gaps[contact].size) + value.abs();
+            let size = size / by_phase.abs() + width.abs();
+            let settled = correction.abs() <= SETTLED * size;
+            let remains = match sweep {
+                // This change is from what was not the same step.
+                0 => f64::INFINITY,
+                1 => change,
+                _ => change * (change / before).min(1.0),
+            };
+            before = change;
+            if remains <= ITERATED * self.tolerance && settled {
+                // Measured from the start until here: an iteration from both ends would converge as one of a boundary
+                // value problem, slowly.
+                self.anchor(Some((contact, level)));
+                self.sweep();
+                self.integrate();
+                self.finish();
                 return Solved::Yes;
             }
-            let most = LARGEST_CORRECTION * width.abs();
-            self.trial.width += correction.clamp(-most, most);
+            if !settled {
+                let most = LARGEST_CORRECTION * width.abs();
+                self.widen(correction.clamp(-most, most));
+            }
         }
         Solved::No
+    }
+
+    /// Makes the step wider by a little.
+    fn widen(&mut self, growth: f64) {
+        self.trial.width += growth;
+        let phase = self.phase();
+        let tables = &self.tables[self.trial.table];
+        let parts = (&tables.passed, &tables.left);
+        self.field
+            .widen(&mut self.batch, phase, self.trial.width, growth, parts);
+        self.drift(growth);
+    }
+
+    /// Moves the states at the nodes along the motion once the width has grown by a little: frozen at their old places in
+    /// the step they would have to be iterated anew.
+    fn drift(&mut self, growth: f64) {
+        let time = growth / self.field.base();
+        let passed = &self.tables[self.trial.table].passed;
+        let batch = &mut self.batch;
+        for i in 0..self.here.q.len() {
+            for j in 0..S {
+                let (time, v, a) = (time * passed[j], batch.v[i][j], batch.a[i][j]);
+                let shift = time * (v + 0.5 * time * a);
+                batch.v[i][j] = v + time * a;
+                batch.q[i][j] += shift;
+                batch.shift[0][i][j] += shift;
+            }
+        }
+    }
+
+    /// Whether a gap at a node is clearly off its piece.
+    fn strays(&self) -> bool {
+        self.batch
+            .contacts
+            .iter()
+            .enumerate()
+            .any(|(contact, samples)| {
+                let levels = &self.field.contacts[contact].levels;
+                let piece = self.here.pieces[contact];
+                let anchor = self.anchors[contact].gap;
+                let (mut least, mut most) = (anchor, anchor);
+                for rise in &samples.rise {
+                    least = least.min(anchor + rise);
+                    most = most.max(anchor + rise);
+                }
+                let margin = CLEARLY * (most - least);
+                piece
+                    .checked_sub(1)
+                    .is_some_and(|lower| least < levels[lower] - margin)
+                    || levels.get(piece).is_some_and(|upper| most > upper + margin)
+            })
     }
 
     /// Gaps are measured from the start of the step; that of a contact which lands, from its level at the end.
@@ -188,38 +274,29 @@ impl<const S: usize> Engine<'_, S> {
 
     /// New accelerations; how much rates change by that, relative to their scales.
     fn sweep(&mut self) -> f64 {
-        let time = self.time();
+        let time = self.time().abs();
+        let base = self.field.base().abs();
         self.batch.ends[0].copy_from_slice(&self.here.q);
         self.before[0].copy_from_slice(&self.batch.a);
         self.field
             .accelerate(&mut self.batch, &self.here.pieces, &self.anchors);
         self.work.forces += S;
         let mut change = 0.0_f64;
-        for i in 0..self.here.q.len() {
-            let [mut most, mut size] = [0.0_f64; 2];
-            for j in 0..S {
-                let difference = self.batch.a[i][j] - self.before[0][i][j];
-                most = larger(most, difference.abs());
-                size = larger(size, self.batch.v[i][j].abs());
-            }
-            let [position, rate] = self.scales(&self.here.sizes, i);
-            // On a step that is short beside the motion's own time, an error of the rate hardly moves the position.
-            change = larger(
-                change,
-                time.abs() * most / larger(rate, size).max(position * self.field.base().abs()),
-            );
+        for (i, &[position, rate]) in self.scales.iter().enumerate() {
+            let most = largest_difference(&self.batch.a[i], &self.before[0][i]);
+            let scale = rate.max(base * position).max(largest(&self.batch.v[i]));
+            change = larger(change, time * most / scale);
         }
         change
     }
 
     /// States at the nodes of another step from the same start, from those of the last trial.
-    fn resample(&mut self, width: f64, table: usize) {
+    pub(super) fn resample(&mut self, width: f64, table: usize) {
         let n = self.here.q.len();
         self.before[0].copy_from_slice(&self.batch.q);
         self.before[1].copy_from_slice(&self.batch.v);
         let map = self.tables[self.trial.table].map;
         let scale = width / self.trial.width;
-        let mut q_end = [0.0; 2];
         for j in 0..S {
             let passed = scale * self.tables[table].passed[j];
             let u = map.inverse(passed, 1.0 - passed);
@@ -242,31 +319,28 @@ impl<const S: usize> Engine<'_, S> {
                 .zip(&self.weights[1..])
                 .map(|(x, w)| x * w)
                 .sum();
-            q_end[0] =
+            let end =
                 self.weights[0] * self.here.q[i] + inner + self.weights[S + 1] * self.trial.q[i];
-            self.batch.ends[1][i] = q_end[0];
-            for j in 0..S {
-                self.batch.shift[0][i][j] = self.batch.q[i][j] - self.here.q[i];
-                self.batch.shift[1][i][j] = self.batch.q[i][j] - q_end[0];
-            }
+            self.trial.q[i] = end;
+            self.batch.shift[0][i] = self.batch.q[i].map(|q| q - self.here.q[i]);
         }
     }
 
     /// The error of the motion on this step in parts of the tolerance, from how fast its Legendre coefficients fall.
-    pub(super) fn error(&self) -> f64 {
+    pub(super) fn error(&mut self) -> f64 {
         let time = self.time().abs();
         let tables = &self.tables[self.trial.table];
-        let mut sizes = self.here.sizes.clone();
-        for (i, size) in sizes.iter_mut().enumerate() {
-            for j in 0..S {
-                size[0] = larger(size[0], self.batch.q[i][j].abs());
-                size[1] = larger(size[1], self.batch.v[i][j].abs());
-            }
+        for (i, size) in self.trial.sizes.iter_mut().enumerate() {
+            let [position, rate] = self.here.sizes[i];
+            *size = [
+                larger(position, largest(&self.batch.q[i])),
+                larger(rate, largest(&self.batch.v[i])),
+            ];
         }
+        write_scales(&self.trial.sizes, self.field.base(), &mut self.scales);
         let mut error = 0.0_f64;
-        for i in 0..sizes.len() {
-            let [position, rate] = self.scales(&sizes, i);
-            let of_rate = tail(tables, &self.batch.a[i]) * time / (2 * S) as f64;
+        for (i, &[position, rate]) in self.scales.iter().enumerate() {
+            let of_rate = tail(&tables.highest, &self.batch.a[i]) * time / (2 * S) as f64;
             error = larger(error, of_rate / rate);
             error = larger(error, of_rate * time / (2 * S) as f64 / position);
         }
@@ -275,13 +349,7 @@ impl<const S: usize> Engine<'_, S> {
 
     /// Takes the trial over.
     pub(super) fn accept(&mut self) -> Result<(), FlowError> {
-        for i in 0..self.here.q.len() {
-            let size = &mut self.here.sizes[i];
-            for j in 0..S {
-                size[0] = size[0].max(self.batch.q[i][j].abs());
-                size[1] = size[1].max(self.batch.v[i][j].abs());
-            }
-        }
+        self.here.sizes.copy_from_slice(&self.trial.sizes);
         self.here.q.copy_from_slice(&self.trial.q);
         self.here.v.copy_from_slice(&self.trial.v);
         self.here.passed += self.trial.width;
@@ -304,8 +372,8 @@ impl<const S: usize> Engine<'_, S> {
 }
 
 /// The size of the first Legendre coefficient that is left out, from the last four that are known.
-pub(super) fn tail<const S: usize>(tables: &Tables<S>, a: &[f64; S]) -> f64 {
-    let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|index| dot(&tables.highest[index], a).abs());
+pub(super) fn tail<const S: usize>(highest: &[[f64; S]; HIGHEST], a: &[f64; S]) -> f64 {
+    let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|index| dot(&highest[index], a).abs());
     let (last, before) = (c0 + c1, c2 + c3);
     let ratio = if before > 0.0 {
         (last / before).sqrt().min(1.0)
@@ -320,12 +388,42 @@ pub(super) fn larger(x: f64, y: f64) -> f64 {
     if x > y || x.is_nan() { x } else { y }
 }
 
-pub(super) fn dot<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
+/// The largest size of a row's entries; a NaN or the largest of the others if there are NaNs.
+#[inline]
+fn largest<const S: usize>(x: &[f64; S]) -> f64 {
+    let mut most = [0.0_f64; 4];
+    for part in x.chunks_exact(4) {
+        for l in 0..4 {
+            most[l] = most[l].max(part[l].abs());
+        }
+    }
+    most[0].max(most[1]).max(most[2].max(most[3]))
+}
+
+/// The largest size of the entries' differences; infinite if they are not finite.
+#[inline]
+fn largest_difference<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
+    let mut difference = [0.0; S];
     let mut sum = 0.0;
     for j in 0..S {
-        sum += x[j] * y[j];
+        difference[j] = x[j] - y[j];
+        sum += 0.0 * difference[j];
     }
-    sum
+    if sum == 0.0 {
+        largest(&difference)
+    } else {
+        f64::INFINITY
+    }
+}
+
+pub(super) fn dot<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
+    let mut sums = [0.0; 4];
+    for (x, y) in x.chunks_exact(4).zip(y.chunks_exact(4)) {
+        for l in 0..4 {
+            sums[l] += x[l] * y[l];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 /// Equation (2) of [`map`](super::map): rates and changes of position at the nodes.

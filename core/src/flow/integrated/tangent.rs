@@ -37,7 +37,7 @@ impl<const S: usize> Engine<'_, S> {
                     let by_v = time * self.slopes.by_v[i * n + l][j];
                     let to = &mut row[l * S..][..S];
                     for k in 0..S {
-                        to[k] = -by_q * tables.position[k][j] - by_v * tables.rate[k][j];
+                        to[k] = -by_q * tables.weak_position[k][j] - by_v * tables.weak_rate[k][j];
                     }
                 }
                 row[i * S + j] += 1.0;
@@ -80,7 +80,7 @@ impl<const S: usize> Engine<'_, S> {
                 to[n + i] = dv[i]
                     + time * dot(&tables.end_rate, da)
                     + kappa * (self.trial.v[i] - self.here.v[i]);
-                of_rate = larger(of_rate, tail(tables, da));
+                of_rate = larger(of_rate, tail(&tables.weak_highest, da));
             }
             let most = |column: &[f64]| column.iter().fold(0.0_f64, |m, x| larger(m, x.abs()));
             let size = &mut self.column_sizes[index];

@@ -1,4 +1,8 @@
 //! Against values known from elsewhere: event-located DOP853 in 80-bit arithmetic, and closed forms in 60 digits.
+#![allow(
+    clippy::unreadable_literal,
+    reason = "numbers as they were published, to be searched for"
+)]
 
 use std::f64::consts::TAU;
 
