@@ -27,6 +27,8 @@
 //! [`fourier::series`] says. Nothing panics on the values of parameters or options: what is wrong comes back as an
 //! [`Error`] before any work, and a branch that ends early comes back with what was computed and with the reason.
 //!
+//! [`Shooting`] finds the same orbits in the time domain, without any truncation, and refines what the balance has found.
+//!
 //! The modules [`system`] and [`law`](mod@law) are the contract between generated code and the runtime; a system written by hand
 //! against them is as good as a declared one. [`generic`] interprets the same declarations.
 #![deny(missing_docs)]
