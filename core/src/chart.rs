@@ -23,9 +23,12 @@
 //! ```
 
 mod axis;
+mod cloud;
 mod drawing;
 mod legend;
+mod page;
 mod polyline;
+mod raster;
 mod svg;
 #[cfg(test)]
 mod tests;
@@ -33,6 +36,8 @@ mod tests;
 use std::path::{Path, PathBuf};
 
 pub use axis::Scale;
+pub use page::Page;
+pub use raster::{Colour, Raster};
 
 /// A chart that is put together by parts and then written. Without any part it is an empty frame.
 ///
@@ -46,6 +51,10 @@ pub struct Chart {
     curves: Vec<Curve>,
     references: Vec<Reference>,
     markers: Vec<Markers>,
+    traces: Vec<Trace>,
+    clouds: Vec<Cloud>,
+    raster: Option<Raster>,
+    limits: Option<[[f64; 2]; 2]>,
 }
 
 /// A curve made of runs, each of one stability.
@@ -86,7 +95,27 @@ pub struct Reference {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Points marked by a shape: circles for the first kind added to a chart, then squares, diamonds and triangles.
+/// A plain line, such as a motion: the first solid, the others dashed or dotted.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trace {
+    /// What the legend says of it; nothing if it is empty.
+    pub label: String,
+    /// Points `[x, y]` in the order of the line.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Many points, drawn as dots. Of several clouds the last is dark and drawn over the others, which are lighter and have larger
+/// dots.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Cloud {
+    /// What the legend says of it; nothing if it is empty.
+    pub label: String,
+    /// Points `[x, y]` in any order.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Points marked by a shape: circles for the first kind added to a chart, then squares, diamonds, triangles, and these upside
+/// down or crossed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Markers {
     /// What the legend says of them.
@@ -152,6 +181,13 @@ impl Chart {
         self
     }
 
+    /// Shows this part of the plane, whatever there is to show; an axis must be linear.
+    #[must_use]
+    pub fn limits(mut self, x: [f64; 2], y: [f64; 2]) -> Self {
+        self.limits = Some([x, y]);
+        self
+    }
+
     /// Adds a curve.
     #[must_use]
     pub fn curve(mut self, curve: Curve) -> Self {
@@ -170,6 +206,27 @@ impl Chart {
     #[must_use]
     pub fn markers(mut self, markers: Markers) -> Self {
         self.markers.push(markers);
+        self
+    }
+
+    /// Adds a plain line.
+    #[must_use]
+    pub fn trace(mut self, trace: Trace) -> Self {
+        self.traces.push(trace);
+        self
+    }
+
+    /// Adds a cloud of dots.
+    #[must_use]
+    pub fn cloud(mut self, cloud: Cloud) -> Self {
+        self.clouds.push(cloud);
+        self
+    }
+
+    /// Puts coloured cells behind everything else. The axes then show them and nothing beyond.
+    #[must_use]
+    pub fn raster(mut self, raster: Raster) -> Self {
+        self.raster = Some(raster);
         self
     }
 

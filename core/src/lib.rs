@@ -49,6 +49,7 @@ mod continuation;
 #[doc(hidden)]
 pub mod emitted;
 mod error;
+pub mod export;
 pub mod flow;
 mod follower;
 pub mod fourier;

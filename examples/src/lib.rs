@@ -3,4 +3,6 @@
 //! A program's `main.rs` only starts it; what it does is here, where tests can call it. To declare and trace an oscillator
 //! of one's own, [`response::models`] is the part to copy.
 
+pub mod attractors;
+pub mod model;
 pub mod response;

@@ -62,12 +62,12 @@ fn numbers<'a>(object: &'a Value, names: &'a [&str]) -> impl Iterator<Item = f64
 #[test]
 fn without_arguments_it_is_figure_5b() {
     let options = options(&[]);
-    assert!(options.loses_contact());
+    assert!(options.model.loses_contact());
     let values = [
-        options.alpha,
-        options.zeta,
-        options.load,
-        options.drive,
+        options.model.alpha,
+        options.model.zeta,
+        options.model.load,
+        options.model.drive,
         options.from,
         options.to,
     ];
@@ -83,8 +83,8 @@ fn every_option_is_understood() {
                --period 2 --harmonics 7 --samples 99 --aft sampled --tolerance 1e-5 --max-points 10 --at 1.5 -0.2 \
                --svg a.svg --csv b.csv --json c.json --quiet";
     let options = options(&all.split_whitespace().collect::<Vec<_>>());
-    assert!(!options.loses_contact() && options.quiet);
-    assert_eq!((options.load, options.omega), (-0.5, 2.0));
+    assert!(!options.model.loses_contact() && options.quiet);
+    assert_eq!((options.model.load, options.model.omega), (-0.5, 2.0));
     assert_eq!(
         (options.harmonics, options.samples, options.period),
         (Some(7), Some(99), 2)
@@ -333,10 +333,10 @@ fn a_summary_says_what_matters() {
 fn contact_with_a_linear_spring_is_lost_at_twice_the_load() {
     for load in ["0.5", "1"] {
         let options = options(&["--alpha", "1", "--load", load]);
-        let boundary = loss_of_contact(&options, 0.6..=1.6, || false);
+        let boundary = loss_of_contact(&options.model, 0.6..=1.6, || false);
         assert!(boundary.len() > 20);
         for [omega, size] in boundary {
-            let error = size - 2.0 * options.load;
+            let error = size - 2.0 * options.model.load;
             assert!(error.abs() < 1e-4, "{size} at {omega} for load {load}");
         }
     }
@@ -345,7 +345,7 @@ fn contact_with_a_linear_spring_is_lost_at_twice_the_load() {
 #[test]
 fn contact_that_cannot_be_lost_has_no_boundary() {
     for arguments in [&["--continuous"][..], &["--load", "0"], &["--load", "-1"]] {
-        let boundary = loss_of_contact(&options(arguments), 0.6..=1.6, || false);
+        let boundary = loss_of_contact(&options(arguments).model, 0.6..=1.6, || false);
         assert_eq!(boundary, Vec::<[f64; 2]>::new());
     }
 }

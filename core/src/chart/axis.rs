@@ -57,6 +57,16 @@ impl Range {
         }
     }
 
+    /// A linear range with these ends; opened if they are the same.
+    pub(super) fn between(from: f64, to: f64) -> Self {
+        let (low, high) = (from.min(to), from.max(to));
+        if high > low {
+            let scale = Scale::Linear;
+            return Self { scale, low, high };
+        }
+        Self::of(Scale::Linear, [low, high].into_iter(), false)
+    }
+
     /// Where a value is on the axis: 0 at the low end, 1 at the high end. `None` if it cannot be drawn.
     pub(super) fn position(&self, value: f64) -> Option<f64> {
         let position = (coordinate(self.scale, value)? - self.low) / (self.high - self.low);

@@ -1,13 +1,14 @@
 //! Puts a chart on the page.
 
 use super::axis::{Range, Ticks, superscript};
+use super::cloud::{self, Dots};
 use super::legend::{Entry, Legend, Sample};
 use super::polyline::polylines;
 use super::svg::{Anchor, INK, Pen, Pixel, Rectangle, Svg, fitted, width_of};
 use super::{Axis, Chart, Line};
 
-const WIDTH: f64 = 900.0;
-const HEIGHT: f64 = 600.0;
+pub(super) const WIDTH: f64 = 900.0;
+pub(super) const HEIGHT: f64 = 600.0;
 const MARGIN: f64 = 18.0;
 /// Sizes of letters.
 const TITLE: f64 = 19.0;
@@ -49,7 +50,10 @@ pub(super) fn draw(chart: &Chart) -> String {
     let size = fitted(&chart.title, TITLE, WIDTH - 2.0 * MARGIN);
     let baseline = MARGIN + 0.8 * TITLE;
     svg.text([WIDTH / 2.0, baseline], size, Anchor::Middle, &chart.title);
-    plot.draw_axes(&mut svg);
+    if let Some(raster) = &chart.raster {
+        raster.draw(&mut svg, &plot.frame);
+    }
+    plot.draw_axes(&mut svg, chart.raster.is_none());
     contents.draw(&mut svg);
     plot.draw_border(&mut svg);
     if !legend.is_empty() {
@@ -105,8 +109,14 @@ impl Plot {
     /// The axes of a chart, with some room left free on the right.
     fn of(chart: &Chart, free: f64) -> Self {
         let values = |k: usize| shown(chart).map(move |point| point[k]);
-        let x = Range::of(chart.x.scale, values(0), false);
-        let y = Range::of(chart.y.scale, values(1), true);
+        let cells = chart.raster.as_ref().map(|raster| [raster.x, raster.y]);
+        let (x, y) = match cells.or(chart.limits) {
+            Some([x, y]) => (Range::between(x[0], x[1]), Range::between(y[0], y[1])),
+            None => (
+                Range::of(chart.x.scale, values(0), false),
+                Range::of(chart.y.scale, values(1), true),
+            ),
+        };
         let y = Ruler::of(&chart.y, y, 0.6 * HEIGHT, |_| TICK);
         let x = Ruler::of(&chart.x, x, 0.8 * WIDTH - free, |label| {
             width_of(label, TICK)
@@ -142,7 +152,7 @@ impl Plot {
     }
 
     /// Grid, ticks and all that is written at the axes.
-    fn draw_axes(&self, svg: &mut Svg) {
+    fn draw_axes(&self, svg: &mut Svg, with_grid: bool) {
         let (mut grid, mut minor) = (Vec::new(), Vec::new());
         let frame = &self.frame;
         for (position, label) in &self.x.labelled {
@@ -163,7 +173,9 @@ impl Plot {
             let [x, y] = self.at([0.0, position]);
             minor.push(vec![[x, y], [x + 4.0, y]]);
         }
-        svg.lines(&grid, GRID);
+        if with_grid {
+            svg.lines(&grid, GRID);
+        }
         svg.lines(&minor, MINOR);
 
         let (x, y) = (&self.x.label, &self.y.label);
@@ -197,6 +209,10 @@ struct Contents {
     references: Vec<Vec<Vec<Pixel>>>,
     runs: Vec<(Pen, Vec<Vec<Pixel>>)>,
     markers: Vec<(Shape, Vec<Pixel>)>,
+    traces: Vec<Vec<Vec<Pixel>>>,
+    clouds: Vec<Dots>,
+    /// Everything is covered by coloured cells.
+    covered: Option<Rectangle>,
 }
 
 impl Contents {
@@ -212,12 +228,21 @@ impl Contents {
         let markers = chart.markers.iter().enumerate().map(|(index, markers)| {
             let points = markers.points.iter();
             let pixels = points.filter_map(|&point| plot.pixel(point));
+            let pixels = pixels.filter(|&pixel| plot.frame.grown(0.5).contains(pixel));
             (Shape::of(index), pixels.collect())
         });
+        let traces = chart.traces.iter();
+        let clouds = chart.clouds.iter();
+        let place = |&point: &[f64; 2]| plot.pixel(point).filter(|&p| plot.frame.contains(p));
         Self {
             references: references.map(|line| lines(&line.points)).collect(),
             runs: runs.collect(),
             markers: markers.collect(),
+            traces: traces.map(|trace| lines(&trace.points)).collect(),
+            clouds: clouds
+                .map(|cloud| Dots::of(cloud.points.iter().filter_map(place)))
+                .collect(),
+            covered: chart.raster.is_some().then_some(plot.frame),
         }
     }
 
@@ -225,11 +250,16 @@ impl Contents {
     fn everything(&self) -> Vec<Vec<Pixel>> {
         let references = self.references.iter().flatten();
         let runs = self.runs.iter().flat_map(|(_, lines)| lines);
+        let traces = self.traces.iter().flatten();
         let markers = self.markers.iter().flat_map(|(_, pixels)| pixels);
+        let covered = self.covered.iter().flat_map(Rectangle::scanned);
         references
             .chain(runs)
+            .chain(traces)
             .cloned()
             .chain(markers.map(|&pixel| vec![pixel]))
+            .chain(self.clouds.iter().flat_map(Dots::lines))
+            .chain(covered)
             .collect()
     }
 
@@ -239,6 +269,12 @@ impl Contents {
         }
         for (pen, lines) in &self.runs {
             svg.lines(lines, *pen);
+        }
+        for (index, lines) in self.traces.iter().enumerate() {
+            svg.lines(lines, trace_pen(index));
+        }
+        for (index, dots) in self.clouds.iter().enumerate() {
+            dots.draw(svg, cloud::pen(index, self.clouds.len()));
         }
         for (shape, pixels) in &self.markers {
             for &pixel in pixels {
@@ -255,11 +291,24 @@ pub(super) enum Shape {
     Square,
     Diamond,
     Triangle,
+    Down,
+    Cross,
+    Plus,
+    Crossed,
 }
 
 impl Shape {
     fn of(index: usize) -> Self {
-        [Self::Circle, Self::Square, Self::Diamond, Self::Triangle][index % 4]
+        [
+            Self::Circle,
+            Self::Square,
+            Self::Diamond,
+            Self::Triangle,
+            Self::Down,
+            Self::Cross,
+            Self::Plus,
+            Self::Crossed,
+        ][index % 8]
     }
 }
 
@@ -274,7 +323,43 @@ pub(super) fn draw_shape(svg: &mut Svg, shape: Shape, [x, y]: Pixel) {
         Shape::Square => closed(&[[-4.5, -4.5], [4.5, -4.5], [4.5, 4.5], [-4.5, 4.5]]),
         Shape::Diamond => closed(&[[0.0, -6.5], [6.5, 0.0], [0.0, 6.5], [-6.5, 0.0]]),
         Shape::Triangle => closed(&[[0.0, -6.0], [5.8, 4.2], [-5.8, 4.2]]),
+        Shape::Down => closed(&[[0.0, 6.0], [5.8, -4.2], [-5.8, -4.2]]),
+        Shape::Cross => closed(&turned(&PLUS)),
+        Shape::Plus => closed(&PLUS),
+        Shape::Crossed => {
+            svg.circle([x, y], 5.0, "#ffffff", MARKER);
+            let bar = |u: f64, v: f64| vec![[x - u, y - v], [x + u, y + v]];
+            svg.lines(&[bar(3.5, 3.5), bar(3.5, -3.5)], MARKER);
+        }
     }
+}
+
+/// The outline of a cross with upright bars.
+const PLUS: [Pixel; 12] = [
+    [-1.8, -6.0],
+    [1.8, -6.0],
+    [1.8, -1.8],
+    [6.0, -1.8],
+    [6.0, 1.8],
+    [1.8, 1.8],
+    [1.8, 6.0],
+    [-1.8, 6.0],
+    [-1.8, 1.8],
+    [-6.0, 1.8],
+    [-6.0, -1.8],
+    [-1.8, -1.8],
+];
+
+/// Turned by an eighth.
+fn turned(corners: &[Pixel]) -> Vec<Pixel> {
+    let part = std::f64::consts::FRAC_1_SQRT_2;
+    let turn = |[u, v]: &Pixel| [part * (u - v), part * (u + v)];
+    corners.iter().map(turn).collect()
+}
+
+fn trace_pen(index: usize) -> Pen {
+    let dashes = ["", "7 3", "1.5 2.5", "10 3 2 3"][index % 4];
+    pen(COLOURS[index % COLOURS.len()], 1.2, dashes)
 }
 
 fn curve_pen(index: usize, line: Line) -> Pen {
@@ -286,15 +371,20 @@ fn curve_pen(index: usize, line: Line) -> Pen {
     }
 }
 
-/// What decides the range of the axes: curves and markers; without any, the references.
+/// What decides the range of the axes: everything but the references, and without anything else those.
 fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
     let runs = chart.curves.iter().flat_map(|curve| &curve.runs);
     let curves = runs.flat_map(|run| &run.points);
     let markers = chart.markers.iter().flat_map(|markers| &markers.points);
-    let alone = chart.curves.is_empty() && chart.markers.is_empty();
+    let traces = chart.traces.iter().flat_map(|trace| &trace.points);
+    let clouds = chart.clouds.iter().flat_map(|cloud| &cloud.points);
+    let plain = chart.traces.is_empty() && chart.clouds.is_empty();
+    let alone = plain && chart.curves.is_empty() && chart.markers.is_empty();
     let references = chart.references.iter().filter(move |_| alone);
     curves
         .chain(markers)
+        .chain(traces)
+        .chain(clouds)
         .chain(references.flat_map(|line| &line.points))
         .filter(|point| point.iter().all(|value| value.is_finite()))
         .copied()
@@ -328,8 +418,22 @@ fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
             add(Sample::Line(REFERENCE), &reference.label);
         }
     }
+    for (index, (trace, lines)) in chart.traces.iter().zip(&contents.traces).enumerate() {
+        if !lines.is_empty() && !trace.label.is_empty() {
+            add(Sample::Line(trace_pen(index)), &trace.label);
+        }
+    }
+    for (index, cloud) in chart.clouds.iter().enumerate() {
+        if !cloud.points.is_empty() && !cloud.label.is_empty() {
+            let pen = cloud::pen(index, chart.clouds.len());
+            add(Sample::Dots(pen), &cloud.label);
+        }
+    }
+    for (colour, label) in chart.raster.iter().flat_map(super::raster::Raster::shown) {
+        add(Sample::Area(colour), label);
+    }
     for (markers, (shape, pixels)) in chart.markers.iter().zip(&contents.markers) {
-        if !pixels.is_empty() {
+        if !pixels.is_empty() && !markers.label.is_empty() {
             add(Sample::Marker(*shape), &markers.label);
         }
     }

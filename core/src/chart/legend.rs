@@ -23,6 +23,9 @@ pub(super) struct Entry {
 pub(super) enum Sample {
     Line(Pen),
     Marker(Shape),
+    Dots(Pen),
+    /// A colour of cells.
+    Area(&'static str),
 }
 
 /// Entries with the room they take.
@@ -110,6 +113,16 @@ impl Legend {
                     svg.lines(&[vec![[start, middle], [start + SAMPLE, middle]]], pen);
                 }
                 Sample::Marker(shape) => draw_shape(svg, shape, [start + SAMPLE / 2.0, middle]),
+                Sample::Dots(pen) => {
+                    let dot = |i: f64| vec![[start + i * SAMPLE / 4.0, middle]];
+                    svg.dots(&[dot(1.0), dot(2.0), dot(3.0)], pen);
+                }
+                Sample::Area(colour) => {
+                    let (left, right) = (start + 0.25 * SAMPLE, start + 0.75 * SAMPLE);
+                    let (top, bottom) = (middle - 6.0, middle + 6.0);
+                    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+                    svg.polygon(&corners, colour, background);
+                }
             }
             let text = [start + SAMPLE + MARGIN, middle + 0.35 * self.size];
             svg.text(text, self.size, Anchor::Start, &entry.label);

@@ -56,6 +56,15 @@ impl Rectangle {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
     }
 
+    /// Lines so close that nothing fits between them.
+    pub(super) fn scanned(&self) -> Vec<Vec<Pixel>> {
+        let line = |i: i32| {
+            let y = self.top + self.height * f64::from(i) / 20.0;
+            vec![[self.left, y], [self.right(), y]]
+        };
+        (0..=20).map(line).collect()
+    }
+
     /// Larger by a margin on every side.
     pub(super) fn grown(&self, margin: f64) -> Self {
         Self {
@@ -98,6 +107,35 @@ impl Svg {
         self.push(format_args!(
             "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
              stroke-linejoin=\"round\"{dashes}/>"
+        ));
+    }
+
+    /// Lines with round ends; one of a single point is a dot.
+    pub(super) fn dots(&mut self, lines: &[Vec<Pixel>], pen: Pen) {
+        if lines.is_empty() {
+            return;
+        }
+        let Pen { colour, width, .. } = pen;
+        let mut path = String::new();
+        for line in lines {
+            let end = if line.len() == 1 { "h0" } else { "" };
+            // Writing to a string does not fail.
+            let _ = write!(path, "{}{end}", Path(std::slice::from_ref(line)));
+        }
+        self.push(format_args!(
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+             stroke-linecap=\"round\"/>"
+        ));
+    }
+
+    /// A picture in PNG format, stretched over a rectangle without smoothing.
+    pub(super) fn image(&mut self, place: &Rectangle, base64: &str) {
+        let (x, y) = (Number(place.left), Number(place.top));
+        let (width, height) = (Number(place.width), Number(place.height));
+        self.push(format_args!(
+            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
+             style=\"image-rendering:pixelated\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+             xlink:href=\"data:image/png;base64,{base64}\"/>"
         ));
     }
 

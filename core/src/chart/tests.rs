@@ -135,3 +135,61 @@ fn a_file_that_cannot_be_written_is_named() {
     let text = error.expect_err("the folder is missing").to_string();
     assert!(text.contains("no such folder"), "{text}");
 }
+
+#[test]
+fn motions_dots_and_cells_have_their_place_and_legend() {
+    let circle = |r: f64| {
+        let at = move |i: i32| [r * f64::from(i).cos(), r * f64::from(i).sin()];
+        (0..30).map(at).collect::<Vec<_>>()
+    };
+    let chart = Chart::new("phase portrait")
+        .trace(Trace {
+            label: "period 1".into(),
+            points: circle(1.0),
+        })
+        .trace(Trace {
+            label: String::new(),
+            points: circle(2.0),
+        })
+        .cloud(Cloud {
+            label: "up".into(),
+            points: circle(0.5),
+        })
+        .cloud(Cloud {
+            label: "down".into(),
+            points: vec![[0.0, f64::NAN]],
+        })
+        .raster(Raster {
+            x: [-3.0, 3.0],
+            y: [-2.0, 2.0],
+            columns: 2,
+            cells: vec![0, 1, 1, 0],
+            classes: vec![
+                ("basin of period 1".into(), Colour::Class(0)),
+                ("escape".into(), Colour::None),
+            ],
+        });
+    let svg = chart.to_svg();
+    for part in [
+        "period 1",
+        "up",
+        "down",
+        "basin of period 1",
+        "escape",
+        "data:image/png;base64,",
+        "h0",
+    ] {
+        assert!(svg.contains(part), "{part}");
+    }
+    assert!(!svg.contains("NaN"));
+    let page = Page::new(2)
+        .chart(chart.clone())
+        .chart(chart)
+        .chart(Chart::default());
+    let svg = page.to_svg();
+    assert_eq!(svg.matches("<svg ").count(), 4);
+    assert!(
+        svg.contains("<svg x=\"900\" y=\"0\" xmlns")
+            && svg.contains("<svg x=\"0\" y=\"600\" xmlns")
+    );
+}

@@ -4,7 +4,16 @@
 //! the frequency. A state is `(q, dq/dt)`: coordinates, then their derivatives by *time*.
 
 pub mod affine;
+pub mod basin;
+pub mod divergence;
+pub mod estimate;
+pub mod history;
+pub mod log;
+pub mod lyapunov;
+pub mod poincare;
 pub mod shooting;
+pub mod stroboscope;
+pub mod sweep;
 
 mod field;
 mod integrated;

@@ -5,7 +5,7 @@ use std::ops::{ControlFlow, RangeInclusive};
 use hertzian::{Branch, FrequencyResponse};
 
 use super::models::declared;
-use super::options::Options;
+use crate::model::ModelOptions;
 
 /// Frequencies at which the boundary is computed.
 const FREQUENCIES: usize = 61;
@@ -20,7 +20,7 @@ const POINTS: usize = 200;
 ///
 /// At each frequency the amplitude of the excitation is raised from nearly nothing until the orbit touches zero.
 pub fn loss_of_contact(
-    options: &Options,
+    options: &ModelOptions,
     frequencies: RangeInclusive<f64>,
     interrupted: impl Fn() -> bool,
 ) -> Vec<[f64; 2]> {
@@ -36,7 +36,7 @@ pub fn loss_of_contact(
 }
 
 /// Peak-to-peak of the orbit that touches zero at one frequency.
-fn at_frequency(options: &Options, omega: f64) -> Option<f64> {
+fn at_frequency(options: &ModelOptions, omega: f64) -> Option<f64> {
     let model = declared(options);
     let highest = highest_drive(options, omega);
     let branch = FrequencyResponse::of(&*model)
@@ -85,7 +85,7 @@ fn touching(branch: &Branch<'_>) -> Option<f64> {
 /// More than it takes to open the contact: four times what a linear spring of the stiffness at rest would need.
 ///
 /// At rest `x^alpha = W`, so `x_0 = W^(1/alpha)` and the stiffness is `alpha W / x_0`.
-fn highest_drive(options: &Options, omega: f64) -> f64 {
+fn highest_drive(options: &ModelOptions, omega: f64) -> f64 {
     let rest = options.load.powf(1.0 / options.alpha);
     let stiffness = options.alpha * options.load / rest;
     let dynamic = (stiffness - omega * omega).hypot(2.0 * options.zeta * omega);

@@ -7,7 +7,7 @@
 use hertzian::System;
 
 use super::model_file::{self, ModelError};
-use super::options::Options;
+use crate::model::ModelOptions;
 
 hertzian::oscillator! {
     /// One-sided contact of any exponent.
@@ -115,23 +115,20 @@ hertzian::oscillator! {
     }
 }
 
-/// The oscillator that the options ask for: the one in a file, or a declared one.
+/// The oscillator that the options ask for: the one in a file, or a declared one. What is varied needs no value but the first.
 ///
 /// # Errors
 /// If the file gives none.
-pub fn model(options: &Options) -> Result<Box<dyn System>, ModelError> {
-    match &options.model {
-        Some(path) => {
-            let varied = (options.varied(), options.from);
-            Ok(Box::new(model_file::read(path, &options.set, varied)?))
-        }
+pub fn model(options: &ModelOptions, varied: (&str, f64)) -> Result<Box<dyn System>, ModelError> {
+    match &options.file {
+        Some(path) => Ok(Box::new(model_file::read(path, &options.set, varied)?)),
         None => Ok(declared(options)),
     }
 }
 
 /// The declared oscillator: a specialised one if there is one for the exponent.
-pub fn declared(options: &Options) -> Box<dyn System> {
-    let &Options {
+pub fn declared(options: &ModelOptions) -> Box<dyn System> {
+    let &ModelOptions {
         alpha,
         zeta,
         load,

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 
+use crate::model::ModelOptions;
+
 /// Traces the periodic response of one mass on a power-law contact, says what is stable, and draws it.
 ///
 /// x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = drive cos(omega t) + load
@@ -18,70 +20,9 @@ use clap::{Parser, ValueEnum};
     after_help = "Exit codes: 0 the end of the range was reached; 2 bad input; 3 the branch ended before (what was computed is written)."
 )]
 pub struct Options {
-    /// Exponent of the force, positive
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 1.5,
-        allow_hyphen_values = true
-    )]
-    pub alpha: f64,
-
-    /// Contact that can be lost: force and damping act for x > 0 only (the default)
-    #[arg(long, conflicts_with = "continuous")]
-    pub one_sided: bool,
-
-    /// Contact that cannot be lost: force and damping act everywhere
-    #[arg(long)]
-    pub continuous: bool,
-
-    /// Read the oscillator from this file instead, in the language of `hertzian::oscillator!`
-    #[arg(
-        long,
-        value_name = "FILE",
-        conflicts_with_all = ["alpha", "one_sided", "continuous", "zeta", "load", "drive"]
-    )]
-    pub model: Option<PathBuf>,
-
-    /// Value of a parameter of that oscillator
-    #[arg(long, value_name = "NAME=VALUE", requires = "model", value_parser = setting)]
-    pub set: Vec<(String, f64)>,
-
-    /// Damping ratio, not negative
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 0.032,
-        allow_hyphen_values = true
-    )]
-    pub zeta: f64,
-
-    /// Constant load W
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 1.0,
-        allow_hyphen_values = true
-    )]
-    pub load: f64,
-
-    /// Amplitude A of the excitation; with --sweep drive, the range takes its place
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 0.1,
-        allow_hyphen_values = true
-    )]
-    pub drive: f64,
-
-    /// Frequency of the excitation, positive; used with --sweep drive
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 1.0,
-        allow_hyphen_values = true
-    )]
-    pub omega: f64,
+    /// The oscillator
+    #[command(flatten)]
+    pub model: ModelOptions,
 
     /// What varies along the branch
     #[arg(long, value_enum, default_value_t = Sweep::Omega)]
@@ -186,11 +127,6 @@ impl From<Aft> for hertzian::Aft {
 }
 
 impl Options {
-    /// Whether contact can be lost.
-    pub fn loses_contact(&self) -> bool {
-        self.model.is_none() && !self.continuous
-    }
-
     /// Name of what varies, as the models call it.
     pub fn varied(&self) -> &'static str {
         match self.sweep {
@@ -198,14 +134,4 @@ impl Options {
             Sweep::Drive => "drive",
         }
     }
-}
-
-/// Reads `NAME=VALUE`.
-fn setting(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
-    let value = value
-        .trim()
-        .parse()
-        .map_err(|_| format!("`{value}` is not a number"))?;
-    Ok((name.trim().to_owned(), value))
 }

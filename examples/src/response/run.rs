@@ -81,8 +81,9 @@ pub fn run(
     progress: &mut Progress,
 ) -> Result<Outcome, Failure> {
     check(options)?;
-    let model = model(options).map_err(|error| {
-        let path = options.model.clone().unwrap_or_default();
+    let varied = (options.varied(), options.from);
+    let model = model(&options.model, varied).map_err(|error| {
+        let path = options.model.file.clone().unwrap_or_default();
         Failure::Model(path, error)
     })?;
     let stop = || interrupted.load(Ordering::Relaxed);
@@ -141,7 +142,7 @@ fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a
         .aft(options.aft.into())
         .max_points(options.max_points);
     if options.sweep == Sweep::Drive {
-        request = request.vary("drive").omega(options.omega);
+        request = request.vary("drive").omega(options.model.omega);
     }
     if let Some(harmonics) = options.harmonics {
         request = request.harmonics(harmonics);
@@ -170,7 +171,7 @@ fn solutions_at(options: &Options, branch: &Branch<'_>, warnings: &mut Vec<Strin
 
 /// The library's picture of the branch, with the boundary of lost contact.
 fn picture(options: &Options, branch: &Branch<'_>, stop: impl Fn() -> bool) -> Chart {
-    if options.model.is_some() {
+    if options.model.file.is_some() {
         return branch.chart();
     }
     let chart = branch.chart().title(summary::title(options));
@@ -183,7 +184,7 @@ fn picture(options: &Options, branch: &Branch<'_>, stop: impl Fn() -> bool) -> C
     });
     chart.reference(Reference {
         label: "loss of contact".to_owned(),
-        points: loss_of_contact(options, low..=high, stop),
+        points: loss_of_contact(&options.model, low..=high, stop),
     })
 }
 

@@ -6,23 +6,24 @@ use std::path::Path;
 use hertzian::{Branch, EventKind, Point, Verdict};
 
 use super::options::{Aft, Options, Sweep};
+use crate::model::ModelOptions;
 
 /// As many folds, turns and changes of stability are listed one by one; more of them are counted.
 const LISTED: usize = 6;
 
 /// Title of the picture.
 pub fn title(options: &Options) -> String {
-    let kind = if options.loses_contact() {
+    let kind = if options.model.loses_contact() {
         "One-sided"
     } else {
         "Continuous"
     };
-    let Options {
+    let ModelOptions {
         alpha, zeta, load, ..
-    } = options;
+    } = options.model;
     let fixed = match options.sweep {
-        Sweep::Omega => format!("A = {}", options.drive),
-        Sweep::Drive => format!("ω = {}", options.omega),
+        Sweep::Omega => format!("A = {}", options.model.drive),
+        Sweep::Drive => format!("ω = {}", options.model.omega),
     };
     let period = match options.period {
         1 => String::new(),
@@ -46,7 +47,7 @@ fn write_all(
     at: &[Point],
     written: &[&Path],
 ) -> fmt::Result {
-    match &options.model {
+    match &options.model.file {
         Some(path) => from_file(text, path, options, branch)?,
         None => equation(text, options)?,
     }
@@ -97,7 +98,7 @@ fn from_file(
     let fixed = parameters
         .filter(|(parameter, _)| parameter.name != branch.varied)
         .map(|(parameter, value)| format!("{} = {value}", parameter.name));
-    let omega = (options.sweep == Sweep::Drive).then(|| format!("omega = {}", options.omega));
+    let omega = (options.sweep == Sweep::Drive).then(|| format!("omega = {}", options.model.omega));
     writeln!(
         text,
         "{}\n",
@@ -106,10 +107,10 @@ fn from_file(
 }
 
 fn equation(text: &mut String, options: &Options) -> fmt::Result {
-    let Options {
+    let ModelOptions {
         alpha, zeta, load, ..
-    } = options;
-    let (force, remark) = if options.loses_contact() {
+    } = options.model;
+    let (force, remark) = if options.model.loses_contact() {
         (
             "2 zeta H(x) x' + H(x) x^alpha",
             "  one-sided: H(x) = 1 for x > 0, else 0",
@@ -120,8 +121,8 @@ fn equation(text: &mut String, options: &Options) -> fmt::Result {
     writeln!(text, "x'' + {force} = drive cos(omega t) + load{remark}")?;
     write!(text, "alpha = {alpha}, zeta = {zeta}, load = {load}")?;
     match options.sweep {
-        Sweep::Omega => writeln!(text, ", drive = {}", options.drive)?,
-        Sweep::Drive => writeln!(text, ", omega = {}", options.omega)?,
+        Sweep::Omega => writeln!(text, ", drive = {}", options.model.drive)?,
+        Sweep::Drive => writeln!(text, ", omega = {}", options.model.omega)?,
     }
     writeln!(text)
 }
@@ -235,9 +236,9 @@ fn list(text: &mut String, label: &str, entries: impl Iterator<Item = String>) -
 fn caution(text: &mut String, options: &Options) -> fmt::Result {
     let reason = if options.aft == Aft::Switched {
         return Ok(());
-    } else if options.loses_contact() {
+    } else if options.model.loses_contact() {
         "damping switches with contact"
-    } else if options.model.is_none() && options.alpha < 1.0 {
+    } else if options.model.file.is_none() && options.model.alpha < 1.0 {
         "the stiffness is unbounded at x = 0"
     } else {
         return Ok(());

@@ -1,0 +1,208 @@
+//! Coloured cells, as a picture inside the SVG.
+//!
+//! A grid of 512 by 512 cells would be as many rectangles. As a picture with a palette it is half a byte for each. It is stored
+//! without compression: a compressor would be another dependency, and what is written is small.
+//!
+//! Source: PNG specification (ISO/IEC 15948); RFC 1950, 1951 (stored blocks) and 4648.
+
+use super::svg::{Rectangle, Svg};
+
+/// Coloured cells over a range of both axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Raster {
+    /// The ends of the horizontal range.
+    pub x: [f64; 2],
+    /// The ends of the vertical range.
+    pub y: [f64; 2],
+    /// Number of cells in a row.
+    pub columns: usize,
+    /// The class of every cell, row by row, the lowest first.
+    pub cells: Vec<u8>,
+    /// What the legend says of each class, and its colour. Cells of further classes are white.
+    pub classes: Vec<(String, Colour)>,
+}
+
+/// A colour of cells. All differ in lightness.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Colour {
+    /// One of twelve; neighbours in the list are far from each other in lightness. Others repeat them.
+    Class(usize),
+    /// White.
+    None,
+    /// Light grey.
+    Light,
+    /// Grey.
+    Middle,
+    /// Red.
+    Fault,
+}
+
+/// Hues that colour-blind readers tell apart, ordered so that neighbours differ in lightness.
+const COLOURS: [&str; 12] = [
+    "#f7f0c8", "#0b3c6f", "#f0b428", "#1b7f5a", "#a8d8f0", "#000000", "#d55e00", "#c9e59a",
+    "#6a2c8c", "#e9a3c9", "#3f88c5", "#7a4a1e",
+];
+
+impl Colour {
+    fn code(self) -> &'static str {
+        match self {
+            Self::Class(index) => COLOURS[index % COLOURS.len()],
+            Self::None => "#ffffff",
+            Self::Light => "#c8c8c8",
+            Self::Middle => "#8a8a8a",
+            Self::Fault => "#e00000",
+        }
+    }
+}
+
+/// Classes that a palette of four bits has room for, besides white.
+const CLASSES: u8 = 15;
+
+impl Raster {
+    /// Colours and labels of the classes that cells have.
+    pub(super) fn shown(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let classes = self.classes.iter().take(usize::from(CLASSES)).enumerate();
+        classes
+            .filter(|(class, _)| self.cells.iter().any(|&cell| usize::from(cell) == *class))
+            .map(|(_, (label, colour))| (colour.code(), label.as_str()))
+    }
+
+    pub(super) fn draw(&self, svg: &mut Svg, place: &Rectangle) {
+        if self.columns > 0 && self.cells.len() >= self.columns {
+            svg.image(place, &base64(&self.png()));
+        }
+    }
+
+    /// The cells as a PNG file with a palette.
+    fn png(&self) -> Vec<u8> {
+        let rows = self.cells.len() / self.columns;
+        let codes = self.classes.iter().map(|(_, colour)| colour.code());
+        let codes = codes.take(usize::from(CLASSES));
+        let palette: Vec<u8> = codes.chain(["#ffffff"]).flat_map(bytes_of).collect();
+        let white = (palette.len() / 3 - 1) as u8;
+        let mut pixels = Vec::with_capacity(rows * (self.columns.div_ceil(2) + 1));
+        // Rows from the top; each begins with the number of its filter, which is none.
+        for row in self.cells.chunks_exact(self.columns).rev() {
+            pixels.push(0);
+            for pair in row.chunks(2) {
+                let index = |i: usize| pair.get(i).map_or(white, |&class| class.min(white));
+                pixels.push(index(0) << 4 | index(1));
+            }
+        }
+        let mut header = Vec::new();
+        header.extend((self.columns as u32).to_be_bytes());
+        header.extend((rows as u32).to_be_bytes());
+        // Four bits for each pixel, a palette, the usual compression and filter, no interlacing.
+        header.extend([4, 3, 0, 0, 0]);
+        let mut png = b"\x89PNG\r\n\x1a\n".to_vec();
+        for (name, data) in [
+            (b"IHDR", header),
+            (b"PLTE", palette),
+            (b"IDAT", stored(&pixels)),
+            (b"IEND", Vec::new()),
+        ] {
+            png.extend((data.len() as u32).to_be_bytes());
+            let from = png.len();
+            png.extend(name);
+            png.extend(data);
+            let sum = crc(&png[from..]);
+            png.extend(sum.to_be_bytes());
+        }
+        png
+    }
+}
+
+/// Red, green and blue of `#rrggbb`.
+fn bytes_of(code: &'static str) -> [u8; 3] {
+    let number = u32::from_str_radix(&code[1..], 16).unwrap_or(0);
+    let [_, red, green, blue] = number.to_be_bytes();
+    [red, green, blue]
+}
+
+/// A zlib stream of blocks that are not compressed.
+fn stored(bytes: &[u8]) -> Vec<u8> {
+    let mut stream = vec![0x78, 0x01];
+    let blocks = bytes.chunks(0xffff);
+    let last = blocks.len().saturating_sub(1);
+    for (index, block) in blocks.enumerate() {
+        let length = block.len() as u16;
+        stream.push(u8::from(index == last));
+        stream.extend(length.to_le_bytes());
+        stream.extend((!length).to_le_bytes());
+        stream.extend(block);
+    }
+    let (mut a, mut b) = (1_u32, 0_u32);
+    for &byte in bytes {
+        a = (a + u32::from(byte)) % 65_521;
+        b = (b + a) % 65_521;
+    }
+    stream.extend((b << 16 | a).to_be_bytes());
+    stream
+}
+
+/// The checksum of a PNG chunk.
+fn crc(bytes: &[u8]) -> u32 {
+    let sum = bytes.iter().fold(u32::MAX, |sum, &byte| {
+        let bit = |sum: u32, _| (sum >> 1) ^ (0xedb8_8320 & (sum & 1).wrapping_neg());
+        (0..8).fold(sum ^ u32::from(byte), bit)
+    });
+    !sum
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(group.get(i).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for i in 0..4 {
+            let letter = LETTERS[(bits >> (18 - 6 * i)) as usize & 63];
+            text.push(if i <= group.len() {
+                letter as char
+            } else {
+                '='
+            });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Test vectors of RFC 4648, section 10, and of the PNG and zlib specifications (the CRC of `IEND`, Adler-32 of "Wikipedia").
+    #[test]
+    fn encodings_agree_with_their_specifications() {
+        for (bytes, text) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+        assert_eq!(crc(b"IEND"), 0xae42_6082);
+        let stream = stored(b"Wikipedia");
+        assert_eq!(stream[stream.len() - 4..], 0x11e6_0398_u32.to_be_bytes());
+        assert_eq!(stream[..7], [0x78, 0x01, 1, 9, 0, 0xf6, 0xff]);
+    }
+
+    #[test]
+    fn classes_without_cells_are_not_in_the_legend() {
+        let raster = Raster {
+            x: [0.0, 1.0],
+            y: [0.0, 1.0],
+            columns: 2,
+            cells: vec![0, 2, 2, 9],
+            classes: ["a", "b", "c"]
+                .map(|label| (label.to_owned(), Colour::Class(0)))
+                .to_vec(),
+        };
+        let shown: Vec<_> = raster.shown().map(|(_, label)| label).collect();
+        assert_eq!(shown, ["a", "c"]);
+    }
+}

@@ -1,0 +1,59 @@
+//! Means along a motion with their standard errors, by batch means.
+//!
+//! Values along a chaotic motion are correlated, so the deviation of single values says little of the error of their mean.
+//! Means `m_b` over batches much longer than the correlation are nearly independent:
+//!
+//! ```text
+//! s^2 = 1 / (B (B - 1)) sum_b (m_b - m)^2                                                              (1)
+//! ```
+//!
+//! Source: Flegal and Jones (2010), Annals of Statistics 38, 1034.
+
+/// A mean and its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The mean.
+    pub value: f64,
+    /// Its standard error (1); infinite for fewer than two batches.
+    pub standard_error: f64,
+}
+
+impl Estimate {
+    /// The mean of means of batches that are equally long.
+    pub fn of(means: impl Iterator<Item = f64> + Clone) -> Self {
+        let count = means.clone().count() as f64;
+        let value = means.clone().sum::<f64>() / count;
+        let squares: f64 = means.map(|mean| (mean - value).powi(2)).sum();
+        let standard_error = if count < 2.0 {
+            f64::INFINITY
+        } else {
+            (squares / (count * (count - 1.0))).sqrt()
+        };
+        Self {
+            value,
+            standard_error,
+        }
+    }
+}
+
+impl std::fmt::Display for Estimate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.6} ± {:.1e}", self.value, self.standard_error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_the_mean_and_its_deviation() {
+        let estimate = Estimate::of([1.0, 2.0, 3.0, 6.0].into_iter());
+        assert_eq!(estimate.value, 3.0);
+        assert!((estimate.standard_error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-15);
+        assert_eq!(
+            Estimate::of([1.0].into_iter()).standard_error,
+            f64::INFINITY
+        );
+    }
+}

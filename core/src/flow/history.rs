@@ -1,0 +1,41 @@
+//! Time histories: states at equal distances of phase along a motion.
+
+use std::f64::consts::TAU;
+
+use super::{FlowError, Stretch};
+use crate::flow::stroboscope::Stroboscope;
+
+/// Shows a motion to `see`, at its start and then `samples` times in each of some periods. Times are counted in periods of the
+/// declaration from the start.
+///
+/// # Errors
+/// If the motion cannot be continued. What came before has been shown.
+pub fn record(
+    map: &mut Stroboscope<'_>,
+    state: &mut [f64],
+    (periods, samples): (usize, usize),
+    see: &mut dyn FnMut(f64, &[f64]),
+) -> Result<(), FlowError> {
+    let mut between = state.to_vec();
+    let (flow, phase) = map.flow();
+    for period in 0..periods {
+        let before = period as f64;
+        see(before, state);
+        let mut next = 1;
+        let mut show = |stretch: &dyn Stretch| {
+            let end = stretch.phases().1;
+            while next < samples {
+                let part = next as f64 / samples as f64;
+                if phase + TAU * part > end {
+                    break;
+                }
+                stretch.state(phase + TAU * part, &mut between);
+                see(before + part, &between);
+                next += 1;
+            }
+        };
+        flow.advance(phase, phase + TAU, state, None, Some(&mut show))?;
+    }
+    see(periods as f64, state);
+    Ok(())
+}

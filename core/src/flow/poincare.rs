@@ -1,0 +1,347 @@
+//! Poincare sections: where a motion passes a surface, located on its dense output.
+//!
+//! A surface is `g(tau, state) = 0`. Along each smooth stretch `g` is sampled; a change of sign is closed in to the last bits of
+//! the phase. Where `g` comes near zero and turns back between samples, its extremum is closed in as well, so that two
+//! crossings in quick succession are not lost.
+//!
+//! Source of the iteration: Chandrupatla (1997), Advances in Engineering Software 28, 145.
+
+use std::f64::consts::TAU;
+
+use super::{FlowError, Stretch};
+use crate::flow::stroboscope::Stroboscope;
+
+/// Samples in one period, at least.
+const SAMPLES: f64 = 64.0;
+/// Golden section: each step keeps this part of an interval.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Which crossings of a surface count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From below to above.
+    Rising,
+    /// From above to below.
+    Falling,
+    /// All.
+    Both,
+}
+
+/// A function of phase and state.
+type Function<'a> = dyn Fn(f64, &[f64]) -> f64 + Send + Sync + 'a;
+
+/// A surface in the space of phase and state.
+pub struct Section<'a> {
+    function: Box<Function<'a>>,
+    direction: Direction,
+}
+
+/// A crossing of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing<'a> {
+    /// Periods since the start.
+    pub periods: f64,
+    /// Phase, between that of the stroboscope and one period later.
+    pub phase: f64,
+    /// Coordinates, then their rates.
+    pub state: &'a [f64],
+    /// Whether `g` rises.
+    pub rises: bool,
+}
+
+impl<'a> Section<'a> {
+    /// The zeros of a continuous function of phase and state.
+    pub fn new(
+        direction: Direction,
+        function: impl Fn(f64, &[f64]) -> f64 + Send + Sync + 'a,
+    ) -> Self {
+        Self {
+            function: Box::new(function),
+            direction,
+        }
+    }
+
+    /// One entry of the state passes a value: a coordinate, or with `entry >= n` its rate.
+    pub fn entry(entry: usize, value: f64, direction: Direction) -> Self {
+        Self::new(direction, move |_, state| state[entry] - value)
+    }
+
+    fn counts(&self, rises: bool) -> bool {
+        match self.direction {
+            Direction::Rising => rises,
+            Direction::Falling => !rises,
+            Direction::Both => true,
+        }
+    }
+
+    /// Follows a motion for some periods and shows its crossings, in order.
+    ///
+    /// A motion that starts on the surface and leaves it has not crossed it.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued. What came before has been shown.
+    pub fn follow(
+        &self,
+        map: &mut Stroboscope<'_>,
+        state: &mut [f64],
+        periods: usize,
+        see: &mut dyn FnMut(Crossing<'_>),
+    ) -> Result<(), FlowError> {
+        let mut search = Search {
+            section: self,
+            state: state.to_vec(),
+            side: None,
+            last: 0.0,
+        };
+        let (flow, phase) = map.flow();
+        for period in 0..periods {
+            search.last = (self.function)(phase, state);
+            search.passed(search.last);
+            let mut show = |stretch: &dyn Stretch| {
+                search.scan(stretch, &mut |at, state, rises| {
+                    see(Crossing {
+                        periods: period as f64 + (at - phase) / TAU,
+                        phase: at,
+                        state,
+                        rises,
+                    });
+                });
+            };
+            flow.advance(phase, phase + TAU, state, None, Some(&mut show))?;
+        }
+        Ok(())
+    }
+}
+
+/// What is remembered along a motion.
+struct Search<'s, 'a> {
+    section: &'s Section<'a>,
+    /// Room.
+    state: Vec<f64>,
+    /// Whether the motion was above the surface when last it was not on it.
+    side: Option<bool>,
+    /// `g` at the end of what has been scanned. It is carried from stretch to stretch, since rounding could change its sign
+    /// where one is evaluated by the other's polynomial.
+    last: f64,
+}
+
+impl Search<'_, '_> {
+    fn value(&mut self, stretch: &dyn Stretch, phase: f64) -> f64 {
+        stretch.state(phase, &mut self.state);
+        (self.section.function)(phase, &self.state)
+    }
+
+    /// Whether the side changes at a value; on the surface it does not.
+    fn passed(&mut self, value: f64) -> bool {
+        if value == 0.0 || value.is_nan() {
+            return false;
+        }
+        let above = value > 0.0;
+        self.side.replace(above).is_some_and(|side| side != above)
+    }
+
+    fn scan(&mut self, stretch: &dyn Stretch, see: &mut dyn FnMut(f64, &[f64], bool)) {
+        let (from, to) = stretch.phases();
+        if to <= from {
+            return;
+        }
+        let count = ((to - from) / TAU * SAMPLES).ceil().max(2.0);
+        let at = |i: f64| {
+            if i == count {
+                to
+            } else {
+                from + (to - from) * (i / count)
+            }
+        };
+        let mut before = (from, self.last);
+        let mut here = before;
+        for i in 1..=count as usize {
+            let phase = at(i as f64);
+            let next = (phase, self.value(stretch, phase));
+            if i > 1 && turns_back(before.1, here.1, next.1) {
+                let extreme = self.extremum(stretch, before.0, next.0, here.1 > 0.0);
+                if extreme.1 * here.1 < 0.0 {
+                    self.cross(stretch, before, extreme, see);
+                    self.cross(stretch, extreme, next, see);
+                }
+            }
+            self.cross(stretch, here, next, see);
+            before = here;
+            here = next;
+        }
+        self.last = here.1;
+    }
+
+    /// Shows the crossing between two places, if there is one.
+    fn cross(
+        &mut self,
+        stretch: &dyn Stretch,
+        from: (f64, f64),
+        to: (f64, f64),
+        see: &mut dyn FnMut(f64, &[f64], bool),
+    ) {
+        if self.passed(to.1) && self.section.counts(to.1 > 0.0) {
+            let phase = self.zero(stretch, from, to);
+            stretch.state(phase, &mut self.state);
+            see(phase, &self.state, to.1 > 0.0);
+        }
+    }
+
+    /// The phase between two of different sign where `g` is nearest to zero: Chandrupatla's choice between inverse quadratic
+    /// interpolation and bisection.
+    fn zero(&mut self, stretch: &dyn Stretch, from: (f64, f64), to: (f64, f64)) -> f64 {
+        let (mut a, mut b) = (from, to);
+        let mut t = 0.5;
+        for _ in 0..100 {
+            let phase = a.0 + t * (b.0 - a.0);
+            let new = (phase, self.value(stretch, phase));
+            if new.1 == 0.0 {
+                return phase;
+            }
+            let old = if (new.1 > 0.0) == (a.1 > 0.0) {
+                a
+            } else {
+                std::mem::replace(&mut b, a)
+            };
+            a = new;
+            let width = (b.0 - a.0).abs();
+            if width <= 2.0 * f64::EPSILON * a.0.abs().max(b.0.abs()) {
+                break;
+            }
+            let xi = (a.0 - b.0) / (old.0 - b.0);
+            let phi = (a.1 - b.1) / (old.1 - b.1);
+            let interpolates = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
+            t = if interpolates {
+                let by_old = a.1 / (b.1 - a.1) * (old.1 / (b.1 - old.1));
+                let by_b =
+                    (old.0 - a.0) / (b.0 - a.0) * (a.1 / (old.1 - a.1)) * (b.1 / (old.1 - b.1));
+                by_old + by_b
+            } else {
+                0.5
+            };
+            let least = f64::EPSILON * a.0.abs() / width;
+            t = t.clamp(least, 1.0 - least);
+        }
+        if a.1.abs() < b.1.abs() { a.0 } else { b.0 }
+    }
+
+    /// The smallest `g` between two phases, or the largest: by golden section, until the sign changes.
+    fn extremum(&mut self, stretch: &dyn Stretch, from: f64, to: f64, least: bool) -> (f64, f64) {
+        let sign = if least { 1.0 } else { -1.0 };
+        let (mut low, mut high) = (from, to);
+        let mut place = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+        let mut value = (self.value(stretch, place.0), self.value(stretch, place.1));
+        while high - low > 1e-8 * (to - from) {
+            if sign * value.0.min(value.1) < 0.0 && sign * value.0.max(value.1) < 0.0 {
+                break;
+            }
+            if sign * value.0 < sign * value.1 {
+                high = place.1;
+                place = (high - GOLDEN * (high - low), place.0);
+                value = (self.value(stretch, place.0), value.0);
+            } else {
+                low = place.0;
+                place = (place.1, low + GOLDEN * (high - low));
+                value = (value.1, self.value(stretch, place.1));
+            }
+        }
+        if sign * value.0 < sign * value.1 {
+            (place.0, value.0)
+        } else {
+            (place.1, value.1)
+        }
+    }
+}
+
+/// Whether the middle one of three values on one side of zero is the nearest to it.
+fn turns_back(before: f64, here: f64, next: f64) -> bool {
+    let one_side = before * here > 0.0 && here * next > 0.0;
+    one_side && here.abs() <= before.abs() && here.abs() <= next.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::affine::Affine;
+
+    crate::oscillator! {
+        Linear(x) {
+            param drive;
+            ddot(x) + 4*x = drive*cos(omega*t);
+        }
+    }
+
+    fn map(model: &Linear) -> Stroboscope<'_> {
+        let flow = Affine::new(model, &[model.drive], 1.0).expect("affine");
+        Stroboscope::new(Box::new(flow))
+    }
+
+    /// `x = cos 2 tau + b` passes zero where `cos 2 tau = -b`.
+    fn crossings(offset: f64, direction: Direction) -> Vec<(f64, bool)> {
+        let model = Linear { drive: 0.0 };
+        let section = Section::entry(0, -offset, direction);
+        let mut found = Vec::new();
+        let mut state = [1.0, 0.0];
+        section
+            .follow(&mut map(&model), &mut state, 2, &mut |crossing| {
+                found.push((TAU * crossing.periods, crossing.rises));
+            })
+            .expect("a motion");
+        found
+    }
+
+    #[test]
+    fn crossings_are_where_the_closed_form_says() {
+        let offset: f64 = 0.3;
+        let angle = (-offset).acos() / 2.0;
+        let pi = std::f64::consts::PI;
+        let found = crossings(offset, Direction::Both);
+        let expected = (0..4).flat_map(|k| {
+            let start = pi * f64::from(k);
+            [(start + angle, false), (start + pi - angle, true)]
+        });
+        let expected: Vec<_> = expected.collect();
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!(
+                (found.0 - expected.0).abs() < 1e-13,
+                "{found:?} {expected:?}"
+            );
+            assert_eq!(found.1, expected.1);
+        }
+        assert_eq!(crossings(offset, Direction::Rising).len(), 4);
+        assert_eq!(crossings(offset, Direction::Falling).len(), 4);
+    }
+
+    /// Two crossings within a hundredth of the distance of samples, and a turn just before the surface.
+    #[test]
+    fn two_crossings_between_samples_are_both_found() {
+        let depth = 1e-7;
+        let found = crossings(1.0 - depth, Direction::Both);
+        let half = depth.sqrt() / 2_f64.sqrt();
+        assert_eq!(found.len(), 8, "{found:?}");
+        for (k, pair) in found.chunks(2).enumerate() {
+            let middle = std::f64::consts::PI * (k as f64 + 0.5);
+            for (crossing, sign) in pair.iter().zip([-1.0, 1.0]) {
+                let error = crossing.0 - middle - sign * half;
+                // A crossing at a shallow angle is known to rounding over the slope.
+                assert!(error.abs() < 1e-11, "{error:e}");
+            }
+        }
+        assert_eq!(crossings(1.0 + depth, Direction::Both).len(), 0);
+    }
+
+    /// A surface through the start, through switches and at the ends of periods is passed once each time.
+    #[test]
+    fn a_surface_at_the_end_of_a_stretch_is_crossed_once() {
+        let model = Linear { drive: 0.0 };
+        let section = Section::new(Direction::Both, |_, state| state[1]);
+        let mut count = 0;
+        let mut state = [1.0, 0.0];
+        section
+            .follow(&mut map(&model), &mut state, 10, &mut |_| count += 1)
+            .expect("a motion");
+        // x' = -2 sin 2 tau: at pi/2, pi, 3 pi/2 and, but for rounding, 2 pi of every period.
+        assert!((39..=40).contains(&count), "{count}");
+    }
+}

@@ -1,0 +1,312 @@
+//! Bifurcation diagrams by brute force: what a motion settles to as a parameter or the frequency changes in steps.
+//!
+//! At every value the motion goes on from the last state of the value before, so that it stays with its attractor as long as
+//! there is one: a sweep up and a sweep down show hysteresis.
+
+use super::FlowError;
+use super::log::{Log, LogError, Reader, Writer};
+use super::poincare::{Crossing, Section};
+use super::stroboscope::Stroboscope;
+use crate::system::Variable;
+
+/// What is swept and what is kept.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    /// What changes.
+    pub variable: Variable,
+    /// Its values, in order.
+    pub values: Vec<f64>,
+    /// Where the motion starts, and starts again after it has escaped.
+    pub start: Vec<f64>,
+    /// Periods that are dropped at every value.
+    pub transient: usize,
+    /// Periods that are looked at after those.
+    pub periods: usize,
+    /// A state with an entry beyond this has escaped.
+    pub escape: f64,
+}
+
+/// What was seen at one value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The value.
+    pub value: f64,
+    /// States, one after the other: of the stroboscope, or where the motion crossed a section.
+    pub points: Vec<f64>,
+    /// The motion grew without bound or could not be computed, and started again.
+    pub escaped: bool,
+    /// The state that the next value goes on from.
+    last: Vec<f64>,
+}
+
+impl Sweep {
+    /// Values at equal distances, both ends included.
+    pub fn spread(from: f64, to: f64, count: usize) -> Vec<f64> {
+        let last = count.saturating_sub(1).max(1) as f64;
+        let at = |i: usize| {
+            let part = i as f64 / last;
+            (1.0 - part) * from + part * to
+        };
+        (0..count).map(at).collect()
+    }
+
+    /// Runs the sweep. Points are states of the stroboscope, or crossings of a section. What the log holds of this sweep is
+    /// not computed again; what is computed is added to it. Ends early where `see` says so, after each new row.
+    ///
+    /// # Errors
+    /// If the log cannot be written.
+    pub fn run(
+        &self,
+        map: &mut Stroboscope<'_>,
+        section: Option<&Section<'_>>,
+        mut log: Option<&mut Log>,
+        see: &mut dyn FnMut(&Row) -> bool,
+    ) -> Result<Vec<Row>, LogError> {
+        let records = log.as_deref().map_or(&[][..], Log::records);
+        let known = records.iter().map_while(|record| Row::read(record));
+        let mut rows: Vec<Row> = known.take(self.values.len()).collect();
+        let last = rows.last().map(|row| row.last.clone());
+        let mut state = last.unwrap_or_else(|| self.start.clone());
+        for &value in &self.values[rows.len()..] {
+            map.set(self.variable, value);
+            let mut points = Vec::new();
+            let escaped = self.row(map, section, &mut state, &mut points).is_err();
+            if escaped {
+                points.clear();
+                state.copy_from_slice(&self.start);
+            }
+            let row = Row {
+                value,
+                points,
+                escaped,
+                last: state.clone(),
+            };
+            if let Some(log) = &mut log {
+                log.append(&row.written())?;
+            }
+            let goes_on = see(&row);
+            rows.push(row);
+            if !goes_on {
+                break;
+            }
+        }
+        Ok(rows)
+    }
+
+    /// One value. An error says that the motion has escaped.
+    fn row(
+        &self,
+        map: &mut Stroboscope<'_>,
+        section: Option<&Section<'_>>,
+        state: &mut [f64],
+        points: &mut Vec<f64>,
+    ) -> Result<(), Escaped> {
+        for _ in 0..self.transient {
+            map.map(state)?;
+            self.stays(state)?;
+        }
+        for _ in 0..self.periods {
+            if let Some(section) = section {
+                let mut see = |crossing: Crossing<'_>| points.extend_from_slice(crossing.state);
+                section.follow(map, state, 1, &mut see)?;
+            } else {
+                map.map(state)?;
+                points.extend_from_slice(state);
+            }
+            self.stays(state)?;
+        }
+        Ok(())
+    }
+
+    fn stays(&self, state: &[f64]) -> Result<(), Escaped> {
+        let inside = state.iter().all(|x| x.abs() <= self.escape);
+        if inside { Ok(()) } else { Err(Escaped) }
+    }
+}
+
+/// The motion has escaped, or cannot be computed.
+struct Escaped;
+
+impl From<FlowError> for Escaped {
+    fn from(_: FlowError) -> Self {
+        Self
+    }
+}
+
+impl Row {
+    fn written(&self) -> Vec<u8> {
+        let mut writer = Writer::default();
+        writer.numbers(&[self.value]);
+        writer.numbers(&self.points);
+        writer.whole(usize::from(self.escaped));
+        writer.numbers(&self.last);
+        writer.0
+    }
+
+    fn read(record: &[u8]) -> Option<Self> {
+        let mut reader = Reader(record);
+        Some(Self {
+            value: *reader.numbers()?.first()?,
+            points: reader.numbers()?,
+            escaped: reader.whole()? != 0,
+            last: reader.numbers()?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::affine::Affine;
+    use crate::flow::poincare::Direction;
+
+    crate::oscillator! {
+        /// Wang et al. (2021), Eq. (1), one-sided, exponent one.
+        OneSided(x) {
+            param zeta in 0.0..;
+            param load;
+            param drive;
+            law contact(gap) {
+                gap > 0 => 2*zeta*dot(gap) + gap,
+                else    => 0,
+            }
+            ddot(x) + contact(x) = drive*cos(omega*t) + load;
+        }
+    }
+
+    const MODEL: OneSided = OneSided {
+        zeta: 0.032,
+        load: 1.0,
+        drive: 1.0,
+    };
+
+    fn map() -> Stroboscope<'static> {
+        let flow = Affine::new(&MODEL, &[0.032, 1.0, 1.0], 1.0).expect("affine");
+        Stroboscope::new(Box::new(flow))
+    }
+
+    fn sweep(from: f64, to: f64, start: [f64; 2]) -> Sweep {
+        Sweep {
+            variable: Variable::Parameter(2),
+            values: Sweep::spread(from, to, 26),
+            start: start.to_vec(),
+            transient: 400,
+            periods: 4,
+            escape: 1e6,
+        }
+    }
+
+    /// States that differ.
+    fn distinct(row: &Row) -> usize {
+        let mut seen: Vec<f64> = Vec::new();
+        for x in row.points.chunks(2).map(|state| state[0]) {
+            if seen.iter().all(|y| (x - y).abs() > 1e-3) {
+                seen.push(x);
+            }
+        }
+        seen.len()
+    }
+
+    /// Period one doubles at A = 1.282584168, and a period two ends in a fold at A = 0.294528806 (exact values, computed
+    /// independently of this project); between them both are stable.
+    #[test]
+    fn up_and_down_show_the_hysteresis() {
+        let run = |sweep: Sweep| {
+            sweep
+                .run(&mut map(), None, None, &mut |_| true)
+                .expect("rows")
+        };
+        let up = run(sweep(0.2, 1.45, [0.5, 0.0]));
+        let down = run(sweep(1.0, 0.2, [-5.632, 3.5266]));
+        // Beside a bifurcation the transient is long.
+        for row in up.iter().filter(|row| (row.value - 1.282_584).abs() > 0.02) {
+            let doubled = row.value > 1.282_584;
+            assert_eq!(distinct(row), 1 + usize::from(doubled), "{}", row.value);
+        }
+        for row in down
+            .iter()
+            .filter(|row| (row.value - 0.294_529).abs() > 0.02)
+        {
+            let before = row.value > 0.294_529;
+            assert_eq!(distinct(row), 1 + usize::from(before), "{}", row.value);
+        }
+        assert!(up.iter().chain(&down).all(|row| !row.escaped));
+        // At A = 1: the exact states of both.
+        let at_one = up.iter().find(|row| (row.value - 1.0).abs() < 1e-9);
+        let first = at_one.expect("a row").points[0];
+        assert!((first + 1.999_776_122_757_642_7).abs() < 1e-9, "{first}");
+        let second = down[0].points[0].max(down[0].points[2]);
+        assert!((second + 5.632_060_192_753_841).abs() < 1e-9, "{second}");
+    }
+
+    #[test]
+    fn a_run_that_was_ended_goes_on_with_the_same_rows() {
+        let sweep = sweep(1.0, 1.5, [0.5, 0.0]);
+        let all = sweep
+            .run(&mut map(), None, None, &mut |_| true)
+            .expect("rows");
+        let folder = std::env::temp_dir().join(format!("hertzian-sweep-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let path = folder.join("sweep");
+        let _ = std::fs::remove_file(&path);
+        let mut computed = 0;
+        let mut rows = Vec::new();
+        while rows.len() < all.len() {
+            let mut log = Log::open(&path, "sweep").expect("a log");
+            let before = computed;
+            let mut see = |_: &Row| {
+                computed += 1;
+                computed - before < 10
+            };
+            rows = sweep
+                .run(&mut map(), None, Some(&mut log), &mut see)
+                .expect("rows");
+        }
+        assert_eq!(rows, all);
+        assert_eq!(computed, all.len());
+        let _ = std::fs::remove_dir_all(&folder);
+    }
+
+    #[test]
+    fn a_section_gives_its_crossings() {
+        let sweep = Sweep {
+            values: vec![1.0],
+            ..sweep(1.0, 1.0, [-2.0, 0.18])
+        };
+        let section = Section::entry(0, 0.0, Direction::Rising);
+        let rows = sweep.run(&mut map(), Some(&section), None, &mut |_| true);
+        let row = &rows.expect("rows")[0];
+        // Period one meets the contact once in each period, at one speed.
+        assert_eq!(row.points.len(), 8);
+        for state in row.points.chunks(2) {
+            assert!(state[0].abs() < 1e-13 && (state[1] - row.points[1]).abs() < 1e-9);
+        }
+    }
+
+    /// Without damping and at its own frequency an oscillator grows without bound.
+    #[test]
+    fn what_escapes_starts_again() {
+        crate::oscillator! {
+            Resonance(x) {
+                param drive;
+                ddot(x) + x = drive*cos(omega*t);
+            }
+        }
+        let model = Resonance { drive: 1.0 };
+        let flow = Affine::new(&model, &[1.0], 1.0).expect("affine");
+        let sweep = Sweep {
+            variable: Variable::Parameter(0),
+            values: vec![1.0, 0.0],
+            start: vec![1.0, 0.0],
+            transient: 10,
+            periods: 2,
+            escape: 10.0,
+        };
+        let mut map = Stroboscope::new(Box::new(flow));
+        let rows = sweep
+            .run(&mut map, None, None, &mut |_| true)
+            .expect("rows");
+        assert!(rows[0].escaped && rows[0].points.is_empty());
+        assert!(!rows[1].escaped && (rows[1].points[0] - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,207 @@
+//! `--basin`: basins of attraction on a grid of initial states.
+
+use std::fmt::Write;
+
+use hertzian::Complex;
+use hertzian::chart::{Chart, Colour, Markers, Raster};
+use hertzian::export::Npy;
+use hertzian::flow::basin::{Attractor, Axis, Basin, Basins, Fate, Grid};
+
+use super::output::{Results, entries, number};
+use super::run::{Failure, Task};
+
+/// Classes besides the periodic orbits.
+const OTHERS: [(Fate, &str, Colour); 5] = [
+    (Fate::Chaotic, "chaotic", Colour::Middle),
+    (Fate::Long, "no period found", Colour::Light),
+    (Fate::Escaped, "escapes", Colour::None),
+    (Fate::Failed, "not computable", Colour::Fault),
+    (Fate::Unknown, "not looked at", Colour::None),
+];
+/// Periodic orbits that get a colour of their own; the palette has fifteen, with the other classes.
+const COLOURED: usize = 9;
+/// Orbits whose points are marked.
+const MARKED: usize = 6;
+
+/// Computes the basins.
+///
+/// # Errors
+/// If an option cannot be used, or the checkpoint not.
+pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
+    let request = request(task, task.options.grid)?;
+    let log = task.log(&request)?;
+    let basins = request.compute(task.flows(None)?, log, &|progress| {
+        task.say(|| format!("{} of {} motions", progress.done, progress.cells));
+        task.goes_on()
+    })?;
+    let facts = task.system.facts();
+    let names = ["attractor", "period", "cells", "point"].map(str::to_owned);
+    let multipliers = (1..=2 * facts.coordinates.len())
+        .flat_map(|i| ["re", "im"].map(|part| format!("multiplier_{i}_{part}")));
+    let columns = request.grid.columns.count;
+    let mut array = Npy::<i16>::new(columns);
+    let labels: Vec<i16> = basins.fates.iter().map(|fate| fate.label()).collect();
+    labels.chunks(columns).for_each(|row| array.row(row));
+    Ok(Results {
+        names: names
+            .into_iter()
+            .chain(entries(&facts.coordinates))
+            .chain(multipliers)
+            .collect(),
+        rows: rows(&basins),
+        array: array.to_bytes(),
+        svg: chart(task, &request, &basins)?.to_svg(),
+        summary: summary(&basins),
+        complete: basins.complete,
+    })
+}
+
+/// The request, with so many cells along each side.
+///
+/// # Errors
+/// If the ranges are empty, or the start has the wrong number of entries.
+pub fn request(task: &Task<'_>, count: usize) -> Result<Basin, Failure> {
+    let options = task.options;
+    let axis = |entry: usize, range: &[f64]| {
+        let [from, to] = *range else {
+            return Err(Failure::Option("a range has two ends".to_owned()));
+        };
+        if from >= to {
+            let message = format!("the range from {from} to {to} is empty");
+            return Err(Failure::Option(message));
+        }
+        Ok(Axis {
+            entry,
+            from,
+            to,
+            count,
+        })
+    };
+    let basin = Basin::new(Grid {
+        start: task.start()?,
+        columns: axis(0, &options.x_range)?,
+        rows: axis(task.system.facts().coordinates.len(), &options.v_range)?,
+    });
+    Ok(Basin {
+        longest: options.longest,
+        patience: options.patience,
+        escape: options.escape,
+        ..basin
+    })
+}
+
+/// A row for every point of every periodic orbit, then one for each other class.
+fn rows(basins: &Basins) -> Vec<Vec<String>> {
+    let mut rows = Vec::new();
+    for (index, attractor) in basins.attractors.iter().enumerate() {
+        let cells = basins.count(Fate::Periodic(index)).to_string();
+        let parts = attractor.multipliers.iter();
+        let parts: Vec<String> = parts.flat_map(|m| [number(m.re), number(m.im)]).collect();
+        for (point, state) in attractor.points.iter().enumerate() {
+            let head = [
+                index.to_string(),
+                attractor.period.to_string(),
+                cells.clone(),
+                point.to_string(),
+            ];
+            let state: Vec<String> = state.iter().map(|&x| number(x)).collect();
+            rows.push([&head[..], &state, &parts].concat());
+        }
+    }
+    let width = rows.first().map_or(0, Vec::len);
+    for (fate, name, _) in OTHERS {
+        let count = basins.count(fate);
+        if count > 0 {
+            let mut row = vec![fate.label().to_string(), name.to_owned(), count.to_string()];
+            row.resize(width.max(3), String::new());
+            rows.push(row);
+        }
+    }
+    rows
+}
+
+/// What is said of a periodic orbit; those of one period are told apart by letters.
+pub fn name(attractors: &[Attractor], index: usize) -> String {
+    let period = attractors[index].period;
+    let same = |range: &[Attractor]| range.iter().filter(|a| a.period == period).count();
+    let letter = if same(attractors) > 1 {
+        let letter = u8::try_from(same(&attractors[..index]))
+            .unwrap_or(25)
+            .min(25);
+        char::from(b'a' + letter).to_string()
+    } else {
+        String::new()
+    };
+    format!("period {period}{letter}")
+}
+
+fn chart(task: &Task<'_>, request: &Basin, basins: &Basins) -> Result<Chart, Failure> {
+    let Grid { columns, rows, .. } = &request.grid;
+    let shown = basins.attractors.len().min(COLOURED);
+    let mut classes: Vec<(String, Colour)> = (0..shown)
+        .map(|index| (name(&basins.attractors, index), Colour::Class(index)))
+        .collect();
+    classes.push(("further periods".to_owned(), Colour::Class(COLOURED)));
+    let others = OTHERS.map(|(_, name, colour)| (name.to_owned(), colour));
+    classes.extend(others);
+    let class = |fate: &Fate| match fate {
+        Fate::Periodic(index) => (*index).min(COLOURED.min(shown)),
+        other => {
+            let position = OTHERS.iter().position(|class| class.0 == *other);
+            shown + 1 + position.unwrap_or(0)
+        }
+    };
+    let coordinate = &task.system.facts().coordinates[0];
+    let mut chart = Chart::new(task.title(None, "")?)
+        .x(format!("initial {coordinate}"))
+        .y(format!("initial rate of {coordinate}"))
+        .raster(Raster {
+            x: [columns.from, columns.to],
+            y: [rows.from, rows.to],
+            columns: columns.count,
+            cells: basins.fates.iter().map(|fate| class(fate) as u8).collect(),
+            classes,
+        });
+    for (index, attractor) in basins.attractors.iter().enumerate().take(MARKED) {
+        let entry = |state: &Vec<f64>| [state[columns.entry], state[rows.entry]];
+        let inside = |[x, v]: &[f64; 2]| {
+            (columns.from..=columns.to).contains(x) && (rows.from..=rows.to).contains(v)
+        };
+        chart = chart.markers(Markers {
+            label: format!("points of {}", name(&basins.attractors, index)),
+            points: attractor.points.iter().map(entry).filter(inside).collect(),
+        });
+    }
+    Ok(chart)
+}
+
+fn summary(basins: &Basins) -> String {
+    let mut text = String::new();
+    let cells = basins.fates.len() as f64;
+    let share = |count: usize| 100.0 * count as f64 / cells;
+    // Writing to a string does not fail.
+    for (index, attractor) in basins.attractors.iter().enumerate() {
+        let count = basins.count(Fate::Periodic(index));
+        let Complex { re, im } = attractor.multipliers[0];
+        let _ = writeln!(
+            text,
+            "{:<10} {:5.1} %, from x = {:.9}, largest multiplier {re:.6} {im:+.6} i",
+            name(&basins.attractors, index),
+            share(count),
+            attractor.points[0][0],
+        );
+    }
+    for (fate, name, _) in OTHERS {
+        let count = basins.count(fate);
+        if count > 0 {
+            let _ = writeln!(text, "{name:<10} {:5.1} %", share(count));
+        }
+    }
+    let _ = writeln!(
+        text,
+        "motions    {} of {cells}, {:.0} periods each, with all it took to recognise orbits",
+        basins.fates.len() - basins.count(Fate::Unknown),
+        basins.periods as f64 / cells
+    );
+    text
+}

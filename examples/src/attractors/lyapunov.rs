@@ -1,0 +1,121 @@
+//! `--lyapunov`: Lyapunov exponents.
+
+use std::fmt::Write;
+
+use hertzian::chart::{Chart, Cloud, Page, Trace};
+use hertzian::flow::divergence::Divergence;
+use hertzian::flow::lyapunov::{Exponents, Lyapunov};
+
+use super::output::{Results, Table};
+use super::run::{Failure, Task};
+
+/// Computes the exponents at each amplitude.
+///
+/// # Errors
+/// If an option cannot be used, or a motion cannot be computed.
+pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
+    let options = task.options;
+    let order = 2 * task.system.facts().coordinates.len();
+    let batches = options.batches.max(2);
+    let length = options.periods.unwrap_or(400_000).div_ceil(batches).max(1);
+    let parts = (1..=order).flat_map(|i| [format!("exponent_{i}"), format!("standard_error_{i}")]);
+    let names = ["drive", "periods"].map(str::to_owned).into_iter();
+    let names = names
+        .chain(parts)
+        .chain(["sum", "divergence"].map(str::to_owned));
+    let mut table = Table::new(names.collect());
+    let mut page = Page::new(1);
+    let mut summary = String::new();
+    let mut complete = true;
+    for drive in task.drives() {
+        let values = task.values(drive)?;
+        let mut map = task.map(drive)?;
+        let start = task.start()?;
+        let mut lyapunov = Lyapunov::new(&mut map, &start);
+        if let Some(divergence) = Divergence::new(task.system, &values, options.model.omega) {
+            lyapunov = lyapunov.divergence(divergence);
+        }
+        lyapunov.settle(options.transient.unwrap_or(5000))?;
+        for batch in 0..batches {
+            if !task.goes_on() {
+                complete = false;
+                break;
+            }
+            lyapunov.batch(length)?;
+            task.say(|| format!("batch {} of {batches}", batch + 1));
+        }
+        if lyapunov.batches().is_empty() {
+            break;
+        }
+        let found = lyapunov.exponents();
+        let periods = (lyapunov.batches().len() * length) as f64;
+        let mut row = vec![drive.unwrap_or(options.model.drive), periods];
+        row.extend(
+            found
+                .exponents
+                .iter()
+                .flat_map(|e| [e.value, e.standard_error]),
+        );
+        row.extend([found.sum.value, found.divergence.unwrap_or(f64::NAN)]);
+        table.row(&row);
+        describe(&mut summary, &task.title(drive, "")?, &found);
+        let largest: Vec<f64> = lyapunov.batches().iter().map(|b| b.exponents[0]).collect();
+        page = page.chart(chart(&task.title(drive, "")?, &largest, length, &found));
+    }
+    Ok(table.with(page.to_svg(), summary, complete))
+}
+
+fn describe(text: &mut String, title: &str, found: &Exponents) {
+    // Writing to a string does not fail.
+    let _ = writeln!(text, "{title}");
+    for (index, exponent) in found.exponents.iter().enumerate() {
+        let _ = writeln!(text, "exponent   {}: {exponent} per period", index + 1);
+    }
+    let divergence = found.divergence.unwrap_or(f64::NAN);
+    let _ = writeln!(
+        text,
+        "sum        {:.12}; the divergence over the same motion gives {divergence:.12}",
+        found.sum.value
+    );
+}
+
+/// How the mean of the largest exponent settles.
+fn chart(title: &str, batches: &[f64], length: usize, found: &Exponents) -> Chart {
+    let at = |index: usize| ((index + 1) * length) as f64;
+    let mut sum = 0.0;
+    let means = batches.iter().enumerate().map(|(index, batch)| {
+        sum += batch;
+        [at(index), sum / (index + 1) as f64]
+    });
+    let means: Vec<[f64; 2]> = means.collect();
+    let largest = found.exponents[0];
+    let ends = [at(0), at(batches.len() - 1)];
+    let level = |by: f64| {
+        let value = largest.value + by * largest.standard_error;
+        ends.map(|x| [x, value]).to_vec()
+    };
+    let mut chart = Chart::new(title)
+        .x("periods")
+        .y("largest Lyapunov exponent per period")
+        .trace(Trace {
+            label: "mean so far".to_owned(),
+            points: means,
+        })
+        .cloud(Cloud {
+            label: "means of batches".to_owned(),
+            points: batches
+                .iter()
+                .enumerate()
+                .map(|(i, &b)| [at(i), b])
+                .collect(),
+        });
+    if largest.standard_error.is_finite() {
+        for (by, label) in [(-1.0, "one standard error"), (1.0, "")] {
+            chart = chart.trace(Trace {
+                label: label.to_owned(),
+                points: level(by),
+            });
+        }
+    }
+    chart
+}

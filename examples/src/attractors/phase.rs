@@ -1,0 +1,219 @@
+//! `--phase`: phase portraits of the attractors that are found from some starts.
+
+use std::fmt::Write;
+
+use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
+use hertzian::flow::basin::{Attractor, Basins, Fate};
+use hertzian::flow::history;
+use hertzian::flow::stroboscope::Stroboscope;
+
+use super::basin::{name, request};
+use super::output::{Results, Table, entries};
+use super::run::{Failure, Task};
+
+/// Points of a curve in each period.
+const SAMPLES: usize = 120;
+/// Periods of a motion that is not periodic: of its curve, and of its points.
+const CURVE: usize = 100;
+const POINTS: usize = 5000;
+
+/// Draws the attractors at each amplitude.
+///
+/// # Errors
+/// If an option cannot be used, or a motion cannot be computed.
+pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
+    let facts = task.system.facts();
+    let head = ["drive", "attractor", "period", "point"].map(str::to_owned);
+    let mut table = Table::new([head.to_vec(), entries(&facts.coordinates)].concat());
+    let mut charts = Vec::new();
+    let mut summary = String::new();
+    let mut complete = true;
+    let marked = marked(task)?;
+    for drive in task.drives() {
+        if !task.goes_on() {
+            complete = false;
+            break;
+        }
+        let value = drive.unwrap_or(task.options.model.drive);
+        let (basins, start) = settled(task, drive)?;
+        complete &= basins.complete;
+        let mut portrait = Portrait {
+            chart: Chart::new(task.title(drive, "")?)
+                .x(facts.coordinates[0].to_string())
+                .y(format!("rate of {}", facts.coordinates[0])),
+            map: task.map(drive)?,
+        };
+        // Writing to a string does not fail.
+        let _ = writeln!(summary, "{}", task.title(drive, "")?);
+        for (index, attractor) in basins.attractors.iter().enumerate() {
+            let label = name(&basins.attractors, index);
+            let _ = writeln!(
+                summary,
+                "{label:<10} from x = {:.9}",
+                attractor.points[0][0]
+            );
+            for (point, state) in attractor.points.iter().enumerate() {
+                let head = [value, index as f64, attractor.period as f64, point as f64];
+                table.row(&[&head, &state[..]].concat());
+            }
+            portrait = portrait.periodic(attractor, label)?;
+        }
+        let other = start.filter(|(fate, _)| {
+            let _ = writeln!(summary, "{}", other_label(*fate));
+            // Beside periodic orbits a long period is no portrait of its own.
+            *fate == Fate::Chaotic || basins.attractors.is_empty()
+        });
+        if let Some((fate, state)) = other {
+            let label = other_label(fate);
+            let (more, points) = portrait.other(state, label)?;
+            portrait = more;
+            for (point, state) in points.iter().enumerate() {
+                let head = [value, f64::from(fate.label()), 0.0, point as f64];
+                table.row(&[&head, &state[..]].concat());
+            }
+        }
+        let same = |marked: &&Attractor| {
+            let mut periods = basins.attractors.iter().map(|attractor| attractor.period);
+            !periods.any(|period| period == marked.period)
+        };
+        if let Some(attractor) = marked.as_ref().filter(same) {
+            portrait.chart = portrait.chart.markers(Markers {
+                label: format!(
+                    "period {} at A = {}",
+                    attractor.period,
+                    task.options.mark.unwrap_or(value)
+                ),
+                points: attractor.points.iter().map(|state| place(state)).collect(),
+            });
+        }
+        charts.push(portrait.chart);
+    }
+    if let (&[left, right, low, high], Some(last)) = (&task.options.zoom[..], charts.last()) {
+        let part = last.clone().limits([left, right], [low, high]);
+        charts.push(part.title("enlargement of the last"));
+    }
+    let columns = if charts.len() > 1 { 2 } else { 1 };
+    let page = charts.into_iter().fold(Page::new(columns), Page::chart);
+    Ok(table.with(page.to_svg(), summary, complete))
+}
+
+/// A motion that is on no periodic orbit: what is known of it, and a state that it has settled to.
+type Other = (Fate, Vec<f64>);
+
+/// What the motions from the grid, or from the start, settle to, and one that is on no periodic orbit.
+fn settled(task: &Task<'_>, drive: Option<f64>) -> Result<(Basins, Option<Other>), Failure> {
+    let mut basin = request(task, task.options.starts.max(1))?;
+    if task.options.starts == 0 {
+        // One cell, with the start in its middle.
+        for axis in [&mut basin.grid.columns, &mut basin.grid.rows] {
+            let middle = basin.grid.start[axis.entry];
+            (axis.from, axis.to) = (middle, middle);
+        }
+    }
+    let basins = basin.compute(task.flows(drive)?, None, &|progress| {
+        task.say(|| format!("{} of {} motions", progress.done, progress.cells));
+        task.goes_on()
+    })?;
+    let other = |fate: &Fate| matches!(fate, Fate::Chaotic | Fate::Long);
+    let cell = basins.fates.iter().position(other);
+    let start = cell.map(|cell| {
+        let mut state = basin.grid.start.clone();
+        basin.grid.state(cell, &mut state);
+        (basins.fates[cell], state)
+    });
+    let Some((fate, mut state)) = start else {
+        return Ok((basins, None));
+    };
+    let mut map = task.map(drive)?;
+    for _ in 0..basin.patience {
+        map.map(&mut state)?;
+    }
+    Ok((basins, Some((fate, state))))
+}
+
+/// The periodic attractor at the amplitude of `--mark`.
+fn marked(task: &Task<'_>) -> Result<Option<Attractor>, Failure> {
+    let Some(drive) = task.options.mark else {
+        return Ok(None);
+    };
+    let (mut basins, _) = settled(task, Some(drive))?;
+    basins.attractors.truncate(1);
+    Ok(basins.attractors.pop())
+}
+
+fn other_label(fate: Fate) -> &'static str {
+    if fate == Fate::Chaotic {
+        "chaotic"
+    } else {
+        "no period found"
+    }
+}
+
+/// The first coordinate and its rate.
+fn place(state: &[f64]) -> [f64; 2] {
+    [state[0], state[state.len() / 2]]
+}
+
+/// A chart that grows.
+struct Portrait<'t> {
+    chart: Chart,
+    map: Stroboscope<'t>,
+}
+
+impl Portrait<'_> {
+    /// The curve and the points of a periodic orbit.
+    fn periodic(mut self, attractor: &Attractor, label: String) -> Result<Self, Failure> {
+        let curve = self.curve(&attractor.points[0], attractor.period)?;
+        self.chart = self
+            .chart
+            .trace(Trace {
+                label: String::new(),
+                points: curve,
+            })
+            .markers(Markers {
+                label,
+                points: attractor.points.iter().map(|state| place(state)).collect(),
+            });
+        Ok(self)
+    }
+
+    /// A part of the curve of another motion, and many of its points.
+    fn other(mut self, start: Vec<f64>, label: &str) -> Result<(Self, Vec<Vec<f64>>), Failure> {
+        let mut points = vec![start];
+        for i in 0..POINTS {
+            let mut next = points[i].clone();
+            self.map.map(&mut next)?;
+            points.push(next);
+        }
+        // The part of the motion that goes farthest.
+        let size = |i: &usize| points[*i][0].abs();
+        let farthest = (0..points.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
+        let before = farthest.unwrap_or(0).saturating_sub(CURVE / 2);
+        let curve = self.curve(&points[before], CURVE)?;
+        self.chart = self
+            .chart
+            .trace(Trace {
+                label: format!("{label}, {CURVE} periods"),
+                points: curve,
+            })
+            .cloud(Cloud {
+                label: "beginning of each period".to_owned(),
+                points: points.iter().map(|state| place(state)).collect(),
+            });
+        Ok((self, points))
+    }
+
+    fn curve(&mut self, start: &[f64], periods: usize) -> Result<Vec<[f64; 2]>, Failure> {
+        let mut curve = Vec::new();
+        let mut state = start.to_vec();
+        history::record(
+            &mut self.map,
+            &mut state,
+            (periods, SAMPLES),
+            &mut |_, state| {
+                curve.push(place(state));
+            },
+        )?;
+        Ok(curve)
+    }
+}

@@ -1,0 +1,305 @@
+//! From options to files and a summary.
+
+use std::io;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use hertzian::flow::basin::BasinError;
+use hertzian::flow::log::{Log, LogError};
+use hertzian::flow::stroboscope::Stroboscope;
+use hertzian::flow::{self, Flow, FlowError};
+use hertzian::{Error, System};
+
+use super::options::Options;
+use super::output;
+use super::{basin, history, lyapunov, phase, sweep};
+use crate::response::model_file::ModelError;
+use crate::response::models;
+use crate::response::progress::Progress;
+
+/// What came of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// For people.
+    pub summary: String,
+    /// Whether all was computed.
+    pub complete: bool,
+}
+
+/// Why nothing came of a run.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Failure {
+    /// The library says no.
+    Library(Error),
+    /// An option cannot be used.
+    Option(String),
+    /// The file of the oscillator is at fault.
+    Model(PathBuf, ModelError),
+    /// The motion cannot be computed.
+    Motion(FlowError),
+    /// The basins cannot be computed.
+    Basin(BasinError),
+    /// The checkpoint cannot be used.
+    Checkpoint(LogError),
+    /// A file cannot be written.
+    File(PathBuf, io::Error),
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Library(error) => error.fmt(f),
+            Self::Option(message) => f.write_str(message),
+            Self::Model(path, error) => f.write_str(&error.describe(path)),
+            Self::Motion(error) => error.fmt(f),
+            Self::Basin(error) => error.fmt(f),
+            Self::Checkpoint(error) => error.fmt(f),
+            Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Library(error)
+    }
+}
+
+impl From<FlowError> for Failure {
+    fn from(error: FlowError) -> Self {
+        Self::Motion(error)
+    }
+}
+
+impl From<BasinError> for Failure {
+    fn from(error: BasinError) -> Self {
+        Self::Basin(error)
+    }
+}
+
+impl From<LogError> for Failure {
+    fn from(error: LogError) -> Self {
+        Self::Checkpoint(error)
+    }
+}
+
+/// What a task works with.
+pub struct Task<'t> {
+    /// What was asked for.
+    pub options: &'t Options,
+    /// The oscillator.
+    pub system: &'t dyn System,
+    /// Ends the task when it is set.
+    pub interrupted: &'t AtomicBool,
+    /// The line on the terminal.
+    pub progress: Mutex<&'t mut Progress>,
+}
+
+/// Does the task, writes the files and sums up. Setting `interrupted` ends the task where it is.
+///
+/// # Errors
+/// If the options are not usable, a motion cannot be computed, or a file cannot be written.
+pub fn run(
+    options: &Options,
+    interrupted: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Outcome, Failure> {
+    output::check(&options.out)?;
+    let varied = options.sweep.map_or("omega", super::options::Swept::name);
+    let system = models::model(&options.model, (varied, options.from)).map_err(|error| {
+        let path = options.model.file.clone().unwrap_or_default();
+        Failure::Model(path, error)
+    })?;
+    let task = Task {
+        options,
+        system: &*system,
+        interrupted,
+        progress: Mutex::new(progress),
+    };
+    let results = match options.sweep {
+        Some(swept) => sweep::run(&task, swept),
+        None if options.basin => basin::run(&task),
+        None if options.lyapunov => lyapunov::run(&task),
+        None if options.phase => phase::run(&task),
+        None => history::run(&task),
+    }?;
+    output::write(&options.out, &results)?;
+    let paths = output::paths(&options.out).map(|path| path.display().to_string());
+    Ok(Outcome {
+        summary: format!(
+            "{}: {}\n{}written    {}\n",
+            task.system.facts().name,
+            task.system.facts().equation,
+            results.summary,
+            paths.join(", ")
+        ),
+        complete: results.complete,
+    })
+}
+
+impl<'t> Task<'t> {
+    /// Whether to go on.
+    pub fn goes_on(&self) -> bool {
+        !self.interrupted.load(Ordering::Relaxed)
+    }
+
+    /// Says how far the task is.
+    pub fn say(&self, text: impl FnOnce() -> String) {
+        // Where another thread has panicked, this is of no use any more.
+        if let Ok(mut progress) = self.progress.lock() {
+            progress.update(text);
+        }
+    }
+
+    /// Values of the parameters, at an amplitude if one is given.
+    ///
+    /// # Errors
+    /// If the oscillator has no amplitude.
+    pub fn values(&self, drive: Option<f64>) -> Result<Vec<f64>, Failure> {
+        let facts = self.system.facts();
+        let mut values = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut values);
+        if let Some(drive) = drive {
+            let position = facts.parameters.iter().position(|p| p.name == "drive");
+            let index = position.ok_or_else(|| {
+                Failure::Option("--drives and --mark need a parameter `drive`".to_owned())
+            })?;
+            values[index] = drive;
+        }
+        Ok(values)
+    }
+
+    /// The flow, at an amplitude if one is given.
+    ///
+    /// # Errors
+    /// If the values or the tolerance are outside of their ranges.
+    pub fn flow(&self, drive: Option<f64>) -> Result<Box<dyn Flow + 't>, Failure> {
+        let how = flow::Options {
+            tolerance: self.options.tolerance,
+        };
+        let values = self.values(drive)?;
+        Ok(flow::at(
+            self.system,
+            &values,
+            self.options.model.omega,
+            how,
+        )?)
+    }
+
+    /// The flow as a map over a period.
+    ///
+    /// # Errors
+    /// As [`Task::flow`].
+    pub fn map(&self, drive: Option<f64>) -> Result<Stroboscope<'t>, Failure> {
+        Ok(Stroboscope::new(self.flow(drive)?))
+    }
+
+    /// A flow for each thread.
+    ///
+    /// # Errors
+    /// As [`Task::flow`].
+    pub fn flows(&self, drive: Option<f64>) -> Result<Vec<Box<dyn Flow + 't>>, Failure> {
+        let processors = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        let count = self
+            .options
+            .threads
+            .map_or_else(processors, NonZeroUsize::get);
+        (0..count).map(|_| self.flow(drive)).collect()
+    }
+
+    /// The state that motions start from.
+    ///
+    /// # Errors
+    /// If it has another number of entries than the oscillator, or one that is not finite.
+    pub fn start(&self) -> Result<Vec<f64>, Failure> {
+        let order = 2 * self.system.facts().coordinates.len();
+        let start = &self.options.start;
+        if start.is_empty() {
+            return Ok(vec![0.0; order]);
+        }
+        if start.len() != order || start.iter().any(|x| !x.is_finite()) {
+            let message =
+                format!("--start needs {order} finite numbers: coordinates, then their rates");
+            return Err(Failure::Option(message));
+        }
+        Ok(start.clone())
+    }
+
+    /// The log of the checkpoint, if one was asked for. It belongs to this oscillator and to this request.
+    ///
+    /// # Errors
+    /// If it cannot be used.
+    pub fn log(&self, request: &impl std::fmt::Debug) -> Result<Option<Log>, Failure> {
+        let Some(path) = &self.options.checkpoint else {
+            return Ok(None);
+        };
+        let facts = self.system.facts();
+        let (omega, tolerance) = (self.options.model.omega, self.options.tolerance);
+        let identity = format!(
+            "hertzian {}, {} with {:?}, omega {omega:?}, tolerance {tolerance:?}, {request:?}",
+            env!("CARGO_PKG_VERSION"),
+            facts.equation,
+            self.values(None)?,
+        );
+        Ok(Some(Log::open(path, &identity)?))
+    }
+
+    /// The amplitudes that were asked for; none for that of the oscillator.
+    pub fn drives(&self) -> Vec<Option<f64>> {
+        if self.options.drives.is_empty() {
+            return vec![None];
+        }
+        self.options.drives.iter().copied().map(Some).collect()
+    }
+
+    /// The title of a picture: the oscillator with its values, without those that vary.
+    ///
+    /// # Errors
+    /// If the oscillator has no amplitude, and one is given.
+    pub fn title(&self, drive: Option<f64>, varied: &str) -> Result<String, Failure> {
+        let facts = self.system.facts();
+        let values = self.values(drive)?;
+        let named = facts.parameters.iter().zip(values);
+        let parameters = named
+            .filter(|(parameter, _)| parameter.name != varied)
+            .map(|(parameter, value)| format!("{} = {value}", symbol(&parameter.name)));
+        let omega = Some(format!("ω = {}", self.options.model.omega));
+        let omega = omega.filter(|_| varied != "omega");
+        let all: Vec<String> = parameters.chain(omega).collect();
+        let name = match self.options.model.file {
+            Some(_) => facts.name.to_string(),
+            None if self.options.model.continuous => format!("Continuous, {}", self.exponent()),
+            None => format!("One-sided, {}", self.exponent()),
+        };
+        Ok(format!("{name}: {}", all.join(", ")))
+    }
+
+    /// The exponent, which is no parameter where it is compiled in.
+    fn exponent(&self) -> String {
+        let facts = self.system.facts();
+        if facts
+            .parameters
+            .iter()
+            .any(|parameter| parameter.name == "alpha")
+        {
+            return "any exponent".to_owned();
+        }
+        format!("α = {}", self.options.model.alpha)
+    }
+}
+
+/// The letter of the paper for a parameter of the declared oscillators.
+fn symbol(name: &str) -> &str {
+    match name {
+        "alpha" => "α",
+        "zeta" => "ζ",
+        "load" => "W",
+        "drive" => "A",
+        other => other,
+    }
+}
