@@ -221,10 +221,10 @@ mod tests {
             switches: vec![
                 switch(0.0, 1, true),
                 switch(1e-16, 0, true),
-                switch(3.14, 1, false),
+                switch(3.13, 1, false),
                 switch(3.15, 0, false),
                 switch(3.16, 2, false),
-                switch(6.28, 2, true),
+                switch(6.27, 2, true),
             ],
             ..Cuts::default()
         };
@@ -235,10 +235,10 @@ mod tests {
             [
                 (0.0, 1),
                 (1e-16, 2),
-                (3.14, 2),
+                (3.13, 2),
                 (3.15, 1),
                 (3.16, 0),
-                (6.28, 0)
+                (6.27, 0)
             ]
         );
     }
