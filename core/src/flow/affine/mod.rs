@@ -1,9 +1,9 @@
 //! The flow of systems whose forces are piecewise affine: closed forms from switch to switch.
 //!
 //! While no gap leaves its piece, the motion is that of a linear system with constant coefficients, and
-//! [`table`] holds it exactly. Where a gap meets the end of its piece is found by [`search`] and [`crossing`]; the first meeting
+//! `table` holds it exactly. Where a gap meets the end of its piece is found by `search` and `crossing`; the first meeting
 //! is proven to be the first. There the state is continuous and perturbations jump by the saltation of
-//! [`tangent`].
+//! `tangent`.
 //!
 //! A motion that touches an end without crossing it stays on its piece; perturbations do not jump there.
 
