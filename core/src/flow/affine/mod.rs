@@ -1,19 +1,22 @@
 //! The flow of systems whose forces are piecewise affine: closed forms from switch to switch.
 //!
-//! While no gap leaves its piece, the motion is that of a linear system with constant coefficients, and
-//! `table` holds it exactly. Where a gap meets the end of its piece is found by `search` and `crossing`; the first meeting
-//! is proven to be the first. There the state is continuous and perturbations jump by the saltation of
-//! `tangent`.
+//! While no gap leaves its piece, the motion is that of a linear system with constant coefficients, and is tabulated as series
+//! that end below rounding (`table`). The first meeting of a gap with an end of its piece is proven to be the first (`search`,
+//! `crossing`). There the state is continuous, and perturbations jump (`tangent`). One coordinate under one harmonic has the same
+//! in arrays of fixed size (`scalar`, `interval`).
 //!
 //! A motion that touches an end without crossing it stays on its piece; perturbations do not jump there.
 
 mod crossing;
 mod equations;
+mod exponential;
+mod interval;
 mod model;
 mod scalar;
 mod search;
 mod table;
 mod tangent;
+mod terms;
 #[cfg(test)]
 mod tests;
 
@@ -32,8 +35,10 @@ const MOST_SWITCHES: usize = 10_000;
 /// The flow of a system of which every piece of every law is affine, and stiffness and directions are constant in time.
 pub struct Affine<'a> {
     model: Model<'a>,
-    /// The same for one coordinate under at most one harmonic, once it is needed at the present values.
+    /// The same for one coordinate under at most one harmonic.
     scalar: Option<Scalar>,
+    /// It belongs to the present values.
+    filled: bool,
     /// The state with the constant and the waves.
     z: Vec<f64>,
     rows: Vec<Polynomial>,
@@ -62,7 +67,8 @@ impl<'a> Affine<'a> {
             column: vec![0.0; order],
             next: vec![0.0; 2 * model.basis.coordinates],
             work: Work::default(),
-            scalar: None,
+            scalar: Scalar::new(&model),
+            filled: false,
             model,
         })
     }
@@ -77,12 +83,7 @@ impl<'a> Affine<'a> {
     ) -> Result<(), FlowError> {
         let n = self.model.basis.coordinates;
         let by = tangent.as_ref().and_then(|tangent| tangent.by);
-        let Span {
-            begin,
-            end,
-            first,
-            length,
-        } = span;
+        let (begin, first) = (span.begin, span.first);
         let mut done = 0.0;
         let mut switches = 0;
         self.z[..2 * n].copy_from_slice(state);
@@ -93,7 +94,7 @@ impl<'a> Affine<'a> {
             let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
             let table = &self.model.at(combination).table;
             let rows = &mut self.rows[..table.rows];
-            let left = (length - done) / table.cell;
+            let left = (span.length - done) / table.cell;
             let range = left.min(table.range());
             let at = &self.at;
             let begins = |watch: &table::Watch| at[watch.contact] == Some(watch.level);
@@ -104,7 +105,7 @@ impl<'a> Affine<'a> {
             let piece = Piece {
                 table,
                 z: &self.z,
-                phases: (phase, if last { end } else { begin + next }),
+                phases: (phase, if last { span.end } else { begin + next }),
                 base: self.model.terms.base,
             };
             piece.at(cells, rows, &mut self.next);
@@ -139,14 +140,31 @@ impl<'a> Affine<'a> {
                     return Err(FlowError::TooManySwitches { phase, switches });
                 }
                 let watch = &table.watches[hit.watch];
-                let (contact, level, upper) = (watch.contact, watch.level, watch.upper);
-                if let Some(tangent) = tangent.as_deref_mut() {
-                    tangent::switch(&self.model, &self.z, (contact, level, upper), tangent);
-                }
-                self.pieces[contact] = if upper { level + 1 } else { level };
-                self.at[contact] = Some(level);
+                let crossed = (watch.contact, watch.level, watch.upper);
+                self.cross(crossed, tangent.as_deref_mut());
             }
         }
+    }
+
+    /// Takes a contact over one of its levels, upwards or downwards.
+    fn cross(
+        &mut self,
+        (contact, level, upwards): (usize, usize, bool),
+        tangent: Option<&mut Tangent>,
+    ) {
+        if let Some(tangent) = tangent {
+            tangent::switch(&self.model, &self.z, (contact, level, upwards), tangent);
+        }
+        self.pieces[contact] = level + usize::from(upwards);
+        self.at[contact] = Some(level);
+    }
+
+    /// Whether the arrays of fixed size serve the present values, and not only the pieces that a motion meets.
+    fn fill_scalar(&mut self, phase: f64) -> bool {
+        if let Some(scalar) = self.scalar.as_mut().filter(|_| !self.filled) {
+            self.filled = scalar.fill(&mut self.model, phase).is_ok();
+        }
+        self.filled
     }
 
     /// The piece that every gap is on, or is about to enter.
@@ -194,7 +212,7 @@ impl Flow for Affine<'_> {
             Variable::Parameter(index) => self.model.parameters[index] = value,
         }
         self.model.touch();
-        self.scalar = None;
+        self.filled = false;
     }
 
     fn advance(
@@ -210,12 +228,10 @@ impl Flow for Affine<'_> {
         if state.iter().any(|x| !x.is_finite()) || !from.is_finite() || !to.is_finite() {
             return Err(FlowError::NotFinite { phase: from });
         }
-        if see.is_none() && by.is_none() && self.scalar.is_none() {
-            self.scalar = Scalar::new(&mut self.model, from)?;
-        }
+        let plain = see.is_none() && by.is_none() && self.fill_scalar(from);
         for span in spans(from, to) {
             match &self.scalar {
-                Some(scalar) if see.is_none() && by.is_none() => {
+                Some(scalar) if plain => {
                     let columns = tangent.as_mut().map(|tangent| &mut tangent.columns[..]);
                     let columns = columns.unwrap_or(&mut []).as_chunks_mut().0;
                     let (state, _) = state.as_chunks_mut();

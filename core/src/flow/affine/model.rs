@@ -4,8 +4,10 @@ use std::collections::HashMap;
 
 use nalgebra::DMatrix;
 
-use super::equations::{Assembly, Basis, Line, Terms};
-use super::table::{Room, Table, Watch};
+use super::equations::Assembly;
+use super::exponential::Room;
+use super::table::{Table, Watch};
+use super::terms::{Basis, Line, Terms};
 use crate::flow::FlowError;
 use crate::layout::Layout;
 use crate::system::{Place, System, Variable, Wave};
@@ -28,8 +30,9 @@ pub(super) struct Combination {
 #[derive(Debug, Clone)]
 pub(super) struct Contact {
     pub(super) levels: Vec<f64>,
-    /// Their derivatives by the variable.
+    /// Their derivatives by the variable, and room for those by an argument.
     pub(super) levels_by: Vec<f64>,
+    by_argument: Vec<f64>,
     /// `M^-1 e`
     pub(super) push: Vec<f64>,
     /// All pieces of its law, and their derivatives by the variable.
@@ -77,6 +80,7 @@ impl<'a> Model<'a> {
             Contact {
                 levels: vec![0.0; pieces - 1],
                 levels_by: vec![0.0; pieces - 1],
+                by_argument: vec![0.0; pieces - 1],
                 push: vec![0.0; layout.coordinates],
                 lines: vec![Line::default(); pieces],
                 lines_by: vec![Line::default(); pieces],
@@ -171,11 +175,10 @@ impl<'a> Model<'a> {
             let arguments = &self.terms.contacts[index].arguments;
             contact.levels_by.fill(0.0);
             contact.lines_by.fill(Line::default());
-            let mut by_argument = vec![0.0; contact.levels.len()];
             let factors = self.terms_by.contacts[index].arguments.iter().enumerate();
             for (argument, &factor) in factors.filter(|&(_, &factor)| factor != 0.0) {
-                law.levels_by(arguments, argument, &mut by_argument);
-                for (sum, by) in contact.levels_by.iter_mut().zip(&by_argument) {
+                law.levels_by(arguments, argument, &mut contact.by_argument);
+                for (sum, by) in contact.levels_by.iter_mut().zip(&contact.by_argument) {
                     *sum += factor * by;
                 }
                 for (piece, line) in contact.lines_by.iter_mut().enumerate() {

@@ -4,6 +4,8 @@ mod conservation;
 mod linear;
 mod random;
 mod reference;
+mod several;
+mod system;
 mod touch;
 
 use std::f64::consts::TAU;

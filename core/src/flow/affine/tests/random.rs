@@ -10,7 +10,7 @@ use crate::system::{System, Variable};
 
 oscillator! {
     /// A mass between two damped stops that may be preloaded and may shake, under two harmonics.
-    Stops(x) {
+    pub(super) Stops(x) {
         /// mass
         param mass > 0;
         /// damping of the mass

@@ -6,7 +6,7 @@ use crate::oscillator;
 
 oscillator! {
     /// A thrown mass below a stop that pushes back at first touch.
-    Thrown(x) {
+    pub(super) Thrown(x) {
         /// weight
         param weight;
         /// force of the stop at first touch

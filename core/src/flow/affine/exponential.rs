@@ -1,0 +1,229 @@
+//! The exponentials that tables are made from, with their derivatives by a variable.
+//!
+//! With `X = A h / 2`, of norm below one,
+//!
+//! ```text
+//! exp(X) - 1 = X/1 (1 + X/2 (1 + X/3 (...)))                                                                  (1)
+//! exp(a + b) - 1 = E_a + E_b + E_a E_b,    E = exp - 1                                                        (2)
+//! ```
+//!
+//! and by (2) the exponentials over 1, 2, 4, ... cells, and from these that over every number of cells. Less the unit matrix, an
+//! exponential has rounding errors relative to what it changes. In full they would double with every squaring: without damping,
+//! energies would drift by twenty times as much.
+//!
+//! Source: Moler and Van Loan (2003), Nineteen dubious ways to compute the exponential of a matrix, SIAM Review 45, method 3
+//! (scaling and squaring).
+
+use super::table::{COEFFICIENTS, Polynomial, Table, cells};
+use super::terms::Basis;
+
+/// Terms of the exponential over half a cell: `0.225^14 / 14! = 1e-20` is left out.
+const TERMS: usize = 13;
+
+/// Room to make tables: matrices of the order of `z`.
+#[derive(Debug)]
+pub(super) struct Room {
+    /// `A h`
+    scaled: Vec<f64>,
+    scaled_by: Vec<f64>,
+    /// Those over half a cell, the exponentials over 1, 2, 4, ... cells, and those up to the middle of every cell.
+    pub(super) half: Pair,
+    powers: Vec<Pair>,
+    pub(super) middles: Vec<Pair>,
+    next: Pair,
+    /// `e_i (A h)^k / k!` for the tabulated rows, by row and column: a polynomial for every entry.
+    rows: Vec<Polynomial>,
+    rows_by: Vec<Polynomial>,
+    pub(super) row: Vec<f64>,
+    pub(super) other: Vec<f64>,
+    row_by: Vec<f64>,
+    other_by: Vec<f64>,
+}
+
+/// An exponential less the unit matrix, so that rounding errors are relative to what it changes; and its derivative by a variable.
+#[derive(Debug, Clone)]
+pub(super) struct Pair {
+    pub(super) value: Vec<f64>,
+    by: Vec<f64>,
+}
+
+impl Room {
+    pub(super) fn new(basis: &Basis, rows: usize) -> Self {
+        let order = basis.order();
+        let square = || vec![0.0; order * order];
+        let pair = Pair {
+            value: square(),
+            by: square(),
+        };
+        let cells = cells(order);
+        Self {
+            scaled: square(),
+            scaled_by: square(),
+            half: pair.clone(),
+            powers: vec![pair.clone(); cells.ilog2() as usize],
+            middles: vec![pair.clone(); cells],
+            next: pair,
+            rows: vec![[0.0; COEFFICIENTS]; rows * order],
+            rows_by: vec![[0.0; COEFFICIENTS]; rows * order],
+            row: vec![0.0; order],
+            other: vec![0.0; order],
+            row_by: vec![0.0; order],
+            other_by: vec![0.0; order],
+        }
+    }
+
+    pub(super) fn set(&mut self, matrix: &[f64], by: Option<&[f64]>, cell: f64) {
+        for (out, x) in self.scaled.iter_mut().zip(matrix) {
+            *out = x * cell;
+        }
+        for (out, x) in self.scaled_by.iter_mut().zip(by.unwrap_or(&[])) {
+            *out = x * cell;
+        }
+    }
+
+    /// The exponentials over half a cell, over powers of two of cells, and up to the middle of every cell.
+    pub(super) fn exponentials(&mut self, derivatives: bool) {
+        // (1)
+        self.half.value.fill(0.0);
+        self.half.by.fill(0.0);
+        for k in (1..=TERMS).rev() {
+            let factor = 0.5 / k as f64;
+            self.next.value.copy_from_slice(&self.scaled);
+            add_products(&self.scaled, &self.half.value, &mut self.next.value);
+            scale(&mut self.next.value, factor);
+            if derivatives {
+                self.next.by.copy_from_slice(&self.scaled_by);
+                add_products(&self.scaled_by, &self.half.value, &mut self.next.by);
+                add_products(&self.scaled, &self.half.by, &mut self.next.by);
+                scale(&mut self.next.by, factor);
+            }
+            std::mem::swap(&mut self.half, &mut self.next);
+        }
+        self.middles[0].value.fill(0.0);
+        self.middles[0].by.fill(0.0);
+        self.powers[0].set_product(&self.half, &self.half, derivatives);
+        for m in 1..self.powers.len() {
+            let (before, after) = self.powers.split_at_mut(m);
+            after[0].set_product(&before[m - 1], &before[m - 1], derivatives);
+        }
+        for j in 1..self.middles.len() {
+            let m = j.ilog2() as usize;
+            let (before, after) = self.middles.split_at_mut(j);
+            after[0].set_product(&self.powers[m], &before[j - (1 << m)], derivatives);
+        }
+    }
+
+    /// The rows `e_i (A h)^k / k!`.
+    pub(super) fn taylor(&mut self, table: &Table, derivatives: bool) {
+        let order = table.order;
+        for index in 0..table.rows {
+            self.row.fill(0.0);
+            self.row[table.entry(index)] = 1.0;
+            self.row_by.fill(0.0);
+            for k in 0..COEFFICIENTS {
+                let entries = index * order..(index + 1) * order;
+                for (polynomial, x) in self.rows[entries.clone()].iter_mut().zip(&self.row) {
+                    polynomial[k] = *x;
+                }
+                for (polynomial, x) in self.rows_by[entries].iter_mut().zip(&self.row_by) {
+                    polynomial[k] = *x;
+                }
+                let factor = 1.0 / (k + 1) as f64;
+                row_times(&self.row, &self.scaled, &mut self.other);
+                scale(&mut self.other, factor);
+                if derivatives {
+                    row_times(&self.row_by, &self.scaled, &mut self.other_by);
+                    add_row_times(&self.row, &self.scaled_by, &mut self.other_by);
+                    scale(&mut self.other_by, factor);
+                    std::mem::swap(&mut self.row_by, &mut self.other_by);
+                }
+                std::mem::swap(&mut self.row, &mut self.other);
+            }
+        }
+    }
+}
+
+impl Pair {
+    /// (2)
+    fn set_product(&mut self, a: &Self, b: &Self, derivatives: bool) {
+        sum(&a.value, &b.value, &mut self.value);
+        add_products(&a.value, &b.value, &mut self.value);
+        if derivatives {
+            sum(&a.by, &b.by, &mut self.by);
+            add_products(&a.by, &b.value, &mut self.by);
+            add_products(&a.value, &b.by, &mut self.by);
+        }
+    }
+}
+
+fn sum(a: &[f64], b: &[f64], out: &mut [f64]) {
+    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+        *out = a + b;
+    }
+}
+
+/// The series of every cell: rows times the exponential up to its middle.
+pub(super) fn fill_series(series: &mut [Polynomial], room: &Room) {
+    let cells = series.chunks_exact_mut(room.rows.len());
+    for (cell, middle) in cells.zip(&room.middles) {
+        cell.copy_from_slice(&room.rows);
+        add_series(cell, &room.rows, &middle.value);
+    }
+}
+
+/// The derivatives of the series of every cell.
+pub(super) fn fill_derivatives(series: &mut [Polynomial], room: &Room) {
+    let cells = series.chunks_exact_mut(room.rows.len());
+    for (cell, middle) in cells.zip(&room.middles) {
+        cell.copy_from_slice(&room.rows_by);
+        add_series(cell, &room.rows_by, &middle.value);
+        add_series(cell, &room.rows, &middle.by);
+    }
+}
+
+fn add_series(cell: &mut [Polynomial], rows: &[Polynomial], middle: &[f64]) {
+    let order = middle.len().isqrt();
+    for (out, row) in cell.chunks_exact_mut(order).zip(rows.chunks_exact(order)) {
+        for (polynomial, factors) in row.iter().zip(middle.chunks_exact(order)) {
+            for (out, factor) in out.iter_mut().zip(factors) {
+                if *factor == 0.0 {
+                    continue;
+                }
+                for (out, x) in out.iter_mut().zip(polynomial) {
+                    *out += factor * x;
+                }
+            }
+        }
+    }
+}
+
+fn scale(out: &mut [f64], factor: f64) {
+    for x in out {
+        *x *= factor;
+    }
+}
+
+/// `row^T matrix`
+fn row_times(row: &[f64], matrix: &[f64], out: &mut [f64]) {
+    out.fill(0.0);
+    add_row_times(row, matrix, out);
+}
+
+pub(super) fn add_row_times(row: &[f64], matrix: &[f64], out: &mut [f64]) {
+    for (factor, from) in row.iter().zip(matrix.chunks_exact(row.len())) {
+        // Many entries are zeros: the constant and the waves are not moved by the others.
+        if *factor == 0.0 {
+            continue;
+        }
+        for (out, x) in out.iter_mut().zip(from) {
+            *out += factor * x;
+        }
+    }
+}
+
+fn add_products(a: &[f64], b: &[f64], out: &mut [f64]) {
+    let order = a.len().isqrt();
+    for (row, out) in a.chunks_exact(order).zip(out.chunks_exact_mut(order)) {
+        add_row_times(row, b, out);
+    }
+}
