@@ -11,6 +11,7 @@ use crate::harmonics::{Chooser, resize};
 use crate::jacobian::Jacobian;
 use crate::newton::{Newton, NewtonOptions};
 use crate::reader::Reader;
+use crate::stability::Method;
 use crate::start::StartRequest;
 use crate::symmetry::EvenBlock;
 use crate::system::{System, Variable};
@@ -34,7 +35,8 @@ pub(crate) struct Follower<'a> {
     pub(crate) variable: Variable,
     pub(crate) resolution: Resolution,
     pub(crate) newton: NewtonOptions,
-    pub(crate) stability: bool,
+    /// How multipliers are computed, where they are.
+    pub(crate) stability: Option<Method>,
     /// How harmonics follow the tolerance, where they do.
     pub(crate) chooser: Option<Chooser>,
     pub(crate) from: f64,

@@ -22,10 +22,10 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub(crate) fn new(finer: Finer<'a>, stability: bool, estimate: bool) -> Self {
+    pub(crate) fn new(finer: Finer<'a>, stability: Option<Method>, estimate: bool) -> Self {
         Self {
             finer,
-            judge: stability.then(|| Judge::new(Method::Default)),
+            judge: stability.map(Judge::new),
             observer: Observer::default(),
             fine: Observer::default(),
             estimate,

@@ -15,6 +15,7 @@ use crate::harmonics::Chooser;
 use crate::layout::{ContactLayout, Layout};
 use crate::newton::NewtonOptions;
 use crate::run::Run;
+use crate::stability::Method;
 use crate::start::start;
 use crate::statistics::Statistics;
 use crate::symmetry::is_odd;
@@ -68,6 +69,7 @@ pub struct FrequencyResponse<'a> {
     max_points: usize,
     largest_step: f64,
     stability: bool,
+    method: Method,
 }
 
 impl std::fmt::Debug for FrequencyResponse<'_> {
@@ -98,6 +100,7 @@ impl<'a> FrequencyResponse<'a> {
             max_points: 20_000,
             largest_step: StepControl::default().largest,
             stability: true,
+            method: Method::default(),
         }
     }
 
@@ -175,6 +178,14 @@ impl<'a> FrequencyResponse<'a> {
     #[must_use]
     pub fn stability(mut self, wanted: bool) -> Self {
         self.stability = wanted;
+        self
+    }
+
+    /// How Floquet multipliers are computed. Default: [`Method::Default`]. [`Branch::multipliers`] applies any method to an orbit
+    /// that is there already.
+    #[must_use]
+    pub fn multipliers(mut self, method: Method) -> Self {
+        self.method = method;
         self
     }
 
@@ -320,7 +331,7 @@ impl<'a> FrequencyResponse<'a> {
                 variable,
                 resolution,
                 newton,
-                stability: self.stability,
+                stability: self.stability.then_some(self.method),
                 chooser: self.chooser(resolution),
                 from,
                 to,

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use clap::Parser;
 use hertzian_examples::response::boundary::loss_of_contact;
 use hertzian_examples::response::files::COLUMNS;
-use hertzian_examples::response::options::{Options, Sweep};
+use hertzian_examples::response::options::{Multipliers, Options, Sweep};
 use hertzian_examples::response::progress::Progress;
 use hertzian_examples::response::run::{Failure, Outcome, run};
 use serde_json::Value;
@@ -81,7 +81,7 @@ fn without_arguments_it_is_figure_5b() {
 fn every_option_is_understood() {
     let all = "--alpha 0.6 --continuous --zeta 0.01 --load -5e-1 --drive 0.2 --omega 2 --sweep drive --from 1 --to 2.2 \
                --period 2 --harmonics 7 --samples 99 --aft sampled --tolerance 1e-5 --max-points 10 --at 1.5 -0.2 \
-               --svg a.svg --csv b.csv --json c.json --quiet";
+               --svg a.svg --csv b.csv --json c.json --multipliers koopman-hill-subharmonic --quiet";
     let options = options(&all.split_whitespace().collect::<Vec<_>>());
     assert!(!options.model.loses_contact() && options.quiet);
     assert_eq!((options.model.load, options.model.omega), (-0.5, 2.0));
@@ -90,6 +90,7 @@ fn every_option_is_understood() {
         (Some(7), Some(99), 2)
     );
     assert_eq!(options.at, [1.5, -0.2]);
+    assert_eq!(options.multipliers, Multipliers::KoopmanHillSubharmonic);
     assert_eq!(options.varied(), "drive");
 }
 
@@ -101,6 +102,7 @@ fn bad_usage_is_refused_by_the_parser() {
         &["--harmonics", "-3"],
         &["--sweep", "zeta"],
         &["--aft", "exact"],
+        &["--multipliers", "guess"],
         &["--one-sided", "--continuous"],
         &["--amplitude", "1"],
         &["stray"],

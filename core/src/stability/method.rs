@@ -46,7 +46,8 @@ impl Method {
     /// What computes it.
     pub(crate) fn engine(self) -> Box<dyn Floquet> {
         match self {
-            Self::Default | Self::Monodromy => Box::new(Monodromy::new()),
+            Self::Default => Box::new(Monodromy::new(false)),
+            Self::Monodromy => Box::new(Monodromy::new(true)),
             Self::Hill(sorting) => Box::new(Hill::new(sorting)),
             Self::KoopmanHill(projection) => Box::new(KoopmanHill::new(projection)),
         }
@@ -60,7 +61,7 @@ impl std::fmt::Display for Method {
             Self::Monodromy => "monodromy",
             Self::Hill(Sorting::ImaginaryPart) => "hill-imaginary-part",
             Self::Hill(Sorting::WeightedMean) => "hill-weighted-mean",
-            Self::Hill(Sorting::Symmetry) => "hill-symmetry",
+            Self::Hill(Sorting::Symmetry) => "hill",
             Self::KoopmanHill(Projection::Direct) => "koopman-hill",
             Self::KoopmanHill(Projection::Subharmonic) => "koopman-hill-subharmonic",
         })

@@ -56,6 +56,15 @@ hertzian::oscillator! {
     }
 }
 
+hertzian::oscillator! {
+    /// A saddle and an oscillation, coupled.
+    Saddle(x, y) {
+        param c;
+        ddot(x) + c*dot(x) + 0.5*x + 1.5*y = 0;
+        ddot(y) + c*dot(y) + 1.5*x + 0.5*y = 0;
+    }
+}
+
 /// Multipliers by a method, with perturbations of `harmonics` harmonics, along a motion `mean + sin`.
 fn multipliers(
     system: &dyn System,
@@ -259,6 +268,43 @@ fn linear_oscillators() {
             let _ = bound;
         }
     }
+}
+
+/// Stiffness eigenvalues 2 and -1: the multipliers of the saddle are a million and a millionth, those of the oscillation near one.
+#[test]
+fn multipliers_over_twelve_decades() {
+    let (c, omega) = (0.01, 0.45);
+    let period = TAU / omega;
+    let exponent = |k: f64, sign: f64| {
+        let root = Complex::new(0.25 * c * c - k, 0.0).sqrt();
+        (root.scale(sign) - 0.5 * c).scale(period).exp()
+    };
+    let exact = [
+        exponent(-1.0, 1.0),
+        exponent(2.0, 1.0),
+        exponent(2.0, -1.0),
+        exponent(-1.0, -1.0),
+    ];
+    assert!(exact[0].re > 1e6 && exact[3].re < 1e-6);
+    for method in [Method::Monodromy, Method::Default] {
+        let (found, ..) = multipliers(&Saddle { c }, method, omega, 1);
+        for (a, b) in found.iter().zip(&exact) {
+            let error = (a - b).norm() / b.norm();
+            assert!(error < 1e-11, "{method} {a} {b}: {error:e}");
+        }
+    }
+    // One coordinate needs no factors: Liouville's formula gives the smaller one.
+    let system = Mathieu {
+        a: -6.0,
+        q: 1.0,
+        c: 0.0,
+    };
+    let (found, ..) = multipliers(&system, Method::Monodromy, 0.7, 1);
+    let product = found[0] * found[1];
+    assert!(
+        found[0].re > 1e8 && (product - 1.0).norm() < 1e-13,
+        "{found:?}"
+    );
 }
 
 /// Two real negative multipliers: their exponents have copies at `+i/2` and `-i/2`, and the smallest imaginary parts belong to

@@ -15,6 +15,7 @@ mod method;
 mod monodromy;
 mod orbit;
 mod path;
+mod product;
 mod spectrum;
 mod triangular;
 mod two;

@@ -15,8 +15,8 @@
 //! and `q L` is about as large as the error of `P` (within a factor of two on the orbits that were tried). The error of the
 //! multipliers is how far they move for such an error of the matrix, whatever its signs. The number of steps follows from it,
 //! with the sixth root. Of a system of one coordinate the determinant is known by Liouville's formula,
-//! `det P = exp(int trace A)`, and gives the smaller multiplier however small it is; of others, see
-//! [`product`](super::product).
+//! `det P = exp(int trace A)`, and gives the smaller multiplier however small it is. Where the matrix of others has lost small
+//! multipliers, they are found from its factors: see [`product`](super::product).
 //!
 //! Cost: on affine pieces one exponential for each panel, otherwise about three evaluations of the slopes and one exponential
 //! for each of some eight steps.
@@ -30,7 +30,7 @@ use super::linearised::{Linearised, Panel};
 use super::method::{Cost, Floquet, Found};
 use super::orbit::Orbit;
 use super::path::{Cut, Path};
-use super::walk::{Walk, WalkOfMany, WalkOfTwo};
+use super::walk::{Walk, WalkOfFactors, WalkOfMany, WalkOfTwo};
 use crate::fourier::grading::Grading;
 
 /// Steps per period at first.
@@ -41,6 +41,8 @@ const LARGEST_DENSITY: f64 = 2048.0;
 const COUNTS: [usize; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
 /// The next orbit shall have this part of the error aimed at.
 const TARGET: f64 = 0.15;
+/// Largest order of a matrix whose factors are asked for small multipliers in any case.
+const SMALL: usize = 8;
 /// Fewest steps on a graded panel.
 const FEWEST: usize = 3;
 
@@ -51,14 +53,18 @@ pub(crate) struct Monodromy {
     density: f64,
     path: Path,
     linearised: Linearised,
+    /// Multipliers over many decades are wanted whatever it costs.
+    complete: bool,
     /// Of the last system of several coordinates.
     many: Option<WalkOfMany>,
     cost: Cost,
 }
 
 impl Monodromy {
-    pub(crate) fn new() -> Self {
+    /// By factors, if `complete`, where the matrix has lost small multipliers; otherwise for small systems only.
+    pub(crate) fn new(complete: bool) -> Self {
         Self {
+            complete,
             density: FIRST_DENSITY,
             path: Path::default(),
             linearised: Linearised::default(),
@@ -93,9 +99,18 @@ impl Monodromy {
             let mut walk = kept.unwrap_or_else(|| WalkOfMany::new(order));
             walk.begin();
             self.integrate(&mut walk, orbit, density);
-            let found = walk.multipliers();
+            let (mut multipliers, error) = walk.multipliers();
+            let lost = walk.has_lost(&multipliers) && (self.complete || order <= SMALL);
             self.many = Some(walk);
-            found
+            if lost {
+                let mut factors = WalkOfFactors::new(order);
+                self.integrate(&mut factors, orbit, density);
+                let (found, _) = factors.multipliers();
+                if !found.is_empty() {
+                    multipliers = found;
+                }
+            }
+            (multipliers, error)
         };
         Found {
             multipliers,

@@ -31,7 +31,7 @@ fn monodromy(system: &PowerForm, density: f64) -> DMatrix<f64> {
         aft: Aft::Switched,
         samples: 0,
     };
-    DMatrix::from_vec(2, 2, Monodromy::new().matrix(&orbit, density))
+    DMatrix::from_vec(2, 2, Monodromy::new(true).matrix(&orbit, density))
 }
 
 /// Runge-Kutta in the continuous coordinate, from switch to switch, with the phase graded towards the switches.

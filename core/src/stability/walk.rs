@@ -3,12 +3,16 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::magnus::Magnus;
+use super::product::eigenvalues_of_product;
 use super::spectrum::eigenvalues_of_two;
 use super::two::{self, Square};
 use super::{distance, eigenvalues};
 
 /// The matrix `q L` of [`monodromy`](super::monodromy) is the error of `P` to about this factor.
 const SAFETY: f64 = 1.5;
+
+/// Multipliers smaller than this part of the matrix have lost half of their digits.
+const LOST: f64 = 1e-8;
 
 /// What has been integrated, for matrices of some order. Matrices are slices, column by column.
 pub(super) trait Walk {
@@ -161,6 +165,12 @@ impl WalkOfMany {
         self.product.nrows()
     }
 
+    /// Whether a multiplier is so much smaller than the matrix that it has lost digits there.
+    pub(super) fn has_lost(&self, multipliers: &[Complex<f64>]) -> bool {
+        let lost = |last: &Complex<f64>| last.norm() < LOST * self.product.amax();
+        multipliers.last().is_some_and(lost)
+    }
+
     /// Begins anew.
     pub(super) fn begin(&mut self) {
         self.product.fill_with_identity();
@@ -218,5 +228,88 @@ impl Walk for WalkOfMany {
             error = error.max(distance(&multipliers, &eigenvalues(&other)));
         }
         (multipliers, error)
+    }
+}
+
+/// The factors of the solution, for multipliers that its matrix has lost.
+#[derive(Debug)]
+pub(super) struct WalkOfFactors {
+    magnus: Magnus,
+    done: Vec<DMatrix<f64>>,
+    /// The product of the factors since, and the integral of its trace.
+    factor: DMatrix<f64>,
+    trace: f64,
+    /// A jump needs a second matrix.
+    nothing: [f64; 0],
+}
+
+/// A factor is done when its largest entry exceeds the mean size of its eigenvalues by this.
+const SPREAD: f64 = 30.0;
+/// Norm of an exponent beyond which the exponential is divided.
+const LONG: f64 = 2.0;
+
+impl WalkOfFactors {
+    pub(super) fn new(order: usize) -> Self {
+        Self {
+            magnus: Magnus::new(order),
+            done: Vec::new(),
+            factor: DMatrix::identity(order, order),
+            trace: 0.0,
+            nothing: [],
+        }
+    }
+
+    fn advance(&mut self, trace: f64) {
+        self.factor = &self.magnus.propagator * &self.factor;
+        self.trace += trace;
+        let order = self.factor.nrows();
+        if self.factor.amax().ln() - self.trace / order as f64 > SPREAD.ln() {
+            let next = DMatrix::identity(order, order);
+            self.done.push(std::mem::replace(&mut self.factor, next));
+            self.trace = 0.0;
+        }
+    }
+}
+
+/// The size of a matrix when displacements and velocities are scaled to be alike.
+fn frequency(a: &DMatrix<f64>) -> f64 {
+    let half = a.nrows() / 2;
+    let size = |i, j| a.view((i, j), (half, half)).amax();
+    (size(0, half) * size(half, 0)).sqrt() + size(half, half)
+}
+
+impl Walk for WalkOfFactors {
+    fn scaled(&mut self, node: usize) -> &mut [f64] {
+        self.magnus.scaled[node].as_mut_slice()
+    }
+
+    fn constant(&mut self) {
+        let size = frequency(&self.magnus.scaled[0]) / LONG;
+        let parts = if size > 1.0 {
+            size.ceil().min(1e4)
+        } else {
+            1.0
+        };
+        self.magnus.scaled[0] /= parts;
+        self.magnus.constant();
+        let trace = self.magnus.scaled[0].trace();
+        for _ in 0..parts as usize {
+            self.advance(trace);
+        }
+    }
+
+    fn step(&mut self) {
+        self.magnus.step();
+        let trace = self.magnus.omega.trace();
+        self.advance(trace);
+    }
+
+    fn matrices(&mut self) -> [&mut [f64]; 2] {
+        [self.factor.as_mut_slice(), &mut self.nothing]
+    }
+
+    fn multipliers(&self) -> (Vec<Complex<f64>>, f64) {
+        let factors = [&self.done[..], std::slice::from_ref(&self.factor)].concat();
+        (eigenvalues_of_product(&factors), 0.0)
     }
 }

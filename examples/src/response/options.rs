@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use hertzian::stability::{Method, Projection, Sorting};
 
 use crate::model::ModelOptions;
 
@@ -61,6 +62,10 @@ pub struct Options {
     /// How the harmonics of the contact force are computed
     #[arg(long, value_enum, default_value_t = Aft::Switched)]
     pub aft: Aft,
+
+    /// How Floquet multipliers are computed
+    #[arg(long, value_enum, value_name = "METHOD", default_value_t = Multipliers::Default)]
+    pub multipliers: Multipliers,
 
     /// Relative accuracy asked of peak-to-peak
     #[arg(
@@ -122,6 +127,39 @@ impl From<Aft> for hertzian::Aft {
             Aft::Switched => Self::Switched,
             Aft::Sampled => Self::Sampled,
             Aft::Primitive => Self::Primitive,
+        }
+    }
+}
+
+/// How Floquet multipliers are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Multipliers {
+    /// The cheapest method whose estimated error is small enough
+    Default,
+    /// The monodromy matrix, from switch to switch, as exactly as it can be
+    Monodromy,
+    /// Eigenvalues of the Hill matrix, sorted by symmetry, without copies
+    Hill,
+    /// The same, sorted by the smallest imaginary part
+    HillImaginaryPart,
+    /// The same, sorted by the weighted mean of the eigenvector
+    HillWeightedMean,
+    /// Koopman-Hill projection
+    KoopmanHill,
+    /// Koopman-Hill projection with half harmonics
+    KoopmanHillSubharmonic,
+}
+
+impl From<Multipliers> for Method {
+    fn from(multipliers: Multipliers) -> Self {
+        match multipliers {
+            Multipliers::Default => Self::Default,
+            Multipliers::Monodromy => Self::Monodromy,
+            Multipliers::Hill => Self::Hill(Sorting::Symmetry),
+            Multipliers::HillImaginaryPart => Self::Hill(Sorting::ImaginaryPart),
+            Multipliers::HillWeightedMean => Self::Hill(Sorting::WeightedMean),
+            Multipliers::KoopmanHill => Self::KoopmanHill(Projection::Direct),
+            Multipliers::KoopmanHillSubharmonic => Self::KoopmanHill(Projection::Subharmonic),
         }
     }
 }

@@ -140,6 +140,7 @@ fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a
         .period(options.period)
         .tolerance(options.tolerance)
         .aft(options.aft.into())
+        .multipliers(options.multipliers.into())
         .max_points(options.max_points);
     if options.sweep == Sweep::Drive {
         request = request.vary("drive").omega(options.model.omega);
