@@ -16,13 +16,30 @@ use crate::power::{Available, Work};
 
 /// Samples, and where to write values; runs a kernel on them.
 pub trait Batch<const A: usize, const V: usize> {
-    /// Runs a kernel, a function of arguments, gap and rate.
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]);
+    /// Runs a kernel.
+    fn run<K: Kernel<A, V>>(self, kernel: K);
 
     /// Runs a kernel with powers.
     fn raise<K, const B: usize, const G: usize, const P: usize>(self, kernel: K)
     where
         K: Raising<A, V, B, G, P>;
+}
+
+/// A kernel: a function of arguments, gap and rate. It is a type, and not a closure, because a call of a closure is a
+/// function between that the compiler may leave out of the loop.
+pub trait Kernel<const A: usize, const V: usize> {
+    /// The values at a sample.
+    fn values(arguments: [f64; A], gap: f64, rate: f64) -> [f64; V];
+}
+
+/// The kernel of a piece without force.
+pub struct Nothing;
+
+impl<const A: usize, const V: usize> Kernel<A, V> for Nothing {
+    #[inline(always)]
+    fn values(_: [f64; A], _: f64, _: f64) -> [f64; V] {
+        [0.0; V]
+    }
 }
 
 /// A kernel with `P` powers in `G` groups, of `B` bases.
@@ -49,20 +66,37 @@ pub trait Raising<const A: usize, const V: usize, const B: usize, const G: usize
     ) -> [f64; V];
 }
 
-/// Powers of one base whose exponents count up by one.
+/// Powers of one base that are computed together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Group {
     /// The position of the base.
-    pub base: usize,
+    pub(super) base: usize,
     /// The position of the lowest power.
-    pub first: usize,
+    pub(super) first: usize,
     /// How many there are.
-    pub count: usize,
+    pub(super) count: usize,
+    /// It is the cube root, whatever its exponent.
+    pub(super) cube_root: bool,
 }
 
-/// A group of powers.
+/// Powers of a base, of which the first has a given position, with exponents that count up by one.
 pub const fn group(base: usize, first: usize, count: usize) -> Group {
-    Group { base, first, count }
+    Group {
+        base,
+        first,
+        count,
+        cube_root: false,
+    }
+}
+
+/// The cube root of a base, as the power at a position.
+pub const fn cube_root_group(base: usize, first: usize) -> Group {
+    Group {
+        base,
+        first,
+        count: 1,
+        cube_root: true,
+    }
 }
 
 /// Sets of logarithms and of powers, by position.
@@ -146,15 +180,6 @@ impl<'a, const A: usize> Samples<'a, A> {
         self.check(out.by_gap);
         self.check(out.by_rate);
     }
-
-    #[inline(always)]
-    fn block(&self, start: usize, count: usize) -> Self {
-        Self {
-            arguments: self.arguments,
-            gap: &self.gap[start..][..count],
-            rate: &self.rate[start..][..count],
-        }
-    }
 }
 
 /// Where some of the values of a kernel go.
@@ -174,8 +199,11 @@ pub(super) struct Call<'a, O, const A: usize, const V: usize> {
 
 impl<O: Outputs<V>, const A: usize, const V: usize> Batch<A, V> for Call<'_, O, A, V> {
     #[inline]
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
-        Available::in_use().run(Plain { call: self, kernel });
+    fn run<K: Kernel<A, V>>(self, _: K) {
+        Available::in_use().run(Plain::<'_, _, K, A, V> {
+            call: self,
+            kernel: PhantomData,
+        });
     }
 
     #[inline]
@@ -194,28 +222,35 @@ impl<O: Outputs<V>, const A: usize, const V: usize> Batch<A, V> for Call<'_, O, 
 }
 
 /// The loop of a kernel without powers.
-struct Plain<'a, O, F, const A: usize, const V: usize> {
+struct Plain<'a, O, K, const A: usize, const V: usize> {
     call: Call<'a, O, A, V>,
-    kernel: F,
+    kernel: PhantomData<K>,
 }
 
-impl<O, F, const A: usize, const V: usize> Work for Plain<'_, O, F, A, V>
+impl<O, K, const A: usize, const V: usize> Work for Plain<'_, O, K, A, V>
 where
     O: Outputs<V>,
-    F: Fn([f64; A], f64, f64) -> [f64; V],
+    K: Kernel<A, V>,
 {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let Self { call, kernel } = self;
         let Call {
             samples,
             mut outputs,
-        } = call;
-        let count = samples.gap.len();
-        let rate = &samples.rate[..count];
-        outputs.write(0, count, |i| {
-            kernel(samples.arguments, samples.gap[i], rate[i])
-        });
+        } = self.call;
+        let Samples {
+            arguments,
+            gap,
+            rate,
+        } = samples;
+        let count = gap.len();
+        let rate = &rate[..count];
+        outputs.write(
+            0,
+            count,
+            #[inline(always)]
+            |i| K::values(arguments, gap[i], rate[i]),
+        );
     }
 }
 
@@ -247,30 +282,27 @@ where
             samples,
             mut outputs,
         } = self.call;
-        let needs = O::needs(&K::USES);
-        let exponents = K::exponents(samples.arguments);
-        let all = samples.gap.len();
-        for start in (0..all).step_by(BLOCK) {
-            let count = BLOCK.min(all - start);
-            let Samples {
-                arguments,
-                gap,
-                rate,
-            } = samples.block(start, count);
-            let columns = &mut *self.columns;
-            for (base, column) in columns[..B].iter_mut().enumerate() {
-                for (i, x) in column.0[..count].iter_mut().enumerate() {
-                    *x = K::bases(arguments, gap[i], rate[i])[base];
-                }
+        let Samples {
+            arguments,
+            gap,
+            rate,
+        } = samples;
+        let set = Available::in_use();
+        let (needs, exponents) = (O::needs(&K::USES), K::exponents(arguments));
+        let plan = Plan {
+            bases: B,
+            needs,
+            groups: &K::GROUPS,
+            exponents: &exponents,
+        };
+        for start in (0..gap.len()).step_by(BLOCK) {
+            let count = BLOCK.min(gap.len() - start);
+            let (gap, rate) = (&gap[start..][..count], &rate[start..][..count]);
+            for (base, column) in self.columns[..B].iter_mut().enumerate() {
+                fill::<K, A, V, B, G, P>(&mut column.0[..count], base, arguments, [gap, rate]);
             }
-            let plan = Plan {
-                bases: B,
-                needs,
-                groups: &K::GROUPS,
-                exponents: &exponents,
-            };
-            raise(columns, count, plan);
-            let Some((_, columns)) = columns.split_first_chunk::<B>() else {
+            raise(set, self.columns, count, plan);
+            let Some((_, columns)) = self.columns.split_first_chunk::<B>() else {
                 return;
             };
             let Some((whole, columns)) = columns.split_first_chunk::<B>() else {
@@ -282,24 +314,43 @@ where
             let Some((power, _)) = columns.split_first_chunk::<P>() else {
                 return;
             };
-            outputs.write(start, count, |i| {
-                let logarithms = std::array::from_fn(|base| {
-                    if needs.logarithm(base) {
-                        (whole[base].0[i] + part[base].0[i]) * LN_2
-                    } else {
-                        0.0
+            outputs.write(
+                start,
+                count,
+                #[inline(always)]
+                |i| {
+                    let (mut logarithms, mut powers) = ([0.0; B], [0.0; P]);
+                    for base in 0..B {
+                        if needs.logarithm(base) {
+                            logarithms[base] = (whole[base].0[i] + part[base].0[i]) * LN_2;
+                        }
                     }
-                });
-                let powers = std::array::from_fn(|index| {
-                    if needs.power(index) {
-                        power[index].0[i]
-                    } else {
-                        0.0
+                    for index in 0..P {
+                        if needs.power(index) {
+                            powers[index] = power[index].0[i];
+                        }
                     }
-                });
-                K::values(arguments, gap[i], rate[i], logarithms, powers)
-            });
+                    K::values(arguments, gap[i], rate[i], logarithms, powers)
+                },
+            );
         }
+    }
+}
+
+/// Writes one base of every sample.
+#[inline(always)]
+fn fill<K, const A: usize, const V: usize, const B: usize, const G: usize, const P: usize>(
+    column: &mut [f64],
+    base: usize,
+    arguments: [f64; A],
+    [gap, rate]: [&[f64]; 2],
+) where
+    K: Raising<A, V, B, G, P>,
+{
+    let count = column.len();
+    let (gap, rate) = (&gap[..count], &rate[..count]);
+    for i in 0..count {
+        column[i] = K::bases(arguments, gap[i], rate[i])[base];
     }
 }
 

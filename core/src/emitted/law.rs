@@ -227,13 +227,13 @@ impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> ByArgu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emitted::{Primitive, Spring};
+    use crate::emitted::{Kernel, Nothing, Primitive, Spring};
 
     /// `phi = a g^2 + 3 g r` and its primitive `3 g^2 / 2`, on two pieces that meet at `a`.
     struct Square;
 
-    impl Square {
-        fn value([a]: [f64; 1], g: f64, r: f64) -> [f64; 6] {
+    impl Kernel<1, 6> for Square {
+        fn values([a]: [f64; 1], g: f64, r: f64) -> [f64; 6] {
             let by_gap = 2.0 * a * g + 3.0 * r;
             [
                 a * g * g + 3.0 * g * r,
@@ -253,8 +253,8 @@ mod tests {
 
         fn on(on: On, batch: impl Batch<1, 6>) {
             match on {
-                On::Piece(0) => batch.run(super::super::nothing),
-                _ => batch.run(Self::value),
+                On::Piece(0) => batch.run(Nothing),
+                _ => batch.run(Square),
             }
         }
 

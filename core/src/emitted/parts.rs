@@ -5,7 +5,7 @@
 
 use std::marker::PhantomData;
 
-use super::batch::{Batch, Group, Raising, Uses};
+use super::batch::{Batch, Group, Kernel, Raising, Uses};
 use super::law::{ByArgument, Kernels};
 use crate::law::On;
 
@@ -50,41 +50,28 @@ struct AtRest<T>(T);
 /// such a kernel.
 struct Integrated<T>(T);
 
-impl<B: Batch<A, V>, const A: usize, const V: usize> Batch<A, V> for AtRest<B> {
-    #[inline(always)]
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
-        self.0.run(
-            #[inline(always)]
-            |arguments, gap, _| at_rest(kernel(arguments, gap, 0.0), 0.0),
-        );
-    }
+/// Declares the batch of a part.
+macro_rules! batch {
+    ($name:ident) => {
+        impl<T: Batch<A, V>, const A: usize, const V: usize> Batch<A, V> for $name<T> {
+            #[inline]
+            fn run<K: Kernel<A, V>>(self, kernel: K) {
+                self.0.run($name(kernel));
+            }
 
-    #[inline(always)]
-    fn raise<K, const BASES: usize, const G: usize, const P: usize>(self, kernel: K)
-    where
-        K: Raising<A, V, BASES, G, P>,
-    {
-        self.0.raise(AtRest(kernel));
-    }
+            #[inline]
+            fn raise<K, const B: usize, const G: usize, const P: usize>(self, kernel: K)
+            where
+                K: Raising<A, V, B, G, P>,
+            {
+                self.0.raise($name(kernel));
+            }
+        }
+    };
 }
 
-impl<B: Batch<A, V>, const A: usize, const V: usize> Batch<A, V> for Integrated<B> {
-    #[inline(always)]
-    fn run(self, kernel: impl Fn([f64; A], f64, f64) -> [f64; V]) {
-        self.0.run(
-            #[inline(always)]
-            |arguments, gap, _| integrated::<_, A, V>(kernel(arguments, gap, 0.0), 0.0),
-        );
-    }
-
-    #[inline(always)]
-    fn raise<K, const BASES: usize, const G: usize, const P: usize>(self, kernel: K)
-    where
-        K: Raising<A, V, BASES, G, P>,
-    {
-        self.0.raise(Integrated(kernel));
-    }
-}
+batch!(AtRest);
+batch!(Integrated);
 
 /// The values of a law at zero rate, or what they depend on.
 #[inline(always)]
@@ -108,9 +95,16 @@ const fn integrated<T: Copy, const A: usize, const V: usize>(whole: [T; V], noth
     values
 }
 
-/// Declares the kernel with powers of a part, from the values of the whole.
-macro_rules! raising {
+/// Declares the kernels of a part, from the values of the whole.
+macro_rules! kernels {
     ($name:ident, $values:expr) => {
+        impl<K: Kernel<A, V>, const A: usize, const V: usize> Kernel<A, V> for $name<K> {
+            #[inline(always)]
+            fn values(arguments: [f64; A], gap: f64, _: f64) -> [f64; V] {
+                $values(K::values(arguments, gap, 0.0), 0.0)
+            }
+        }
+
         impl<K, const A: usize, const V: usize, const B: usize, const G: usize, const P: usize>
             Raising<A, V, B, G, P> for $name<K>
         where
@@ -143,5 +137,5 @@ macro_rules! raising {
     };
 }
 
-raising!(AtRest, at_rest);
-raising!(Integrated, integrated::<_, A, V>);
+kernels!(AtRest, at_rest);
+kernels!(Integrated, integrated::<_, A, V>);

@@ -1,82 +1,23 @@
-//! Logarithms and powers of arrays: loops over [`functions`](super::functions), compiled for every instruction set.
+//! Logarithms, powers and cube roots of arrays: loops over [`functions`](super::functions), to be merged into
+//! [`Work`](super::Work) that is compiled for every instruction set.
 //!
 //! A loop takes the short way and notices unusual numbers; if there was one, a second loop goes over the array again. Both
 //! compute the same where the short way is right, so a number's power does not depend on its neighbours.
+//!
+//! All arrays of a call have one length. Where it is a multiple of [`LANES`], there is no slow rest.
 
-// The loops are merged into one function for each instruction set.
+// Meaningless unless merged into the work that calls them.
 #![allow(clippy::inline_always)]
 
-use super::Accuracy;
+use super::cube_root::cube_root;
 use super::functions::{
     Exponent, Logarithm, Raised, UNUSUAL, careful_logarithm, careful_raise, logarithm, raise,
 };
-use super::instructions::{Available, Work};
 
-/// An array whose length is a multiple of this is computed without a slow rest.
+/// The longest vectors have this many numbers.
 pub(crate) const LANES: usize = 8;
 
-/// Logarithms to base two of an array of bases, in two parts that are to be added; zero where a base is not positive. All
-/// arrays have one length.
-pub(crate) fn logarithms(set: Available, accuracy: Accuracy, base: &[f64], parts: [&mut [f64]; 2]) {
-    match accuracy {
-        Accuracy::Full => set.run(Logarithms::<false> { base, parts }),
-        Accuracy::Fast => set.run(Logarithms::<true> { base, parts }),
-    }
-}
-
-/// Powers of an array of bases from their logarithms and, if asked for, those of an exponent one higher. A base that is
-/// not positive counts as zero. All arrays have one length.
-pub(crate) fn powers(
-    set: Available,
-    accuracy: Accuracy,
-    of: Bases<'_>,
-    exponent: f64,
-    power: &mut [f64],
-    next: Option<&mut [f64]>,
-) {
-    if exponent == 0.0 {
-        power.fill(1.0);
-        if let Some(next) = next {
-            multiply(set, of.base, power, next);
-        }
-        return;
-    }
-    match (accuracy, next) {
-        (Accuracy::Full, None) => set.run(Powers::<false> {
-            of,
-            exponent,
-            power,
-        }),
-        (Accuracy::Fast, None) => set.run(Powers::<true> {
-            of,
-            exponent,
-            power,
-        }),
-        (Accuracy::Full, Some(next)) => {
-            let powers = Powers::<false> {
-                of,
-                exponent,
-                power,
-            };
-            set.run(TwoPowers { powers, next });
-        }
-        (Accuracy::Fast, Some(next)) => {
-            let powers = Powers::<true> {
-                of,
-                exponent,
-                power,
-            };
-            set.run(TwoPowers { powers, next });
-        }
-    }
-}
-
-/// Powers of an exponent one higher. A base that is not positive counts as zero. All arrays have one length.
-pub(crate) fn multiply(set: Available, base: &[f64], power: &[f64], next: &mut [f64]) {
-    set.run_short(Products { base, power, next });
-}
-
-/// Bases, and their logarithms in two parts.
+/// Bases, and their logarithms to base two in two parts that are to be added.
 #[derive(Clone, Copy)]
 pub(crate) struct Bases<'a> {
     pub(crate) base: &'a [f64],
@@ -84,22 +25,16 @@ pub(crate) struct Bases<'a> {
     pub(crate) part: &'a [f64],
 }
 
-struct Logarithms<'a, const FAST: bool> {
-    base: &'a [f64],
-    parts: [&'a mut [f64]; 2],
-}
-
-impl<const FAST: bool> Work for Logarithms<'_, FAST> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let Self {
-            base,
-            parts: [whole, part],
-        } = self;
-        let keys = each_logarithm(base, whole, part, logarithm::<FUSED, FAST>);
-        if keys & UNUSUAL != 0 {
-            each_logarithm(base, whole, part, careful_logarithm::<FUSED, FAST>);
-        }
+/// Logarithms to base two, in two parts; zero where a base is not positive.
+#[inline(always)]
+pub(crate) fn logarithms<const FUSED: bool, const FAST: bool>(
+    base: &[f64],
+    whole: &mut [f64],
+    part: &mut [f64],
+) {
+    let keys = each_logarithm(base, whole, part, logarithm::<FUSED, FAST>);
+    if keys & UNUSUAL != 0 {
+        each_logarithm(base, whole, part, careful_logarithm::<FUSED, FAST>);
     }
 }
 
@@ -123,27 +58,31 @@ fn each_logarithm(
     keys
 }
 
-struct Powers<'a, const FAST: bool> {
-    of: Bases<'a>,
+/// Powers. A base that is not positive counts as zero.
+#[inline(always)]
+pub(crate) fn powers<const FUSED: bool, const FAST: bool>(
+    of: Bases<'_>,
     exponent: f64,
-    power: &'a mut [f64],
-}
-
-impl<const FAST: bool> Work for Powers<'_, FAST> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let Self {
+    power: &mut [f64],
+) {
+    if exponent == 0.0 {
+        power.fill(1.0);
+        return;
+    }
+    let exponent = Exponent::new(exponent);
+    let keys = each_power(
+        of,
+        power,
+        #[inline(always)]
+        |log| raise::<FUSED, FAST>(&exponent, log),
+    );
+    if keys & UNUSUAL != 0 {
+        each_power(
             of,
-            exponent,
             power,
-        } = self;
-        let exponent = Exponent::new(exponent);
-        let keys = each_power(of, power, |log| raise::<FUSED, FAST>(&exponent, log));
-        if keys & UNUSUAL != 0 {
-            each_power(of, power, |log| {
-                careful_raise::<FUSED, FAST>(&exponent, log)
-            });
-        }
+            #[inline(always)]
+            |log| careful_raise::<FUSED, FAST>(&exponent, log),
+        );
     }
 }
 
@@ -160,30 +99,35 @@ fn each_power(of: Bases<'_>, power: &mut [f64], raise: impl Fn([f64; 2]) -> Rais
     keys
 }
 
-struct TwoPowers<'a, const FAST: bool> {
-    powers: Powers<'a, FAST>,
-    next: &'a mut [f64],
-}
-
-impl<const FAST: bool> Work for TwoPowers<'_, FAST> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let Self {
-            powers:
-                Powers {
-                    of,
-                    exponent,
-                    power,
-                },
+/// Powers, and those of an exponent one higher. A base that is not positive counts as zero.
+#[inline(always)]
+pub(crate) fn two_powers<const FUSED: bool, const FAST: bool>(
+    of: Bases<'_>,
+    exponent: f64,
+    power: &mut [f64],
+    next: &mut [f64],
+) {
+    if exponent == 0.0 {
+        power.fill(1.0);
+        multiply(of.base, power, next);
+        return;
+    }
+    let exponent = Exponent::new(exponent);
+    let keys = each_two(
+        of,
+        power,
+        next,
+        #[inline(always)]
+        |log| raise::<FUSED, FAST>(&exponent, log),
+    );
+    if keys & UNUSUAL != 0 {
+        each_two(
+            of,
+            power,
             next,
-        } = self;
-        let exponent = Exponent::new(exponent);
-        let keys = each_two(of, power, next, |log| raise::<FUSED, FAST>(&exponent, log));
-        if keys & UNUSUAL != 0 {
-            each_two(of, power, next, |log| {
-                careful_raise::<FUSED, FAST>(&exponent, log)
-            });
-        }
+            #[inline(always)]
+            |log| careful_raise::<FUSED, FAST>(&exponent, log),
+        );
     }
 }
 
@@ -211,18 +155,32 @@ fn each_two(
     keys
 }
 
-struct Products<'a> {
-    base: &'a [f64],
-    power: &'a [f64],
-    next: &'a mut [f64],
+/// Powers of an exponent one higher. A base that is not positive counts as zero.
+#[inline(always)]
+pub(crate) fn multiply(base: &[f64], power: &[f64], next: &mut [f64]) {
+    for ((next, &power), &base) in next.iter_mut().zip(power).zip(base) {
+        *next = if base <= 0.0 { 0.0 } else { power * base };
+    }
 }
 
-impl Work for Products<'_> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let Self { base, power, next } = self;
-        for ((next, &power), &base) in next.iter_mut().zip(power).zip(base) {
-            *next = if base <= 0.0 { 0.0 } else { power * base };
-        }
+/// Cube roots. A base that is not positive counts as zero.
+#[inline(always)]
+pub(crate) fn cube_roots<const FUSED: bool>(base: &[f64], root: &mut [f64]) {
+    // Two halves at once: a root is a chain of operations that wait for each other.
+    let half = base.len() / 2;
+    let ((first, second), (to_first, to_second)) =
+        (base.split_at(half), root[..base.len()].split_at_mut(half));
+    let (middle, to_middle) = (&second[..half], &mut to_second[..half]);
+    for i in 0..half {
+        to_first[i] = positive_cube_root::<FUSED>(first[i]);
+        to_middle[i] = positive_cube_root::<FUSED>(middle[i]);
     }
+    for (root, &base) in to_second[half..].iter_mut().zip(&second[half..]) {
+        *root = positive_cube_root::<FUSED>(base);
+    }
+}
+
+#[inline(always)]
+fn positive_cube_root<const FUSED: bool>(base: f64) -> f64 {
+    cube_root::<FUSED>(if base <= 0.0 { 0.0 } else { base })
 }

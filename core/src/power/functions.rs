@@ -304,6 +304,6 @@ fn polynomial<const FUSED: bool, const N: usize>(c: &[f64; N], x: f64) -> f64 {
 
 /// `a b + c`
 #[inline(always)]
-fn add_product<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+pub(super) fn add_product<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }

@@ -37,12 +37,14 @@
 //! be the same on all machines, pin `baseline`.
 
 mod arrays;
+mod cube_root;
 mod functions;
 mod instructions;
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-pub(crate) use arrays::{Bases, LANES, logarithms, multiply, powers};
+pub(crate) use arrays::{Bases, LANES, cube_roots, logarithms, multiply, powers, two_powers};
+pub(crate) use cube_root::cube_root;
 pub use instructions::Instructions;
 pub(crate) use instructions::{Available, Work};
 

@@ -33,6 +33,8 @@ pub enum Variable {
     Gap,
     /// Rate of the gap.
     Rate,
+    /// Base of powers of several pieces of a law, on each piece its own.
+    Base(usize),
     /// Argument of a law.
     Argument(usize),
     /// Parameter of the model.
@@ -47,6 +49,13 @@ pub enum Variable {
     Velocity(usize),
     /// Its second derivative by time.
     Acceleration(usize),
+}
+
+impl Variable {
+    /// Whether it changes from sample to sample of a law.
+    pub fn varies(self) -> bool {
+        matches!(self, Self::Gap | Self::Rate | Self::Base(_))
+    }
 }
 
 /// Functions of one operand.

@@ -34,6 +34,10 @@ pub struct Code {
     pub roots: Vec<TokenStream>,
     /// The variables it uses.
     pub inputs: Vec<Variable>,
+    /// The planned logarithms it uses.
+    pub logarithms: Vec<usize>,
+    /// The planned powers it uses.
+    pub powers: Vec<usize>,
 }
 
 impl Code {
@@ -41,12 +45,15 @@ impl Code {
     pub fn of(tape: &Tape, name: &dyn Fn(Variable) -> Ident) -> Self {
         let uses = tape.uses();
         let mut statements = TokenStream::new();
-        let mut inputs = Vec::new();
+        let (mut inputs, mut logarithms, mut powers) = (Vec::new(), Vec::new(), Vec::new());
         let mut written: Vec<Expression> = Vec::new();
         let mut temporaries = 0;
         for (position, &operation) in tape.operations.iter().enumerate() {
-            if let Operation::Input(variable) = operation {
-                inputs.push(variable);
+            match operation {
+                Operation::Input(variable) => inputs.push(variable),
+                Operation::Logarithm(position) => logarithms.push(position),
+                Operation::Planned(position) => powers.push(position),
+                _ => {}
             }
             let mut expression = write(operation, &written, name);
             let short = expression.size <= MAX_INLINE;
@@ -68,8 +75,25 @@ impl Code {
             statements,
             roots,
             inputs,
+            logarithms,
+            powers,
         }
     }
+}
+
+/// The name of a planned logarithm.
+pub fn logarithm(position: usize) -> Ident {
+    format_ident!("l{position}")
+}
+
+/// The name of a planned power.
+pub fn power(position: usize) -> Ident {
+    format_ident!("p{position}")
+}
+
+/// The name of a base that is chosen by piece.
+pub fn base(position: usize) -> Ident {
+    format_ident!("b{position}")
 }
 
 fn atom(tokens: TokenStream, size: usize) -> Expression {
@@ -142,23 +166,13 @@ fn write(
         Operation::Root(a) => call(quote!(root), &[a]),
         Operation::CubeRoot(a) => call(quote!(cube_root), &[a]),
         Operation::Reciprocal(a) => call(quote!(reciprocal), &[a]),
-        Operation::Logarithm(a) => call(quote!(logarithm), &[a]),
-        Operation::Raise(base, logarithm, exponent) => {
-            call(quote!(raise), &[base, logarithm, exponent])
+        Operation::Logarithm(position) => {
+            let name = logarithm(position);
+            atom(quote!(#name), 0)
         }
-        Operation::Nearest(exponent, lowest, highest) => {
-            call(quote!(nearest), &[exponent, lowest, highest])
-        }
-        Operation::Over(power, base) => call(quote!(over), &[power, base]),
-        Operation::Shift {
-            power,
-            base,
-            steps,
-            up,
-            down,
-        } => {
-            let (up, down) = (position(up), position(down));
-            call(quote!(shift::<#up, #down>), &[power, base, steps])
+        Operation::Planned(position) => {
+            let name = power(position);
+            atom(quote!(#name), 0)
         }
         Operation::Power(base, exponent) => call(quote!(power), &[base, exponent]),
         Operation::PowerLog(base, exponent) => call(quote!(power_log), &[base, exponent]),

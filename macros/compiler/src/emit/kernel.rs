@@ -1,28 +1,31 @@
-//! The kernels of one sample: levels, each piece, and all pieces by selection.
+//! The type of the kernels of a law: its levels, and which kernel a batch is run with.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
-use super::code::{Code, position};
+use super::code::position;
 use super::law::Emitter;
-use super::tape::{Style, Tape};
-use crate::dag::{Dag, Id, Variable};
+use super::pieces::Kernel;
+use super::powers::Plan;
+use crate::dag::{Dag, Id};
 
 impl Emitter<'_> {
     /// The type of the kernels. What a caller does not use of the values of a piece is not computed.
     pub(super) fn kernels(&self, dag: &mut Dag, name: &Ident) -> TokenStream {
-        let pieces: TokenStream = (0..self.pieces.len())
-            .map(|index| self.piece(dag, index))
+        let pieces: Vec<Kernel> = (0..self.pieces.len())
+            .map(|index| self.piece(dag, name, index))
             .collect();
-        let all_pieces = self.all_pieces(dag);
+        let all_pieces = self.all_pieces(dag, name);
         let [arguments, levels_count, values] = self.sizes();
         let levels = self.levels(dag);
         let levels_by = self.levels_by(dag);
-        let (on, by_argument) = (self.on(), self.by_argument());
+        let on = self.on(&pieces, all_pieces.as_ref());
+        let by_argument = self.by_argument();
+        let items = pieces.iter().chain(&all_pieces).map(|kernel| &kernel.item);
         quote! {
             struct #name;
 
-            impl #name { #pieces #all_pieces }
+            #(#items)*
 
             impl __emitted::Kernels<#arguments, #levels_count, #values> for #name {
                 #levels
@@ -33,103 +36,9 @@ impl Emitter<'_> {
         }
     }
 
-    /// The function of a piece, unless all of its values are zero.
-    fn piece(&self, dag: &mut Dag, index: usize) -> TokenStream {
-        if self.is_zero(index) {
-            return TokenStream::new();
-        }
-        let name = piece_name(index);
-        let code = self.code(dag, &self.pieces[index]);
-        let (pattern, statements, values) = (self.pattern(&code), &code.statements, &code.roots);
-        let gap = used(&code, Variable::Gap, "g");
-        let rate = used(&code, Variable::Rate, "r");
-        let [arguments, _, outputs] = self.sizes();
-        quote! {
-            #[inline(always)]
-            fn #name(#pattern: [f64; #arguments], #gap: f64, #rate: f64) -> [f64; #outputs] {
-                #statements
-                [#(#values),*]
-            }
-        }
-    }
-
-    fn is_zero(&self, index: usize) -> bool {
-        self.pieces[index].iter().all(|&value| value == self.zero)
-    }
-
-    /// The path of the function of a piece.
-    fn path(&self, index: usize) -> TokenStream {
-        if self.is_zero(index) {
-            return quote!(__emitted::nothing);
-        }
-        let name = piece_name(index);
-        quote!(Self::#name)
-    }
-
-    /// Every piece is computed, and one is selected by comparison: no branch.
-    fn all_pieces(&self, dag: &mut Dag) -> TokenStream {
-        if self.member.levels.is_empty() {
-            return TokenStream::new();
-        }
-        let [arguments, _, outputs] = self.sizes();
-        let mut values: Vec<TokenStream> = (0..self.pieces.len())
-            .map(|index| {
-                let piece = self.path(index);
-                quote!(#piece(a, g, r))
-            })
-            .collect();
-        let mut statements = TokenStream::new();
-        if let Some(pieces) = &self.together {
-            let code = self.code(dag, &pieces.concat());
-            let pattern = self.pattern(&code);
-            statements = code.statements;
-            statements = quote!(let #pattern = a; #statements);
-            let pieces = code.roots.chunks(pieces[0].len());
-            values = pieces.map(|values| quote!([#(#values),*])).collect();
-        }
-        let first = &values[0];
-        let levels = self.member.law.levels.iter().enumerate();
-        let selections = levels.zip(&values[1..]).map(|((index, level), value)| {
-            let index = position(index);
-            let above = if level.belongs_above {
-                quote!(>=)
-            } else {
-                quote!(>)
-            };
-            quote!(__emitted::select(&mut v, g #above level[#index], #value);)
-        });
-        quote! {
-            #[inline(always)]
-            fn all_pieces(a: [f64; #arguments], g: f64, r: f64) -> [f64; #outputs] {
-                let level = <Self as __emitted::Kernels<_, _, _>>::levels(a);
-                #statements
-                let mut v = #first;
-                #(#selections)*
-                v
-            }
-        }
-    }
-
-    fn code(&self, dag: &mut Dag, roots: &[Id]) -> Code {
-        let tape = Tape::of(dag, roots, Style::Code);
-        Code::of(&tape, &|variable| self.name(variable))
-    }
-
-    /// The pattern that takes the arguments apart.
-    fn pattern(&self, code: &Code) -> TokenStream {
-        let names = self.arguments.iter().enumerate().map(|(index, name)| {
-            if code.inputs.contains(&Variable::Argument(index)) {
-                quote!(#name)
-            } else {
-                quote!(_)
-            }
-        });
-        quote!([#(#names),*])
-    }
-
     fn levels(&self, dag: &mut Dag) -> TokenStream {
         let values: Vec<Id> = self.member.levels.iter().map(|(value, _)| *value).collect();
-        let code = self.code(dag, &values);
+        let code = self.code(dag, &values, &Plan::default());
         let (pattern, statements, roots) = (self.pattern(&code), &code.statements, &code.roots);
         let [arguments, levels, _] = self.sizes();
         quote! {
@@ -151,7 +60,7 @@ impl Emitter<'_> {
             if roots.iter().all(|&root| root == zero) {
                 continue;
             }
-            let code = self.code(dag, &roots);
+            let code = self.code(dag, &roots, &Plan::default());
             let (pattern, statements, values) =
                 (self.pattern(&code), &code.statements, &code.roots);
             let argument = position(argument);
@@ -170,21 +79,20 @@ impl Emitter<'_> {
     }
 
     /// Hands over the kernel of what a batch is evaluated on.
-    fn on(&self) -> TokenStream {
-        let all_pieces = if self.member.levels.is_empty() {
-            self.path(0)
-        } else {
-            quote!(Self::all_pieces)
-        };
-        let arms = (0..self.pieces.len()).map(|index| {
-            let (path, index) = (self.path(index), position(index));
-            quote!(__law::On::Piece(#index) => batch.run(#path),)
-        });
+    fn on(&self, pieces: &[Kernel], all_pieces: Option<&Kernel>) -> TokenStream {
+        let all_pieces = &all_pieces.unwrap_or(&pieces[0]).run;
+        let arms = pieces
+            .iter()
+            .enumerate()
+            .map(|(index, Kernel { run, .. })| {
+                let index = position(index);
+                quote!(__law::On::Piece(#index) => #run,)
+            });
         let [arguments, _, outputs] = self.sizes();
         quote! {
             fn on(on: __law::On, batch: impl __emitted::Batch<#arguments, #outputs>) {
                 match on {
-                    __law::On::AllPieces => batch.run(#all_pieces),
+                    __law::On::AllPieces => #all_pieces,
                     #(#arms)*
                     __law::On::Piece(index) => __emitted::no_such_piece(index),
                 }
@@ -206,18 +114,5 @@ impl Emitter<'_> {
                 }
             }
         }
-    }
-}
-
-fn piece_name(index: usize) -> Ident {
-    format_ident!("piece_{index}")
-}
-
-fn used(code: &Code, variable: Variable, name: &str) -> TokenStream {
-    if code.inputs.contains(&variable) {
-        let name = format_ident!("{name}");
-        quote!(#name)
-    } else {
-        quote!(_)
     }
 }

@@ -3,10 +3,10 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::code::position;
+use super::code::{base, position};
 use super::data;
-use super::magnitude::share_magnitudes;
 use super::names::locals;
+use super::shared::{Shared, share_bases};
 use crate::dag::{Dag, Id, Variable};
 use crate::facts::Piece;
 use crate::interpret::{Family, Member};
@@ -19,7 +19,7 @@ pub(super) struct Emitter<'a> {
     /// primitive, and its derivatives by each argument.
     pub(super) pieces: Vec<Vec<Id>>,
     /// The same as they are computed together, where that differs from one by one.
-    pub(super) together: Option<Vec<Vec<Id>>>,
+    pub(super) shared: Option<Shared>,
     /// The number zero.
     pub(super) zero: Id,
     /// Identifiers of the arguments.
@@ -72,10 +72,13 @@ impl<'a> Emitter<'a> {
         }
         Self {
             member,
-            together: share_magnitudes(dag, &pieces),
+            shared: share_bases(dag, &pieces),
             pieces,
             zero: dag.integer(0),
-            arguments: locals(&member.law.arguments, &["g", "r", "level", "v"]),
+            arguments: locals(
+                &member.law.arguments,
+                &["g", "r", "level", "v", "l", "p", "base"],
+            ),
         }
     }
 
@@ -92,6 +95,7 @@ impl<'a> Emitter<'a> {
         match variable {
             Variable::Gap => format_ident!("g"),
             Variable::Rate => format_ident!("r"),
+            Variable::Base(index) => base(index),
             Variable::Argument(index) => self.arguments[index].clone(),
             other => unreachable!("a law depends on gap, rate and arguments, not on {other:?}"),
         }

@@ -17,8 +17,9 @@ pub fn locals(names: &[String], reserved: &[&str]) -> Vec<Ident> {
     taken
 }
 
-/// `t0` and `a0` are names that the code itself makes up; a single `a` is the array of arguments.
+/// `t0`, `a0`, `b0`, `l0` and `p0` are names that the code itself makes up, and `a` is the array of arguments.
 fn is_numbered(name: &str) -> bool {
-    let rest = name.strip_prefix(['t', 'a']);
-    rest.is_some_and(|digits| digits.chars().all(|c| c.is_ascii_digit()))
+    let digits = name.strip_prefix(['t', 'a', 'b', 'l', 'p']);
+    let numbered = digits.is_some_and(|digits| digits.chars().all(|c| c.is_ascii_digit()));
+    name == "a" || (numbered && name.len() > 1)
 }

@@ -1,104 +1,261 @@
 //! Powers as code: products and roots where the exponent is a known multiple of 1/2, 1/3 or 1/4; otherwise one logarithm
 //! per base, one exponential per exponent modulo one.
 //!
+//! Cube roots, logarithms and exponentials are not part of a kernel. The runtime computes them for a whole block of
+//! samples, before the kernel combines them. What is to be computed is a [`Plan`]: the bases, and groups of exponents that
+//! count up by one. The lowest power of a group is an exponential, the others are its products with the base.
+//!
 //! # Accuracy
 //!
-//! Powers of one base whose exponents differ by whole numbers share an exponential: one of them is computed, the others
-//! are its products with, or quotients by, the base. `exp(a ln g)` carries a relative error of about `1 + |a ln g|` ulp,
-//! and the powers made from it inherit that error. So the one to compute is that of the exponent of smallest size: its
-//! error is within the bound of all the others. A symbolic exponent is chosen when a batch is, which costs nothing.
+//! A product adds one rounding. The exponents of a group are written out each for itself, because the runtime takes an
+//! exponential of its own where the lowest power may overflow and the others do not.
 //!
-//! The same choice keeps the shared power away from the ends of the range of numbers: where it underflows or overflows,
-//! those made from it do too. At `g = 0` each is zero, as its guarded power is: one of exponent zero would be the
-//! smallest, and is not made from another.
+//! Powers of what is the same for all samples, and powers of powers, are left to the standard library.
 
 use std::collections::HashMap;
 
 use super::tape::{Builder, Operation};
-use crate::dag::{Dag, Id, Node, Rational};
+use crate::dag::{Dag, Id, Node, Rational, Variable};
 
 /// Fractional powers above this one are computed by logarithm and exponential; beyond it no exponential is shared.
 const MAX_WHOLE: i128 = 64;
 
-/// How many multiplications or divisions by the base are worth less than an exponential.
+/// How many multiplications by the base are worth less than an exponential.
 const MAX_STEPS: i128 = 4;
 
-/// Exponents of one base that differ by whole numbers.
-#[derive(Clone, Copy)]
-struct Shared {
-    /// The exponent that the others are counted from.
-    reference: Id,
-    /// The lowest of them, as steps from the reference.
-    lowest: i128,
-    /// The highest of them.
-    highest: i128,
+/// Sets of powers are the bits of a word at run time.
+const MAX_PLANNED: usize = 64;
+
+/// Powers of one base that share an exponential.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// The position of the base.
+    pub base: usize,
+    /// The position of the lowest power; the others follow it.
+    pub first: usize,
+    /// How many there are.
+    pub count: usize,
+    /// It is the cube root.
+    pub cube_root: bool,
 }
 
-/// For a base and an exponent, what it shares an exponential with, and its steps from the reference.
-#[derive(Default)]
-pub struct Exponents {
-    shared: HashMap<(Id, Id), (Shared, i128)>,
+/// Powers of one base whose exponents differ by whole numbers.
+struct Family {
+    base: Id,
+    /// What the exponents have in common.
+    rest: Id,
+    /// The exponents, each after its whole part.
+    members: Vec<(i128, Id)>,
 }
 
-impl Exponents {
+/// What is computed before a kernel runs.
+#[derive(Debug, Default)]
+pub struct Plan {
+    /// The bases.
+    pub bases: Vec<Id>,
+    /// The exponents, one for each power.
+    pub exponents: Vec<Id>,
+    /// Which powers share an exponential.
+    pub groups: Vec<Group>,
+    /// Where each base is.
+    positions: HashMap<Id, usize>,
+    powers: HashMap<(Id, Id), usize>,
+    cube_roots: HashMap<Id, usize>,
+}
+
+impl Plan {
     /// Plans the powers of all expressions under `roots`.
     pub fn of(dag: &mut Dag, roots: &[Id]) -> Self {
-        let mut groups: HashMap<(Id, Id), Vec<(i128, Id)>> = HashMap::new();
+        let mut plan = Self::default();
+        let mut families: Vec<Family> = Vec::new();
         for id in dag.reachable(roots) {
-            let (Node::Power(base, exponent) | Node::PowerLog(base, exponent)) = *dag.node(id)
-            else {
+            if let Some((base, Root::Cube)) = root_of(dag, id) {
+                plan.add_cube_root(dag, base);
+            }
+            let Some((base, exponent)) = real_power(dag, id) else {
                 continue;
             };
-            if dag.as_number(exponent).is_some_and(is_simple) {
+            let simple = dag.as_number(exponent).is_some_and(is_simple);
+            if !plan.admits(dag, base) || simple {
                 continue;
             }
-            if let Some((rest, whole)) = split_whole(dag, exponent) {
-                let group = groups.entry((base, rest)).or_default();
-                if !group.contains(&(whole, exponent)) {
-                    group.push((whole, exponent));
+            let (rest, whole) = split_whole(dag, exponent);
+            let of_family = |family: &&mut Family| family.base == base && family.rest == rest;
+            match families.iter_mut().find(of_family) {
+                Some(family) => family.members.push((whole, exponent)),
+                None => families.push(Family {
+                    base,
+                    rest,
+                    members: vec![(whole, exponent)],
+                }),
+            }
+        }
+        for Family {
+            base, mut members, ..
+        } in families
+        {
+            members.sort_unstable();
+            members.dedup();
+            for chain in members.chunk_by(|(below, _), (above, _)| above - below <= MAX_STEPS) {
+                plan.add_group(dag, base, chain);
+            }
+        }
+        plan
+    }
+
+    /// Whether there is nothing to be computed before.
+    pub fn is_empty(&self) -> bool {
+        self.bases.is_empty()
+    }
+
+    /// The position of the logarithm of a base, which is that of the base.
+    pub fn logarithm(&self, base: Id) -> Option<usize> {
+        self.positions.get(&base).copied()
+    }
+
+    /// The position of a power.
+    pub fn power(&self, base: Id, exponent: Id) -> Option<usize> {
+        self.powers.get(&(base, exponent)).copied()
+    }
+
+    /// The position of the cube root of a base among the powers.
+    pub fn cube_root(&self, base: Id) -> Option<usize> {
+        self.cube_roots.get(&base).copied()
+    }
+
+    /// The positions of the logarithms and of the powers that expressions need.
+    pub fn uses(&self, dag: &Dag, roots: &[Id]) -> [Vec<usize>; 2] {
+        let (mut logarithms, mut powers) = (Vec::new(), Vec::new());
+        for id in dag.reachable(roots) {
+            if let Some((base, Root::Cube)) = root_of(dag, id) {
+                powers.extend(self.cube_root(base));
+            }
+            match *dag.node(id) {
+                Node::Power(base, exponent) => powers.extend(self.power(base, exponent)),
+                Node::PowerLog(base, exponent) => {
+                    powers.extend(self.power(base, exponent));
+                    logarithms.extend(self.logarithm(base));
                 }
+                _ => {}
             }
         }
-        let mut shared = HashMap::new();
-        for ((base, _), group) in groups {
-            for (exponent, member) in share(dag, group) {
-                shared.insert((base, exponent), member);
-            }
+        [logarithms, powers].map(|mut positions| {
+            positions.sort_unstable();
+            positions.dedup();
+            positions
+        })
+    }
+
+    /// Whether a base is planned: one that varies from sample to sample, and is made of no other power that is. It is added
+    /// then.
+    fn admits(&mut self, dag: &Dag, base: Id) -> bool {
+        if self.positions.contains_key(&base) {
+            return true;
         }
-        Self { shared }
+        let inner = dag.reachable(&[base]).into_iter();
+        let mut inner = inner.filter_map(|id| real_power(dag, id));
+        let nested = inner.any(|(base, _)| varies(dag, base));
+        let admitted = varies(dag, base) && !nested && self.bases.len() < MAX_PLANNED;
+        if admitted {
+            self.positions.insert(base, self.bases.len());
+            self.bases.push(base);
+        }
+        admitted
+    }
+
+    /// Adds powers of one base, in increasing order of their exponents, and those between them.
+    fn add_group(&mut self, dag: &mut Dag, base: Id, members: &[(i128, Id)]) {
+        let (Some(&(low, lowest)), Some(&(high, _))) = (members.first(), members.last()) else {
+            return;
+        };
+        let (first, count) = (self.exponents.len(), (high - low) as usize + 1);
+        if first + count > MAX_PLANNED {
+            return;
+        }
+        for whole in low..=high {
+            let member = members.iter().find(|member| member.0 == whole);
+            let exponent = if let Some(&(_, exponent)) = member {
+                self.powers.insert((base, exponent), self.exponents.len());
+                exponent
+            } else {
+                let steps = dag.number(Rational::integer(whole - low));
+                dag.sum(&[lowest, steps])
+            };
+            self.exponents.push(exponent);
+        }
+        let base = self.positions[&base];
+        self.groups.push(Group {
+            base,
+            first,
+            count,
+            cube_root: false,
+        });
+    }
+
+    fn add_cube_root(&mut self, dag: &mut Dag, base: Id) {
+        let (first, Some(third)) = (self.exponents.len(), Rational::new(1, 3)) else {
+            return;
+        };
+        if self.cube_roots.contains_key(&base) || first == MAX_PLANNED || !self.admits(dag, base) {
+            return;
+        }
+        self.cube_roots.insert(base, first);
+        self.exponents.push(dag.number(third));
+        self.groups.push(Group {
+            base: self.positions[&base],
+            first,
+            count: 1,
+            cube_root: true,
+        });
     }
 }
 
-/// Members of a group that are close enough to share an exponential. The reference is the exponent of smallest size if
-/// it is a number, and otherwise the one with the smallest number beside the symbols: `alpha` itself, rather than
-/// `alpha - 1`, is exact.
-fn share(dag: &Dag, mut group: Vec<(i128, Id)>) -> Vec<(Id, (Shared, i128))> {
-    let size = |&(whole, exponent): &(i128, Id)| match dag.as_number(exponent) {
-        Some(number) => number.to_f64().abs(),
-        None => whole.abs() as f64,
-    };
-    group.sort_by(|a, b| size(a).total_cmp(&size(b)).then(a.cmp(b)));
-    let Some(&(origin, reference)) = group.first() else {
-        return Vec::new();
-    };
-    group.retain(|(whole, _)| (whole - origin).abs() <= MAX_STEPS);
-    if group.len() < 2 {
-        return Vec::new();
+/// Base and exponent of what needs a logarithm.
+fn real_power(dag: &Dag, id: Id) -> Option<(Id, Id)> {
+    match *dag.node(id) {
+        Node::Power(base, exponent) => {
+            let simple = dag.as_number(exponent).is_some_and(is_simple);
+            (!simple).then_some((base, exponent))
+        }
+        Node::PowerLog(base, exponent) => Some((base, exponent)),
+        _ => None,
     }
-    let steps = || group.iter().map(|(whole, _)| whole - origin);
-    let shared = Shared {
-        reference,
-        lowest: steps().min().unwrap_or(0),
-        highest: steps().max().unwrap_or(0),
+}
+
+/// What the guarded powers of a base have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Root {
+    /// The square root.
+    Square,
+    /// The cube root.
+    Cube,
+    /// The logarithm.
+    Logarithm,
+}
+
+/// The base of a guarded power, which is not negative where it is used, and what is computed of it. Of a whole power it may
+/// be negative.
+pub fn root_of(dag: &Dag, id: Id) -> Option<(Id, Root)> {
+    if let Some((base, _)) = real_power(dag, id) {
+        return Some((base, Root::Logarithm));
+    }
+    let Node::Power(base, exponent) = *dag.node(id) else {
+        return None;
     };
-    let members = group.iter();
-    members
-        .map(|&(whole, exponent)| (exponent, (shared, whole - origin)))
-        .collect()
+    match dag.as_number(exponent)?.denominator() {
+        1 => None,
+        3 => Some((base, Root::Cube)),
+        _ => Some((base, Root::Square)),
+    }
+}
+
+/// Whether an expression changes from sample to sample.
+pub fn varies(dag: &Dag, id: Id) -> bool {
+    dag.variables(id).into_iter().any(Variable::varies)
 }
 
 /// An exponent as a rest plus a whole number; of a symbolic one, the rest keeps the symbols.
-fn split_whole(dag: &mut Dag, exponent: Id) -> Option<(Id, i128)> {
+fn split_whole(dag: &mut Dag, exponent: Id) -> (Id, i128) {
     let number = match dag.node(exponent) {
         Node::Number(number) => Some(*number),
         Node::Sum(terms) => terms.iter().find_map(|&term| dag.as_number(term)),
@@ -107,10 +264,10 @@ fn split_whole(dag: &mut Dag, exponent: Id) -> Option<(Id, i128)> {
     let number = number.unwrap_or(Rational::ZERO);
     let whole = number.numerator().div_euclid(number.denominator());
     if whole.abs() > MAX_WHOLE {
-        return None;
+        return (exponent, 0);
     }
     let offset = dag.number(Rational::integer(whole));
-    Some((dag.difference(exponent, offset), whole))
+    (dag.difference(exponent, offset), whole)
 }
 
 /// Whether products and roots suffice.
@@ -124,66 +281,21 @@ fn is_simple(exponent: Rational) -> bool {
 
 impl Builder<'_> {
     pub(super) fn code_power(&mut self, base: Id, exponent: Id) -> usize {
-        if let Some(exact) = self
-            .dag
-            .as_number(exponent)
-            .filter(|&exact| is_simple(exact))
-        {
+        let exact = self.dag.as_number(exponent);
+        if let Some(exact) = exact.filter(|&exact| is_simple(exact)) {
             return self.simple_power(base, exact);
         }
-        if let Some(&(shared, steps)) = self.exponents.shared.get(&(base, exponent)) {
-            return self.shared_power(base, shared, steps);
-        }
-        let exponent = self.position_of(exponent);
-        self.raise(self.at[&base], exponent)
-    }
-
-    /// One of the powers that share an exponential.
-    fn shared_power(&mut self, base: Id, shared: Shared, steps: i128) -> usize {
-        let position = self.at[&base];
-        let reference = self.position_of(shared.reference);
-        if self.dag.as_number(shared.reference).is_some() {
-            let mut power = self.raise(position, reference);
-            for _ in 0..steps.abs() {
-                power = self.push(if steps > 0 {
-                    Operation::Multiply(power, position)
-                } else {
-                    Operation::Over(power, position)
-                });
-            }
-            return power;
-        }
-        let [lowest, highest, steps_to] =
-            [shared.lowest, shared.highest, steps].map(|whole| self.number(whole as f64));
-        let nearest = self.push(Operation::Nearest(reference, lowest, highest));
-        let exponent = self.push(Operation::Add(reference, nearest));
-        let power = self.raise(position, exponent);
-        let steps_from = self.push(Operation::Subtract(steps_to, nearest));
-        self.push(Operation::Shift {
-            power,
-            base: position,
-            steps: steps_from,
-            up: (steps - shared.lowest) as usize,
-            down: (shared.highest - steps) as usize,
-        })
-    }
-
-    fn raise(&mut self, base: usize, exponent: usize) -> usize {
-        let logarithm = self.push(Operation::Logarithm(base));
-        self.push(Operation::Raise(base, logarithm, exponent))
-    }
-
-    /// Where an exponent is; one that only the plan asks for is lowered now.
-    fn position_of(&mut self, exponent: Id) -> usize {
-        match self.at.get(&exponent) {
-            Some(&position) => position,
-            None => self.lower(exponent),
+        match self.plan.power(base, exponent) {
+            Some(planned) => self.push(Operation::Planned(planned)),
+            None => self.push(Operation::Power(self.at[&base], self.at[&exponent])),
         }
     }
 
     pub(super) fn code_power_log(&mut self, base: Id, exponent: Id) -> usize {
-        let position = self.at[&base];
-        let logarithm = self.push(Operation::Logarithm(position));
+        let Some(planned) = self.plan.logarithm(base) else {
+            return self.push(Operation::PowerLog(self.at[&base], self.at[&exponent]));
+        };
+        let logarithm = self.push(Operation::Logarithm(planned));
         if self.dag.as_number(exponent) == Some(Rational::ZERO) {
             return logarithm;
         }
@@ -207,7 +319,7 @@ impl Builder<'_> {
             power = Some(self.whole_power(position, whole));
         }
         if part > 0 {
-            let root = self.root(position, part, magnitude.denominator());
+            let root = self.root(base, part, magnitude.denominator());
             power = Some(match power {
                 Some(power) => self.push(Operation::Multiply(power, root)),
                 None => root,
@@ -227,12 +339,15 @@ impl Builder<'_> {
     }
 
     /// `base^(part/of)` for a proper fraction.
-    fn root(&mut self, base: usize, part: i128, of: i128) -> usize {
+    fn root(&mut self, base: Id, part: i128, of: i128) -> usize {
         if of == 3 {
-            let root = self.push(Operation::CubeRoot(base));
+            let root = match self.plan.cube_root(base) {
+                Some(planned) => self.push(Operation::Planned(planned)),
+                None => self.push(Operation::CubeRoot(self.at[&base])),
+            };
             return self.whole_power(root, part);
         }
-        let half = self.push(Operation::Root(base));
+        let half = self.push(Operation::Root(self.at[&base]));
         if of == 2 {
             return half;
         }

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::mem::Discriminant;
 
-use super::powers::Exponents;
+use super::powers::Plan;
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
 
 /// One operation; a `usize` is the position of an operand.
@@ -28,9 +28,9 @@ pub enum Operation {
     Call(Function, usize),
     /// Integer power (data only).
     Integer(usize, i32),
-    /// Guarded power (data only).
+    /// Guarded power.
     Power(usize, usize),
-    /// Guarded power times logarithm (data only).
+    /// Guarded power times logarithm.
     PowerLog(usize, usize),
     /// Guarded square root (code only, as all that follow).
     Root(usize),
@@ -38,22 +38,10 @@ pub enum Operation {
     CubeRoot(usize),
     /// Guarded reciprocal: zero for zero.
     Reciprocal(usize),
-    /// Guarded logarithm: zero unless the operand is positive.
+    /// Logarithm of the planned base at a position, see [`Plan`].
     Logarithm(usize),
-    /// Guarded power `base^exponent` from base, logarithm of the base and exponent.
-    Raise(usize, usize, usize),
-    /// The whole number between the second and the third operand that brings the first nearest to zero when added.
-    Nearest(usize, usize, usize),
-    /// A positive power divided once by its base; zero for a base that is not positive.
-    Over(usize, usize),
-    /// A power times its base to a whole number of steps, which lies between `-down` and `up`.
-    Shift {
-        power: usize,
-        base: usize,
-        steps: usize,
-        up: usize,
-        down: usize,
-    },
+    /// Planned power at a position.
+    Planned(usize),
 }
 
 /// What the operations are for.
@@ -61,7 +49,7 @@ pub enum Operation {
 pub enum Style {
     /// Data for the interpreter: the operations of `hertzian::generic::Node`.
     Data,
-    /// Code: powers are resolved into roots, products, and one logarithm per base.
+    /// Code: powers are resolved into roots, products, and what is planned.
     Code,
 }
 
@@ -75,16 +63,17 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// Lowers expressions.
+    /// Lowers expressions, without a plan.
     pub fn of(dag: &mut Dag, roots: &[Id], style: Style) -> Self {
-        let exponents = match style {
-            Style::Data => Exponents::default(),
-            Style::Code => Exponents::of(dag, roots),
-        };
+        Self::with(dag, roots, style, &Plan::default())
+    }
+
+    /// Lowers expressions to what is to be done after a plan.
+    pub fn with(dag: &mut Dag, roots: &[Id], style: Style, plan: &Plan) -> Self {
         let mut builder = Builder {
             dag,
             style,
-            exponents,
+            plan,
             operations: Vec::new(),
             known: HashMap::new(),
             dependence: HashMap::new(),
@@ -149,31 +138,25 @@ impl Operation {
     /// Positions of the operands.
     pub fn operands(self) -> Vec<usize> {
         match self {
-            Self::Number(_) | Self::Input(_) => vec![],
+            Self::Number(_) | Self::Input(_) | Self::Logarithm(_) | Self::Planned(_) => vec![],
             Self::Add(a, b)
             | Self::Subtract(a, b)
             | Self::Multiply(a, b)
             | Self::Divide(a, b)
             | Self::Power(a, b)
-            | Self::PowerLog(a, b)
-            | Self::Over(a, b) => vec![a, b],
+            | Self::PowerLog(a, b) => vec![a, b],
             Self::Negate(a)
             | Self::Call(_, a)
             | Self::Integer(a, _)
             | Self::Root(a)
             | Self::CubeRoot(a)
-            | Self::Reciprocal(a)
-            | Self::Logarithm(a) => vec![a],
-            Self::Raise(a, b, c) | Self::Nearest(a, b, c) => vec![a, b, c],
-            Self::Shift {
-                power, base, steps, ..
-            } => vec![power, base, steps],
+            | Self::Reciprocal(a) => vec![a],
         }
     }
 
     fn with_operands(self, to: impl Fn(usize) -> usize) -> Self {
         match self {
-            Self::Number(_) | Self::Input(_) => self,
+            Self::Number(_) | Self::Input(_) | Self::Logarithm(_) | Self::Planned(_) => self,
             Self::Add(a, b) => Self::Add(to(a), to(b)),
             Self::Subtract(a, b) => Self::Subtract(to(a), to(b)),
             Self::Multiply(a, b) => Self::Multiply(to(a), to(b)),
@@ -186,23 +169,6 @@ impl Operation {
             Self::Root(a) => Self::Root(to(a)),
             Self::CubeRoot(a) => Self::CubeRoot(to(a)),
             Self::Reciprocal(a) => Self::Reciprocal(to(a)),
-            Self::Logarithm(a) => Self::Logarithm(to(a)),
-            Self::Raise(a, b, c) => Self::Raise(to(a), to(b), to(c)),
-            Self::Nearest(a, b, c) => Self::Nearest(to(a), to(b), to(c)),
-            Self::Over(a, b) => Self::Over(to(a), to(b)),
-            Self::Shift {
-                power,
-                base,
-                steps,
-                up,
-                down,
-            } => Self::Shift {
-                power: to(power),
-                base: to(base),
-                steps: to(steps),
-                up,
-                down,
-            },
         }
     }
 
@@ -213,7 +179,7 @@ impl Operation {
             Self::Input(variable) => Distinction::Variable(variable),
             Self::Call(function, _) => Distinction::Function(function),
             Self::Integer(_, exponent) => Distinction::Exponent(exponent),
-            Self::Shift { up, down, .. } => Distinction::Steps(up, down),
+            Self::Logarithm(position) | Self::Planned(position) => Distinction::Position(position),
             _ => Distinction::None,
         };
         (std::mem::discriminant(&self), distinction, self.operands())
@@ -230,7 +196,7 @@ enum Distinction {
     Variable(Variable),
     Function(Function),
     Exponent(i32),
-    Steps(usize, usize),
+    Position(usize),
 }
 
 /// How an expression depends on its surroundings.
@@ -247,7 +213,7 @@ enum Dependence {
 pub(super) struct Builder<'a> {
     pub(super) dag: &'a mut Dag,
     style: Style,
-    pub(super) exponents: Exponents,
+    pub(super) plan: &'a Plan,
     operations: Vec<Operation>,
     known: HashMap<Key, usize>,
     dependence: HashMap<Id, Dependence>,
@@ -280,7 +246,7 @@ impl Builder<'_> {
             return known;
         }
         match self.dag.node(id) {
-            Node::Variable(Variable::Gap | Variable::Rate) => Dependence::Sample,
+            Node::Variable(variable) if variable.varies() => Dependence::Sample,
             Node::Variable(_) => Dependence::Batch,
             _ => {
                 let operands = self.dag.operands(id).into_iter();
@@ -315,10 +281,7 @@ impl Builder<'_> {
             },
             Node::PowerLog(base, exponent) => match self.style {
                 Style::Code => self.code_power_log(base, exponent),
-                Style::Data => {
-                    let (base, exponent) = (self.at[&base], self.at[&exponent]);
-                    self.push(Operation::PowerLog(base, exponent))
-                }
+                Style::Data => self.push(Operation::PowerLog(self.at[&base], self.at[&exponent])),
             },
             Node::Call(function, operand) => {
                 let operand = self.at[&operand];

@@ -1,10 +1,11 @@
 //! Operations, run by the letter, against the expressions they were lowered from.
 
+use super::powers::Plan;
 use super::tape::{Operation, Style, Tape};
 use crate::dag::{Dag, Function, Id, Rational, Variable};
 
-/// Runs a tape at a gap, a rate and one argument, with the guards of `hertzian::emitted`.
-fn run(tape: &Tape, at: [f64; 3]) -> Vec<f64> {
+/// Runs a tape at a gap, a rate and one argument, with the guards of `hertzian::emitted`; bases and powers are planned.
+fn run(tape: &Tape, planned: [&[f64]; 2], at: [f64; 3]) -> Vec<f64> {
     let mut values: Vec<f64> = Vec::new();
     for &operation in &tape.operations {
         let v = |position: usize| values[position];
@@ -21,28 +22,16 @@ fn run(tape: &Tape, at: [f64; 3]) -> Vec<f64> {
             Operation::Integer(a, exponent) => v(a).powi(exponent),
             Operation::Power(a, b) if v(a) > 0.0 => v(a).powf(v(b)),
             Operation::PowerLog(a, b) if v(a) > 0.0 => v(a).powf(v(b)) * v(a).ln(),
-            Operation::Raise(a, log, b) if v(a) > 0.0 => (v(b) * v(log)).exp(),
-            Operation::Nearest(a, low, high) => (-v(a)).round().clamp(v(low), v(high)),
-            Operation::Over(a, b) if v(b) > 0.0 => v(a) / v(b),
-            Operation::Shift {
-                power, base, steps, ..
-            } if v(base) > 0.0 => v(power) * v(base).powf(v(steps)),
-            Operation::Power(..)
-            | Operation::PowerLog(..)
-            | Operation::Raise(..)
-            | Operation::Over(..)
-            | Operation::Shift { .. } => 0.0,
+            Operation::Power(..) | Operation::PowerLog(..) => 0.0,
+            Operation::Logarithm(position) => {
+                let base = planned[0][position];
+                if base > 0.0 { base.ln() } else { 0.0 }
+            }
+            Operation::Planned(position) => planned[1][position],
             Operation::Root(a) => v(a).max(0.0).sqrt(),
             Operation::CubeRoot(a) => v(a).max(0.0).cbrt(),
             Operation::Reciprocal(a) if v(a) == 0.0 => 0.0,
             Operation::Reciprocal(a) => 1.0 / v(a),
-            Operation::Logarithm(a) => {
-                if v(a) > 0.0 {
-                    v(a).ln()
-                } else {
-                    0.0
-                }
-            }
             Operation::Call(Function::Sine, a) => v(a).sin(),
             Operation::Call(Function::Sign, a) => {
                 if v(a) == 0.0 {
@@ -59,15 +48,40 @@ fn run(tape: &Tape, at: [f64; 3]) -> Vec<f64> {
     tape.roots.iter().map(|&root| values[root]).collect()
 }
 
+/// Lowers expressions and runs them at a gap, a rate and one argument.
+fn lower_and_run(dag: &mut Dag, roots: &[Id], style: Style, at: [f64; 3]) -> Vec<f64> {
+    let plan = match style {
+        Style::Code => Plan::of(dag, roots),
+        Style::Data => Plan::default(),
+    };
+    let tape = Tape::with(dag, roots, style, &plan);
+    let value = |id: Id| dag.evaluate(id, &|variable| valued(variable, at));
+    let bases: Vec<f64> = plan.bases.iter().map(|&base| value(base)).collect();
+    let mut powers = vec![f64::NAN; plan.exponents.len()];
+    for group in &plan.groups {
+        for power in group.first..group.first + group.count {
+            let (base, exponent) = (bases[group.base], value(plan.exponents[power]));
+            let steps = exponent - value(plan.exponents[group.first]);
+            assert_eq!(steps, (power - group.first) as f64, "exponents count up");
+            powers[power] = if base > 0.0 { base.powf(exponent) } else { 0.0 };
+        }
+    }
+    run(&tape, [&bases, &powers], at)
+}
+
+fn valued(variable: Variable, at: [f64; 3]) -> f64 {
+    match variable {
+        Variable::Gap => at[0],
+        Variable::Rate => at[1],
+        _ => at[2],
+    }
+}
+
 fn agree(dag: &mut Dag, roots: &[Id], at: [f64; 3]) {
     for style in [Style::Code, Style::Data] {
-        let tape = Tape::of(dag, roots, style);
-        for (&root, value) in roots.iter().zip(run(&tape, at)) {
-            let expected = dag.evaluate(root, &|variable| match variable {
-                Variable::Gap => at[0],
-                Variable::Rate => at[1],
-                _ => at[2],
-            });
+        let values = lower_and_run(dag, roots, style, at);
+        for (&root, value) in roots.iter().zip(values) {
+            let expected = dag.evaluate(root, &|variable| valued(variable, at));
             let name = |variable: Variable| format!("{variable:?}");
             let bound = 1e-14 * (1.0 + expected.abs());
             let text = dag.display(root, &name);
@@ -112,8 +126,7 @@ fn powers_of_every_kind_are_lowered_to_their_value() {
     }
     // At the level itself: what is unbounded is zero by definition.
     for &root in &roots {
-        let tape = Tape::of(dag, &[root], Style::Code);
-        assert!(run(&tape, [0.0, 0.0, 1.3])[0].is_finite());
+        assert!(lower_and_run(dag, &[root], Style::Code, [0.0, 0.0, 1.3])[0].is_finite());
     }
 }
 
@@ -133,17 +146,72 @@ fn one_logarithm_and_one_exponential_serve_force_and_derivatives() {
         dag.product(&[alpha, power]),
         dag.power_log(gap, alpha),
     ];
-    let tape = Tape::of(dag, &roots, Style::Code);
-    let count =
-        |wanted: fn(&Operation) -> bool| tape.operations.iter().filter(|o| wanted(o)).count();
-    assert_eq!(
-        count(|operation| matches!(operation, Operation::Logarithm(_))),
-        1
+    let plan = Plan::of(dag, &roots);
+    assert_eq!(plan.bases, [gap]);
+    assert_eq!(plan.exponents, [lowered, alpha]);
+    assert_eq!(plan.groups.len(), 1);
+    let uses = |root: Id| plan.uses(dag, &[root]);
+    assert_eq!(uses(roots[0]), [vec![], vec![1]]);
+    assert_eq!(uses(roots[1]), [vec![], vec![0]]);
+    assert_eq!(uses(roots[2]), [vec![0], vec![1]]);
+}
+
+#[test]
+fn powers_between_two_of_a_group_are_planned_with_it() {
+    let dag = &mut Dag::default();
+    let gap = dag.variable(Variable::Gap);
+    let mut power = |text: &str| {
+        let exponent = dag.number(Rational::from_decimal(text).expect("a literal"));
+        dag.power(gap, exponent)
+    };
+    let roots = ["-1.4", "0.6", "9.6", "0.2", "1.5"].map(&mut power);
+    let plan = Plan::of(dag, &roots);
+    let exponents = plan
+        .exponents
+        .iter()
+        .map(|&exponent| dag.evaluate(exponent, &|_| 0.0));
+    let groups: Vec<_> = plan
+        .groups
+        .iter()
+        .map(|group| (group.first, group.count))
+        .collect();
+    assert_eq!(exponents.collect::<Vec<_>>(), [-1.4, -0.4, 0.6, 9.6, 0.2]);
+    assert_eq!(groups, [(0, 3), (3, 1), (4, 1)]);
+    assert!(plan.groups.iter().all(|group| !group.cube_root));
+}
+
+#[test]
+fn one_cube_root_serves_its_powers() {
+    let dag = &mut Dag::default();
+    let gap = dag.variable(Variable::Gap);
+    let roots = [1, 2, 4, 5, -4].map(|thirds| {
+        let exponent = dag.number(Rational::new(thirds, 3).expect("not zero"));
+        dag.power(gap, exponent)
+    });
+    let plan = Plan::of(dag, &roots);
+    assert_eq!(plan.bases, [gap]);
+    assert!(matches!(plan.groups.as_slice(), [group] if group.cube_root && group.count == 1));
+    assert!(
+        roots
+            .iter()
+            .all(|&root| plan.uses(dag, &[root]) == [vec![], vec![0]])
     );
-    assert_eq!(
-        count(|operation| matches!(operation, Operation::Raise(..))),
-        1
+    agree(dag, &roots, [0.7, 0.0, 1.3]);
+}
+
+#[test]
+fn powers_of_powers_and_of_arguments_are_not_planned() {
+    let dag = &mut Dag::default();
+    let (gap, alpha) = (
+        dag.variable(Variable::Gap),
+        dag.variable(Variable::Argument(0)),
     );
+    let inner = dag.power(gap, alpha);
+    let sum = dag.sum(&[alpha, inner]);
+    let roots = [dag.power(sum, alpha), dag.power(alpha, alpha)];
+    let plan = Plan::of(dag, &roots);
+    assert_eq!(plan.bases, [gap]);
+    agree(dag, &roots, [0.7, 0.0, 1.3]);
 }
 
 #[test]

@@ -97,6 +97,7 @@ impl Expander {
         match variable {
             Variable::Gap => self.gap.clone(),
             Variable::Rate => format!("dot({})", self.gap),
+            Variable::Base(index) => format!("base {index}"),
             Variable::Argument(index) => name(&self.arguments, index),
             Variable::Parameter(index) => name(&self.parameters, index),
             Variable::Omega => "omega".to_owned(),
