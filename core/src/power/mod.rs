@@ -40,6 +40,8 @@ mod arrays;
 mod cube_root;
 mod functions;
 mod instructions;
+#[cfg(test)]
+mod tests;
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
