@@ -4,4 +4,6 @@ pub(crate) mod follow;
 pub(crate) mod locate;
 pub mod problem;
 pub(crate) mod step;
+#[cfg(test)]
+mod tests;
 mod walk;

@@ -43,14 +43,19 @@ impl StepControl {
         }
     }
 
-    /// A step that turned by this angle is tried again, unless it is already short: a kink keeps its angle at any length.
-    pub(crate) fn turns_too_far(&self, angle: f64, step: f64) -> bool {
-        angle > 3.0 * self.angle && step > 1e-4
+    /// A step that looks wrong is tried again, unless it is already short: a kink keeps its angle at any length.
+    pub(crate) fn is_long(&self, step: f64) -> bool {
+        step > 1e-4
+    }
+
+    /// A step that turned by this angle is tried again.
+    pub(crate) fn turns_too_far(&self, angle: f64) -> bool {
+        angle > 3.0 * self.angle
     }
 
     /// A step whose predictor was this far off is tried again: it may have stepped over a bend.
-    pub(crate) fn is_too_far(&self, distance: f64, step: f64) -> bool {
-        distance > 5.0 * self.distance && step > 1e-4
+    pub(crate) fn is_too_far(&self, distance: f64) -> bool {
+        distance > 5.0 * self.distance
     }
 
     /// The step after one that converged; `slope` is the part of the range that a unit step takes there.

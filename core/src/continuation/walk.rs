@@ -3,7 +3,7 @@
 //! Numbers of equations are those of [`follow`](super::follow).
 
 use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
-use super::problem::{Problem, Scale};
+use super::problem::{Norm, Problem, Scale};
 use crate::newton::{Border, Newton, NewtonError};
 
 /// A walk that has its first point.
@@ -237,9 +237,10 @@ impl Walk {
                         / newton.norm().length(from.scale, &point.tangent);
                     let angle = cosine.clamp(-1.0, 1.0).acos();
                     let steps = &self.options.steps;
-                    if !(steps.turns_too_far(angle, self.step)
-                        || steps.is_too_far(distance, self.step))
-                    {
+                    let looks_wrong = steps.turns_too_far(angle)
+                        || steps.is_too_far(distance)
+                        || passes_folds(newton.norm(), from, &point);
+                    if !(looks_wrong && steps.is_long(self.step)) {
                         newton.statistics.accepted_steps += 1;
                         self.remember(from, angle);
                         let slope = point.parameter_slope();
@@ -405,4 +406,24 @@ impl Walk {
             && step < 2.0 * self.options.steps.largest
             && norm.product(first.scale, &from.tangent, &first.tangent) > 0.9
     }
+}
+
+/// Whether a step seems to have passed a pair of folds, or nearly: the parameter has the same direction at both ends, but the
+/// cubic through both ends and slopes turns back in between.
+///
+/// Source: Fritsch and Carlson (1980), Monotone piecewise cubic interpolation.
+fn passes_folds(norm: &Norm, from: &CurvePoint, to: &CurvePoint) -> bool {
+    let last = from.u.len() - 1;
+    let difference: Vec<f64> = to.u.iter().zip(&from.u).map(|(x, y)| x - y).collect();
+    let length = norm.length(from.scale, &difference);
+    let change = difference[last];
+    let a = length * from.tangent[last];
+    let b = length * to.tangent[last] / norm.length(from.scale, &to.tangent);
+    if a * b <= 0.0 {
+        return false;
+    }
+    // The slope is a + 2 c x + 3 d x^2 for x from 0 to 1; both ends have the sign of a.
+    let (c, d) = (3.0 * change - 2.0 * a - b, a + b - 2.0 * change);
+    let vertex = -c / (3.0 * d);
+    vertex > 0.0 && vertex < 1.0 && c * c > 3.0 * a * d && d * a > 0.0
 }

@@ -4,8 +4,8 @@ use hertzian::{Event, FrequencyResponse, Stop};
 
 use crate::exact::FIGURE_5A_GALERKIN;
 use crate::models::{
-    FIGURE_2A, FIGURE_2B, FIGURE_4A_LOAD_1, FIGURE_4A_LOAD_5, FIGURE_5A, FIGURE_5B, FIGURE_5C,
-    Figure,
+    FIGURE_2A, FIGURE_2B, FIGURE_2B_BELOW, FIGURE_4A_LOAD_1, FIGURE_4A_LOAD_5, FIGURE_5A,
+    FIGURE_5B, FIGURE_5C, Figure,
 };
 
 /// Every fold found once, none invented: omega within the error stated, omega and peak-to-peak near the exact ones.
@@ -47,6 +47,27 @@ fn figure_2a_backwards_has_the_same_folds() {
     let model = FIGURE_2A.model();
     let request = FIGURE_2A.request(&*model);
     assert_folds(&FIGURE_2A, &request.from(FIGURE_2A.to).to(FIGURE_2A.from));
+}
+
+/// Below its main resonance Fig. 2b has eight folds, two of them 0.0007 apart on a curve that bends there. Wherever a sweep
+/// starts, and in either direction, it passes over none.
+#[test]
+fn no_sweep_steps_over_a_pair_of_folds() {
+    let model = FIGURE_2B_BELOW.model();
+    for index in 0..16 {
+        let from = 0.37 + 0.001 * f64::from(index);
+        let to = 0.71 - 0.002 * f64::from(index);
+        let ends = if index % 2 == 0 {
+            (from, to)
+        } else {
+            (to, from)
+        };
+        let request = FIGURE_2B_BELOW.request(&*model).harmonics(10);
+        let request = request.from(ends.0).to(ends.1).stability(false);
+        let branch = request.run().unwrap();
+        assert_eq!(branch.folds().count(), 8, "{ends:?}");
+        assert!(branch.turns.is_empty());
+    }
 }
 
 fn largest(folds: &[Event]) -> &Event {
