@@ -103,12 +103,13 @@ pub(crate) struct Observer {
     forces: Vec<f64>,
     force: Vec<f64>,
     velocity: Vec<f64>,
+    phases: Vec<[f64; 2]>,
 }
 
 impl Observer {
-    /// Reads the motion of one coordinate off a series.
-    pub(crate) fn motion(&mut self, series: &[f64]) -> Motion {
-        Motion::read(&mut self.reader, series)
+    /// The phases of the smallest and the largest value of each coordinate of the last orbit.
+    pub(crate) fn phases(&self) -> &[[f64; 2]] {
+        &self.phases
     }
 
     /// Reads everything off an orbit, at the variable that the balance was set to last.
@@ -120,9 +121,14 @@ impl Observer {
         let contacts = (0..balance.layout().contacts.len())
             .map(|contact| self.contact_motion(balance, contact, u))
             .collect();
+        self.phases.clear();
         let motions = u
             .chunks_exact(length)
-            .map(|series| Motion::read(&mut self.reader, series))
+            .map(|series| {
+                let motion = Motion::read(&mut self.reader, series);
+                self.phases.push(self.reader.phases());
+                motion
+            })
             .collect();
         Observed {
             motions,

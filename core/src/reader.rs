@@ -4,10 +4,13 @@ use crate::balance::Balance;
 use crate::branch::{Orbit, Point};
 use crate::continuation::problem::Problem;
 use crate::newton::Newton;
-use crate::observe::{Observed, Observer};
+use crate::observe::{Motion, Observed, Observer};
 use crate::stability::judge::Judge;
 use crate::stability::{Method, Stability};
-use crate::truncation::{BEYOND, Finer, NOTHING};
+use crate::truncation::{BEYOND, Finer};
+
+/// Relative error of peak-to-peak that rounding and the last update leave.
+const ROUNDING: f64 = 1e-14;
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
@@ -15,8 +18,6 @@ pub(crate) struct Reader<'a> {
     pub(crate) finer: Finer<'a>,
     pub(crate) judge: Option<Judge>,
     observer: Observer,
-    /// Reads corrected orbits, which have more harmonics.
-    fine: Observer,
     /// The error is wanted, whether or not the stability is.
     estimate: bool,
 }
@@ -27,7 +28,6 @@ impl<'a> Reader<'a> {
             finer,
             judge: stability.map(Judge::new),
             observer: Observer::default(),
-            fine: Observer::default(),
             estimate,
         }
     }
@@ -59,7 +59,7 @@ impl<'a> Reader<'a> {
         let observed = self.observer.observe(balance, u);
         let error = wanted.then(|| {
             if corrected {
-                self.error(&observed)
+                self.error(&observed, u)
             } else {
                 f64::INFINITY
             }
@@ -75,19 +75,17 @@ impl<'a> Reader<'a> {
     }
 
     /// Largest change of a coordinate's peak-to-peak by the correction, relative to the largest peak-to-peak.
-    fn error(&mut self, observed: &Observed) -> f64 {
-        if self.finer.change() <= NOTHING {
-            return self.finer.change();
+    fn error(&self, observed: &Observed, u: &[f64]) -> f64 {
+        let phases = self.observer.phases().iter().enumerate();
+        let changes = phases
+            .map(|(coordinate, &phases)| self.finer.peak_to_peak_change(u, coordinate, phases));
+        let change = changes.fold(0.0, f64::max);
+        let sizes = observed.motions.iter().map(Motion::peak_to_peak);
+        let size = sizes.fold(0.0, f64::max);
+        if size > 0.0 {
+            BEYOND * change / size + ROUNDING
+        } else {
+            BEYOND * change
         }
-        let series = self.finer.series();
-        let length = series.len() / observed.motions.len();
-        let mut change = 0.0_f64;
-        let mut size = 0.0_f64;
-        for (motion, corrected) in observed.motions.iter().zip(series.chunks_exact(length)) {
-            let corrected = self.fine.motion(corrected).peak_to_peak();
-            change = change.max((corrected - motion.peak_to_peak()).abs());
-            size = size.max(motion.peak_to_peak());
-        }
-        BEYOND * if size > 0.0 { change / size } else { change }
     }
 }

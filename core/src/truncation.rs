@@ -11,6 +11,16 @@
 //! Where contact forces are integrated exactly, the orbit leaves no residual in the first `K` harmonics, `R_1..K(u, 0) = 0`. Then
 //! only what depends on the tail is evaluated: the contacts, and the stiffness that varies.
 //!
+//! What this changes of the peak-to-peak of a coordinate is, to first order, its value where the largest value lies less that
+//! where the smallest lies. It may vanish at one orbit of a branch, when contributions of opposite sign cancel, and tells
+//! nothing then of the harmonics beyond. So three contributions are taken by their sizes,
+//!
+//! ```text
+//! | du | + | v from K to 3/2 K | + | v from 3/2 K to 2 K |,                                                  (2)
+//! ```
+//!
+//! which do not vanish together.
+//!
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
 
@@ -271,6 +281,34 @@ impl<'a> Finer<'a> {
     /// A bound on the change of a coordinate by the last correction, relative to the size of the largest oscillation.
     pub(crate) fn change(&self) -> f64 {
         self.change
+    }
+
+    /// How much the peak-to-peak of a coordinate is changed by the last correction, (2), given the phases of the smallest and
+    /// the largest value.
+    pub(crate) fn peak_to_peak_change(
+        &self,
+        u: &[f64],
+        coordinate: usize,
+        phases: [f64; 2],
+    ) -> f64 {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
+        let corrected = &self.orbit[coordinate * fine..][..fine];
+        let before = &u[coordinate * coarse..][..coarse];
+        let (few, many) = (series::harmonics(before), series::harmonics(corrected));
+        let part = |k: usize| usize::from(k > few) + usize::from(k > few.midpoint(many));
+        let mut parts = [0.0; 3];
+        for (tau, sign) in phases.into_iter().zip([-1.0, 1.0]) {
+            let (sine, cosine) = tau.sin_cos();
+            let (mut c, mut s) = (sign, 0.0);
+            for k in 1..=many {
+                (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
+                for (index, wave) in [(2 * k - 1, c), (2 * k, s)] {
+                    let change = corrected[index] - before.get(index).copied().unwrap_or(0.0);
+                    parts[part(k)] += change * wave;
+                }
+            }
+        }
+        parts.iter().map(|part| part.abs()).sum()
     }
 
     /// Estimated error of the parameter at a fold, whose factors Newton's method holds.

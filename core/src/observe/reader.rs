@@ -19,6 +19,7 @@ pub(super) struct Reader {
     series: Vec<f64>,
     samples: Vec<f64>,
     misses: Vec<NearMiss>,
+    phases: [f64; 2],
 }
 
 #[derive(Debug)]
@@ -85,9 +86,15 @@ impl Reader {
         }
     }
 
+    /// The phases of the smallest and the largest value that were found last.
+    pub(super) fn phases(&self) -> [f64; 2] {
+        self.phases
+    }
+
     /// Smallest and largest value of a series; its mean if it does not vary.
     pub(super) fn extremes(&mut self, series: &[f64]) -> (f64, f64) {
         let mean = series[0];
+        self.phases = [0.0; 2];
         if series[1..].iter().all(|&x| x == 0.0) {
             return (mean, mean);
         }
@@ -96,7 +103,8 @@ impl Reader {
             self.load(series);
         }
         let bound: f64 = series[1..].iter().map(|x| x.abs()).sum();
-        let (low, high) = (self.farthest(-bound), self.farthest(bound));
+        let ((low, first), (high, second)) = (self.farthest(-bound), self.farthest(bound));
+        self.phases = [first, second];
         if low <= high {
             (mean + low, mean + high)
         } else {
@@ -104,8 +112,8 @@ impl Reader {
         }
     }
 
-    /// The value nearest to a bound of all values; both without the mean.
-    fn farthest(&mut self, bound: f64) -> f64 {
+    /// The value nearest to a bound of all values, both without the mean, and its phase.
+    fn farthest(&mut self, bound: f64) -> (f64, f64) {
         let mean = self.series[0];
         let sign = bound.signum();
         let samples = self.samples.iter().map(|&x| sign * (x - mean));
@@ -114,16 +122,20 @@ impl Reader {
         let level = mean + bound;
         let target = sign * (level - mean);
         let Some(rooms) = &self.rooms else {
-            return sign * farthest;
+            return (sign * farthest, 0.0);
         };
         self.misses.clear();
         rooms
             .finder
             .near_misses(level, target - farthest, &mut self.misses);
+        let mut phase = 0.0;
         for miss in &self.misses {
-            farthest = largest(farthest, target - miss.distance);
+            let value = target - miss.distance;
+            if value >= farthest {
+                (farthest, phase) = (value, miss.tau);
+            }
         }
-        sign * farthest
+        (sign * farthest, phase)
     }
 }
 
