@@ -128,6 +128,8 @@ const REFINEMENTS: usize = 60;
 const REFINED: f64 = 1e-13;
 /// The same where only the side of a fold matters.
 const ROUGHLY: f64 = 1e-4;
+/// Where rounding keeps corrections from shrinking, this many times that is good enough.
+const ROUNDING: f64 = 100.0;
 /// Drift that does not change a tangent noticeably.
 const SMALL_DRIFT: f64 = 1e-8;
 
@@ -286,22 +288,21 @@ impl Newton {
 
     /// The direction of the solution curve at a solution that was corrected last, not yet normalised: it solves (1) with a
     /// right-hand side that is one in the border and zero elsewhere. Near a fold, or where `exact` is set, nothing is left out
-    /// of the Jacobian.
+    /// of the Jacobian. Returns whether that could be made up for; if not, the direction is the one of what the Jacobian has,
+    /// and [`Newton::contraction`] says that there is none.
     pub fn tangent(
         &mut self,
         problem: &mut impl Problem,
         u: &[f64],
         tangent: &mut [f64],
         exact: bool,
-    ) {
+    ) -> bool {
+        self.unit_of_border(tangent);
         let n = self.norm.unknowns();
-        tangent.fill(0.0);
-        tangent[n] = 1.0;
-        self.solve(tangent);
-        let slope = |tangent: &[f64]| tangent[n] / self.scale.parameter;
-        let steep = slope(tangent).abs() >= NEAR_FOLD * self.norm.length(self.scale, tangent);
+        let slope = tangent[n] / self.scale.parameter;
+        let steep = slope.abs() >= NEAR_FOLD * self.norm.length(self.scale, tangent);
         if steep && !exact {
-            return;
+            return true;
         }
         if self.drift > SMALL_DRIFT {
             self.trial.copy_from_slice(&self.border);
@@ -313,41 +314,63 @@ impl Newton {
             let renewed = self.linearise(problem, u, row);
             self.trial = border;
             if renewed.is_err() {
-                return;
+                return false;
             }
-            tangent.fill(0.0);
-            tangent[n] = 1.0;
-            self.solve(tangent);
+            self.unit_of_border(tangent);
         }
-        if !self.jacobian.is_exact() {
-            let wanted = if exact { REFINED } else { ROUGHLY };
-            self.refine(problem, u, tangent, wanted);
+        if self.jacobian.is_exact() {
+            return true;
         }
+        let wanted = if exact { REFINED } else { ROUGHLY };
+        let refined = self.refine(problem, u, tangent, wanted);
+        if !refined {
+            self.contraction = self.contraction.max(1.0);
+            self.unit_of_border(tangent);
+        }
+        refined
     }
 
-    /// Makes up for what the Jacobian leaves out: `t += B^-1 ([0; 1] - J t)`, repeated.
-    fn refine(&mut self, problem: &mut impl Problem, u: &[f64], tangent: &mut [f64], wanted: f64) {
+    /// Writes the solution of (1) for a right-hand side that is one in the border and zero elsewhere.
+    fn unit_of_border(&mut self, tangent: &mut [f64]) {
         let n = self.norm.unknowns();
-        let size = self.norm.length(self.scale, tangent);
+        tangent.fill(0.0);
+        tangent[n] = 1.0;
+        self.solve(tangent);
+    }
+
+    /// Makes up for what the Jacobian leaves out: `t += B^-1 ([0; 1] - J t)`, repeated. Returns whether the last correction
+    /// was as small as wanted, or as rounding allows.
+    fn refine(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &[f64],
+        tangent: &mut [f64],
+        wanted: f64,
+    ) -> bool {
+        let n = self.norm.unknowns();
+        let wanted = wanted * self.norm.length(self.scale, tangent);
         let (mut before, mut previous) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..REFINEMENTS {
             problem.apply(u, tangent, &mut self.residual[..n]);
-            self.statistics.jacobians += 1;
+            self.statistics.derivatives += 1;
             self.residual[n] = dot(&self.border, tangent) - 1.0;
             self.update.copy_from_slice(&self.residual);
             self.jacobian.solve(&mut self.update);
             unscale(&self.norm, self.scale, &mut self.update);
             let change = self.norm.length(self.scale, &self.update);
-            // Core and tail may take turns, so that every other change is the larger one.
-            if change.is_nan() || change >= 4.0 * before.max(previous) {
-                return;
+            // Every other change may be the larger one.
+            let largest = before.max(previous);
+            if change.is_nan() || change >= 4.0 * largest {
+                break;
             }
             subtract(tangent, &self.update, 1.0);
-            if change <= wanted * size {
-                return;
+            let rounding = change <= ROUNDING * wanted && change > 0.5 * largest;
+            if change <= wanted || rounding {
+                return true;
             }
             (before, previous) = (previous, change);
         }
+        false
     }
 
     /// Solves with the matrix of the last [`Newton::correct`], in place.

@@ -7,6 +7,8 @@ pub struct Statistics {
     pub residuals: usize,
     /// Evaluations of the residual together with its Jacobian.
     pub jacobians: usize,
+    /// Evaluations of the derivative of the residual in one direction, where the Jacobian leaves something out.
+    pub derivatives: usize,
     /// Factorisations of a dense matrix.
     pub factorisations: usize,
     /// Continuation steps that gave a point.
@@ -21,6 +23,7 @@ impl std::ops::AddAssign for Statistics {
     fn add_assign(&mut self, other: Self) {
         self.residuals += other.residuals;
         self.jacobians += other.jacobians;
+        self.derivatives += other.derivatives;
         self.factorisations += other.factorisations;
         self.accepted_steps += other.accepted_steps;
         self.rejected_steps += other.rejected_steps;
@@ -32,10 +35,11 @@ impl std::fmt::Display for Statistics {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "{} steps accepted, {} rejected; {} Jacobians, {} residuals, {} factorisations, {} monodromies",
+            "{} steps accepted, {} rejected; {} Jacobians, {} derivatives, {} residuals, {} factorisations, {} monodromies",
             self.accepted_steps,
             self.rejected_steps,
             self.jacobians,
+            self.derivatives,
             self.residuals,
             self.factorisations,
             self.monodromies

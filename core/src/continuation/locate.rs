@@ -21,7 +21,7 @@ pub(crate) struct Located {
 
 /// Where a test function changes sign between `a` and `b`: its zero, or the place where it jumps.
 ///
-/// `None` if the correction fails on the way.
+/// `None` if a correction fails on the way, or a tangent is not that of the whole system.
 pub(crate) fn locate<P: Problem>(
     problem: &mut P,
     newton: &mut Newton,
@@ -110,7 +110,9 @@ fn corrected<P: Problem>(
         .correct(problem, &mut u, border, scale, options)
         .ok()?;
     let mut tangent = vec![0.0; u.len()];
-    newton.tangent(problem, &u, &mut tangent, true);
+    if !newton.tangent(problem, &u, &mut tangent, true) {
+        return None;
+    }
     let norm = newton.norm().length(scale, &tangent);
     for t in &mut tangent {
         *t /= norm;
