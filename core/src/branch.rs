@@ -76,7 +76,7 @@ pub struct Point {
     /// What is read off it.
     pub observed: Observed,
     /// Estimated relative error of peak-to-peak from the harmonics that were left out; `None` where neither the tolerance nor
-    /// the stability asked for it.
+    /// the stability asked for it. Infinite where it could not be estimated: nothing is known of the error then.
     pub error: Option<f64>,
 }
 
@@ -129,7 +129,8 @@ pub struct Event {
     pub kind: EventKind,
     /// The orbit.
     pub point: Point,
-    /// Estimated error of [`Point::value`], from the harmonics and samples that were left out.
+    /// Estimated error of [`Point::value`], from the harmonics and samples that were left out. Infinite where it could not be
+    /// estimated: the event is one of the truncated balance then, and nothing is known of the true one.
     pub error: f64,
     /// Value of the test function that was reached.
     pub test: f64,

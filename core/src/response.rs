@@ -289,6 +289,10 @@ impl<'a> FrequencyResponse<'a> {
         );
         if symmetric && self.period == 1 {
             resolution.parity = Parity::Odd;
+            if self.harmonics.is_none() {
+                // An even number is as good as the one below it.
+                resolution.harmonics |= 1;
+            }
         }
         // Levels are affine in the parameters, so if they are in order at both ends, they are in between.
         let at_end = match variable {
@@ -375,6 +379,7 @@ impl<'a> FrequencyResponse<'a> {
                 self.tolerance,
                 least.min(resolution.harmonics),
                 most.min(unknowns_allow),
+                resolution.parity == Parity::Odd,
             )
         })
     }

@@ -1,14 +1,15 @@
-//! What a run does with the curve it follows: orbits with their stability, folds, and another number of harmonics where the
+//! What a run does with the curve it follows: orbits with their stability, events, and another number of harmonics where the
 //! tolerance asks for it.
+
+mod events;
 
 use std::ops::ControlFlow;
 
 use crate::balance::{Balance, Resolution};
-use crate::branch::{Event, EventKind, Point, Turn};
+use crate::branch::{Event, Point, Turn};
 use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, follow,
+    Continue, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, follow,
 };
-use crate::continuation::locate::locate;
 use crate::error::Error;
 use crate::follower::Follower;
 use crate::fourier::series;
@@ -17,10 +18,7 @@ use crate::newton::{Newton, NewtonError};
 use crate::reader::Reader;
 use crate::statistics::Statistics;
 use crate::symmetry::EvenBlock;
-use crate::truncation::BEYOND;
 
-/// The test function of a fold is driven below this.
-const FOLD_TOLERANCE: f64 = 1e-10;
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;
 const SLOW_POINTS: usize = 2;
@@ -30,8 +28,9 @@ pub(crate) struct Run<'f, 'a> {
     follower: &'f Follower<'a>,
     options: FollowOptions,
     resolution: Resolution,
-    /// The size of the core, where it pays to have one.
+    /// The size of the core, where it pays to have one, and before it grew last.
     core: usize,
+    core_before: usize,
     reader: Reader<'a>,
     /// The even harmonics, where the orbits have none.
     even: Option<EvenBlock<'a>>,
@@ -41,6 +40,8 @@ pub(crate) struct Run<'f, 'a> {
     /// The last point was refused and is to be read again.
     refused: bool,
     slow: usize,
+    /// Why the walk was ended from here.
+    ended: Option<Stop>,
     pub(crate) points: Vec<Point>,
     pub(crate) events: Vec<Event>,
     pub(crate) turns: Vec<Turn>,
@@ -56,12 +57,14 @@ impl<'f, 'a> Run<'f, 'a> {
             options,
             resolution,
             core,
+            core_before: core,
             reader: follower.reader(resolution),
             even: follower.even_block(resolution),
             chooser: follower.chooser.clone(),
             wanted: resolution,
             refused: false,
             slow: 0,
+            ended: None,
             points: Vec::new(),
             events: Vec::new(),
             turns: Vec::new(),
@@ -80,7 +83,7 @@ impl<'f, 'a> Run<'f, 'a> {
     ) -> Result<Stop, Error> {
         let mut start = Start::Near(first);
         // Where the walk was halted last, in case that another resolution fails there.
-        let mut last: Option<(Box<Halted>, Resolution)> = None;
+        let mut last: Option<(Box<Halted>, Resolution, usize)> = None;
         loop {
             let mut balance = self.follower.balance(self.resolution);
             let mut newton = Newton::new(&balance);
@@ -93,20 +96,20 @@ impl<'f, 'a> Run<'f, 'a> {
                 &mut |b, n, seen| self.visit(b, n, &seen, visit),
             );
             self.statistics += newton.statistics;
-            self.statistics.monodromies += self.judged();
+            self.count_others();
             match outcome {
-                Ok(Outcome::Stopped(stop)) => return Ok(stop),
+                Ok(Outcome::Stopped(stop)) => return Ok(self.ended.unwrap_or(stop)),
                 Ok(Outcome::Halted(halted)) => {
                     start = Start::At(Box::new(self.resized(&halted, &balance)));
-                    last = Some((halted, self.resolution));
+                    last = Some((halted, self.resolution, self.core_before));
                     self.resolution = self.wanted;
                 }
                 Err(reason) => {
-                    let Some((halted, resolution)) = last.take() else {
+                    let Some((halted, resolution, core)) = last.take() else {
                         return self.lost(reason);
                     };
                     // What was found with the former resolution stands, and is read with its error.
-                    self.settle(resolution);
+                    self.settle(resolution, core);
                     start = Start::At(halted);
                 }
             }
@@ -141,18 +144,23 @@ impl<'f, 'a> Run<'f, 'a> {
         }
     }
 
-    /// Returns to a resolution and keeps it.
-    fn settle(&mut self, resolution: Resolution) {
+    /// Returns to a resolution and keeps it for some points.
+    fn settle(&mut self, resolution: Resolution, core: usize) {
         self.resolution = resolution;
         self.wanted = resolution;
+        self.core = core;
         if let Some(chooser) = &mut self.chooser {
-            chooser.most = resolution.harmonics;
-            chooser.least = resolution.harmonics;
+            chooser.keep();
         }
     }
 
-    fn judged(&self) -> usize {
-        self.reader.judge.as_ref().map_or(0, |judge| judge.computed)
+    /// Adds the work that Newton's method does not count.
+    fn count_others(&mut self) {
+        let judged = self.reader.judge.as_ref().map_or(0, |judge| judge.computed);
+        let determinants = self.even.as_ref().map_or(0, |even| even.computed);
+        self.statistics.monodromies += judged;
+        self.statistics.jacobians += determinants;
+        self.statistics.factorisations += determinants;
     }
 
     fn visit(
@@ -164,6 +172,8 @@ impl<'f, 'a> Run<'f, 'a> {
     ) -> Continue {
         match seen {
             Visit::Again(_) if !self.refused => Continue::Continue(()),
+            // It belongs to what comes after the end, which is located between this point and the one before.
+            Visit::Point(at) if self.joins(&at.u) => Continue::Continue(()),
             Visit::Point(at) | Visit::Again(at) => {
                 let point = self.reader.read(balance, newton, &at.u);
                 self.choose(&point, newton.contraction());
@@ -182,12 +192,20 @@ impl<'f, 'a> Run<'f, 'a> {
                     Continue::Continue(())
                 }
             }
+            Visit::Between(before, behind) if self.joins(&behind.u) => {
+                self.join(balance, newton, (before, behind));
+                Continue::Break(Halt::Stop)
+            }
             Visit::Between(before, behind) => {
                 if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
                     self.turn(balance, newton, (before, behind));
                 }
                 self.watch(balance, newton, (before, behind));
-                Continue::Continue(())
+                if self.ended.is_some() {
+                    Continue::Break(Halt::Stop)
+                } else {
+                    Continue::Continue(())
+                }
             }
         }
     }
@@ -195,6 +213,7 @@ impl<'f, 'a> Run<'f, 'a> {
     /// Decides on the resolution of the next point, or of this one again.
     fn choose(&mut self, point: &Point, contraction: f64) {
         let harmonics = self.resolution.harmonics;
+        self.core_before = self.core;
         self.slow = if contraction > SLOW { self.slow + 1 } else { 0 };
         if self.slow >= SLOW_POINTS {
             self.slow = 0;
@@ -207,126 +226,5 @@ impl<'f, 'a> Run<'f, 'a> {
         self.wanted = self
             .follower
             .with_harmonics(chosen.unwrap_or(harmonics), self.core);
-    }
-
-    /// Locates where the even harmonics become singular between two symmetric orbits.
-    fn watch(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        (before, behind): (&CurvePoint, &CurvePoint),
-    ) {
-        let Some(even) = &mut self.even else {
-            return;
-        };
-        let (a, b) = (even.determinant(&before.u), even.determinant(&behind.u));
-        if a.0 * b.0 >= 0.0 {
-            return;
-        }
-        let largest = a.1.max(b.1);
-        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
-        let even = std::cell::RefCell::new(even);
-        let test = |point: &CurvePoint| relative(even.borrow_mut().determinant(&point.u));
-        let between = (before, behind);
-        let options = self.options.newton;
-        let located = locate(balance, newton, between, options, FOLD_TOLERANCE, test);
-        let Some(located) = located.filter(|located| located.vanishes) else {
-            return;
-        };
-        let u = &located.point.u;
-        let error = if self.reader.finer.correct(u, newton) {
-            let range = behind.parameter() - before.parameter();
-            self.symmetry_error(&located.point, 1e-4 * range)
-        } else {
-            f64::INFINITY
-        };
-        let point = self.reader.read(balance, newton, u);
-        self.events.push(Event {
-            kind: EventKind::SymmetryBreaking,
-            point,
-            error,
-            test: located.test,
-            after: self.points.len() - 1,
-        });
-    }
-
-    /// Estimated error of a symmetry-breaking point: where twice the harmonics, at the corrected orbit that `finer` holds, would
-    /// put it.
-    fn symmetry_error(&self, point: &CurvePoint, step: f64) -> f64 {
-        let finer = self.reader.finer.extended();
-        let fine = Resolution {
-            harmonics: 2 * self.resolution.harmonics,
-            ..self.resolution
-        };
-        let Some(mut even) = self.follower.even_block(fine) else {
-            return f64::INFINITY;
-        };
-        let coordinates = self.follower.system.facts().coordinates.len();
-        let length = series::length(fine.harmonics);
-        let mut at = |u: &[f64]| even.determinant(&resize(u, coordinates, length));
-        // The determinant along the tangent, by a central difference in the parameter.
-        let value = point.parameter();
-        let along = step / point.tangent[point.tangent.len() - 1];
-        let moved = |by: f64| -> Vec<f64> {
-            let pairs = finer
-                .iter()
-                .zip(resize(&point.tangent, coordinates, length));
-            pairs.map(|(x, t)| x + by * t).collect()
-        };
-        let (a, b, here) = (at(&moved(-along)), at(&moved(along)), at(finer));
-        let largest = a.1.max(b.1);
-        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
-        let slope = (relative(b) - relative(a)) / (2.0 * step);
-        let change = finer[finer.len() - 1] - value - relative(here) / slope;
-        let error = BEYOND * change.abs() + 1e-12 * value.abs();
-        if error.is_finite() {
-            error
-        } else {
-            f64::INFINITY
-        }
-    }
-
-    /// Locates the fold between two points, or the jump that is there instead.
-    fn turn(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
-    ) {
-        let options = self.options.newton;
-        // The point behind the turn has been stored already.
-        let after = self.points.len() - 1;
-        let slope = CurvePoint::parameter_slope;
-        match locate(balance, newton, between, options, FOLD_TOLERANCE, slope) {
-            Some(located) if located.vanishes => {
-                let u = &located.point.u;
-                let error = self.reader.finer.fold_error(u, newton);
-                let point = self.reader.read(balance, newton, u);
-                let kind = EventKind::Fold;
-                self.events.push(Event {
-                    kind,
-                    point,
-                    error,
-                    test: located.test,
-                    after,
-                });
-            }
-            Some(located) => {
-                let value = located.point.parameter();
-                self.turns.push(Turn {
-                    value,
-                    test: located.test,
-                    after,
-                });
-            }
-            None => {
-                let value = 0.5 * (between.0.parameter() + between.1.parameter());
-                self.turns.push(Turn {
-                    value,
-                    test: between.0.parameter_slope(),
-                    after,
-                });
-            }
-        }
     }
 }

@@ -1,4 +1,7 @@
-//! Orbits of several excitation periods, and whether a shorter period would do.
+//! Orbits of several excitation periods: whether a shorter period would do, and which are the same but for a shift in time.
+
+use crate::branch::Orbit;
+use crate::fourier::series;
 
 /// Least share of the mean square that the harmonics of a longer period must have. Samples of a force that jumps disturb a
 /// simple orbit a little; that is not a longer period.
@@ -19,4 +22,114 @@ pub(crate) fn has_shortest_period(u: &[f64], length: usize, period: usize) -> bo
 /// The prime divisors of a period.
 fn primes(period: usize) -> impl Iterator<Item = usize> {
     (2..=period).filter(move |p| period.is_multiple_of(*p) && (2..*p).all(|q| !p.is_multiple_of(q)))
+}
+
+/// Orbits of a shorter period that a branch passes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shorter {
+    /// The shorter period.
+    pub(crate) period: usize,
+    /// How many times it is contained.
+    times: usize,
+}
+
+impl Shorter {
+    /// What an orbit has beyond the shorter period, along that of another one: one for that orbit itself, zero for an orbit of
+    /// the shorter period.
+    pub(crate) fn addition(self, from: &Orbit, u: &[f64]) -> f64 {
+        let length = (u.len() - 1) / from.coordinates();
+        let (mut product, mut square) = (0.0, 0.0);
+        for i in 0..from.coordinates() {
+            let (a, b) = (from.series(i), &u[i * length..][..length]);
+            for (index, x) in a.iter().enumerate() {
+                if !index.div_ceil(2).is_multiple_of(self.times) {
+                    product += x * b.get(index).copied().unwrap_or(0.0);
+                    square += x * x;
+                }
+            }
+        }
+        product / square
+    }
+}
+
+/// Whether an orbit of a shorter period lies between an orbit and the next one of its branch, and which.
+pub(crate) fn passes_shorter_period(from: &Orbit, u: &[f64]) -> Option<Shorter> {
+    let shorter = |times| Shorter {
+        period: from.period / times,
+        times,
+    };
+    primes(from.period)
+        .map(shorter)
+        .find(|shorter| shorter.addition(from, u) < 0.0)
+}
+
+/// Whether two orbits are the same to three digits but for a shift by whole excitation periods.
+pub(crate) fn is_shifted(a: &Orbit, b: &Orbit) -> bool {
+    (0..a.period).any(|shift| {
+        let angle = std::f64::consts::TAU * shift as f64 / a.period as f64;
+        let (mut apart, mut size) = (0.0, 0.0);
+        for i in 0..a.coordinates() {
+            let (x, y) = (a.series(i), b.series(i));
+            apart += (x[0] - y[0]) * (x[0] - y[0]);
+            for k in 1..=series::harmonics(x).min(series::harmonics(y)) {
+                let (sine, cosine) = (k as f64 * angle).sin_cos();
+                let (c, s) = (x[2 * k - 1], x[2 * k]);
+                let (c, s) = (c * cosine + s * sine, s * cosine - c * sine);
+                apart += (c - y[2 * k - 1]).powi(2) + (s - y[2 * k]).powi(2);
+                size += c * c + s * s;
+            }
+        }
+        apart <= 1e-6 * size
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn orbit(period: usize, series: &[f64]) -> Orbit {
+        Orbit {
+            series: series.to_vec(),
+            coordinates: 1,
+            omega: 1.0,
+            base: 1.0 / period as f64,
+            period,
+        }
+    }
+
+    #[test]
+    fn a_shift_in_time_is_seen() {
+        let a = [0.3, 1.0, -0.5, 0.2, 0.1, 0.0, 0.4, 0.05, 0.06];
+        // x(tau + pi): odd harmonics change their sign.
+        let b = [0.3, -1.0, 0.5, 0.2, 0.1, 0.0, -0.4, 0.05, 0.06];
+        assert!(is_shifted(&orbit(2, &a), &orbit(2, &b)));
+        assert!(!is_shifted(&orbit(1, &a), &orbit(1, &b)));
+        assert!(is_shifted(&orbit(1, &a), &orbit(1, &a)));
+        let mut c = b;
+        c[4] += 0.01;
+        assert!(!is_shifted(&orbit(2, &a), &orbit(2, &c)));
+    }
+
+    #[test]
+    fn an_orbit_of_a_shorter_period_in_between_is_seen() {
+        let from = orbit(6, &[0.3, 0.0, 0.1, 0.0, 0.2, 0.5, 0.0]);
+        let next = |first: f64, second: f64, third: f64| {
+            passes_shorter_period(&from, &[0.3, 0.0, first, 0.0, second, third, 0.0, 1.0])
+                .map(|shorter| shorter.period)
+        };
+        assert_eq!(next(0.09, 0.18, 0.45), None);
+        // Without the odd harmonics the period is three, without the first two it is two.
+        assert_eq!(next(-0.1, 0.2, -0.5), Some(3));
+        assert_eq!(next(-0.1, -0.2, 0.5), Some(2));
+        assert!(has_shortest_period(
+            &[0.0, 0.0, 0.1, 0.0, 0.2, 0.5, 0.0, 1.0],
+            7,
+            6
+        ));
+        assert!(!has_shortest_period(
+            &[0.0, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 1.0],
+            7,
+            6
+        ));
+    }
 }

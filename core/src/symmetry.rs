@@ -80,6 +80,11 @@ pub(crate) struct EvenBlock<'a> {
     jacobian: Jacobian,
     residual: Vec<f64>,
     border: Vec<f64>,
+    /// The last orbit, and its determinant.
+    orbit: Vec<f64>,
+    known: (f64, f64),
+    /// Determinants computed, each a Jacobian and a factorisation.
+    pub(crate) computed: usize,
 }
 
 impl<'a> EvenBlock<'a> {
@@ -106,16 +111,25 @@ impl<'a> EvenBlock<'a> {
             residual: vec![0.0; n],
             border,
             balance,
+            orbit: vec![f64::NAN; n + 1],
+            known: (0.0, 0.0),
+            computed: 0,
         }
     }
 
     /// The determinant of the block at an orbit: its sign, and the logarithm of its size. The sign is zero if the block is
-    /// singular.
+    /// singular. Of the same orbit again it is known.
     pub(crate) fn determinant(&mut self, u: &[f64]) -> (f64, f64) {
+        if self.orbit == u {
+            return self.known;
+        }
+        self.orbit.copy_from_slice(u);
+        self.computed += 1;
         self.jacobian.clear();
         self.balance
             .evaluate(u, &mut self.residual, Some(&mut self.jacobian));
         self.jacobian.set_border(&self.border);
-        self.jacobian.determinant()
+        self.known = self.jacobian.determinant();
+        self.known
     }
 }

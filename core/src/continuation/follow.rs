@@ -57,8 +57,16 @@ pub enum Stop {
     ReachedEnd,
     /// The branch turned back and left the range where it had passed.
     LeftAtStart,
-    /// The branch closed upon itself.
+    /// The branch closed upon itself, be it one or several excitation periods later.
     Closed,
+    /// A branch of orbits of several excitation periods met one of a shorter period. It would go on through the same orbits,
+    /// one excitation period later.
+    Joined {
+        /// The shorter period, in excitation periods.
+        period: usize,
+        /// Where.
+        parameter: f64,
+    },
     /// As many points as were allowed.
     PointLimit {
         /// The limit.
@@ -83,6 +91,10 @@ impl std::fmt::Display for Stop {
             Self::ReachedEnd => write!(f, "reached the end of the range"),
             Self::LeftAtStart => write!(f, "turned back and left the range at its start"),
             Self::Closed => write!(f, "closed upon itself"),
+            Self::Joined { period, parameter } => write!(
+                f,
+                "joined a branch of orbits of period {period} at {parameter:.9}; beyond, the same orbits would follow again, one excitation period later"
+            ),
             Self::PointLimit { points } => write!(f, "reached the limit of {points} points"),
             Self::StepTooShort {
                 step,

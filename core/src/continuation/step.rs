@@ -44,7 +44,7 @@ impl StepControl {
     }
 
     /// A step that looks wrong is tried again, unless it is already short: a kink keeps its angle at any length.
-    pub(crate) fn is_long(&self, step: f64) -> bool {
+    pub(crate) fn is_long(step: f64) -> bool {
         step > 1e-4
     }
 

@@ -4,6 +4,7 @@
 
 use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
 use super::problem::{Norm, Problem, Scale};
+use super::step::StepControl;
 use crate::newton::{Border, Newton, NewtonError};
 
 /// A walk that has its first point.
@@ -240,7 +241,7 @@ impl Walk {
                     let looks_wrong = steps.turns_too_far(angle)
                         || steps.is_too_far(distance)
                         || passes_folds(newton.norm(), from, &point);
-                    if !(looks_wrong && steps.is_long(self.step)) {
+                    if !(looks_wrong && StepControl::is_long(self.step)) {
                         newton.statistics.accepted_steps += 1;
                         self.remember(from, angle);
                         let slope = point.parameter_slope();

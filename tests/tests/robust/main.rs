@@ -97,6 +97,7 @@ fn ended(stop: Stop) -> String {
         Stop::ReachedEnd => "curve, reached the end".to_owned(),
         Stop::LeftAtStart => "curve, left at its start".to_owned(),
         Stop::Closed => "curve, closed".to_owned(),
+        Stop::Joined { .. } => "curve, joined one of a shorter period".to_owned(),
         Stop::PointLimit { .. } => "curve, as many points as asked for".to_owned(),
         Stop::StepTooShort { reason, .. } => format!("stopped early: {}", in_words(reason)),
         Stop::Interrupted => "interrupted".to_owned(),
@@ -107,6 +108,12 @@ fn ended(stop: Stop) -> String {
 fn refused(error: &Error) -> String {
     match error {
         Error::NoStart { reason, .. } => format!("no start: {}", in_words(*reason)),
+        Error::SearchLimit { reason, .. } => {
+            format!("no start within the limit: {}", in_words(*reason))
+        }
+        Error::NoSuchPeriod { attempts, .. } if attempts.made < attempts.planned => {
+            "no start of that period within the limit".to_owned()
+        }
         Error::NoSuchPeriod { .. } => "no start of that period".to_owned(),
         other => format!("refused: {other}"),
     }

@@ -1,0 +1,206 @@
+//! What is located between two points of a branch: folds, the loss of a symmetry, and the end of a branch of longer orbits.
+
+use super::Run;
+use crate::balance::{Balance, Resolution};
+use crate::branch::{Event, EventKind, Turn};
+use crate::continuation::follow::{CurvePoint, Stop};
+use crate::continuation::locate::{Located, locate};
+use crate::fourier::series;
+use crate::harmonics::resize;
+use crate::newton::Newton;
+use crate::subharmonics::{is_shifted, passes_shorter_period};
+use crate::truncation::BEYOND;
+
+/// The test function of a fold is driven below this.
+const FOLD_TOLERANCE: f64 = 1e-10;
+/// What the orbits of a longer period have in addition vanishes as the square root of the distance in the parameter, so that
+/// this part of it is as good as nothing.
+const JOINED: f64 = 1e-5;
+
+impl Run<'_, '_> {
+    /// Locates the fold between two points, or the jump that is there instead.
+    pub(super) fn turn(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+    ) {
+        let options = self.options.newton;
+        let slope = CurvePoint::parameter_slope;
+        let found = locate(balance, newton, between, options, FOLD_TOLERANCE, slope);
+        if let Some(fold) = found.as_ref().filter(|located| located.vanishes) {
+            return self.fold(balance, newton, fold);
+        }
+        if self.resolution.core < self.resolution.harmonics {
+            // What core and tail cannot locate, the whole system may.
+            let mut balance = self.follower.balance(Resolution {
+                core: self.resolution.harmonics,
+                ..self.resolution
+            });
+            let mut newton = Newton::new(&balance);
+            let again = locate(
+                &mut balance,
+                &mut newton,
+                between,
+                options,
+                FOLD_TOLERANCE,
+                slope,
+            );
+            if let Some(fold) = again.filter(|located| located.vanishes) {
+                self.fold(&mut balance, &mut newton, &fold);
+                self.statistics += newton.statistics;
+                return;
+            }
+            self.statistics += newton.statistics;
+        }
+        let (value, test) = found.map_or_else(
+            || {
+                let (a, b) = between;
+                (0.5 * (a.parameter() + b.parameter()), a.parameter_slope())
+            },
+            |jump| (jump.point.parameter(), jump.test),
+        );
+        self.turns.push(Turn {
+            value,
+            test,
+            after: self.points.len() - 1,
+        });
+    }
+
+    /// Reads a fold that was located. One that was passed before, but for a shift in time, is the sign of a branch that closes
+    /// after a part of the period.
+    fn fold(&mut self, balance: &mut Balance<'_>, newton: &mut Newton, located: &Located) {
+        let u = &located.point.u;
+        let error = self.reader.finer.fold_error(u, newton);
+        let point = self.reader.read(balance, newton, u);
+        let near = |other: &&Event| {
+            let apart = (other.point.value - point.value).abs();
+            apart <= other.error + error + 1e-9 * (self.options.to - self.options.from).abs()
+        };
+        let mut passed = self.events.iter().filter(near);
+        if passed.any(|other| is_shifted(&other.point.orbit, &point.orbit)) {
+            self.ended = Some(Stop::Closed);
+            return;
+        }
+        self.events.push(Event {
+            kind: EventKind::Fold,
+            point,
+            error,
+            test: located.test,
+            // The point behind the turn has been stored already.
+            after: self.points.len() - 1,
+        });
+    }
+
+    /// Whether the branch has passed an orbit of a shorter period since its last point: what the orbits of the longer period
+    /// have in addition has changed its sign.
+    pub(super) fn joins(&self, u: &[f64]) -> bool {
+        let orbit = self.points.last().map(|point| &point.orbit);
+        orbit.is_some_and(|orbit| passes_shorter_period(orbit, u).is_some())
+    }
+
+    /// Locates where a branch of longer orbits joins one of a shorter period, and ends it there: what would follow are the
+    /// same orbits again, one excitation period later.
+    pub(super) fn join(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): (&CurvePoint, &CurvePoint),
+    ) {
+        let Some(last) = self.points.last() else {
+            return;
+        };
+        let Some(joined) = passes_shorter_period(&last.orbit, &behind.u) else {
+            return;
+        };
+        let addition = |point: &CurvePoint| joined.addition(&last.orbit, &point.u);
+        let options = self.options.newton;
+        let between = (before, behind);
+        let located = locate(balance, newton, between, options, JOINED, addition);
+        let parameter = located.map_or_else(
+            || 0.5 * (before.parameter() + behind.parameter()),
+            |located| located.point.parameter(),
+        );
+        self.ended = Some(Stop::Joined {
+            period: joined.period,
+            parameter,
+        });
+    }
+
+    /// Locates where the even harmonics become singular between two symmetric orbits.
+    pub(super) fn watch(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): (&CurvePoint, &CurvePoint),
+    ) {
+        let Some(even) = &mut self.even else {
+            return;
+        };
+        let (a, b) = (even.determinant(&before.u), even.determinant(&behind.u));
+        if a.0 * b.0 >= 0.0 {
+            return;
+        }
+        let largest = a.1.max(b.1);
+        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
+        let even = std::cell::RefCell::new(even);
+        let test = |point: &CurvePoint| relative(even.borrow_mut().determinant(&point.u));
+        let between = (before, behind);
+        let options = self.options.newton;
+        let located = locate(balance, newton, between, options, FOLD_TOLERANCE, test);
+        let Some(located) = located.filter(|located| located.vanishes) else {
+            return;
+        };
+        let u = &located.point.u;
+        let error = if self.reader.finer.correct(u, newton) {
+            let range = behind.parameter() - before.parameter();
+            self.symmetry_error(&located.point, 1e-4 * range)
+        } else {
+            f64::INFINITY
+        };
+        let point = self.reader.read(balance, newton, u);
+        self.events.push(Event {
+            kind: EventKind::SymmetryBreaking,
+            point,
+            error,
+            test: located.test,
+            after: self.points.len() - 1,
+        });
+    }
+
+    /// Estimated error of a symmetry-breaking point: where twice the harmonics, at the corrected orbit that `finer` holds, would
+    /// put it.
+    fn symmetry_error(&self, point: &CurvePoint, step: f64) -> f64 {
+        let finer = self.reader.finer.extended();
+        let fine = Resolution {
+            harmonics: 2 * self.resolution.harmonics,
+            ..self.resolution
+        };
+        let Some(mut even) = self.follower.even_block(fine) else {
+            return f64::INFINITY;
+        };
+        let coordinates = self.follower.system.facts().coordinates.len();
+        let length = series::length(fine.harmonics);
+        let mut at = |u: &[f64]| even.determinant(&resize(u, coordinates, length));
+        // The determinant along the tangent, by a central difference in the parameter.
+        let value = point.parameter();
+        let along = step / point.tangent[point.tangent.len() - 1];
+        let moved = |by: f64| -> Vec<f64> {
+            let pairs = finer
+                .iter()
+                .zip(resize(&point.tangent, coordinates, length));
+            pairs.map(|(x, t)| x + by * t).collect()
+        };
+        let (a, b, here) = (at(&moved(-along)), at(&moved(along)), at(finer));
+        let largest = a.1.max(b.1);
+        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
+        let slope = (relative(b) - relative(a)) / (2.0 * step);
+        let change = finer[finer.len() - 1] - value - relative(here) / slope;
+        let error = BEYOND * change.abs() + 1e-12 * value.abs();
+        if error.is_finite() {
+            error
+        } else {
+            f64::INFINITY
+        }
+    }
+}
