@@ -1,20 +1,21 @@
-//! The Jacobian of a continuation problem: dense in a core of unknowns, block diagonal in a tail, with a border.
+//! The Jacobian of a continuation problem: dense in a core of unknowns, block triangular in a tail, with a border.
 //!
 //! High harmonics of an oscillator are almost free masses: their diagonal `(k Omega)^2 M` outweighs what couples them to each
-//! other and to the low ones. With the tail `y` by its diagonal blocks `D` alone,
+//! other and to the low ones. The tail `y` has its diagonal blocks `D`, and what the core `x` does to it,
 //!
 //! ```text
 //! [ A    0    a ] [ x ]   [ r ]
-//! [ 0    D    c ] [ y ] = [ q ]                                                                              (1)
+//! [ B    D    c ] [ y ] = [ q ]                                                                              (1)
 //! [ b^T  d^T  e ] [ l ]   [ s ]
 //! ```
 //!
-//! elimination of `y` leaves the core with one border, where `e` becomes `e - d^T D^-1 c` and `s` becomes `s - d^T D^-1 q`: the
-//! factorisation costs that of the core. What (1) leaves out, the iteration must make up.
+//! With `w = D^-T d`, elimination of `y` leaves the core with one border, where `b` becomes `b - B^T w`, `e` becomes `e - w . c`
+//! and `s` becomes `s - w . q`: the factorisation costs that of the core. What (1) leaves out, the iteration must make up. It is
+//! the method of Gauss and Seidel by blocks, which converges twice as fast as without `B`, where core and tail take turns.
 //!
-//! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (bordering); the division into
-//! strongly and weakly coupled harmonics follows Grolet and Thouverez (2012), On a new harmonic selection technique for
-//! harmonic balance method.
+//! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (bordering); Varga (1962), Matrix
+//! Iterative Analysis, chapter 4 (rates of consistently ordered matrices); the division into strongly and weakly coupled
+//! harmonics follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic balance method.
 
 use crate::linear::{Lu, Matrix, Singular, dot};
 
@@ -53,9 +54,11 @@ pub struct Jacobian {
     /// The blocks `D`.
     groups: Vec<Matrix>,
     group_lus: Vec<Lu>,
+    /// `B`, row by row.
+    coupling: Vec<f64>,
     /// `c`, and after factorisation `D^-1 c`.
     column: Vec<f64>,
-    /// `d`
+    /// `d`, and after factorisation `w`.
     border: Vec<f64>,
     room: Vec<f64>,
     tail_room: Vec<f64>,
@@ -74,6 +77,7 @@ impl Jacobian {
                 .map(|_| Matrix::zeros(partition.group))
                 .collect(),
             group_lus: (0..groups).map(|_| Lu::new(partition.group)).collect(),
+            coupling: vec![0.0; tail * partition.core.len()],
             column: vec![0.0; tail],
             border: vec![0.0; tail],
             room: vec![0.0; order],
@@ -96,6 +100,7 @@ impl Jacobian {
     pub(crate) fn clear(&mut self) {
         self.core.clear();
         self.groups.iter_mut().for_each(Matrix::clear);
+        self.coupling.fill(0.0);
         self.column.fill(0.0);
     }
 
@@ -107,6 +112,17 @@ impl Jacobian {
     /// One group of the tail.
     pub(crate) fn group_mut(&mut self, group: usize) -> &mut Matrix {
         &mut self.groups[group]
+    }
+
+    /// Two rows of `B`, from a row of a group of the tail on: over the unknowns of the core.
+    pub(crate) fn two_coupling_rows_mut(
+        &mut self,
+        group: usize,
+        row: usize,
+    ) -> (&mut [f64], &mut [f64]) {
+        let core = self.partition.core.len();
+        let start = (group * self.partition.group + row) * core;
+        self.coupling[start..start + 2 * core].split_at_mut(core)
     }
 
     /// Writes the derivatives by the parameter, one for each unknown's equation.
@@ -160,6 +176,11 @@ impl Jacobian {
             self.column[index] *= parameter;
             self.border[index] *= unit(unknown);
         }
+        for row in self.coupling.chunks_exact_mut(last.max(1)) {
+            for (x, &unknown) in row.iter_mut().zip(&self.partition.core) {
+                *x *= unit(unknown);
+            }
+        }
     }
 
     /// Factorises the tail, then the core with its new border.
@@ -173,10 +194,19 @@ impl Jacobian {
                 column: order + index * group + at.column,
                 ..at
             })?;
-            lu.solve(matrix, &mut self.column[index * group..][..group]);
+            let place = index * group..(index + 1) * group;
+            lu.solve_transposed(matrix, &mut self.border[place.clone()]);
+            let corner = dot(&self.border[place.clone()], &self.column[place.clone()]);
+            self.core.row_mut(order)[order] -= corner;
+            lu.solve(matrix, &mut self.column[place]);
         }
-        let corner = dot(&self.border, &self.column);
-        self.core.row_mut(order)[order] -= corner;
+        let last = self.core.row_mut(order);
+        let rows = self.coupling.chunks_exact(order.max(1));
+        for (row, w) in rows.zip(&self.border) {
+            for (x, b) in last.iter_mut().zip(row) {
+                *x -= w * b;
+            }
+        }
         self.lu.factorise(&mut self.core)
     }
 
@@ -204,15 +234,19 @@ impl Jacobian {
         for (to, &unknown) in self.tail_room.iter_mut().zip(tail) {
             *to = vector[unknown];
         }
-        for (index, (matrix, lu)) in self.groups.iter().zip(&self.group_lus).enumerate() {
-            lu.solve(matrix, &mut self.tail_room[index * group..][..*group]);
-        }
         for (to, &unknown) in self.room.iter_mut().zip(core) {
             *to = vector[unknown];
         }
         let last = core.len();
         self.room[last] = vector[*unknowns] - dot(&self.border, &self.tail_room);
         self.lu.solve(&self.core, &mut self.room);
+        let rows = self.coupling.chunks_exact(last.max(1));
+        for (to, row) in self.tail_room.iter_mut().zip(rows) {
+            *to -= dot(row, &self.room[..last]);
+        }
+        for (index, (matrix, lu)) in self.groups.iter().zip(&self.group_lus).enumerate() {
+            lu.solve(matrix, &mut self.tail_room[index * group..][..*group]);
+        }
         let parameter = self.room[last];
         vector.fill(0.0);
         vector[*unknowns] = parameter;
@@ -240,13 +274,19 @@ impl Jacobian {
             *to = vector[unknown];
         }
         self.room[last] = vector[*unknowns] - dot(&self.column, &self.tail_room);
-        self.lu.solve_transposed(&self.core, &mut self.room);
-        let parameter = self.room[last];
-        for (x, d) in self.tail_room.iter_mut().zip(&self.border) {
-            *x -= parameter * d;
-        }
         for (index, (matrix, lu)) in self.groups.iter().zip(&self.group_lus).enumerate() {
             lu.solve_transposed(matrix, &mut self.tail_room[index * group..][..*group]);
+        }
+        let rows = self.coupling.chunks_exact(last.max(1));
+        for (row, y) in rows.zip(&self.tail_room) {
+            for (x, b) in self.room.iter_mut().zip(row) {
+                *x -= y * b;
+            }
+        }
+        self.lu.solve_transposed(&self.core, &mut self.room);
+        let parameter = self.room[last];
+        for (x, w) in self.tail_room.iter_mut().zip(&self.border) {
+            *x -= parameter * w;
         }
         vector.fill(0.0);
         vector[*unknowns] = parameter;
@@ -279,6 +319,11 @@ impl Jacobian {
                 let other = self.partition.tail[start + column];
                 entries[(unknown, other)] = self.groups[index / group].row(index % group)[column];
             }
+            let order = self.partition.core.len();
+            let row = &self.coupling[index * order..][..order];
+            for (&from, value) in self.partition.core.iter().zip(row) {
+                entries[(unknown, from)] = *value;
+            }
         }
         entries
     }
@@ -307,6 +352,9 @@ mod tests {
                 }
                 entries[row] += 3.0;
             }
+        }
+        for x in &mut jacobian.coupling {
+            *x = next(0);
         }
         let n = jacobian.partition.unknowns;
         let (column, border): (Vec<f64>, Vec<f64>) = (0..=n).map(|i| (next(i), next(i))).unzip();

@@ -130,6 +130,8 @@ const REFINED: f64 = 1e-13;
 const ROUGHLY: f64 = 1e-4;
 /// Where rounding keeps corrections from shrinking, this many times that is good enough.
 const ROUNDING: f64 = 100.0;
+/// So much of a contraction is remembered after a correction that was too short to show it.
+const LASTING: f64 = 0.5;
 /// Drift that does not change a tangent noticeably.
 const SMALL_DRIFT: f64 = 1e-8;
 
@@ -195,6 +197,8 @@ impl Newton {
         options: NewtonOptions,
     ) -> Result<Converged, NewtonError> {
         self.scale = scale;
+        // Until this correction shows its own, what is left out contracts as it did last.
+        let usual = self.contraction;
         self.contraction = 0.0;
         let (mut before, mut previous) = (f64::INFINITY, f64::INFINITY);
         let mut size = f64::INFINITY;
@@ -222,8 +226,9 @@ impl Newton {
             }
             first = first.or(Some(size));
             if size <= options.tolerance
-                && self.is_last(size, (previous, before), options.tolerance)
+                && self.is_last(size, (previous, before), usual, options.tolerance)
             {
+                self.contraction = self.contraction.max(usual * LASTING);
                 subtract(u, &self.update, 1.0);
                 self.drift += size;
                 return Ok(Converged {
@@ -235,7 +240,7 @@ impl Newton {
             if options.damped {
                 self.damped_update(problem, u, border);
             } else {
-                // Core and tail may take turns, so that every other update is the larger one.
+                // What core and tail leave out need not contract in every norm at once.
                 let grows = if self.jacobian.is_exact() {
                     2.0 * previous
                 } else {
@@ -267,18 +272,26 @@ impl Newton {
     }
 
     /// Whether an update is the last one worth making: what is left after it, as the updates shrink, is far below the
-    /// tolerance, or rounding keeps them from shrinking. Core and tail may take turns, so that only every other update
-    /// compares.
-    fn is_last(&self, size: f64, (previous, before): (f64, f64), tolerance: f64) -> bool {
-        let (next, largest) = if self.jacobian.is_exact() {
-            (size * (size / previous), previous)
-        } else {
-            (previous * (size / before), previous.max(before))
-        };
-        if !largest.is_finite() {
+    /// tolerance, or rounding keeps them from shrinking. What the Jacobian leaves out need not contract in every norm at once.
+    fn is_last(
+        &self,
+        size: f64,
+        (previous, before): (f64, f64),
+        usual: f64,
+        tolerance: f64,
+    ) -> bool {
+        if !previous.is_finite() {
             return size <= REMAINDER * tolerance;
         }
-        next <= REMAINDER * tolerance || size > 0.5 * largest
+        let ratio = size / previous;
+        let (ratio, largest) = if self.jacobian.is_exact() {
+            (ratio, previous)
+        } else if before.is_finite() {
+            (ratio.max(usual), previous.max(before))
+        } else {
+            (ratio.max(usual), f64::INFINITY)
+        };
+        size * ratio <= REMAINDER * tolerance || size > 0.5 * largest
     }
 
     /// Largest ratio of successive updates in the last correction where the Jacobian leaves something out; zero otherwise.
@@ -358,7 +371,7 @@ impl Newton {
             self.jacobian.solve(&mut self.update);
             unscale(&self.norm, self.scale, &mut self.update);
             let change = self.norm.length(self.scale, &self.update);
-            // Every other change may be the larger one.
+            // They need not shrink in every norm at once.
             let largest = before.max(previous);
             if change.is_nan() || change >= 4.0 * largest {
                 break;

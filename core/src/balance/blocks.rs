@@ -132,6 +132,17 @@ impl Block {
         self.add_to_core(&harmonics.core, jacobian.core_mut());
         for (group, &k) in harmonics.tail.iter().enumerate() {
             self.add_to_group(k, jacobian.group_mut(group));
+            if !self.constant {
+                let (cosine, sine) = jacobian.two_coupling_rows_mut(group, 2 * self.row);
+                let length = places(&harmonics.core);
+                let part = self.column * length..(self.column + 1) * length;
+                self.add_rows(
+                    k,
+                    &harmonics.core,
+                    &mut cosine[part.clone()],
+                    &mut sine[part],
+                );
+            }
         }
     }
 
@@ -157,23 +168,28 @@ impl Block {
             let (cosine, sine) = core.two_rows_mut(place, place + 1);
             let cosine = &mut cosine[left..][..length];
             let sine = &mut sine[left..][..length];
-            let mut column = 0;
-            for &m in harmonics {
-                if m == 0 {
-                    cosine[0] += self.stiffness[2 * l - 1];
-                    sine[0] += self.stiffness[2 * l];
-                    column += 1;
-                    continue;
-                }
-                self.add_pair(
-                    l,
-                    m,
-                    &mut cosine[column..column + 2],
-                    &mut sine[column..column + 2],
-                );
-                column += 2;
-            }
+            self.add_rows(l, harmonics, cosine, sine);
             place += 2;
+        }
+    }
+
+    /// The two rows of a harmonic that is not zero, over harmonics of the core.
+    fn add_rows(&self, l: usize, harmonics: &[usize], cosine: &mut [f64], sine: &mut [f64]) {
+        let mut column = 0;
+        for &m in harmonics {
+            if m == 0 {
+                cosine[0] += self.stiffness[2 * l - 1];
+                sine[0] += self.stiffness[2 * l];
+                column += 1;
+                continue;
+            }
+            self.add_pair(
+                l,
+                m,
+                &mut cosine[column..column + 2],
+                &mut sine[column..column + 2],
+            );
+            column += 2;
         }
     }
 
@@ -196,8 +212,10 @@ impl Block {
     /// The two by two entries of harmonics `l` (row) and `m` (column), neither zero.
     #[inline]
     fn add_pair(&self, l: usize, m: usize, cosine: &mut [f64], sine: &mut [f64]) {
-        let s = projections(&self.stiffness, l, m);
-        let t = projections(&self.damping, l, m);
+        let (sum, difference) = (2 * (l + m), 2 * l.abs_diff(m));
+        let sign = if m > l { -0.5 } else { 0.5 };
+        let s = projections(&self.stiffness, sum, difference, sign);
+        let t = projections(&self.damping, sum, difference, sign);
         // The phase derivative of the column cos m is -m sin m, and of sin m it is m cos m.
         let m = m as f64;
         cosine[0] += s.cos_cos - m * t.cos_sin;
@@ -217,7 +235,7 @@ impl Block {
         }
     }
 
-    /// A harmonic of the tail is coupled to itself alone, through the means.
+    /// Among the tail a harmonic is coupled to itself alone, through the means.
     fn add_to_group(&self, k: usize, group: &mut Matrix) {
         let (row, column) = (2 * self.row, 2 * self.column);
         self.add_diagonal(k, group, row, column);
@@ -237,13 +255,14 @@ struct Projections {
     sin_sin: f64,
 }
 
+/// By the places of the sine of `l + m` and of `|l - m|`, and half the sign of `l - m`.
 #[inline]
-fn projections(series: &[f64], l: usize, m: usize) -> Projections {
-    let (sum_c, sum_s) = (0.5 * series[2 * (l + m) - 1], 0.5 * series[2 * (l + m)]);
-    let (difference_c, difference_s) = match l.cmp(&m) {
-        std::cmp::Ordering::Equal => (series[0], 0.0),
-        std::cmp::Ordering::Greater => (0.5 * series[2 * (l - m) - 1], 0.5 * series[2 * (l - m)]),
-        std::cmp::Ordering::Less => (0.5 * series[2 * (m - l) - 1], -0.5 * series[2 * (m - l)]),
+fn projections(series: &[f64], sum: usize, difference: usize, sign: f64) -> Projections {
+    let (sum_c, sum_s) = (0.5 * series[sum - 1], 0.5 * series[sum]);
+    let (difference_c, difference_s) = if difference == 0 {
+        (series[0], 0.0)
+    } else {
+        (0.5 * series[difference - 1], sign * series[difference])
     };
     Projections {
         cos_cos: difference_c + sum_c,

@@ -28,8 +28,8 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// Room for slopes that couple harmonics up to `reach`.
-    pub(super) fn new(layout: &Layout, resolution: Resolution, reach: usize) -> Self {
+    /// Room for slopes whose harmonics up to `coupling` are needed.
+    pub(super) fn new(layout: &Layout, resolution: Resolution, coupling: usize) -> Self {
         let Resolution {
             harmonics, period, ..
         } = resolution;
@@ -42,7 +42,7 @@ impl Scratch {
         let zeros = |harmonics| vec![0.0; series::length(harmonics)];
         let gap = || zeros((harmonics + gap_wave).max(offset_wave));
         let force = || zeros(harmonics + force_wave);
-        let slope = || zeros(2 * reach + force_wave + gap_wave);
+        let slope = || zeros(coupling + force_wave + gap_wave);
         let arguments = layout
             .contacts
             .iter()

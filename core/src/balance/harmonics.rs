@@ -10,7 +10,7 @@ use crate::jacobian::Partition;
 pub(super) struct Harmonics {
     /// Coupled densely.
     pub(super) core: Vec<usize>,
-    /// Each by itself.
+    /// Each by itself and to the core.
     pub(super) tail: Vec<usize>,
 }
 
@@ -33,9 +33,10 @@ impl Harmonics {
         Self { core, tail }
     }
 
-    /// Highest harmonic of the core.
-    pub(super) fn reach(&self) -> usize {
-        self.core.last().copied().unwrap_or(0)
+    /// The highest harmonic that couples harmonics: that of the core and the highest of all, together.
+    pub(super) fn coupling(&self) -> usize {
+        let core = self.core.last().copied().unwrap_or(0);
+        core + self.tail.last().copied().unwrap_or(core)
     }
 
     /// The unknowns in the order of the rows of the Jacobian: the core coordinate by coordinate, the tail harmonic by

@@ -58,7 +58,7 @@ pub enum Parity {
 pub struct Resolution {
     /// Harmonics of the base frequency.
     pub harmonics: usize,
-    /// The equations of harmonics up to this one are coupled densely, those above each by themselves.
+    /// The equations of harmonics up to this one are coupled densely, those above to these and each to itself.
     pub core: usize,
     /// Which harmonics are unknowns.
     pub parity: Parity,
@@ -120,8 +120,8 @@ impl<'a> Balance<'a> {
             aft: Engine::new(resolution.aft, resolution.samples),
             coefficients,
             coefficients_by: vec![0.0; layout.coefficients],
-            scratch: Scratch::new(&layout, resolution, harmonics.reach()),
-            blocks: blocks::of_layout(&layout, 2 * harmonics.reach()),
+            scratch: Scratch::new(&layout, resolution, harmonics.coupling()),
+            blocks: blocks::of_layout(&layout, harmonics.coupling()),
             harmonics,
             layout,
         }
