@@ -98,6 +98,8 @@ pub struct StatisticsRecord {
     pub residuals: usize,
     /// Evaluations of the residual together with its Jacobian.
     pub jacobians: usize,
+    /// Evaluations of the derivative of the residual in one direction.
+    pub derivatives: usize,
     /// Factorisations of a dense matrix.
     pub factorisations: usize,
     /// Steps that gave a point.
@@ -192,6 +194,7 @@ impl From<Statistics> for StatisticsRecord {
         Self {
             residuals: statistics.residuals,
             jacobians: statistics.jacobians,
+            derivatives: statistics.derivatives,
             factorisations: statistics.factorisations,
             accepted_steps: statistics.accepted_steps,
             rejected_steps: statistics.rejected_steps,
