@@ -1,5 +1,6 @@
 //! What can be wrong with a request, and why a computation has no answer.
 
+use crate::branch::EventKind;
 use crate::flow::FlowError;
 use crate::newton::NewtonError;
 
@@ -136,6 +137,13 @@ pub enum Error {
         /// What the attempts to find one came to.
         attempts: Attempts,
     },
+    /// No branch begins at an event, or none was found.
+    NoBranch {
+        /// What kind of event it is.
+        kind: EventKind,
+        /// Value of what is varied there.
+        value: f64,
+    },
     /// A file could not be written.
     File {
         /// Its path.
@@ -271,6 +279,9 @@ impl std::fmt::Display for Error {
                 f,
                 "no orbit of period {period} found at {parameter}: {attempts}; start where there is one, and follow it from there"
             ),
+            Self::NoBranch { kind, value } => {
+                write!(f, "no further branch was found at the {kind} at {value:.9}")
+            }
             Self::File { path, reason } => write!(f, "cannot write {path}: {reason}"),
         }
     }

@@ -40,6 +40,7 @@ mod aft;
 #[cfg(test)]
 mod allocations;
 mod balance;
+pub mod bifurcation;
 pub mod branch;
 #[cfg(test)]
 mod by_hand;

@@ -129,6 +129,8 @@ pub(crate) enum Start {
     Near(Vec<f64>),
     /// Where another walk was halted to be resized.
     At(Box<Halted>),
+    /// At a solution, in the direction of its tangent.
+    Along(Box<CurvePoint>),
 }
 
 /// A halted walk, whose vectors may be given another length.

@@ -70,6 +70,18 @@ impl Walk {
                     ended: None,
                 })
             }
+            Start::Along(along) => {
+                let mut walk = Self::new(problem, options, along.u.clone());
+                let point = walk.again(problem, newton, &along, false)?;
+                Ok(Begun {
+                    walk,
+                    first: point.clone(),
+                    point,
+                    previous: None,
+                    passed: 0,
+                    ended: None,
+                })
+            }
             Start::At(halted) => {
                 let Halted {
                     point,

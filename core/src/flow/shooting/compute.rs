@@ -4,10 +4,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::companion::Companion;
-use super::cycle::{Cycle, CycleBranch};
+use super::cycle::{Cycle, CycleBranch, CycleEvent};
 use super::run::Run;
 use super::setting::Setting;
 use super::start::{First, Guess, first};
+use super::switch::{self, Begun};
+use crate::continuation::follow::Start;
 use crate::error::Error;
 use crate::system::Variable;
 
@@ -45,14 +47,73 @@ pub(super) fn branch(
     setting: &Setting<'_>,
     guess: &Guess,
     [from, to]: [f64; 2],
-    visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
+    visit: See<'_>,
 ) -> Result<CycleBranch, Error> {
     let started = Instant::now();
-    let omega = match setting.variable {
+    let found = first(setting, guess, from, omega_between(setting, [from, to]))?;
+    let near = |u: Vec<f64>| Start::Near(u);
+    followed(setting, (found, near), [from, to], visit, started)
+}
+
+/// The branch that begins at an event, on one side of it, within a range.
+///
+/// # Errors
+/// If there is none.
+pub(super) fn branch_at(
+    setting: &Setting<'_>,
+    event: &CycleEvent,
+    side: f64,
+    [from, to]: [f64; 2],
+    visit: See<'_>,
+) -> Result<CycleBranch, Error> {
+    let started = Instant::now();
+    let Begun { first, point } = switch::depart(setting, event, side, (to - from).abs())?;
+    let along = |_| Start::Along(Box::new(point));
+    followed(setting, (first, along), [from, to], visit, started)
+}
+
+/// The branch through the orbit near a guess at a value: first towards the beginning of a range as far as it goes, and from
+/// the value to the other side.
+///
+/// # Errors
+/// If there is no such orbit.
+pub(super) fn branch_through(
+    setting: &Setting<'_>,
+    guess: &Guess,
+    value: f64,
+    [from, to]: [f64; 2],
+    visit: See<'_>,
+) -> Result<[CycleBranch; 2], Error> {
+    let mut part = |side: f64| {
+        let started = Instant::now();
+        let found = first(setting, guess, value, setting.omega_at(value))?;
+        let Begun { first, point } = switch::resume(setting, found, side, (to - from).abs())?;
+        let along = |_| Start::Along(Box::new(point));
+        followed(setting, (first, along), [from, to], &mut *visit, started)
+    };
+    let forwards = (to - from).signum();
+    Ok([part(-forwards)?, part(forwards)?])
+}
+
+/// Called at every orbit.
+type See<'s> = &'s mut dyn FnMut(&Cycle) -> ControlFlow<()>;
+
+/// A frequency that velocities count by.
+fn omega_between(setting: &Setting<'_>, [from, to]: [f64; 2]) -> f64 {
+    match setting.variable {
         Variable::Omega => (from * to).sqrt(),
         Variable::Parameter(_) => setting.omega,
-    };
-    let found = first(setting, guess, from, omega)?;
+    }
+}
+
+/// The branch from a solution on.
+fn followed<'a>(
+    setting: &Setting<'a>,
+    (found, start): (First<'a>, impl FnOnce(Vec<f64>) -> Start),
+    [from, to]: [f64; 2],
+    visit: See<'_>,
+    started: Instant,
+) -> Result<CycleBranch, Error> {
     let (
         mut run,
         First {
@@ -60,7 +121,7 @@ pub(super) fn branch(
         },
     ) = run(setting, found, from, to)?;
     let options = setting.follow(from, to, equations.frame.ratio);
-    let end = run.follow(&mut equations, u, options, visit)?;
+    let end = run.follow(&mut equations, start(u), options, visit)?;
     let Run {
         cycles,
         events,

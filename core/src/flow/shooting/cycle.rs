@@ -42,6 +42,12 @@ impl Cycle {
         &self.states[..2 * self.extremes.len()]
     }
 
+    /// The states at the beginnings of the segments, of equal length, that the orbit, or half of it if it is symmetric, is divided
+    /// into: by default one for each period of the declaration.
+    pub fn states(&self) -> impl Iterator<Item = &[f64]> {
+        self.states.chunks_exact(2 * self.extremes.len())
+    }
+
     /// Largest less smallest value of the first coordinate.
     pub fn peak_to_peak(&self) -> f64 {
         self.extremes[0].peak_to_peak()

@@ -288,6 +288,23 @@ impl<'a> Equations<'a> {
         Ok(self.product.clone())
     }
 
+    /// The derivatives of the flow over every segment of the orbit `u`.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued.
+    pub(super) fn segment_maps(&mut self, u: &[f64]) -> Result<Vec<DMatrix<f64>>, FlowError> {
+        self.flow.set(self.frame.variable, u[u.len() - 1]);
+        let order = self.order();
+        let mut maps = Vec::with_capacity(self.span.segments);
+        for segment in 0..self.span.segments {
+            self.begin(u, segment);
+            self.advance(segment, true, None)?;
+            let columns = &self.tangent.columns[..order * order];
+            maps.push(DMatrix::from_column_slice(order, order, columns));
+        }
+        Ok(maps)
+    }
+
     /// Takes the tangent of one segment into the product (3).
     fn multiply(&mut self, segment: usize) {
         let order = self.order();

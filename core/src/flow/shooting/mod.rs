@@ -18,9 +18,10 @@ mod run;
 mod setting;
 mod solve;
 mod start;
+mod switch;
 #[cfg(test)]
 mod tests;
 
 pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
 pub use extremes::Extremes;
-pub use request::Shooting;
+pub use request::{Shooting, Side};

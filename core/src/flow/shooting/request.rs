@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use super::compute;
-use super::cycle::{Cycle, CycleBranch};
+use super::cycle::{Cycle, CycleBranch, CycleEvent};
 use super::setting::{Setting, Source};
 use super::start::Guess;
-use crate::branch::Orbit;
+use crate::branch::{EventKind, Orbit};
 use crate::continuation::step::StepControl;
 use crate::error::{Attempts, Error};
 use crate::flow::affine::Affine;
@@ -21,6 +21,15 @@ use crate::validate;
 const MOST_UNKNOWNS: usize = 6000;
 /// Part of a value to its neighbour in a range of which only the first orbit is wanted.
 const ASIDE: f64 = 1e-3;
+
+/// The side of an event on which a branch is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// One of the two.
+    One,
+    /// The other one.
+    Other,
+}
 
 /// Periodic orbits by shooting: set up step by step, then one [orbit](Shooting::orbit) or a [branch](Shooting::run).
 ///
@@ -208,12 +217,52 @@ impl<'a> Shooting<'a> {
         &self,
         mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
     ) -> Result<CycleBranch, Error> {
+        let ([from, to], setting) = self.ranged()?;
+        let guess = self.guess(from, to)?;
+        compute::branch(&setting, &guess, [from, to], &mut visit)
+    }
+
+    /// The branch that begins at an event of another one, within the range from [`from`](Self::from) to [`to`](Self::to): of
+    /// twice the period at a period doubling, of orbits without the symmetry where an odd symmetry breaks. There the two sides are
+    /// mirror images; at a period doubling both are one branch, on which orbits are looked at a period later.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, no branch begins there, or its first orbit was not found.
+    pub fn switch(&self, event: &CycleEvent, side: Side) -> Result<CycleBranch, Error> {
+        let doubles = event.kind == EventKind::PeriodDoubling;
+        let request = Self {
+            period: event.cycle.period * if doubles { 2 } else { 1 },
+            segments: None,
+            ..self.clone()
+        };
+        let ([from, to], setting) = request.ranged()?;
+        let side = match side {
+            Side::One => 1.0,
+            Side::Other => -1.0,
+        };
+        let go = &mut |_: &Cycle| ControlFlow::Continue(());
+        compute::branch_at(&setting, event, side, [from, to], go)
+    }
+
+    /// The branch through the orbit at a value inside the range: one part from there towards the beginning of the range and one
+    /// towards its end, as far as each goes. The second is empty of news if the first closes upon itself.
+    ///
+    /// # Errors
+    /// As [`orbit`](Self::orbit).
+    pub fn through(&self, value: f64) -> Result<[CycleBranch; 2], Error> {
+        let ([from, to], setting) = self.ranged()?;
+        let guess = self.guess(value, self.aside(value, setting.variable))?;
+        let go = &mut |_: &Cycle| ControlFlow::Continue(());
+        compute::branch_through(&setting, &guess, value, [from, to], go)
+    }
+
+    /// The range, and everything else that was asked for, checked.
+    fn ranged(&self) -> Result<([f64; 2], Setting<'a>), Error> {
         let from = self.from.ok_or(Error::MissingEnd { name: "from" })?;
         let to = self.to.ok_or(Error::MissingEnd { name: "to" })?;
         let setting = self.setting(from, to)?;
         validate::range(self.system.facts(), setting.variable, from, to)?;
-        let guess = self.guess(from, to)?;
-        compute::branch(&setting, &guess, [from, to], &mut visit)
+        Ok(([from, to], setting))
     }
 
     /// Checks everything that was asked for.

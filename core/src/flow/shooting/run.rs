@@ -11,7 +11,7 @@ use super::events::{Change, Tests};
 use super::extremes::{self, Extremes};
 use super::recurrence::{Recurrence, step_on_other_branch};
 use super::setting::Setting;
-use crate::branch::Turn;
+use crate::branch::{EventKind, Turn};
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
@@ -65,14 +65,14 @@ impl<'r, 'a> Run<'r, 'a> {
         }
     }
 
-    /// Follows the branch from near `u` to its end.
+    /// Follows the branch from where it starts to its end.
     ///
     /// # Errors
     /// If there is no first orbit.
     pub(super) fn follow(
         &mut self,
         equations: &mut Equations<'a>,
-        u: Vec<f64>,
+        start: Start,
         options: FollowOptions,
         visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
     ) -> Result<End, Error> {
@@ -80,7 +80,7 @@ impl<'r, 'a> Run<'r, 'a> {
         let outcome = follow(
             equations,
             &mut newton,
-            Start::Near(u),
+            start,
             options,
             &mut |equations, newton, seen| self.visit(equations, newton, &seen, visit),
         );
@@ -177,10 +177,41 @@ impl<'r, 'a> Run<'r, 'a> {
         }
         if let (Some(a), Some(b)) = (self.before, self.last) {
             for change in Tests::changes(a, b, equations.span.half) {
+                let known = self.events.len();
                 self.event(equations, newton, (before, behind), change);
+                if change.kind == EventKind::BranchPoint
+                    && self.events.len() > known
+                    && self.meets(equations)
+                {
+                    return Continue::Break(Halt::Stop);
+                }
             }
         }
         Continue::Continue(())
+    }
+
+    /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
+    /// same orbits again, looked at from elsewhere.
+    fn meets(&mut self, equations: &mut Equations<'a>) -> bool {
+        let odd = self.setting.odd;
+        let Some(event) = self.events.last() else {
+            return false;
+        };
+        if equations.span.period == 1 && !odd {
+            return false;
+        }
+        let u = equations.unknowns_of(&event.cycle.states, event.cycle.value);
+        let Ok(recurrence) = Recurrence::of(equations, &u, self.size, odd) else {
+            return false;
+        };
+        let regular =
+            recurrence.period < equations.span.period || recurrence.odd != equations.span.half;
+        if regular {
+            // The orbit behind the point is one of those before it.
+            self.cycles.pop();
+            self.joined = Some(recurrence);
+        }
+        regular
     }
 
     /// An orbit with everything that is read off it, and its map if the stability is wanted. With a flow that has a tolerance, it

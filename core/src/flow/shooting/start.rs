@@ -122,7 +122,7 @@ fn states(
 
 impl First<'_> {
     /// Counts positions from the middle of the motion, and finds its size.
-    fn settle(&mut self, setting: &Setting<'_>) -> Result<(), FlowError> {
+    pub(super) fn settle(&mut self, setting: &Setting<'_>) -> Result<(), FlowError> {
         let value = self.u[self.u.len() - 1];
         let n = self.equations.order() / 2;
         let rate = setting.rate_at(value);

@@ -1,0 +1,215 @@
+//! All branches that are connected by bifurcations, one after the other.
+//!
+//! Breadth first: a queue holds the bifurcations that were found and not yet looked at. A branch of the longer period that has
+//! ended at a bifurcation is the one that begins there, so it is not followed from the other end.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::known;
+use crate::branch::EventKind;
+use crate::error::Error;
+use crate::flow::shooting::{CycleBranch, CycleEvent, End, Shooting, Side};
+
+/// Branches of periodic orbits and how they are connected.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Diagram {
+    /// The branches, in the order in which they were found.
+    pub branches: Vec<Limb>,
+    /// Bifurcations whose further branch was not followed, and why.
+    pub omitted: Vec<Omitted>,
+    /// Time of the computation.
+    pub elapsed: Duration,
+}
+
+/// One branch of a diagram.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limb {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// Number of bifurcations between it and the first branch.
+    pub depth: usize,
+    /// Its orbits and events.
+    pub branch: CycleBranch,
+}
+
+/// Where a branch comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Origin {
+    /// It is the branch that was asked for.
+    First,
+    /// It begins at an event of another branch.
+    Event {
+        /// Number of that branch in the diagram.
+        branch: usize,
+        /// Number of the event on it.
+        event: usize,
+        /// Side of the event.
+        side: Side,
+    },
+}
+
+/// A bifurcation whose further branch was not followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Omitted {
+    /// Number of the branch in the diagram.
+    pub branch: usize,
+    /// Number of the event on it.
+    pub event: usize,
+    /// Why.
+    pub reason: Reason,
+}
+
+/// Why a branch was not followed.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// It is deeper than asked for.
+    Depth,
+    /// There are as many branches or orbits as were allowed.
+    Budget,
+    /// It is the mirror image of a branch that is followed.
+    Mirrored,
+    /// A branch that is known ends there.
+    Known {
+        /// Its number in the diagram.
+        branch: usize,
+    },
+    /// Its first orbit was not found.
+    Failed(Error),
+}
+
+impl Limb {
+    /// Period of its orbits in periods of the declaration.
+    pub fn period(&self) -> usize {
+        self.branch.cycles.first().map_or(0, |cycle| cycle.period)
+    }
+
+    /// It is the mirror image of another branch.
+    pub fn is_mirrored(&self) -> bool {
+        matches!(
+            self.origin,
+            Origin::Event {
+                side: Side::Other,
+                ..
+            }
+        )
+    }
+}
+
+impl Diagram {
+    /// All events of one kind, each with the number of its branch. A bifurcation is an event of the branch that goes on there
+    /// with the same period, and of kind [`EventKind::BranchPoint`] on one that ends there.
+    pub fn events(&self, kind: EventKind) -> impl Iterator<Item = (usize, &CycleEvent)> {
+        let branches = self.branches.iter().enumerate();
+        branches.flat_map(move |(number, limb)| {
+            limb.branch.events(kind).map(move |event| (number, event))
+        })
+    }
+}
+
+/// The search, and what it has found.
+pub(super) struct Search<'a> {
+    shooting: Shooting<'a>,
+    depth: usize,
+    most_branches: usize,
+    points_left: usize,
+    /// Branch and event.
+    queue: VecDeque<(usize, usize)>,
+    pub(super) diagram: Diagram,
+}
+
+impl<'a> Search<'a> {
+    /// To a depth, with no more branches and orbits than this.
+    pub(super) fn new(
+        shooting: Shooting<'a>,
+        (depth, branches, points): (usize, usize, usize),
+    ) -> Self {
+        Self {
+            shooting,
+            depth,
+            most_branches: branches,
+            points_left: points,
+            queue: VecDeque::new(),
+            diagram: Diagram::default(),
+        }
+    }
+
+    /// Takes in a branch, and what begins at it.
+    pub(super) fn add(&mut self, origin: Origin, depth: usize, branch: CycleBranch) {
+        self.points_left = self.points_left.saturating_sub(branch.cycles.len());
+        let number = self.diagram.branches.len();
+        let events = branch.events.iter().enumerate();
+        let begins = events.filter(|(_, event)| {
+            matches!(
+                event.kind,
+                EventKind::PeriodDoubling | EventKind::SymmetryBreaking
+            )
+        });
+        self.queue.extend(begins.map(|(index, _)| (number, index)));
+        self.diagram.branches.push(Limb {
+            origin,
+            depth,
+            branch,
+        });
+    }
+
+    /// Follows what is in the queue until nothing is.
+    pub(super) fn exhaust(&mut self) {
+        while let Some((branch, event)) = self.queue.pop_front() {
+            if let Err(reason) = self.follow(branch, event) {
+                self.diagram.omitted.push(Omitted {
+                    branch,
+                    event,
+                    reason,
+                });
+            }
+        }
+    }
+
+    fn follow(&mut self, number: usize, index: usize) -> Result<(), Reason> {
+        let limb = &self.diagram.branches[number];
+        let (depth, mirrored) = (limb.depth + 1, limb.is_mirrored());
+        let event = limb.branch.events[index].clone();
+        let sides = match event.kind {
+            EventKind::SymmetryBreaking => &[Side::One, Side::Other][..],
+            _ => &[Side::One],
+        };
+        let known = self.ending_at(&event);
+        if known.len() >= sides.len() {
+            return Err(Reason::Known { branch: known[0] });
+        }
+        if mirrored {
+            return Err(Reason::Mirrored);
+        }
+        if depth > self.depth {
+            return Err(Reason::Depth);
+        }
+        for &side in sides {
+            if self.diagram.branches.len() >= self.most_branches || self.points_left < 2 {
+                return Err(Reason::Budget);
+            }
+            let request = self.shooting.clone().max_points(self.points_left);
+            let branch = request.switch(&event, side).map_err(Reason::Failed)?;
+            let origin = Origin::Event {
+                branch: number,
+                event: index,
+                side,
+            };
+            self.add(origin, depth, branch);
+        }
+        Ok(())
+    }
+
+    /// The branches that end at an event of another one.
+    fn ending_at(&self, event: &CycleEvent) -> Vec<usize> {
+        let limbs = self.diagram.branches.iter().enumerate();
+        let ends = limbs.filter(|(_, limb)| {
+            let joined = matches!(limb.branch.end, End::Joined { .. });
+            let last = limb.branch.events.last().filter(|_| joined);
+            last.is_some_and(|last| known::is_same_place(last, event))
+        });
+        ends.map(|(number, _)| number).collect()
+    }
+}

@@ -1,0 +1,202 @@
+//! A request for all branches that are connected with one, set up step by step.
+
+use std::time::Instant;
+
+use super::diagram::{Diagram, Origin, Search};
+use crate::error::Error;
+use crate::flow::shooting::Shooting;
+use crate::system::{System, Variable};
+use crate::validate;
+
+/// Branches beyond this many are not followed.
+const BRANCHES: usize = 64;
+/// Orbits of all branches together.
+const POINTS: usize = 50_000;
+/// By this part of the range further branches may go beyond its ends.
+const BEYOND: f64 = 0.1;
+
+/// All branches of periodic orbits that are connected with a first one by bifurcations, to a depth: set up step by step, then
+/// [run](Bifurcations::run).
+///
+/// The first branch is followed by [`Shooting`] along the range. At every period doubling, and where an odd symmetry breaks, the
+/// branch that begins there is followed too, and so on. A bifurcation where a known branch ends is not followed again. Nothing is
+/// left out silently: what was not followed is in [`Diagram::omitted`], with the reason.
+///
+/// ```
+/// use hertzian::EventKind;
+/// use hertzian::bifurcation::Bifurcations;
+///
+/// hertzian::oscillator! {
+///     OneSided(x) {
+///         param load;
+///         param drive;
+///         law contact(gap) { gap > 0 => 0.064*dot(gap) + gap, else => 0 }
+///         ddot(x) + contact(x) = drive*cos(omega*t) + load;
+///     }
+/// }
+///
+/// let model = OneSided { load: 1.0, drive: 1.0 };
+/// let request = Bifurcations::of(&model).vary("drive").omega(1.0).from(1.0).to(1.6);
+/// let diagram = request.depth(1).run()?;
+/// let of_period_2 = &diagram.branches[1].branch;
+/// // A4 and A6 of Wang et al. (2021), figure 8, where period 4 begins.
+/// let doublings: Vec<f64> =
+///     of_period_2.events(EventKind::PeriodDoubling).map(|event| event.cycle.value).collect();
+/// assert!((doublings[0] - 1.531044135499983).abs() < 1e-11);
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Bifurcations<'a> {
+    system: &'a dyn System,
+    shooting: Shooting<'a>,
+    vary: Option<String>,
+    from: Option<f64>,
+    to: Option<f64>,
+    depth: usize,
+    branches: usize,
+    points: usize,
+    beyond: f64,
+}
+
+impl std::fmt::Debug for Bifurcations<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Bifurcations")
+            .field("shooting", &self.shooting)
+            .field("depth", &self.depth)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Bifurcations<'a> {
+    /// Of this system, at the parameters it has when the computation starts.
+    pub fn of(system: &'a dyn System) -> Self {
+        Self {
+            system,
+            shooting: Shooting::of(system),
+            vary: None,
+            from: None,
+            to: None,
+            depth: 3,
+            branches: BRANCHES,
+            points: POINTS,
+            beyond: BEYOND,
+        }
+    }
+
+    /// Where the first branch starts.
+    #[must_use]
+    pub fn from(mut self, value: f64) -> Self {
+        self.from = Some(value);
+        self
+    }
+
+    /// Where it ends.
+    #[must_use]
+    pub fn to(mut self, value: f64) -> Self {
+        self.to = Some(value);
+        self
+    }
+
+    /// Varies a parameter instead of the excitation frequency, which is then [`omega`](Self::omega).
+    #[must_use]
+    pub fn vary(mut self, parameter: impl Into<String>) -> Self {
+        let parameter = parameter.into();
+        self.shooting = self.shooting.vary(parameter.clone());
+        self.vary = Some(parameter);
+        self
+    }
+
+    /// The excitation frequency, in radians per unit of time, when a parameter is varied.
+    #[must_use]
+    pub fn omega(mut self, omega: f64) -> Self {
+        self.shooting = self.shooting.omega(omega);
+        self
+    }
+
+    /// So many bifurcations may lie between a branch and the first one. Default: 3.
+    #[must_use]
+    pub fn depth(mut self, depth: usize) -> Self {
+        self.depth = depth;
+        self
+    }
+
+    /// No more branches than this. Default: 64.
+    #[must_use]
+    pub fn max_branches(mut self, branches: usize) -> Self {
+        self.branches = branches;
+        self
+    }
+
+    /// No more orbits than this on all branches together. Default: 50000.
+    #[must_use]
+    pub fn max_points(mut self, points: usize) -> Self {
+        self.points = points;
+        self
+    }
+
+    /// Branches other than the first may go beyond the ends of the range by this part of it, as far as a parameter's declared
+    /// range allows. Default: 0.1.
+    #[must_use]
+    pub fn beyond(mut self, part: f64) -> Self {
+        self.beyond = part;
+        self
+    }
+
+    /// Tolerance of the flow; see [`Shooting::tolerance`].
+    #[must_use]
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.shooting = self.shooting.tolerance(tolerance);
+        self
+    }
+
+    /// Largest step along a branch; see [`Shooting::largest_step`].
+    #[must_use]
+    pub fn largest_step(mut self, step: f64) -> Self {
+        self.shooting = self.shooting.largest_step(step);
+        self
+    }
+
+    /// Follows the first branch and all that are connected with it.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, or no first orbit is found.
+    pub fn run(&self) -> Result<Diagram, Error> {
+        let started = Instant::now();
+        let from = self.from.ok_or(Error::MissingEnd { name: "from" })?;
+        let to = self.to.ok_or(Error::MissingEnd { name: "to" })?;
+        self.check()?;
+        let first = self.shooting.clone().from(from).to(to);
+        let branch = first.max_points(self.points.max(2)).run()?;
+        let [low, high] = self.wider(from, to)?;
+        let mut search = Search::new(
+            self.shooting.clone().from(low).to(high),
+            (self.depth, self.branches, self.points),
+        );
+        search.add(Origin::First, 0, branch);
+        search.exhaust();
+        let mut diagram = search.diagram;
+        diagram.elapsed = started.elapsed();
+        Ok(diagram)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        validate::option("beyond", self.beyond, 0.0..=10.0, "must be from 0 to 10")?;
+        let branches = self.branches as f64;
+        validate::option("max_branches", branches, 1.0..=1e6, "must be 1 or more")?;
+        let points = self.points as f64;
+        validate::option("max_points", points, 2.0..=1e9, "must be 2 or more")
+    }
+
+    /// The range with what lies beyond its ends, as far as that is admissible.
+    fn wider(&self, from: f64, to: f64) -> Result<[f64; 2], Error> {
+        let facts = self.system.facts();
+        let variable = validate::variable(facts, self.vary.as_deref())?;
+        let admits = |value: f64| match variable {
+            Variable::Omega => value > 0.0,
+            Variable::Parameter(index) => facts.parameters[index].admits(value),
+        };
+        let margin = self.beyond * (to - from);
+        let widened = |end: f64, by: f64| if admits(end + by) { end + by } else { end };
+        Ok([widened(from, -margin), widened(to, margin)])
+    }
+}

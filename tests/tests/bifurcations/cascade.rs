@@ -1,0 +1,162 @@
+//! The one-sided oscillator with exponent one, damping ratio 0.032, load 1 and frequency 1: Wang et al. (2021), Fig. 8a.
+//!
+//! Exact values: computed independently of this project from the closed-form flow between switches, in 80-bit arithmetic,
+//! confirmed with 60 digits (`amplitude_sweep` of the reference values).
+
+use hertzian::EventKind;
+use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Reason};
+use hertzian::flow::shooting::{CycleEvent, End};
+
+hertzian::oscillator! {
+    OneSided(x) {
+        param zeta >= 0;
+        param load;
+        param drive;
+        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+const MODEL: OneSided = OneSided {
+    zeta: 0.032,
+    load: 1.0,
+    drive: 0.1,
+};
+
+/// The drive at a bifurcation, and the multiplier that is not plus or minus one.
+struct Exact {
+    drive: f64,
+    multiplier: f64,
+}
+
+const A1: Exact = Exact {
+    drive: 1.282_584_167_663_767,
+    multiplier: -0.817_945_968_917_093,
+};
+const A4: Exact = Exact {
+    drive: 1.531_044_135_499_983,
+    multiplier: -0.635_978_721_580_046,
+};
+const A6: Exact = Exact {
+    drive: 1.880_077_405_264_828,
+    multiplier: -0.639_583_443_698_677,
+};
+const PERIOD_2_UPPER_FOLD: Exact = Exact {
+    drive: 2.009_554_757_004_067,
+    multiplier: 0.669_036_304_237_398,
+};
+const PERIOD_2_LOWER_FOLD: Exact = Exact {
+    drive: 0.294_528_806_187_216,
+    multiplier: 0.795_091_307_354_537,
+};
+const PERIOD_8_FOLD: Exact = Exact {
+    drive: 1.779_836_025_884_334,
+    multiplier: 0.183_740_023_455_888,
+};
+
+fn diagram(depth: usize) -> Diagram {
+    let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
+    request.from(0.1).to(2.0).depth(depth).run().unwrap()
+}
+
+/// One of the events is the exact one, as close as the doubled precision of the flow allows.
+fn assert_found<'e>(
+    events: impl Iterator<Item = &'e CycleEvent>,
+    kind: EventKind,
+    exact: &Exact,
+) -> &'e CycleEvent {
+    let distance = |event: &&CycleEvent| (event.cycle.value - exact.drive).abs();
+    let nearest = events
+        .filter(|event| event.kind == kind)
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .unwrap();
+    let error = distance(&nearest);
+    assert!(error < 1e-11, "{nearest}: {error:.1e}");
+    assert!(error <= nearest.error, "{nearest}: {error:.1e}");
+    let critical = if kind == EventKind::Fold { 1.0 } else { -1.0 };
+    let multipliers = &nearest.cycle.stability.multipliers;
+    for (found, expected) in multipliers.iter().zip([critical, exact.multiplier]) {
+        assert!(
+            (found - expected).norm() < 1e-9,
+            "{nearest}: {multipliers:?}"
+        );
+    }
+    nearest
+}
+
+/// From a small drive, with nothing else given: periods one, two, four and eight, the folds beyond the end of the range too.
+#[test]
+fn the_cascade_is_followed_by_itself() {
+    let diagram = diagram(3);
+    let events = |period: usize| {
+        let limbs = diagram.branches.iter();
+        let limbs = limbs.filter(move |limb| limb.period() == period);
+        limbs.flat_map(|limb| &limb.branch.events)
+    };
+    assert_found(events(1), EventKind::PeriodDoubling, &A1);
+    assert_found(events(2), EventKind::PeriodDoubling, &A4);
+    assert_found(events(2), EventKind::PeriodDoubling, &A6);
+    let fold = assert_found(events(2), EventKind::Fold, &PERIOD_2_UPPER_FOLD);
+    assert!(fold.cycle.value > 2.0);
+    assert_found(events(2), EventKind::Fold, &PERIOD_2_LOWER_FOLD);
+    assert_found(events(8), EventKind::Fold, &PERIOD_8_FOLD);
+    for limb in &diagram.branches {
+        let expected = 1 << limb.depth;
+        assert_eq!(limb.period(), expected);
+        assert!(limb.branch.cycles.iter().all(|c| c.period == expected));
+        if let Origin::Event { branch, event, .. } = limb.origin {
+            let parent = &diagram.branches[branch].branch.events[event];
+            assert_eq!(parent.kind, EventKind::PeriodDoubling);
+            let first = limb.branch.cycles[0].value;
+            assert!(
+                (first - parent.cycle.value).abs() < 1e-2,
+                "{first} {parent}"
+            );
+        }
+    }
+}
+
+/// Period four joins A4 with A6, so it is followed once; what is left out is said.
+#[test]
+fn what_is_known_is_not_followed_again() {
+    let diagram = diagram(2);
+    let [_, two, four, ..] = &diagram.branches[..] else {
+        panic!("{} branches", diagram.branches.len());
+    };
+    let End::Joined { period: 2, .. } = four.branch.end else {
+        panic!("{}", four.branch.end);
+    };
+    let joint = four.branch.events.last().unwrap();
+    assert_eq!(joint.kind, EventKind::BranchPoint);
+    let error = (joint.cycle.value - A6.drive).abs();
+    assert!(error < 1e-11 && error <= joint.error, "{joint} {error:.1e}");
+    let at_a6 = two
+        .branch
+        .events
+        .iter()
+        .position(|event| (event.cycle.value - A6.drive).abs() < 1e-9);
+    let known = diagram.omitted.iter().find(|omitted| omitted.branch == 1);
+    let known = known.unwrap();
+    assert_eq!(Some(known.event), at_a6);
+    assert_eq!(known.reason, Reason::Known { branch: 2 });
+    let deep = diagram.omitted.iter().filter(|o| o.reason == Reason::Depth);
+    // Four on the first branch of period four, and one on that which begins beyond the lower fold.
+    assert_eq!(deep.count(), 5);
+    assert_eq!(
+        diagram.branches.iter().map(|limb| limb.depth).max(),
+        Some(2)
+    );
+}
+
+#[test]
+fn a_budget_is_kept_and_said() {
+    let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
+    let request = request.from(0.1).to(2.0);
+    let few = request.clone().max_branches(2).run().unwrap();
+    assert_eq!(few.branches.len(), 2);
+    assert!(few.omitted.iter().all(|o| o.reason == Reason::Budget));
+    assert_eq!(few.omitted.len(), 3);
+    let short = request.max_points(100).run().unwrap();
+    let points = short.branches.iter().map(|limb| limb.branch.cycles.len());
+    assert!(points.sum::<usize>() <= 100);
+}

@@ -1,0 +1,4 @@
+//! Branches that begin at bifurcations, against exact values.
+
+mod cascade;
+mod symmetry;

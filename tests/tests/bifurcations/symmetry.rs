@@ -1,0 +1,132 @@
+//! Continuous springs without a load: Wang et al. (2021), Fig. 2, damping ratio 0.01, drive 0.1. Their orbits have an odd
+//! symmetry, and lose it where two branches of orbits without it cross.
+//!
+//! Exact values: computed independently of this project by event-located integration in 80-bit arithmetic, errors below 1e-12
+//! (`frequency_response` of the reference values).
+
+use hertzian::bifurcation::Bifurcations;
+use hertzian::flow::shooting::{CycleEvent, End};
+use hertzian::{EventKind, System};
+
+hertzian::oscillator! {
+    Hardening(x) {
+        param zeta >= 0;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^1.5 = drive*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    Softening(x) {
+        param zeta >= 0;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^0.6 = drive*cos(omega*t);
+    }
+}
+
+/// Events of the branches without the symmetry: where, and peak-to-peak.
+type Events<'e> = &'e [(EventKind, f64, f64)];
+const HARDENING_EVENTS: Events<'static> = &[
+    (EventKind::Fold, 0.382_084_326_345_429, 0.831_452_991_128_14),
+    (EventKind::Fold, 0.385_408_321_288_445, 0.815_360_413_849_17),
+];
+const SOFTENING_EVENTS: Events<'static> = &[
+    (EventKind::Fold, 0.902_396_742_342_991, 0.137_655_259_145_97),
+    (EventKind::Fold, 0.934_177_569_964_217, 0.095_132_668_619_52),
+    (
+        EventKind::PeriodDoubling,
+        0.904_833_344_193_996,
+        0.074_872_299_018_87,
+    ),
+    (
+        EventKind::PeriodDoubling,
+        0.896_507_260_971_036,
+        0.074_008_284_715_89,
+    ),
+];
+const HARDENING: [f64; 2] = [0.402_310_407_656_194, 0.353_730_954_670_214];
+const SOFTENING: [f64; 2] = [0.973_916_250_536_018, 0.868_864_958_044_575];
+
+fn assert_symmetry_breaks(
+    system: &dyn System,
+    [from, to]: [f64; 2],
+    exact: [f64; 2],
+    (events, unlisted): (Events<'_>, usize),
+) {
+    let request = Bifurcations::of(system).from(from).to(to).depth(1);
+    let diagram = request.run().unwrap();
+    let breaks: Vec<_> = diagram.branches[0]
+        .branch
+        .events(EventKind::SymmetryBreaking)
+        .collect();
+    assert_eq!(breaks.len(), 2);
+    for (event, exact) in breaks.iter().zip(exact) {
+        let error = (event.cycle.value - exact).abs();
+        assert!(error < 1e-9, "{event} {error:.1e}");
+        assert!(error <= event.error + 1e-12, "{event} {error:.1e}");
+    }
+    // Both asymmetric branches go from one to the other.
+    let asymmetric = &diagram.branches[1..];
+    assert_eq!(asymmetric.len(), 2);
+    for limb in asymmetric {
+        assert!(limb.branch.cycles.iter().all(|cycle| !cycle.symmetric));
+        let End::Joined {
+            period: 1,
+            symmetric: true,
+        } = limb.branch.end
+        else {
+            panic!("{}", limb.branch.end);
+        };
+        let (joint, found) = limb.branch.events.split_last().unwrap();
+        for (kind, omega, peak_to_peak) in events {
+            let of_kind = found.iter().filter(|event| event.kind == *kind);
+            let distance = |event: &CycleEvent| (event.cycle.value - omega).abs();
+            let nearest = of_kind.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let event = nearest.unwrap();
+            assert!(distance(event) < 1e-11, "{event} {:.1e}", distance(event));
+            let error = (event.cycle.peak_to_peak() - peak_to_peak).abs();
+            assert!(error < 1e-9, "{event} {error:.1e}");
+        }
+        // The list of the softening spring lacks two folds that are 1.3e-4 apart.
+        assert_eq!(found.len(), events.len() + unlisted);
+        let critical = |event: &CycleEvent| event.cycle.stability.multipliers[0].norm();
+        assert!(
+            found
+                .iter()
+                .all(|event| (critical(event) - 1.0).abs() < 1e-9)
+        );
+        let error = (joint.cycle.value - exact[1]).abs();
+        assert!(error < 1e-9, "{joint} {error:.1e}");
+    }
+    // They are mirror images: what is the largest displacement of one is the smallest of the other.
+    let extremes = |limb: usize, index: usize| asymmetric[limb].branch.cycles[index].extremes[0];
+    for index in 0..asymmetric[0].branch.cycles.len() {
+        let (one, other) = (extremes(0, index), extremes(1, index));
+        assert!(
+            (one.maximum + other.minimum).abs() < 1e-8,
+            "{one:?} {other:?}"
+        );
+        assert!(
+            (one.minimum + other.maximum).abs() < 1e-8,
+            "{one:?} {other:?}"
+        );
+    }
+}
+
+#[test]
+fn symmetry_breaks_in_figure_2a() {
+    let model = Hardening {
+        zeta: 0.01,
+        drive: 0.1,
+    };
+    assert_symmetry_breaks(&model, [0.45, 0.3], HARDENING, (HARDENING_EVENTS, 0));
+}
+
+#[test]
+fn symmetry_breaks_in_figure_2b() {
+    let model = Softening {
+        zeta: 0.01,
+        drive: 0.1,
+    };
+    assert_symmetry_breaks(&model, [1.05, 0.82], SOFTENING, (SOFTENING_EVENTS, 2));
+}
