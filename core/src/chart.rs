@@ -29,6 +29,7 @@ mod legend;
 mod page;
 mod polyline;
 mod raster;
+mod shape;
 mod svg;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! The legend: its entries, a place where it covers nothing, and how it is drawn.
 
-use super::drawing::{Shape, draw_shape};
+use super::shape::{Shape, draw_shape};
 use super::svg::{Anchor, Pen, Pixel, Rectangle, Svg, fitted, width_of};
 
 const SIZE: f64 = 14.0;
