@@ -17,10 +17,11 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::DMatrix;
 
 use super::Stretch;
+use super::gap::{Gap, value};
 use crate::fourier::gauss;
 use crate::law::{Derivatives, On};
 use crate::layout::{ContactLayout, Layout, Term};
-use crate::system::{Part, System, Wave};
+use crate::system::System;
 
 /// Phase over which one Gauss rule is enough.
 const PANEL: f64 = FRAC_PI_2;
@@ -29,7 +30,7 @@ const NODES: usize = 12;
 /// The divergence of a system at given values.
 pub struct Divergence<'a> {
     system: &'a dyn System,
-    contacts: Vec<ContactLayout>,
+    contacts: Vec<(ContactLayout, Gap)>,
     coefficients: Vec<f64>,
     inverse: DMatrix<f64>,
     /// `-trace M^-1 C`
@@ -56,38 +57,33 @@ impl<'a> Divergence<'a> {
         let trace: f64 = damping
             .map(|c| inverse[(c.column, c.row)] * coefficients[c.coefficient])
             .sum();
+        let base = omega / f64::from(system.facts().divisor);
         let most = layout.contacts.iter().map(|contact| contact.argument_count);
+        let most = most.max().unwrap_or(0);
+        let contacts = layout.contacts.into_iter().map(|contact| {
+            let gap = Gap::new(&contact, &coefficients, base);
+            (contact, gap)
+        });
         Some(Self {
             system,
-            arguments: vec![0.0; most.max().unwrap_or(0)],
-            contacts: layout.contacts,
+            arguments: vec![0.0; most],
+            contacts: contacts.collect(),
             coefficients,
             inverse,
             constant: -trace,
-            base: omega / f64::from(system.facts().divisor),
+            base,
             state: vec![0.0; 2 * n],
         })
     }
 
     /// The divergence at a phase and a state, per unit of time.
     pub fn at(&mut self, phase: f64, state: &[f64]) -> f64 {
-        let (q, v) = state.split_at(self.inverse.nrows());
         let mut sum = self.constant;
-        for contact in &self.contacts {
+        for (contact, gap) in &self.contacts {
             let arguments = &mut self.arguments[..contact.argument_count];
             contact.arguments(&self.coefficients, arguments);
-            let coefficient = |term: &Term| self.coefficients[term.coefficient];
-            let wave = |term: &Term| coefficient(term) * value(term.wave, phase);
-            let slope = |term: &Term| coefficient(term) * self.base * slope(term.wave, phase);
-            let (mut gap, mut rate) = (0.0, 0.0);
-            for term in &contact.gap {
-                gap += wave(term) * q[term.index];
-                rate += wave(term) * v[term.index] + slope(term) * q[term.index];
-            }
-            for term in &contact.offset {
-                gap -= wave(term);
-                rate -= slope(term);
-            }
+            let wave = |term: &Term| self.coefficients[term.coefficient] * value(term.wave, phase);
+            let (gap, rate) = gap.at(phase, state);
             let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
             let out = Derivatives {
                 force: &mut force,
@@ -122,19 +118,5 @@ impl<'a> Divergence<'a> {
         }
         self.state = state;
         sum * width / self.base
-    }
-}
-
-/// The derivative of a wave by the phase.
-fn slope(wave: Wave, phase: f64) -> f64 {
-    let (derivative, sign) = wave.derivative();
-    sign * f64::from(wave.harmonic) * value(derivative, phase)
-}
-
-fn value(wave: Wave, phase: f64) -> f64 {
-    let angle = f64::from(wave.harmonic) * phase;
-    match wave.part {
-        Part::Cosine => angle.cos(),
-        Part::Sine => angle.sin(),
     }
 }

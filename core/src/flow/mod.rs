@@ -16,6 +16,7 @@ pub mod stroboscope;
 pub mod sweep;
 
 mod field;
+mod gap;
 mod integrated;
 
 pub use integrated::Integrated;

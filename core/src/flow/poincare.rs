@@ -8,8 +8,11 @@
 
 use std::f64::consts::TAU;
 
+use super::gap::Gap;
+use super::stroboscope::Stroboscope;
 use super::{FlowError, Stretch};
-use crate::flow::stroboscope::Stroboscope;
+use crate::layout::Layout;
+use crate::system::System;
 
 /// Samples in one period, at least.
 const SAMPLES: f64 = 64.0;
@@ -64,6 +67,23 @@ impl<'a> Section<'a> {
     /// One entry of the state passes a value: a coordinate, or with `entry >= n` its rate.
     pub fn entry(entry: usize, value: f64, direction: Direction) -> Self {
         Self::new(direction, move |_, state| state[entry] - value)
+    }
+
+    /// The gap of a contact of a system passes a value, at given values of the parameters and of `omega`; `None` if there is no
+    /// such contact.
+    pub fn gap(
+        system: &dyn System,
+        (parameters, omega): (&[f64], f64),
+        contact: usize,
+        (value, direction): (f64, Direction),
+    ) -> Option<Self> {
+        let layout = Layout::of(system);
+        let mut coefficients = vec![0.0; layout.coefficients];
+        system.coefficients(parameters, omega, &mut coefficients);
+        let base = omega / f64::from(system.facts().divisor);
+        let gap = Gap::new(layout.contacts.get(contact)?, &coefficients, base);
+        let distance = move |phase: f64, state: &[f64]| gap.at(phase, state).0 - value;
+        Some(Self::new(direction, distance))
     }
 
     fn counts(&self, rises: bool) -> bool {
@@ -190,6 +210,10 @@ impl Search<'_, '_> {
     /// The phase between two of different sign where `g` is nearest to zero: Chandrupatla's choice between inverse quadratic
     /// interpolation and bisection.
     fn zero(&mut self, stretch: &dyn Stretch, from: (f64, f64), to: (f64, f64)) -> f64 {
+        // It may lie on the surface itself, and has no sign there.
+        if from.1 == 0.0 {
+            return from.0;
+        }
         let (mut a, mut b) = (from, to);
         let mut t = 0.5;
         for _ in 0..100 {
@@ -343,5 +367,39 @@ mod tests {
             .expect("a motion");
         // x' = -2 sin 2 tau: at pi/2, pi, 3 pi/2 and, but for rounding, 2 pi of every period.
         assert!((39..=40).contains(&count), "{count}");
+    }
+
+    /// A stop that moves, `g = x - b cos tau`, and does not push: the motion is `cos 2 tau`, and the crossings are where both
+    /// meet.
+    #[test]
+    fn a_moving_gap_is_crossed_where_it_closes() {
+        crate::oscillator! {
+            Moving(x) {
+                param stiffness in 0.0..;
+                law stop(gap) { gap > 0 => gap, else => 0 }
+                ddot(x) + 4*x + stiffness*stop(x - 0.5*cos(omega*t)) = 0;
+            }
+        }
+        let model = Moving { stiffness: 0.0 };
+        let flow = Affine::new(&model, &[0.0], 1.0).expect("affine");
+        let mut map = Stroboscope::new(Box::new(flow));
+        let section = Section::gap(&model, (&[0.0], 1.0), 0, (0.0, Direction::Both));
+        let mut phases = Vec::new();
+        let mut state = [1.0, 0.0];
+        section
+            .expect("a contact")
+            .follow(&mut map, &mut state, 1, &mut |crossing| {
+                phases.push(crossing.phase);
+            })
+            .expect("a motion");
+        // cos 2 tau = 0.5 cos tau: with c = cos tau, 2 c^2 - c / 2 - 1 = 0.
+        let roots = [-1.0, 1.0].map(|sign: f64| (0.5 + sign * 8.25_f64.sqrt()) / 4.0);
+        let (near, far) = (roots[1].acos(), roots[0].acos());
+        let expected = [near, far, TAU - far, TAU - near];
+        assert_eq!(phases.len(), 4, "{phases:?}");
+        for (found, expected) in phases.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+        }
+        assert!(Section::gap(&model, (&[0.0], 1.0), 1, (0.0, Direction::Both)).is_none());
     }
 }

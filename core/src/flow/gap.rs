@@ -1,0 +1,59 @@
+//! The gap of one contact and its rate, equations (2) and (3) of `DESIGN.md`, at one instant.
+
+use crate::layout::{ContactLayout, Term};
+use crate::system::{Part, Wave};
+
+/// A gap at given values of the parameters and of `omega`.
+#[derive(Debug, Clone)]
+pub(super) struct Gap {
+    /// Coordinate, wave and coefficient of every term of `d`.
+    direction: Vec<(usize, Wave, f64)>,
+    /// The same of `delta`, without coordinate.
+    offset: Vec<(Wave, f64)>,
+    /// `omega / divisor`
+    base: f64,
+}
+
+impl Gap {
+    pub(super) fn new(contact: &ContactLayout, coefficients: &[f64], base: f64) -> Self {
+        let value = |term: &Term| coefficients[term.coefficient];
+        let direction = contact.gap.iter();
+        let offset = contact.offset.iter();
+        Self {
+            direction: direction.map(|d| (d.index, d.wave, value(d))).collect(),
+            offset: offset.map(|delta| (delta.wave, value(delta))).collect(),
+            base,
+        }
+    }
+
+    /// The gap and its rate.
+    pub(super) fn at(&self, phase: f64, state: &[f64]) -> (f64, f64) {
+        let (q, v) = state.split_at(state.len() / 2);
+        let (mut gap, mut rate) = (0.0, 0.0);
+        for &(index, wave, d) in &self.direction {
+            let here = d * value(wave, phase);
+            gap += here * q[index];
+            rate += here * v[index] + d * self.base * slope(wave, phase) * q[index];
+        }
+        for &(wave, delta) in &self.offset {
+            gap -= delta * value(wave, phase);
+            rate -= delta * self.base * slope(wave, phase);
+        }
+        (gap, rate)
+    }
+}
+
+/// A wave at a phase.
+pub(super) fn value(wave: Wave, phase: f64) -> f64 {
+    let angle = f64::from(wave.harmonic) * phase;
+    match wave.part {
+        Part::Cosine => angle.cos(),
+        Part::Sine => angle.sin(),
+    }
+}
+
+/// Its derivative by the phase.
+fn slope(wave: Wave, phase: f64) -> f64 {
+    let (derivative, sign) = wave.derivative();
+    sign * f64::from(wave.harmonic) * value(derivative, phase)
+}
