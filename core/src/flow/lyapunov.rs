@@ -14,8 +14,6 @@
 //!
 //! Source: Benettin, Galgani, Giorgilli and Strelcyn (1980), Meccanica 15, 9.
 
-use std::f64::consts::TAU;
-
 use super::divergence::Divergence;
 use super::estimate::Estimate;
 use super::stroboscope::Stroboscope;
@@ -72,7 +70,7 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
         self
     }
 
-    /// Lets some periods pass: the state settles, and the frame turns to its directions.
+    /// Applies the map some times: the state settles, and the frame turns to its directions.
     ///
     /// # Errors
     /// If the motion cannot be continued.
@@ -84,7 +82,7 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
         Ok(())
     }
 
-    /// Adds a batch of so many periods.
+    /// Adds a batch of so many applications of the map.
     ///
     /// # Errors
     /// If the motion cannot be continued.
@@ -96,14 +94,13 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
                 None => self.map.map_with(&mut self.state, &mut self.tangent)?,
                 Some(divergence) => {
                     let mut see = |stretch: &dyn Stretch| integral += divergence.over(stretch);
-                    let (flow, phase) = self.map.flow();
                     let tangent = Some(&mut self.tangent);
-                    flow.advance(phase, phase + TAU, &mut self.state, tangent, Some(&mut see))?;
+                    self.map.advance(&mut self.state, tangent, Some(&mut see))?;
                 }
             }
             orthonormalise(&mut self.tangent.columns, &mut self.sums);
         }
-        let count = periods as f64;
+        let count = (periods * self.map.folded()) as f64;
         let batch = Batch {
             exponents: self.sums.iter().map(|sum| sum / count).collect(),
             divergence: self.divergence.as_ref().map(|_| integral / count),
