@@ -20,6 +20,7 @@
 mod batch;
 pub mod constants;
 mod law;
+mod outputs;
 mod parts;
 mod room;
 
@@ -27,7 +28,7 @@ pub use batch::{Batch, Group, Kernel, Nothing, Raising, Uses, cube_root_group, g
 pub use law::{ByArgument, Declared, Generated, Kernels};
 pub use parts::{Primitive, Spring};
 
-use crate::power::cube_root as cube_root_of;
+use crate::power::{Baseline, cube_root as cube_root_of};
 
 /// Guarded power `base^exponent` for a base that the declaration proves is not negative.
 #[inline(always)]
@@ -64,7 +65,7 @@ pub fn root(base: f64) -> f64 {
 /// Guarded cube root.
 #[inline(always)]
 pub fn cube_root(base: f64) -> f64 {
-    cube_root_of::<false>(not_negative(base))
+    cube_root_of::<Baseline>(not_negative(base))
 }
 
 /// The greater of a number and zero; what is not a number stays so. Unlike `f64::max` it is one instruction.

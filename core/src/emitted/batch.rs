@@ -10,9 +10,10 @@
 use std::f64::consts::LN_2;
 use std::marker::PhantomData;
 
+use super::outputs::Outputs;
 use super::room::{BLOCK, Column, Plan, Room, raise};
 use crate::law::Derivatives;
-use crate::power::{Available, Work};
+use crate::power::{Available, Target, Work};
 
 /// Samples, and where to write values; runs a kernel on them.
 pub trait Batch<const A: usize, const V: usize> {
@@ -127,16 +128,19 @@ impl Uses {
     /// Nothing.
     pub(super) const NOTHING: Self = uses(&[], &[]);
 
+    #[inline(always)]
     pub(super) const fn logarithm(self, position: usize) -> bool {
         self.logarithms >> position & 1 == 1
     }
 
+    #[inline(always)]
     pub(super) const fn power(self, position: usize) -> bool {
         self.powers >> position & 1 == 1
     }
 
     /// What is in either.
-    const fn and(self, other: Self) -> Self {
+    #[inline(always)]
+    pub(super) const fn and(self, other: Self) -> Self {
         Self {
             logarithms: self.logarithms | other.logarithms,
             powers: self.powers | other.powers,
@@ -182,15 +186,6 @@ impl<'a, const A: usize> Samples<'a, A> {
     }
 }
 
-/// Where some of the values of a kernel go.
-pub(super) trait Outputs<const V: usize> {
-    /// What the written ones of all values depend on.
-    fn needs(uses: &[Uses; V]) -> Uses;
-
-    /// Writes the values of `count` samples from `start` on.
-    fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]);
-}
-
 /// A batch to be run.
 pub(super) struct Call<'a, O, const A: usize, const V: usize> {
     pub(super) samples: Samples<'a, A>,
@@ -212,7 +207,7 @@ impl<O: Outputs<V>, const A: usize, const V: usize> Batch<A, V> for Call<'_, O, 
         K: Raising<A, V, B, G, P>,
     {
         let mut room = Room::take(3 * B + P);
-        Available::in_use().run_short(Powers::<'_, _, K, A, V, B, G, P> {
+        Available::in_use().run(Powers::<'_, _, K, A, V, B, G, P> {
             call: self,
             columns: room.columns(),
             kernel: PhantomData,
@@ -233,7 +228,7 @@ where
     K: Kernel<A, V>,
 {
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
+    fn run<T: Target>(self) {
         let Call {
             samples,
             mut outputs,
@@ -277,7 +272,7 @@ where
     K: Raising<A, V, B, G, P>,
 {
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
+    fn run<T: Target>(self) {
         let Call {
             samples,
             mut outputs,
@@ -289,6 +284,7 @@ where
         } = samples;
         let set = Available::in_use();
         let (needs, exponents) = (O::needs(&K::USES), K::exponents(arguments));
+        let at_zero = exponents.map(super::at_zero);
         let plan = Plan {
             bases: B,
             needs,
@@ -302,7 +298,7 @@ where
                 fill::<K, A, V, B, G, P>(&mut column.0[..count], base, arguments, [gap, rate]);
             }
             raise(set, self.columns, count, plan);
-            let Some((_, columns)) = self.columns.split_first_chunk::<B>() else {
+            let Some((base, columns)) = self.columns.split_first_chunk::<B>() else {
                 return;
             };
             let Some((whole, columns)) = columns.split_first_chunk::<B>() else {
@@ -320,14 +316,18 @@ where
                 #[inline(always)]
                 |i| {
                     let (mut logarithms, mut powers) = ([0.0; B], [0.0; P]);
-                    for base in 0..B {
-                        if needs.logarithm(base) {
-                            logarithms[base] = (whole[base].0[i] + part[base].0[i]) * LN_2;
+                    for at in 0..B {
+                        if needs.logarithm(at) {
+                            let logarithm = (whole[at].0[i] + part[at].0[i]) * LN_2;
+                            logarithms[at] = guarded(base[at].0[i], logarithm);
                         }
                     }
-                    for index in 0..P {
-                        if needs.power(index) {
-                            powers[index] = power[index].0[i];
+                    for group in K::GROUPS {
+                        for at in group.first..group.first + group.count {
+                            if needs.power(at) {
+                                let base = base[group.base].0[i];
+                                powers[at] = at_least(at_zero[at], guarded(base, power[at].0[i]));
+                            }
                         }
                     }
                     K::values(arguments, gap[i], rate[i], logarithms, powers)
@@ -335,6 +335,19 @@ where
             );
         }
     }
+}
+
+/// What was computed of a base, or, where that is not positive, zero.
+#[inline(always)]
+fn guarded(base: f64, value: f64) -> f64 {
+    if base <= 0.0 { 0.0 } else { value }
+}
+
+/// The greater of two numbers, the second of which may not be one; the result then is not either. Unlike `f64::max` it is
+/// one instruction.
+#[inline(always)]
+fn at_least(low: f64, value: f64) -> f64 {
+    if low > value { low } else { value }
 }
 
 /// Writes one base of every sample.
@@ -351,120 +364,5 @@ fn fill<K, const A: usize, const V: usize, const B: usize, const G: usize, const
     let (gap, rate) = (&gap[..count], &rate[..count]);
     for i in 0..count {
         column[i] = K::bases(arguments, gap[i], rate[i])[base];
-    }
-}
-
-/// The force alone.
-pub(super) struct Force<'a>(pub(super) &'a mut [f64]);
-
-impl<const V: usize> Outputs<V> for Force<'_> {
-    #[inline(always)]
-    fn needs(uses: &[Uses; V]) -> Uses {
-        uses[0]
-    }
-
-    #[inline(always)]
-    fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]) {
-        write_1(&mut self.0[start..][..count], values);
-    }
-}
-
-/// Force, by gap and by rate.
-pub(super) struct Slopes<'a>(pub(super) Derivatives<'a>);
-
-impl<const V: usize> Outputs<V> for Slopes<'_> {
-    #[inline(always)]
-    fn needs(uses: &[Uses; V]) -> Uses {
-        uses[0].and(uses[1]).and(uses[2])
-    }
-
-    #[inline(always)]
-    fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]) {
-        let Derivatives {
-            force,
-            by_gap,
-            by_rate,
-        } = &mut self.0;
-        write_3(
-            &mut force[start..][..count],
-            &mut by_gap[start..][..count],
-            &mut by_rate[start..][..count],
-            values,
-        );
-    }
-}
-
-/// Force, by gap and by rate, and the value at a position, a derivative by an argument.
-pub(super) struct SlopesAndBy<'a, const AT: usize> {
-    pub(super) out: Derivatives<'a>,
-    pub(super) by_argument: &'a mut [f64],
-}
-
-impl<const V: usize, const AT: usize> Outputs<V> for SlopesAndBy<'_, AT> {
-    #[inline(always)]
-    fn needs(uses: &[Uses; V]) -> Uses {
-        uses[0].and(uses[1]).and(uses[2]).and(uses[AT])
-    }
-
-    #[inline(always)]
-    fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]) {
-        let Derivatives {
-            force,
-            by_gap,
-            by_rate,
-        } = &mut self.out;
-        write_4::<AT, V>(
-            &mut force[start..][..count],
-            &mut by_gap[start..][..count],
-            &mut by_rate[start..][..count],
-            &mut self.by_argument[start..][..count],
-            values,
-        );
-    }
-}
-
-// Every output is a parameter of its own, so that the compiler knows that they do not overlap.
-
-#[inline(always)]
-fn write_1<const V: usize>(force: &mut [f64], values: impl Fn(usize) -> [f64; V]) {
-    for i in 0..force.len() {
-        force[i] = values(i)[0];
-    }
-}
-
-#[inline(always)]
-fn write_3<const V: usize>(
-    force: &mut [f64],
-    by_gap: &mut [f64],
-    by_rate: &mut [f64],
-    values: impl Fn(usize) -> [f64; V],
-) {
-    let count = force.len();
-    let (by_gap, by_rate) = (&mut by_gap[..count], &mut by_rate[..count]);
-    for i in 0..count {
-        let values = values(i);
-        force[i] = values[0];
-        by_gap[i] = values[1];
-        by_rate[i] = values[2];
-    }
-}
-
-#[inline(always)]
-fn write_4<const AT: usize, const V: usize>(
-    force: &mut [f64],
-    by_gap: &mut [f64],
-    by_rate: &mut [f64],
-    by_argument: &mut [f64],
-    values: impl Fn(usize) -> [f64; V],
-) {
-    let count = force.len();
-    let (by_gap, by_rate) = (&mut by_gap[..count], &mut by_rate[..count]);
-    let by_argument = &mut by_argument[..count];
-    for i in 0..count {
-        let values = values(i);
-        force[i] = values[0];
-        by_gap[i] = values[1];
-        by_rate[i] = values[2];
-        by_argument[i] = values[AT];
     }
 }

@@ -2,7 +2,8 @@
 
 use std::marker::PhantomData;
 
-use super::batch::{Batch, Call, Force, Samples, Slopes, SlopesAndBy};
+use super::batch::{Batch, Call, Samples};
+use super::outputs::{Force, Slopes, SlopesAndBy};
 use crate::generic::LawData;
 use crate::law::{Derivatives, Law, LawFacts, On, Parts};
 
@@ -227,7 +228,7 @@ impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> ByArgu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emitted::{Kernel, Nothing, Primitive, Spring};
+    use crate::emitted::{Group, Kernel, Nothing, Primitive, Raising, Spring, Uses, group, uses};
 
     /// `phi = a g^2 + 3 g r` and its primitive `3 g^2 / 2`, on two pieces that meet at `a`.
     struct Square;
@@ -303,6 +304,86 @@ mod tests {
         assert_eq!(levels, [7.0]);
         primitive.levels_by(&[7.0], 0, &mut levels);
         assert_eq!(levels, [0.0]);
+    }
+
+    /// `phi = g^a`, with its derivatives by `g` and `a`.
+    struct Power;
+
+    impl Raising<1, 4, 1, 1, 2> for Power {
+        const GROUPS: [Group; 1] = [group(0, 0, 2)];
+        const USES: [Uses; 4] = [
+            uses(&[], &[1]),
+            uses(&[], &[0]),
+            uses(&[], &[]),
+            uses(&[0], &[1]),
+        ];
+
+        fn bases(_: [f64; 1], g: f64, _: f64) -> [f64; 1] {
+            [g]
+        }
+
+        fn exponents([a]: [f64; 1]) -> [f64; 2] {
+            [a - 1.0, a]
+        }
+
+        fn values(
+            [a]: [f64; 1],
+            _: f64,
+            _: f64,
+            [l]: [f64; 1],
+            [below, power]: [f64; 2],
+        ) -> [f64; 4] {
+            [power, a * below, 0.0, power * l]
+        }
+    }
+
+    impl Kernels<1, 0, 4> for Power {
+        fn levels(_: [f64; 1]) -> [f64; 0] {
+            []
+        }
+
+        fn on(_: On, batch: impl Batch<1, 4>) {
+            batch.raise(Power);
+        }
+
+        fn by_argument(_: usize, call: impl ByArgument) {
+            call.run::<3>();
+        }
+    }
+
+    /// Where no power is computed, nothing is left of what was computed before.
+    #[test]
+    fn powers_of_what_is_not_positive_are_those_of_zero() {
+        use crate::emitted::constants::{INDEPENDENT, data, law_facts};
+        let law = Generated::<Power, 1, 0, 4>::new(
+            law_facts("power", &[], &[], &[], INDEPENDENT, false),
+            data(&[], &[], &[]),
+        );
+        let gaps = |i: usize| [0.0, -3.0, -0.0, f64::NEG_INFINITY][i % 4];
+        let closed: Vec<f64> = (0..600).map(gaps).collect();
+        let open = [f64::INFINITY; 600];
+        let mut outputs = [const { Vec::new() }; 4];
+        for (gap, a, expected) in [
+            (open.as_slice(), 1.7, [f64::INFINITY; 3]),
+            (&closed, 1.7, [0.0; 3]),
+            (&open, 1.0, [f64::INFINITY, 1.0, f64::INFINITY]),
+            (&closed, 1.0, [0.0, 1.0, 0.0]),
+            (&closed, 0.4, [0.0; 3]),
+        ] {
+            let [force, by_gap, by_rate, by_argument] = &mut outputs;
+            for output in [&mut *force, by_gap, by_rate, by_argument] {
+                *output = vec![f64::NAN; gap.len()];
+            }
+            let out = Derivatives {
+                force,
+                by_gap,
+                by_rate,
+            };
+            law.derivatives_and_by(0, On::AllPieces, &[a], gap, gap, out, by_argument);
+            for (output, expected) in [force, by_gap, by_argument].into_iter().zip(expected) {
+                assert!(output.iter().all(|&found| found == expected), "{gap:?}^{a}");
+            }
+        }
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use std::cell::Cell;
 use std::ops::Range;
 
-use super::at_zero;
 use super::batch::{Group, Uses};
 use crate::power::{
-    Accuracy, Available, Bases, LANES, Work, cube_roots, logarithms, multiply, powers, two_powers,
+    Accuracy, Available, Bases, LANES, Target, Work, cube_roots, logarithms, multiply, powers,
+    two_powers,
 };
 
 /// Samples per block. A column takes a kilobyte, so those of two bases and their powers stay in the first level of the
@@ -81,147 +81,164 @@ impl<'a> Plan<'a> {
 }
 
 /// Fills columns, which are those of bases, of the first and the second parts of their logarithms, and of powers, from the
-/// first ones.
+/// first ones. Where a base is not positive, the others hold some number.
 pub(super) fn raise(set: Available, columns: &mut [Column], count: usize, plan: Plan<'_>) {
-    let fill = Fill {
-        columns,
-        padded: count.next_multiple_of(LANES),
-        plan,
-    };
-    for base in &mut fill.columns[..plan.bases] {
-        base.0[count..fill.padded].fill(0.0);
+    let padded = count.next_multiple_of(LANES);
+    for base in &mut columns[..plan.bases] {
+        base.0[count..padded].fill(0.0);
     }
     match Accuracy::in_use() {
-        Accuracy::Full => set.run(FillTo::<false>(fill)),
-        Accuracy::Fast => set.run(FillTo::<true>(fill)),
+        Accuracy::Full => fill::<false>(set, columns, padded, plan),
+        Accuracy::Fast => fill::<true>(set, columns, padded, plan),
     }
 }
 
-/// Columns to be filled.
-struct Fill<'a> {
-    columns: &'a mut [Column],
-    /// The length that is computed.
-    padded: usize,
-    plan: Plan<'a>,
-}
-
-struct FillTo<'a, const FAST: bool>(Fill<'a>);
-
-impl<const FAST: bool> Work for FillTo<'_, FAST> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let Fill {
-            columns,
-            padded,
-            plan,
-        } = self.0;
-        let (base, columns) = columns.split_at_mut(plan.bases);
-        let (whole, columns) = columns.split_at_mut(plan.bases);
-        let (part, power) = columns.split_at_mut(plan.bases);
-        for (position, base) in base.iter().enumerate() {
-            let base = Base::new(&base.0[..padded]);
-            let whole = &mut whole[position].0[..padded];
-            let part = &mut part[position].0[..padded];
-            let needed = || plan.needed_of(position);
-            if plan.needs.logarithm(position) || needed().any(|(group, _)| !group.cube_root) {
-                base.logarithms::<FUSED, FAST>(whole, part);
-            }
-            for (group, last) in needed() {
-                let members = group.first..=group.first + last;
-                let exponents = &plan.exponents[members.clone()];
-                let power = &mut power[members];
-                if group.cube_root {
-                    base.cube_root::<FUSED>(&mut power[0].0[..padded]);
-                } else {
-                    base.group::<FUSED, FAST>(whole, part, exponents, power);
-                }
+/// Every loop is work of its own: of several in one function, the constants of all would compete for registers.
+fn fill<const FAST: bool>(set: Available, columns: &mut [Column], count: usize, plan: Plan<'_>) {
+    let (base, columns) = columns.split_at_mut(plan.bases);
+    let (whole, columns) = columns.split_at_mut(plan.bases);
+    let (part, power) = columns.split_at_mut(plan.bases);
+    for (position, base) in base.iter().enumerate() {
+        let mut at = 0..count;
+        set.run(Positive {
+            base: &base.0[..count],
+            at: &mut at,
+        });
+        let base = &base.0[at.clone()];
+        let (whole, part) = (
+            &mut whole[position].0[at.clone()],
+            &mut part[position].0[at.clone()],
+        );
+        let needed = || plan.needed_of(position);
+        if plan.needs.logarithm(position) || needed().any(|(group, _)| !group.cube_root) {
+            set.run(Logarithms::<FAST> { base, whole, part });
+        }
+        let of = Bases { base, whole, part };
+        for (group, last) in needed() {
+            let members = group.first..=group.first + last;
+            let exponents = &plan.exponents[members.clone()];
+            let power = &mut power[members];
+            if group.cube_root {
+                set.run(CubeRoots {
+                    base,
+                    root: &mut power[0].0[at.clone()],
+                });
+            } else {
+                raise_group::<FAST>(set, of, exponents, power, &at);
             }
         }
     }
 }
 
-/// The bases of a block. A contact that opens has runs of samples whose base is not positive; at the ends of a block these
-/// are left out.
-struct Base<'a> {
+/// The lowest power of a group is an exponential, the others are products with the base.
+fn raise_group<const FAST: bool>(
+    set: Available,
+    of: Bases<'_>,
+    exponents: &[f64],
+    power: &mut [Column],
+    at: &Range<usize>,
+) {
+    let mut member = 0;
+    while member < exponents.len() {
+        let exponent = exponents[member];
+        let (below, above) = power.split_at_mut(member);
+        let below = below
+            .last()
+            .filter(|_| exponents[member - 1] >= LOWEST_SHARED);
+        let [this, above @ ..] = above else { return };
+        let power = &mut this.0[at.clone()];
+        member += 1;
+        if let Some(below) = below {
+            multiply(of.base, &below.0[at.clone()], power);
+            continue;
+        }
+        // The two of a force and its derivative at once.
+        match above.first_mut().filter(|_| exponent >= LOWEST_SHARED) {
+            Some(next) => {
+                set.run(TwoPowers::<FAST> {
+                    of,
+                    exponent,
+                    power,
+                    next: &mut next.0[at.clone()],
+                });
+                member += 1;
+            }
+            None => set.run(Powers::<FAST> {
+                of,
+                exponent,
+                power,
+            }),
+        }
+    }
+}
+
+struct Logarithms<'a, const FAST: bool> {
     base: &'a [f64],
-    /// From the first group of lanes with a positive base to the last.
-    positive: Range<usize>,
+    whole: &'a mut [f64],
+    part: &'a mut [f64],
 }
 
-impl<'a> Base<'a> {
+impl<const FAST: bool> Work for Logarithms<'_, FAST> {
     #[inline(always)]
-    fn new(base: &'a [f64]) -> Self {
-        let mut groups = base.chunks_exact(LANES);
+    fn run<T: Target>(self) {
+        logarithms::<T, FAST>(self.base, self.whole, self.part);
+    }
+}
+
+struct Powers<'a, const FAST: bool> {
+    of: Bases<'a>,
+    exponent: f64,
+    power: &'a mut [f64],
+}
+
+impl<const FAST: bool> Work for Powers<'_, FAST> {
+    #[inline(always)]
+    fn run<T: Target>(self) {
+        powers::<T, FAST>(self.of, self.exponent, self.power);
+    }
+}
+
+struct TwoPowers<'a, const FAST: bool> {
+    of: Bases<'a>,
+    exponent: f64,
+    power: &'a mut [f64],
+    next: &'a mut [f64],
+}
+
+impl<const FAST: bool> Work for TwoPowers<'_, FAST> {
+    #[inline(always)]
+    fn run<T: Target>(self) {
+        two_powers::<T, FAST>(self.of, self.exponent, self.power, self.next);
+    }
+}
+
+struct CubeRoots<'a> {
+    base: &'a [f64],
+    root: &'a mut [f64],
+}
+
+impl Work for CubeRoots<'_> {
+    #[inline(always)]
+    fn run<T: Target>(self) {
+        cube_roots::<T>(self.base, self.root);
+    }
+}
+
+/// Finds the samples from the first group of lanes with a positive base to the last. A contact that opens has runs of
+/// samples whose base is not positive; at the ends of a block these are left out.
+struct Positive<'a> {
+    base: &'a [f64],
+    at: &'a mut Range<usize>,
+}
+
+impl Work for Positive<'_> {
+    #[inline(always)]
+    fn run<T: Target>(self) {
+        let mut groups = self.base.chunks_exact(LANES);
         let first = groups.position(is_positive).unwrap_or(0);
-        let positive = base.chunks_exact(LANES).rposition(is_positive);
-        let last = positive.map_or(first, |last| last + 1);
-        Self {
-            base,
-            positive: first * LANES..last * LANES,
-        }
-    }
-
-    /// The part of a column where bases are positive; the others get a value.
-    #[inline(always)]
-    fn positive<'b>(&self, column: &'b mut [f64], otherwise: f64) -> &'b mut [f64] {
-        let Range { start, end } = self.positive;
-        column[..start].fill(otherwise);
-        column[end..].fill(otherwise);
-        &mut column[start..end]
-    }
-
-    #[inline(always)]
-    fn logarithms<const FUSED: bool, const FAST: bool>(&self, whole: &mut [f64], part: &mut [f64]) {
-        let (whole, part) = (self.positive(whole, 0.0), self.positive(part, 0.0));
-        logarithms::<FUSED, FAST>(&self.base[self.positive.clone()], whole, part);
-    }
-
-    #[inline(always)]
-    fn cube_root<const FUSED: bool>(&self, root: &mut [f64]) {
-        let root = self.positive(root, 0.0);
-        cube_roots::<FUSED>(&self.base[self.positive.clone()], root);
-    }
-
-    /// The lowest power of a group is an exponential, the others are products with the base.
-    #[inline(always)]
-    fn group<const FUSED: bool, const FAST: bool>(
-        &self,
-        whole: &[f64],
-        part: &[f64],
-        exponents: &[f64],
-        power: &mut [Column],
-    ) {
-        let positive = self.positive.clone();
-        let of = Bases {
-            base: &self.base[positive.clone()],
-            whole: &whole[positive.clone()],
-            part: &part[positive.clone()],
-        };
-        let count = self.base.len();
-        let mut member = 0;
-        while member < exponents.len() {
-            let exponent = exponents[member];
-            let (below, above) = power.split_at_mut(member);
-            let below = below
-                .last()
-                .filter(|_| exponents[member - 1] >= LOWEST_SHARED);
-            let [this, above @ ..] = above else { return };
-            let this = self.positive(&mut this.0[..count], at_zero(exponent));
-            member += 1;
-            if let Some(below) = below {
-                multiply(of.base, &below.0[positive.clone()], this);
-                continue;
-            }
-            // The two of a force and its derivative at once.
-            match above.first_mut().filter(|_| exponent >= LOWEST_SHARED) {
-                Some(next) => {
-                    let next = self.positive(&mut next.0[..count], 0.0);
-                    two_powers::<FUSED, FAST>(of, exponent, this, next);
-                    member += 1;
-                }
-                None => powers::<FUSED, FAST>(of, exponent, this),
-            }
-        }
+        let last = self.base.chunks_exact(LANES).rposition(is_positive);
+        let end = last.map_or(first, |last| last + 1);
+        *self.at = first * LANES..end * LANES;
     }
 }
 

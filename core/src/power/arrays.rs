@@ -13,6 +13,7 @@ use super::cube_root::cube_root;
 use super::functions::{
     Exponent, Logarithm, Raised, UNUSUAL, careful_logarithm, careful_raise, logarithm, raise,
 };
+use super::instructions::Target;
 
 /// The longest vectors have this many numbers.
 pub(crate) const LANES: usize = 8;
@@ -27,14 +28,14 @@ pub(crate) struct Bases<'a> {
 
 /// Logarithms to base two, in two parts; zero where a base is not positive.
 #[inline(always)]
-pub(crate) fn logarithms<const FUSED: bool, const FAST: bool>(
+pub(crate) fn logarithms<T: Target, const FAST: bool>(
     base: &[f64],
     whole: &mut [f64],
     part: &mut [f64],
 ) {
-    let keys = each_logarithm(base, whole, part, logarithm::<FUSED, FAST>);
+    let keys = each_logarithm(base, whole, part, logarithm::<T, FAST>);
     if keys & UNUSUAL != 0 {
-        each_logarithm(base, whole, part, careful_logarithm::<FUSED, FAST>);
+        each_logarithm(base, whole, part, careful_logarithm::<T, FAST>);
     }
 }
 
@@ -58,13 +59,9 @@ fn each_logarithm(
     keys
 }
 
-/// Powers. A base that is not positive counts as zero.
+/// Powers. That of a base that is not positive is some number.
 #[inline(always)]
-pub(crate) fn powers<const FUSED: bool, const FAST: bool>(
-    of: Bases<'_>,
-    exponent: f64,
-    power: &mut [f64],
-) {
+pub(crate) fn powers<T: Target, const FAST: bool>(of: Bases<'_>, exponent: f64, power: &mut [f64]) {
     if exponent == 0.0 {
         power.fill(1.0);
         return;
@@ -74,14 +71,14 @@ pub(crate) fn powers<const FUSED: bool, const FAST: bool>(
         of,
         power,
         #[inline(always)]
-        |log| raise::<FUSED, FAST>(&exponent, log),
+        |log| raise::<T, FAST>(&exponent, log),
     );
     if keys & UNUSUAL != 0 {
         each_power(
             of,
             power,
             #[inline(always)]
-            |log| careful_raise::<FUSED, FAST>(&exponent, log),
+            |log| careful_raise::<T, FAST>(&exponent, log),
         );
     }
 }
@@ -93,15 +90,15 @@ fn each_power(of: Bases<'_>, power: &mut [f64], raise: impl Fn([f64; 2]) -> Rais
     let mut keys = 0;
     for i in 0..count {
         let raised = raise([whole[i], part[i]]);
-        power[i] = if of.base[i] <= 0.0 { 0.0 } else { raised.power };
+        power[i] = raised.power;
         keys |= raised.key;
     }
     keys
 }
 
-/// Powers, and those of an exponent one higher. A base that is not positive counts as zero.
+/// Powers, and those of an exponent one higher. Those of a base that is not positive are some numbers.
 #[inline(always)]
-pub(crate) fn two_powers<const FUSED: bool, const FAST: bool>(
+pub(crate) fn two_powers<T: Target, const FAST: bool>(
     of: Bases<'_>,
     exponent: f64,
     power: &mut [f64],
@@ -118,7 +115,7 @@ pub(crate) fn two_powers<const FUSED: bool, const FAST: bool>(
         power,
         next,
         #[inline(always)]
-        |log| raise::<FUSED, FAST>(&exponent, log),
+        |log| raise::<T, FAST>(&exponent, log),
     );
     if keys & UNUSUAL != 0 {
         each_two(
@@ -126,7 +123,7 @@ pub(crate) fn two_powers<const FUSED: bool, const FAST: bool>(
             power,
             next,
             #[inline(always)]
-            |log| careful_raise::<FUSED, FAST>(&exponent, log),
+            |log| careful_raise::<T, FAST>(&exponent, log),
         );
     }
 }
@@ -144,43 +141,34 @@ fn each_two(
     let mut keys = 0;
     for i in 0..count {
         let (base, raised) = (of.base[i], raise([whole[i], part[i]]));
-        power[i] = if base <= 0.0 { 0.0 } else { raised.power };
-        next[i] = if base <= 0.0 {
-            0.0
-        } else {
-            raised.power * base
-        };
+        power[i] = raised.power;
+        next[i] = raised.power * base;
         keys |= raised.key;
     }
     keys
 }
 
-/// Powers of an exponent one higher. A base that is not positive counts as zero.
+/// Powers of an exponent one higher.
 #[inline(always)]
 pub(crate) fn multiply(base: &[f64], power: &[f64], next: &mut [f64]) {
     for ((next, &power), &base) in next.iter_mut().zip(power).zip(base) {
-        *next = if base <= 0.0 { 0.0 } else { power * base };
+        *next = power * base;
     }
 }
 
-/// Cube roots. A base that is not positive counts as zero.
+/// Cube roots. That of a base that is negative is some number.
 #[inline(always)]
-pub(crate) fn cube_roots<const FUSED: bool>(base: &[f64], root: &mut [f64]) {
+pub(crate) fn cube_roots<T: Target>(base: &[f64], root: &mut [f64]) {
     // Two halves at once: a root is a chain of operations that wait for each other.
     let half = base.len() / 2;
     let ((first, second), (to_first, to_second)) =
         (base.split_at(half), root[..base.len()].split_at_mut(half));
     let (middle, to_middle) = (&second[..half], &mut to_second[..half]);
     for i in 0..half {
-        to_first[i] = positive_cube_root::<FUSED>(first[i]);
-        to_middle[i] = positive_cube_root::<FUSED>(middle[i]);
+        to_first[i] = cube_root::<T>(first[i]);
+        to_middle[i] = cube_root::<T>(middle[i]);
     }
     for (root, &base) in to_second[half..].iter_mut().zip(&second[half..]) {
-        *root = positive_cube_root::<FUSED>(base);
+        *root = cube_root::<T>(base);
     }
-}
-
-#[inline(always)]
-fn positive_cube_root<const FUSED: bool>(base: f64) -> f64 {
-    cube_root::<FUSED>(if base <= 0.0 { 0.0 } else { base })
 }

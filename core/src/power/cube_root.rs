@@ -15,7 +15,7 @@
 //! Source: Moroz, Samotyy, Walczyk and Cieslinski (2021), Fast calculation of cube and inverse cube roots using a magic
 //! constant, Energies 14:1058, here with one more term in (1) and for double precision.
 
-use super::functions::add_product;
+use super::instructions::Target;
 
 /// The leading half of the bits of a one, to which an estimate adds a third of those of `x`, with the sign changed; lowered
 /// so that the greatest error is smallest.
@@ -27,13 +27,13 @@ const COUNTS_ONES: f64 = 4_503_599_627_370_496.0;
 /// The cube root of a number that is not negative: zero, subnormal, infinite, or not a number as well.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of a loop that calls it")]
-pub fn cube_root<const FUSED: bool>(x: f64) -> f64 {
+pub fn cube_root<T: Target>(x: f64) -> f64 {
     // By a power of eight into the range of numbers whose bits hold their exponent.
     const SCALE: f64 = (1_u64 << 54) as f64;
     const BACK: f64 = 1.0 / (1_u64 << 18) as f64;
     let subnormal = x < f64::MIN_POSITIVE;
     let scaled = if subnormal { x * SCALE } else { x };
-    let root = normal::<FUSED>(scaled);
+    let root = normal::<T>(scaled);
     let root = if subnormal { root * BACK } else { root };
     // Zero and infinity are their own.
     let root = if x == 0.0 { x } else { root };
@@ -42,21 +42,21 @@ pub fn cube_root<const FUSED: bool>(x: f64) -> f64 {
 
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of a loop that calls it")]
-fn normal<const FUSED: bool>(x: f64) -> f64 {
+fn normal<T: Target>(x: f64) -> f64 {
     let leading = f64::from_bits((x.to_bits() >> 32) | COUNTS_ONES.to_bits()) - COUNTS_ONES;
-    let estimate = add_product::<FUSED>(leading, -1.0 / 3.0, ESTIMATE) + COUNTS_ONES;
+    let estimate = T::add_product(leading, -1.0 / 3.0, ESTIMATE) + COUNTS_ONES;
     let y = f64::from_bits(estimate.to_bits() << 32);
 
-    let e = add_product::<FUSED>(-(x * y), y * y, 1.0);
-    let series = add_product::<FUSED>(e, 14.0 / 81.0, 2.0 / 9.0);
-    let series = add_product::<FUSED>(series, e, 1.0 / 3.0);
-    let y = add_product::<FUSED>(y * e, series, y);
+    let e = T::add_product(-(x * y), y * y, 1.0);
+    let series = T::add_product(e, 14.0 / 81.0, 2.0 / 9.0);
+    let series = T::add_product(series, e, 1.0 / 3.0);
+    let y = T::add_product(y * e, series, y);
 
-    let e = add_product::<FUSED>(-(x * y), y * y, 1.0);
-    let y = add_product::<FUSED>(y * (1.0 / 3.0), e, y);
+    let e = T::add_product(-(x * y), y * y, 1.0);
+    let y = T::add_product(y * (1.0 / 3.0), e, y);
 
     let square = y * y;
     let c = x * square;
-    let rest = add_product::<FUSED>(-(c * c), c, x);
-    add_product::<FUSED>(rest, square * (1.0 / 3.0), c)
+    let rest = T::add_product(-(c * c), c, x);
+    T::add_product(rest, square * (1.0 / 3.0), c)
 }

@@ -30,10 +30,14 @@
 // Short functions that are meaningless unless merged into the loop that calls them.
 #![allow(clippy::inline_always)]
 
-/// How `k` and `z` are taken from the bits of a number: the bits of `sqrt(1/2)` and of one.
+use super::instructions::Target;
+use super::polynomial::polynomial;
+
+/// How `k` and `z` are taken from the bits of a number: the bits of `sqrt(1/2)`, and where the fraction is.
 const LOWEST: u64 = 0x3fe6_a09e_667f_3bcd;
-const ONE: u64 = 0x3ff0_0000_0000_0000;
 const FRACTION: u64 = (1 << 52) - 1;
+/// Added to the bits of a number, it leaves `k + ORDINARY`, modulo `2^12`, in the place of the exponent.
+const SHIFT: u64 = (ORDINARY << 52).wrapping_sub(LOWEST);
 
 /// `2^52`: its last bits count ones.
 const COUNTS_ONES: f64 = 4_503_599_627_370_496.0;
@@ -116,35 +120,46 @@ pub(super) struct Logarithm {
 
 /// (1) for an ordinary number, or zero for one that is not positive.
 #[inline(always)]
-pub(super) fn logarithm<const FUSED: bool, const FAST: bool>(x: f64) -> Logarithm {
+pub(super) fn logarithm<T: Target, const FAST: bool>(x: f64) -> Logarithm {
+    normal_logarithm::<T, FAST, false>(x)
+}
+
+/// (1) for a number that is not subnormal; `ANY`: for those that are not ordinary too.
+#[inline(always)]
+fn normal_logarithm<T: Target, const FAST: bool, const ANY: bool>(x: f64) -> Logarithm {
     let x = if x <= 0.0 { 1.0 } else { x };
-    let shifted = x.to_bits().wrapping_add(ONE - LOWEST);
+    let shifted = x.to_bits().wrapping_add(SHIFT);
     let exponent = shifted >> 52;
-    let k = f64::from_bits(exponent | COUNTS_ONES.to_bits()) - (COUNTS_ONES + BIAS as f64);
+    let k = f64::from_bits(exponent | COUNTS_ONES.to_bits()) - (COUNTS_ONES + ORDINARY as f64);
+    let k = if ANY && exponent >= 2048 {
+        k - 4096.0
+    } else {
+        k
+    };
     let z = f64::from_bits((shifted & FRACTION).wrapping_add(LOWEST));
     let s = (z - 1.0) / (z + 1.0);
     let (whole, part) = if FAST {
         (
             0.0,
-            add_product::<FUSED>(s, polynomial::<FUSED, 7>(&P_FAST, s * s), k),
+            T::add_product(s, polynomial::<T, 7>(&P_FAST, s * s), k),
         )
     } else {
-        (k, s * polynomial::<FUSED, 8>(&P, s * s))
+        (k, s * polynomial::<T, 8>(&P, s * s))
     };
     Logarithm {
         whole,
         part,
-        key: exponent.wrapping_sub(BIAS - ORDINARY),
+        key: exponent,
     }
 }
 
 /// (1) for any number: minus infinity is never asked for, zero for one that is not positive.
 #[inline(always)]
-pub(super) fn careful_logarithm<const FUSED: bool, const FAST: bool>(x: f64) -> Logarithm {
+pub(super) fn careful_logarithm<T: Target, const FAST: bool>(x: f64) -> Logarithm {
     const SCALE: f64 = (1_u64 << 54) as f64;
     let subnormal = x < f64::MIN_POSITIVE;
     let scaled = if subnormal { x * SCALE } else { x };
-    let mut log = logarithm::<FUSED, FAST>(scaled);
+    let mut log = normal_logarithm::<T, FAST, true>(scaled);
     let correction = if subnormal && x > 0.0 { 54.0 } else { 0.0 };
     // An infinite number, and what is not a number, is its own logarithm.
     let own = x == f64::INFINITY || x.is_nan();
@@ -183,12 +198,12 @@ pub(super) struct Raised {
 
 /// (2) and (3) for an ordinary power.
 #[inline(always)]
-pub(super) fn raise<const FUSED: bool, const FAST: bool>(
+pub(super) fn raise<T: Target, const FAST: bool>(
     exponent: &Exponent,
     [whole, part]: [f64; 2],
 ) -> Raised {
-    let Reduced { rounded, r, .. } = reduce::<FUSED, FAST>(exponent, [whole, part]);
-    let fraction = power_of_two::<FUSED, FAST>(r);
+    let Reduced { rounded, r, .. } = reduce::<T, FAST>(exponent, [whole, part]);
+    let fraction = power_of_two::<T, FAST>(r);
     let bits = rounded.to_bits();
     Raised {
         power: f64::from_bits(fraction.to_bits().wrapping_add(bits << 52)),
@@ -198,12 +213,12 @@ pub(super) fn raise<const FUSED: bool, const FAST: bool>(
 
 /// (2) and (3) for any power.
 #[inline(always)]
-pub(super) fn careful_raise<const FUSED: bool, const FAST: bool>(
+pub(super) fn careful_raise<T: Target, const FAST: bool>(
     exponent: &Exponent,
     [whole, part]: [f64; 2],
 ) -> Raised {
     let infinite = whole + part == f64::INFINITY;
-    let reduced = reduce::<FUSED, FAST>(exponent, [whole, part]);
+    let reduced = reduce::<T, FAST>(exponent, [whole, part]);
     // A product with an infinite logarithm may be the difference of two infinite ones when it is taken in parts.
     let y = if infinite {
         exponent.value * f64::INFINITY
@@ -221,7 +236,7 @@ pub(super) fn careful_raise<const FUSED: bool, const FAST: bool>(
     let r = if within { reduced.r } else { 0.0 };
     // In two halves, each of which is a number where the whole is not.
     let half = (0.5 * n + ROUNDS) - ROUNDS;
-    let power = power_of_two::<FUSED, FAST>(r) * scale(half) * scale(n - half);
+    let power = power_of_two::<T, FAST>(r) * scale(half) * scale(n - half);
     let power = if y.is_nan() { y } else { power };
     Raised { power, key: 0 }
 }
@@ -242,10 +257,7 @@ struct Reduced {
 }
 
 #[inline(always)]
-fn reduce<const FUSED: bool, const FAST: bool>(
-    exponent: &Exponent,
-    [whole, part]: [f64; 2],
-) -> Reduced {
+fn reduce<T: Target, const FAST: bool>(exponent: &Exponent, [whole, part]: [f64; 2]) -> Reduced {
     let a = exponent.value;
     if FAST {
         let y = a * part;
@@ -256,7 +268,7 @@ fn reduce<const FUSED: bool, const FAST: bool>(
             r: y - (rounded - ROUNDS),
         };
     }
-    if FUSED {
+    if T::FUSED {
         let of_part = a * part;
         let y = a.mul_add(whole, of_part);
         let rounded = y + ROUNDS;
@@ -273,37 +285,11 @@ fn reduce<const FUSED: bool, const FAST: bool>(
 
 /// (3)
 #[inline(always)]
-fn power_of_two<const FUSED: bool, const FAST: bool>(r: f64) -> f64 {
+fn power_of_two<T: Target, const FAST: bool>(r: f64) -> f64 {
     let q = if FAST {
-        polynomial::<FUSED, 10>(&Q_FAST, r)
+        polynomial::<T, 10>(&Q_FAST, r)
     } else {
-        polynomial::<FUSED, 11>(&Q, r)
+        polynomial::<T, 11>(&Q, r)
     };
-    add_product::<FUSED>(r, q, 1.0)
-}
-
-/// `c_0 + x (c_1 + ...)`. Even and odd powers are summed apart, so that half as many operations wait for each other; `c_0`
-/// comes last, so that only one rounding is of the size of the whole.
-#[inline(always)]
-fn polynomial<const FUSED: bool, const N: usize>(c: &[f64; N], x: f64) -> f64 {
-    let square = x * x;
-    let (mut above, mut sum) = (c[N - 1], c[N - 2]);
-    // `sum` begins with the coefficient at `lowest`, `above` with the one after it.
-    let mut lowest = N - 2;
-    while lowest > 2 {
-        sum = add_product::<FUSED>(sum, square, c[lowest - 2]);
-        above = add_product::<FUSED>(above, square, c[lowest - 1]);
-        lowest -= 2;
-    }
-    sum = add_product::<FUSED>(above, x, sum);
-    for coefficient in c[..lowest].iter().rev() {
-        sum = add_product::<FUSED>(sum, x, *coefficient);
-    }
-    sum
-}
-
-/// `a b + c`
-#[inline(always)]
-pub(super) fn add_product<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
+    T::add_product(r, q, 1.0)
 }

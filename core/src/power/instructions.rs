@@ -5,9 +5,6 @@ use std::sync::atomic::{AtomicU8, Ordering};
 /// The environment variable that chooses the instruction set.
 const VARIABLE: &str = "HERTZIAN_INSTRUCTIONS";
 
-/// Whether a product and a sum are one operation on the baseline. Where they are not, `mul_add` is a slow function.
-const FUSED_BASELINE: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
-
 /// An instruction set that inner loops are compiled for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Instructions {
@@ -125,19 +122,7 @@ impl Available {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
             Instructions::Avx2 => unsafe { avx2(work) },
-            _ => work.run::<FUSED_BASELINE>(),
-        }
-    }
-
-    /// As [`Available::run`], with vectors of at most four numbers: less code to compile, for loops that mostly move
-    /// numbers, which longer vectors hardly speed up.
-    #[inline]
-    pub fn run_short<W: Work>(self, work: W) {
-        match self.0 {
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the set is available, by the construction of `Available`, and AVX-512 only where AVX2 is.
-            Instructions::Avx512 | Instructions::Avx2 => unsafe { avx2(work) },
-            _ => work.run::<FUSED_BASELINE>(),
+            _ => baseline(work),
         }
     }
 }
@@ -152,20 +137,85 @@ fn wanted(named: Option<&str>) -> Instructions {
 /// Loops to be compiled for several instruction sets. Everything they call has to be merged into them
 /// (`#[inline(always)]`): a function that is called is compiled for the baseline.
 pub trait Work {
-    /// Does the work. `FUSED`: `mul_add` is one operation.
-    fn run<const FUSED: bool>(self);
+    /// Does the work.
+    fn run<T: Target>(self);
+}
+
+/// What loops are compiled for.
+pub trait Target {
+    /// Whether a product and a sum are one operation. Where they are not, `mul_add` is a slow function.
+    const FUSED: bool;
+
+    /// How polynomials are summed. All were measured on all targets.
+    const ORDER: Order;
+
+    /// `a b + c`
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "one or two operations")]
+    fn add_product(a: f64, b: f64, c: f64) -> f64 {
+        if Self::FUSED {
+            a.mul_add(b, c)
+        } else {
+            a * b + c
+        }
+    }
+}
+
+/// Orders of the terms of a polynomial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Fewest operations.
+    Horner,
+    /// Two chains of operations that wait for each other.
+    EvenAndOdd,
+    /// Many short ones.
+    Estrin,
+}
+
+/// What every processor of the target has.
+pub struct Baseline;
+
+impl Target for Baseline {
+    const FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+    const ORDER: Order = Order::Estrin;
+}
+
+/// With [`Instructions::Avx2`].
+#[cfg(target_arch = "x86_64")]
+struct Avx2;
+
+#[cfg(target_arch = "x86_64")]
+impl Target for Avx2 {
+    const FUSED: bool = true;
+    const ORDER: Order = Order::EvenAndOdd;
+}
+
+/// With [`Instructions::Avx512`], which has registers for four vectors of a chain each.
+#[cfg(target_arch = "x86_64")]
+struct Avx512;
+
+#[cfg(target_arch = "x86_64")]
+impl Target for Avx512 {
+    const FUSED: bool = true;
+    const ORDER: Order = Order::Horner;
+}
+
+/// A function of its own, as those below: who calls it would have room for its variables on the stack otherwise.
+#[inline(never)]
+fn baseline<W: Work>(work: W) {
+    work.run::<Baseline>();
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn avx2<W: Work>(work: W) {
-    work.run::<true>();
+    work.run::<Avx2>();
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl,avx512bw")]
 fn avx512<W: Work>(work: W) {
-    work.run::<true>();
+    work.run::<Avx512>();
 }
 
 #[cfg(test)]
@@ -201,23 +251,17 @@ mod tests {
         impl Work for Square<'_> {
             #[inline(always)]
             #[allow(clippy::inline_always, reason = "compiled anew for each set")]
-            fn run<const FUSED: bool>(self) {
+            fn run<T: Target>(self) {
                 for x in self.0 {
-                    *x = if FUSED {
-                        x.mul_add(*x, 1.0)
-                    } else {
-                        *x * *x + 1.0
-                    };
+                    *x = T::add_product(*x, *x, 1.0);
                 }
             }
         }
         for wanted in Instructions::ALL {
             let mut x: [f64; 37] = std::array::from_fn(|i| i as f64);
             Available::at_most(wanted).run(Square(&mut x));
-            Available::at_most(wanted).run_short(Square(&mut x));
             for (i, x) in x.into_iter().enumerate() {
-                let once = (i * i + 1) as f64;
-                assert_eq!(x, once * once + 1.0);
+                assert_eq!(x, (i * i + 1) as f64);
             }
         }
     }

@@ -51,14 +51,14 @@ struct Evaluation<'a, const FAST: bool> {
 impl<const FAST: bool> Work for Evaluation<'_, FAST> {
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "compiled anew for each set")]
-    fn run<const FUSED: bool>(self) {
+    fn run<T: Target>(self) {
         let Self { base, exponent, to } = self;
         let [whole, part] = &mut to.logarithm;
-        logarithms::<FUSED, FAST>(base, whole, part);
+        logarithms::<T, FAST>(base, whole, part);
         let of = Bases { base, whole, part };
-        two_powers::<FUSED, FAST>(of, exponent, &mut to.power, &mut to.next);
-        powers::<FUSED, FAST>(of, exponent, &mut to.alone);
-        cube_roots::<FUSED>(base, &mut to.cube_root);
+        two_powers::<T, FAST>(of, exponent, &mut to.power, &mut to.next);
+        powers::<T, FAST>(of, exponent, &mut to.alone);
+        cube_roots::<T>(base, &mut to.cube_root);
     }
 }
 
@@ -241,7 +241,7 @@ fn check_cube_roots(bases: &[f64]) {
         .into_iter()
         .map(|choice| evaluate(choice, bases, 1.0).cube_root)
         .collect();
-    found.push(bases.iter().map(|&x| cube_root::<false>(x)).collect());
+    found.push(bases.iter().map(|&x| cube_root::<Baseline>(x)).collect());
     for roots in found {
         for (&x, c) in bases.iter().zip(roots) {
             // By a power of eight into the middle of the range.
@@ -275,53 +275,41 @@ fn cube_roots_are_within_one_unit() {
     check_cube_roots(&bases);
     let infinite = f64::INFINITY;
     for choice in choices() {
-        let base = [0.0, -2.0, 1.0, 8.0, 1e-300, infinite, f64::NAN];
+        let base = [0.0, 1.0, 8.0, 1e-300, infinite, f64::NAN];
         let found = evaluate(choice, &base, 1.0).cube_root;
-        assert_eq!(found[..6], [0.0, 0.0, 1.0, 2.0, 1e-100, infinite]);
-        assert!(found[6].is_nan());
+        assert_eq!(found[..5], [0.0, 1.0, 2.0, 1e-100, infinite]);
+        assert!(found[5].is_nan());
     }
 }
 
 #[test]
-fn what_is_not_positive_counts_as_zero_and_infinity_as_itself() {
-    let base = [
-        0.0,
-        -0.0,
-        -5e-324,
-        -1.0,
-        -1e300,
-        f64::NEG_INFINITY,
-        f64::INFINITY,
-        f64::NAN,
-    ];
+fn infinity_counts_as_itself_and_what_is_no_number_stays_so() {
     let infinite = f64::INFINITY;
     for choice in choices() {
-        for (exponent, at_zero, at_infinity) in [
-            (1.7, 0.0, infinite),
-            (0.1, 0.0, infinite),
-            (-0.4, 0.0, 0.0),
-            (0.0, 1.0, 1.0),
-            (1e300, 0.0, infinite),
+        for (exponent, at_infinity) in [
+            (1.7, infinite),
+            (0.1, infinite),
+            (-0.4, 0.0),
+            (0.0, 1.0),
+            (1e300, infinite),
         ] {
-            let Results {
-                logarithm: [whole, part],
-                power,
-                next,
-                ..
-            } = evaluate(choice, &base, exponent);
-            for i in 0..6 {
-                assert_eq!(
-                    [power[i], next[i]],
-                    [at_zero, 0.0],
-                    "{choice:?}, {}^{exponent}",
-                    base[i]
-                );
-                assert_eq!([whole[i], part[i]], [0.0; 2]);
-            }
-            assert_eq!(power[6], at_infinity, "{choice:?}, {exponent}");
-            assert_eq!(whole[6] + part[6], infinite);
-            assert!(next[7].is_nan() && (exponent == 0.0 || power[7].is_nan()));
+            let found = evaluate(choice, &[infinite, f64::NAN], exponent);
+            assert_eq!(found.power[0], at_infinity, "{choice:?}, {exponent}");
+            let [whole, part] = &found.logarithm;
+            assert_eq!(whole[0] + part[0], infinite);
+            assert!((whole[1] + part[1]).is_nan());
+            assert!(found.next[1].is_nan() && (exponent == 0.0 || found.power[1].is_nan()));
         }
+    }
+}
+
+/// Nobody uses the power of such a base, but it must not send all others the long way, and its logarithm must be a number.
+#[test]
+fn the_logarithm_of_what_is_not_positive_is_zero() {
+    let base = [0.0, -0.0, -5e-324, -1.0, -1e300, f64::NEG_INFINITY];
+    for choice in choices() {
+        let [whole, part] = evaluate(choice, &base, 1.7).logarithm;
+        assert_eq!([whole, part], [[0.0; 6]; 2]);
     }
 }
 
