@@ -5,4 +5,5 @@
 
 pub mod attractors;
 pub mod model;
+pub mod paper;
 pub mod response;

@@ -13,7 +13,7 @@ use hertzian::flow::{self, Flow, FlowError};
 use hertzian::{Error, System};
 
 use super::options::Options;
-use super::output;
+use super::output::{self, Results};
 use super::{basin, history, lyapunov, phase, sweep};
 use crate::response::model_file::ModelError;
 use crate::response::models;
@@ -110,6 +110,24 @@ pub fn run(
     progress: &mut Progress,
 ) -> Result<Outcome, Failure> {
     output::check(&options.out)?;
+    let results = compute(options, interrupted, progress)?;
+    output::write(&options.out, &results)?;
+    let paths = output::paths(&options.out).map(|path| path.display().to_string());
+    Ok(Outcome {
+        summary: format!("{}written    {}\n", results.summary, paths.join(", ")),
+        complete: results.complete,
+    })
+}
+
+/// Does the task and writes no file but the checkpoint.
+///
+/// # Errors
+/// If the options are not usable, or a motion cannot be computed.
+pub fn compute(
+    options: &Options,
+    interrupted: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Results, Failure> {
     let varied = options.sweep.map_or("omega", super::options::Swept::name);
     let system = models::model(&options.model, (varied, options.from)).map_err(|error| {
         let path = options.model.file.clone().unwrap_or_default();
@@ -121,25 +139,17 @@ pub fn run(
         interrupted,
         progress: Mutex::new(progress),
     };
-    let results = match options.sweep {
+    let mut results = match options.sweep {
         Some(swept) => sweep::run(&task, swept),
         None if options.basin => basin::run(&task),
         None if options.lyapunov => lyapunov::run(&task),
         None if options.phase => phase::run(&task),
         None => history::run(&task),
     }?;
-    output::write(&options.out, &results)?;
-    let paths = output::paths(&options.out).map(|path| path.display().to_string());
-    Ok(Outcome {
-        summary: format!(
-            "{}: {}\n{}written    {}\n",
-            task.system.facts().name,
-            task.system.facts().equation,
-            results.summary,
-            paths.join(", ")
-        ),
-        complete: results.complete,
-    })
+    let facts = task.system.facts();
+    let head = format!("{}: {}\n", facts.name, facts.equation);
+    results.summary.insert_str(0, &head);
+    Ok(results)
 }
 
 impl<'t> Task<'t> {

@@ -73,7 +73,7 @@ pub fn write_csv(path: &Path, points: &[PointRecord]) -> io::Result<()> {
 }
 
 /// A point as the texts of [`COLUMNS`]; a multiplier that is not known is empty.
-fn row(point: &PointRecord) -> Vec<String> {
+pub fn row(point: &PointRecord) -> Vec<String> {
     // As short as reads back to the same number.
     let number = |value: f64| format!("{value:?}");
     let part = |index: usize, part: usize| {

@@ -1,0 +1,305 @@
+//! Figures 8a and 9a, and Table 1: orbits of several periods of the one-sided contact of exponent one, by shooting.
+//!
+//! Every piece of its force is affine, so that motions are known in closed form and nothing is truncated.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::Ordering;
+
+use hertzian::chart::{Chart, Curve, Line, Markers, Run};
+use hertzian::flow::shooting::{Cycle, CycleBranch, CycleEvent};
+use hertzian::{Error, EventKind, Shooting, Verdict};
+
+use super::exact;
+use super::figure::{Drawing, Table, Task, Value};
+use crate::response::models::OneSidedLinear;
+
+/// States on orbits to three digits or so, to begin with; the attractors at amplitude and frequency one were found by simulation.
+const PERIOD_8: [f64; 2] = [-0.330, 0.333];
+const COEXISTING: [(usize, [f64; 2]); 5] = [
+    (2, [-5.63, 3.53]),
+    (3, [-31.3, 0.605]),
+    (3, [-6.36, -0.0231]),
+    (4, [-58.4, -2.28]),
+    (5, [-99.53, 1.207]),
+];
+
+fn model(drive: f64) -> OneSidedLinear {
+    OneSidedLinear {
+        zeta: 0.032,
+        load: 1.0,
+        drive,
+    }
+}
+
+/// A figure that grows by branches.
+struct Cycles<'t> {
+    task: &'t Task<'t>,
+    curves: Vec<Curve>,
+    marks: Vec<(EventKind, Vec<[f64; 2]>)>,
+    events: Vec<CycleEvent>,
+    drawing: Drawing,
+}
+
+impl<'t> Cycles<'t> {
+    fn new(task: &'t Task<'t>, varied: &'static str) -> Self {
+        let names = ["period", varied, "peak_to_peak", "stability", "multiplier"];
+        Self {
+            task,
+            curves: Vec::new(),
+            marks: Vec::new(),
+            events: Vec::new(),
+            drawing: Drawing {
+                data: Table {
+                    names: names.map(str::to_owned).to_vec(),
+                    rows: Vec::new(),
+                },
+                ..Drawing::default()
+            },
+        }
+    }
+
+    /// Follows a branch and adds it.
+    fn follow(&mut self, shooting: &Shooting<'_>) -> Result<CycleBranch, String> {
+        let branch = shooting
+            .run_with(|_| {
+                if self.task.interrupted.load(Ordering::Relaxed) {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            })
+            .map_err(|error| error.to_string())?;
+        self.add(&branch);
+        Ok(branch)
+    }
+
+    /// Goes on where a branch has come back to through a fold.
+    fn continue_from(
+        &mut self,
+        branch: &CycleBranch,
+        orbits: &Shooting<'_>,
+        [from, to]: [f64; 2],
+    ) -> Result<(), String> {
+        let last = branch.cycles.last().filter(|last| last.value == from);
+        let last = last.ok_or_else(|| format!("the branch did not come back: {}", branch.end))?;
+        self.follow(&orbits.clone().near(last.state()).from(from).to(to))?;
+        Ok(())
+    }
+
+    /// Adds a branch: its curve, its data and its special orbits. Branches of one period have one place in the legend.
+    fn add(&mut self, branch: &CycleBranch) {
+        let Some(first) = branch.cycles.first() else {
+            return;
+        };
+        let label = format!("period {}", first.period);
+        let runs = runs(branch, place);
+        match self.curves.iter_mut().find(|curve| curve.label == label) {
+            Some(curve) => curve.runs.extend(runs),
+            None => self.curves.push(Curve { label, runs }),
+        }
+        for event in &branch.events {
+            let place = place(&event.cycle);
+            match self.marks.iter_mut().find(|(kind, _)| *kind == event.kind) {
+                Some((_, points)) => points.push(place),
+                None => self.marks.push((event.kind, vec![place])),
+            }
+        }
+        self.events.extend(branch.events.iter().cloned());
+        let rows = branch.cycles.iter().map(row);
+        self.drawing.data.rows.extend(rows);
+    }
+
+    fn drawn(mut self, x: &str, y: [f64; 2]) -> Drawing {
+        let title = format!("{}: {}", self.task.figure.name, self.task.figure.parameters);
+        let mut chart = Chart::new(title).x(x).y("peak-to-peak displacement");
+        let ends = self.curves.iter().flat_map(|curve| &curve.runs);
+        let values = ends.flat_map(|run| &run.points).map(|point| point[0]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        if low < high {
+            chart = chart.limits([low, high], y);
+        }
+        for curve in self.curves {
+            chart = chart.curve(curve);
+        }
+        for (kind, points) in self.marks {
+            let label = kind.to_string();
+            chart = chart.markers(Markers { label, points });
+        }
+        self.drawing.svg = chart.to_svg();
+        self.drawing
+    }
+}
+
+/// The branch as runs of one stability each, as the library draws those of the balance.
+fn runs(branch: &CycleBranch, place: impl Fn(&Cycle) -> [f64; 2]) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (index, cycle) in branch.cycles.iter().enumerate() {
+        let line = match cycle.stability.verdict {
+            Verdict::Stable => Line::Stable,
+            Verdict::Unstable => Line::Unstable,
+            Verdict::Undecided => Line::Undecided,
+        };
+        let joint = branch.events.iter().find(|event| event.after == index);
+        let joint = joint.map(|event| place(&event.cycle));
+        match runs.last_mut() {
+            Some(run) if run.line == line => {
+                run.points.extend(joint);
+                run.points.push(place(cycle));
+            }
+            Some(run) => {
+                let joint = joint.unwrap_or(place(cycle));
+                run.points.push(joint);
+                let points = vec![joint, place(cycle)];
+                runs.push(Run { line, points });
+            }
+            None => runs.push(Run {
+                line,
+                points: vec![place(cycle)],
+            }),
+        }
+    }
+    runs
+}
+
+fn place(cycle: &Cycle) -> [f64; 2] {
+    [cycle.value, cycle.peak_to_peak()]
+}
+
+fn row(cycle: &Cycle) -> Vec<String> {
+    let largest = cycle.stability.multipliers.iter().map(|m| m.norm());
+    let largest = largest.fold(0.0, f64::max);
+    vec![
+        cycle.period.to_string(),
+        format!("{:?}", cycle.value),
+        format!("{:?}", cycle.peak_to_peak()),
+        cycle.stability.verdict.to_string(),
+        format!("{largest:?}"),
+    ]
+}
+
+/// Orbits of period one, two and eight as the amplitude changes.
+///
+/// # Errors
+/// If a branch does not begin.
+pub fn figure_8a(task: &Task<'_>) -> Result<Drawing, String> {
+    let model = model(0.1);
+    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let mut figure = Cycles::new(task, "drive");
+    figure.follow(&shooting.clone().from(0.1).to(2.1))?;
+    // Large orbits of period two: upwards, and downwards to their fold; then on from there to where period one doubles.
+    let two = shooting.clone().period(2);
+    figure.follow(&two.clone().from(1.0).to(2.1))?;
+    let fold = figure.follow(&two.clone().from(1.0).to(0.2))?;
+    figure.continue_from(&fold, &two, [1.0, 2.1])?;
+    let eight = shooting.period(8).near(&PERIOD_8);
+    for to in [1.75, 1.8] {
+        figure.follow(&eight.clone().from(1.7798).to(to))?;
+    }
+    let events = std::mem::take(&mut figure.events);
+    for (period, kind, drive, what) in exact::AMPLITUDES {
+        let alike = events
+            .iter()
+            .filter(|e| e.kind == kind && e.cycle.period == period);
+        let distance = |event: &CycleEvent| (event.cycle.value - drive).abs();
+        let nearest = alike.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let found = nearest.filter(|event| distance(event) < 1e-3);
+        let value = match found {
+            Some(event) => Value::of(format!("{what}, A"), event.cycle.value)
+                .stated(event.error)
+                .exact(Some(drive)),
+            None => Value::missing(format!("{what}, A"), drive),
+        };
+        figure.drawing.values.push(value);
+    }
+    Ok(figure.drawn("excitation amplitude A", [0.0, 40.0]))
+}
+
+/// Orbits of period one to five as the frequency changes.
+///
+/// # Errors
+/// If a branch does not begin.
+pub fn figure_9a(task: &Task<'_>) -> Result<Drawing, String> {
+    let model = model(1.0);
+    let mut figure = Cycles::new(task, "omega");
+    let shooting = Shooting::of(&model);
+    figure.follow(&shooting.clone().from(2.2).to(0.4))?;
+    for (period, state) in COEXISTING {
+        let orbits = shooting.clone().period(period);
+        let near = orbits.clone().near(&state);
+        figure.follow(&near.clone().from(1.0).to(0.4))?;
+        let fold = figure.follow(&near.from(1.0).to(2.2))?;
+        figure.continue_from(&fold, &orbits, [1.0, 0.4])?;
+    }
+    Ok(figure.drawn("excitation frequency ω", [0.0, 120.0]))
+}
+
+/// Table 1: multipliers of period eight beside its fold.
+///
+/// # Errors
+/// If an orbit is not found where there is one.
+pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
+    let model = model(1.7798);
+    let shooting = Shooting::of(&model).vary("drive").omega(1.0).period(8);
+    let mut figure = Cycles::new(task, "drive");
+    let branch = shooting.clone().near(&PERIOD_8).from(1.7798).to(1.7799);
+    let branch = figure.follow(&branch)?;
+    let mut values = Vec::new();
+    let mut near = PERIOD_8.to_vec();
+    for column in &exact::TABLE_1 {
+        let &exact::Column {
+            drive,
+            multipliers,
+            printed,
+        } = column;
+        let names = [format!("λ₁ at A = {drive}"), format!("λ₂ at A = {drive}")];
+        match shooting.clone().near(&near).orbit(drive) {
+            Ok(cycle) => {
+                near = cycle.state().to_vec();
+                for (index, name) in names.into_iter().enumerate() {
+                    let found = cycle
+                        .stability
+                        .multipliers
+                        .get(index)
+                        .map_or(f64::NAN, |m| m.re);
+                    let value = Value::of(name, found).stated(cycle.stability.error);
+                    let exact = multipliers.map(|exact| exact[index]);
+                    values.push(value.exact(exact).printed(printed[index]));
+                }
+            }
+            Err(Error::Beyond { fold, .. }) if multipliers.is_none() => {
+                let value = Value::of(format!("fold before A = {drive}"), fold);
+                let exact = exact::AMPLITUDES.iter().find(|known| known.0 == 8);
+                let value = value.exact(exact.map(|known| known.2));
+                values.push(value.printed("1.0020 and 0.1833: there is no orbit"));
+            }
+            Err(error) => return Err(error.to_string()),
+        }
+    }
+    let mut drawing = figure.drawing;
+    let title = format!("{}: {}", task.figure.name, task.figure.parameters);
+    drawing.svg = Chart::new(title)
+        .x("excitation amplitude A")
+        .y("leading multiplier of period 8")
+        .curve(Curve {
+            label: String::new(),
+            runs: runs(&branch, leading),
+        })
+        .markers(Markers {
+            label: "printed in the paper".to_owned(),
+            points: exact::TABLE_1
+                .iter()
+                .filter_map(|column| Some([column.drive, column.printed[0].parse().ok()?]))
+                .collect(),
+        })
+        .to_svg();
+    drawing.values = values;
+    Ok(drawing)
+}
+
+/// Amplitude and leading multiplier.
+fn leading(cycle: &Cycle) -> [f64; 2] {
+    let multipliers = cycle.stability.multipliers.iter().map(|m| m.re);
+    [cycle.value, multipliers.fold(f64::NEG_INFINITY, f64::max)]
+}

@@ -1,0 +1,114 @@
+//! What a figure is, and what comes of it.
+
+use std::sync::atomic::AtomicBool;
+
+/// A figure or table of the paper.
+pub struct Figure {
+    /// Name of its files, and of the option `--only`.
+    pub id: &'static str,
+    /// Its number in the paper.
+    pub name: &'static str,
+    /// The system and its parameters.
+    pub parameters: &'static str,
+    /// What it shows, in a sentence.
+    pub shows: &'static str,
+    /// Whether it takes seconds.
+    pub long: bool,
+    /// Computes and draws it.
+    pub draw: fn(&Task<'_>) -> Result<Drawing, String>,
+}
+
+/// What a figure is computed with.
+pub struct Task<'t> {
+    /// The figure.
+    pub figure: &'t Figure,
+    /// Ends the computation when it is set.
+    pub interrupted: &'t AtomicBool,
+}
+
+/// What came of a figure.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drawing {
+    /// The picture.
+    pub svg: String,
+    /// Names of the columns of its data, and the rows.
+    pub data: Table,
+    /// Values to compare.
+    pub values: Vec<Value>,
+    /// What is to be said of the differences.
+    pub note: String,
+}
+
+/// Names of columns, and rows.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Table {
+    /// Names of the columns.
+    pub names: Vec<String>,
+    /// Rows with as many entries.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A number of ours beside the exact one and the one that the paper prints.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Value {
+    /// What it is.
+    pub what: String,
+    /// Ours, unless there is none.
+    pub ours: Option<f64>,
+    /// Error that our program states.
+    pub stated: Option<f64>,
+    /// The exact value, unless it is not known, or there is none.
+    pub exact: Option<f64>,
+    /// What the paper prints.
+    pub printed: Option<&'static str>,
+}
+
+impl Value {
+    /// A value of ours.
+    pub fn of(what: impl Into<String>, ours: f64) -> Self {
+        Self {
+            what: what.into(),
+            ours: Some(ours),
+            stated: None,
+            exact: None,
+            printed: None,
+        }
+    }
+
+    /// A value that should be there, and is not.
+    pub fn missing(what: impl Into<String>, exact: f64) -> Self {
+        Self {
+            what: what.into(),
+            ours: None,
+            stated: None,
+            exact: Some(exact),
+            printed: None,
+        }
+    }
+
+    /// With the error that the program states.
+    #[must_use]
+    pub fn stated(mut self, error: f64) -> Self {
+        self.stated = Some(error);
+        self
+    }
+
+    /// With the exact value, if it is known.
+    #[must_use]
+    pub fn exact(mut self, value: Option<f64>) -> Self {
+        self.exact = value;
+        self
+    }
+
+    /// With what the paper prints.
+    #[must_use]
+    pub fn printed(mut self, text: &'static str) -> Self {
+        self.printed = Some(text);
+        self
+    }
+
+    /// Difference of ours from the exact value.
+    pub fn error(&self) -> Option<f64> {
+        Some((self.ours? - self.exact?).abs())
+    }
+}
