@@ -1,6 +1,15 @@
-//! The declarations of the guide, compiled. One of them draws a picture.
+//! The book's blocks of code, compiled and run. One of them draws a picture.
 
 #![cfg(feature = "plot")]
 
 #[doc = include_str!("../../docs/book/src/declaring-contacts.md")]
 struct DeclaringContacts;
+
+#[doc = include_str!("../../docs/book/src/response-curves.md")]
+struct ResponseCurves;
+
+#[doc = include_str!("../../docs/book/src/attractors.md")]
+struct Attractors;
+
+#[doc = include_str!("../../docs/book/src/theory.md")]
+struct Theory;

@@ -7,3 +7,4 @@ pub mod attractors;
 pub mod model;
 pub mod paper;
 pub mod response;
+pub mod work_precision;

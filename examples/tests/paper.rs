@@ -28,7 +28,7 @@ impl Drop for Folder {
 
 fn draw(folder: &Path, figures: &[&str]) -> Vec<Drawn> {
     let folder = folder.to_str().unwrap();
-    let words = ["paper", "--out", folder, "--only"].iter().chain(figures);
+    let words = [&["paper", "--out", folder, "--only"], figures].concat();
     let options = Options::try_parse_from(words).unwrap();
     let interrupted = AtomicBool::new(false);
     run(&options, &interrupted, &mut Progress::new(false)).unwrap()

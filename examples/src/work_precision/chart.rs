@@ -1,0 +1,47 @@
+//! Error over time, both logarithmic.
+
+use hertzian::chart::{Chart, Markers, Scale, Trace};
+
+use super::measure::Measured;
+use super::method::Family;
+use super::problem::Problem;
+
+/// Errors below this are drawn as this: closed forms reach rounding.
+const FLOOR: f64 = 1e-16;
+
+/// The chart of one quantity.
+pub fn chart(
+    problem: &Problem,
+    measured: &[Measured],
+    label: &str,
+    error: impl Fn(&Measured) -> Option<f64>,
+) -> Chart {
+    let mut chart = Chart::new(problem.title)
+        .x("time of the curve without multipliers, milliseconds")
+        .y(label)
+        .scales(Scale::Logarithmic, Scale::Logarithmic);
+    let place = |one: &Measured| {
+        let time = 1e3 * one.median()?;
+        Some([time, error(one)?.max(FLOOR)])
+    };
+    for family in Family::ALL {
+        let right = measured
+            .iter()
+            .filter(|one| one.family == family && one.failure.is_none());
+        let points: Vec<[f64; 2]> = right.filter_map(place).collect();
+        chart = chart
+            .trace(Trace {
+                label: String::new(),
+                points: points.clone(),
+            })
+            .markers(Markers {
+                label: family.name().to_owned(),
+                points,
+            });
+    }
+    let failed = measured.iter().filter(|one| one.failure.is_some());
+    chart.markers(Markers {
+        label: "any, with folds that are not there, or incomplete".to_owned(),
+        points: failed.filter_map(place).collect(),
+    })
+}

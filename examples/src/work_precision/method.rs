@@ -1,0 +1,254 @@
+//! The methods and their settings.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use hertzian::flow::shooting::CycleBranch;
+use hertzian::{Aft, Branch, EventKind, FrequencyResponse, Shooting};
+
+use super::problem::Problem;
+
+/// A way to compute the curve, without its settings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// Sampled harmonic balance, the classical one.
+    Classical,
+    /// Sampled, with rate terms through their primitive.
+    Primitive,
+    /// Integrated from switch to switch, with a number of harmonics.
+    Switched,
+    /// The same with interpreted laws.
+    Interpreted,
+    /// Integrated from switch to switch, harmonics by a tolerance.
+    Adaptive,
+    /// Shooting, with a tolerance of the flow; closed forms have none.
+    Shooting,
+}
+
+impl Family {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Classical,
+        Self::Primitive,
+        Self::Switched,
+        Self::Interpreted,
+        Self::Adaptive,
+        Self::Shooting,
+    ];
+
+    /// Its name in legends and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Classical => "sampled, classical",
+            Self::Primitive => "sampled, primitive",
+            Self::Switched => "switched",
+            Self::Interpreted => "switched, interpreted",
+            Self::Adaptive => "switched, by tolerance",
+            Self::Shooting => "shooting",
+        }
+    }
+
+    /// The settings that are tried.
+    pub fn settings(self) -> Vec<Setting> {
+        match self {
+            Self::Classical | Self::Primitive => [
+                (5, 512),
+                (10, 512),
+                (10, 4096),
+                (20, 4096),
+                (40, 4096),
+                (40, 16384),
+            ]
+            .map(|(harmonics, samples)| Setting::Samples { harmonics, samples })
+            .to_vec(),
+            Self::Switched | Self::Interpreted => {
+                [5, 10, 20, 40, 80].map(Setting::Harmonics).to_vec()
+            }
+            Self::Adaptive => [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
+                .map(Setting::Tolerance)
+                .to_vec(),
+            Self::Shooting => [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
+                .map(Setting::Tolerance)
+                .to_vec(),
+        }
+    }
+}
+
+/// What is swept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Setting {
+    /// Harmonics and samples of a period.
+    Samples {
+        /// Harmonics.
+        harmonics: usize,
+        /// Samples.
+        samples: usize,
+    },
+    /// Harmonics.
+    Harmonics(usize),
+    /// A tolerance.
+    Tolerance(f64),
+}
+
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Samples { harmonics, samples } => write!(f, "K = {harmonics}, N = {samples}"),
+            Self::Harmonics(harmonics) => write!(f, "K = {harmonics}"),
+            Self::Tolerance(tolerance) => write!(f, "tolerance {tolerance:.0e}"),
+        }
+    }
+}
+
+/// What one run gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Time of the curve.
+    pub seconds: f64,
+    /// Folds, and turns that could not be confirmed as folds.
+    pub folds: Vec<f64>,
+    /// Peak-to-peak of the largest orbit at the frequency of comparison; `None` if the curve does not pass there.
+    pub peak_to_peak: Option<f64>,
+    /// Why the curve ended early.
+    pub fault: Option<String>,
+}
+
+/// Traces the curve once.
+///
+/// # Errors
+/// If it does not begin.
+pub fn run(
+    problem: &Problem,
+    family: Family,
+    setting: Setting,
+    patience: f64,
+) -> Result<Run, hertzian::Error> {
+    match family {
+        Family::Shooting => shoot(problem, setting, patience),
+        _ => balance(problem, family, setting, patience),
+    }
+}
+
+fn balance(
+    problem: &Problem,
+    family: Family,
+    setting: Setting,
+    patience: f64,
+) -> Result<Run, hertzian::Error> {
+    let system = match family {
+        Family::Interpreted => &problem.interpreted,
+        _ => &problem.compiled,
+    };
+    let aft = match family {
+        Family::Classical => Aft::Sampled,
+        Family::Primitive => Aft::Primitive,
+        _ => Aft::Switched,
+    };
+    let [from, to] = problem.range;
+    let request = FrequencyResponse::of(&**system).from(from).to(to);
+    let request = request.aft(aft).stability(false);
+    let request = match setting {
+        Setting::Samples { harmonics, samples } => request.harmonics(harmonics).samples(samples),
+        Setting::Harmonics(harmonics) => request.harmonics(harmonics),
+        Setting::Tolerance(tolerance) => request.tolerance(tolerance),
+    };
+    let started = Instant::now();
+    let branch = request.run_with(|_| within(started, patience))?;
+    let seconds = started.elapsed().as_secs_f64();
+    let reached = branch.stopped == hertzian::Stop::ReachedEnd;
+    Ok(Run {
+        seconds,
+        folds: turns(&branch),
+        peak_to_peak: largest(&branch, problem.at),
+        fault: (!reached).then(|| format!("ended early: {}", branch.stopped)),
+    })
+}
+
+fn shoot(problem: &Problem, setting: Setting, patience: f64) -> Result<Run, hertzian::Error> {
+    let tolerance = match setting {
+        Setting::Tolerance(tolerance) => tolerance,
+        Setting::Samples { .. } | Setting::Harmonics(_) => 1e-10,
+    };
+    let [from, to] = problem.range;
+    let shooting = Shooting::of(&*problem.compiled)
+        .tolerance(tolerance)
+        .stability(false);
+    let started = Instant::now();
+    let request = shooting.clone().from(from).to(to);
+    let branch = request.run_with(|_| within(started, patience))?;
+    let seconds = started.elapsed().as_secs_f64();
+    let folds = branch.folds().map(|fold| fold.cycle.value);
+    let others = branch.turns.iter().map(|turn| turn.value);
+    let reached = branch
+        .cycles
+        .last()
+        .is_some_and(|last| last.value == to || last.value == from);
+    Ok(Run {
+        seconds,
+        folds: folds.chain(others).collect(),
+        peak_to_peak: largest_cycle(&shooting, &branch, problem.at),
+        fault: (!reached).then(|| format!("ended early: {}", branch.end)),
+    })
+}
+
+fn within(started: Instant, patience: f64) -> ControlFlow<()> {
+    if started.elapsed().as_secs_f64() < patience {
+        ControlFlow::Continue(())
+    } else {
+        ControlFlow::Break(())
+    }
+}
+
+/// Where the branch turns, confirmed as a fold or not: a user would see either.
+fn turns(branch: &Branch<'_>) -> Vec<f64> {
+    let folds = branch
+        .events
+        .iter()
+        .filter(|event| event.kind == EventKind::Fold);
+    let folds = folds.map(|fold| fold.point.value);
+    folds
+        .chain(branch.turns.iter().map(|turn| turn.value))
+        .collect()
+}
+
+fn largest(branch: &Branch<'_>, at: f64) -> Option<f64> {
+    let orbits = branch.at(at).ok()?;
+    orbits
+        .iter()
+        .map(hertzian::Point::peak_to_peak)
+        .max_by(f64::total_cmp)
+}
+
+/// The largest orbit of a branch at a frequency, from the nearest one of those that are larger than the others beside it.
+fn largest_cycle(shooting: &Shooting<'_>, branch: &CycleBranch, at: f64) -> Option<f64> {
+    let passes = branch
+        .cycles
+        .windows(2)
+        .filter(|pair| (pair[0].value - at) * (pair[1].value - at) <= 0.0);
+    let largest = passes.max_by(|a, b| a[0].peak_to_peak().total_cmp(&b[0].peak_to_peak()))?;
+    let cycle = shooting.clone().near(largest[0].state()).orbit(at).ok()?;
+    Some(cycle.peak_to_peak())
+}
+
+/// The largest orbit at the frequency of comparison, to all digits.
+///
+/// # Errors
+/// If there is none.
+pub fn reference(problem: &Problem) -> Result<f64, hertzian::Error> {
+    let [from, to] = problem.range;
+    let branch = FrequencyResponse::of(&*problem.compiled)
+        .from(from)
+        .to(to)
+        .stability(false)
+        .run()?;
+    let orbits = branch.at(problem.at)?;
+    let largest = orbits
+        .iter()
+        .max_by(|a, b| a.peak_to_peak().total_cmp(&b.peak_to_peak()));
+    let Some(largest) = largest else {
+        return Ok(f64::NAN);
+    };
+    let shooting = Shooting::of(&*problem.compiled).tolerance(1e-13);
+    let cycle = shooting.near_orbit(&largest.orbit).orbit(problem.at)?;
+    Ok(cycle.peak_to_peak())
+}

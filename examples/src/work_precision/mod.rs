@@ -1,0 +1,183 @@
+//! The program `work_precision`: error against time of several methods on the same curves.
+//!
+//! Conventions are those of work-precision diagrams as the `SciML` benchmarks have them: one point for each setting, references far more
+//! accurate than anything compared, medians of repeats that take turns, hardware and versions stated, failures shown.
+
+mod chart;
+pub mod measure;
+pub mod method;
+pub mod options;
+mod page;
+pub mod problem;
+
+use std::fs;
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Parser;
+use hertzian::chart::Page;
+
+use crate::response::progress::Progress;
+use measure::{Measured, measure};
+use options::Options;
+use problem::Problem;
+
+/// Why nothing came of it.
+#[derive(Debug)]
+pub enum Failure {
+    /// A reference could not be computed.
+    Reference(hertzian::Error),
+    /// A file could not be written.
+    File(PathBuf, io::Error),
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Reference(error) => error.fmt(f),
+            Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// Reads the command line, measures, writes, and says by the exit code how it went: 0 done, 2 failed, 3 ended early.
+pub fn main() -> ExitCode {
+    let options = Options::parse();
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    // Without a handler, Ctrl-C ends the program at once: a nuisance, but no reason not to compute.
+    let _ = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
+    let shown = !options.quiet && io::stderr().is_terminal();
+    let mut progress = Progress::new(shown);
+    let outcome = run(&options, problem::all(), &interrupted, &mut progress);
+    progress.end();
+    match outcome {
+        Ok(sections) => {
+            if !options.quiet {
+                // Whoever reads the output may have stopped reading: not an error.
+                let _ = io::stdout().write_all(summary(&options, &sections).as_bytes());
+            }
+            ExitCode::from(if interrupted.load(Ordering::Relaxed) {
+                3
+            } else {
+                0
+            })
+        }
+        Err(failure) => {
+            let _ = writeln!(io::stderr(), "work_precision: {failure}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Measures the problems and writes the results of each as soon as it is done. Setting `interrupted` ends it.
+///
+/// # Errors
+/// If a reference cannot be computed, or a file cannot be written.
+pub fn run(
+    options: &Options,
+    problems: Vec<Problem>,
+    interrupted: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Vec<(Problem, Vec<Measured>)>, Failure> {
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |error| Failure::File(path, error)
+    };
+    fs::create_dir_all(&options.out).map_err(failed(&options.out))?;
+    let mut sections = Vec::new();
+    for problem in problems {
+        if interrupted.load(Ordering::Relaxed) {
+            break;
+        }
+        let reference = method::reference(&problem).map_err(Failure::Reference)?;
+        let how = (options.repeats.get(), options.patience);
+        let measured = measure(&problem, reference, how, &mut |done, all| {
+            progress.update(|| format!("{}: {done} of {all} runs", problem.title));
+            !interrupted.load(Ordering::Relaxed)
+        });
+        let fold = chart::chart(
+            &problem,
+            &measured,
+            "error of the fold of largest amplitude, ω",
+            |one| one.fold,
+        );
+        let size = chart::chart(
+            &problem,
+            &measured,
+            "relative error of peak-to-peak",
+            |one| one.peak_to_peak,
+        );
+        let svg = options
+            .out
+            .join(problem.id.replace('.', "_"))
+            .with_extension("svg");
+        let page = Page::new(2).chart(fold).chart(size);
+        fs::write(&svg, page.to_svg()).map_err(failed(&svg))?;
+        sections.push((problem, measured));
+        let csv = options.out.join("work_precision.csv");
+        write_csv(&csv, &sections).map_err(failed(&csv))?;
+        let html = options.out.join("index.html");
+        fs::write(&html, page::html(&sections, &machine())).map_err(failed(&html))?;
+    }
+    Ok(sections)
+}
+
+fn write_csv(path: &Path, sections: &[(Problem, Vec<Measured>)]) -> io::Result<()> {
+    let mut writer = csv::Writer::from_path(path)?;
+    writer.write_record([
+        "problem",
+        "method",
+        "setting",
+        "seconds_median",
+        "seconds_least",
+        "seconds_most",
+        "error_fold",
+        "error_peak_to_peak",
+        "failure",
+    ])?;
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:?}"));
+    for (problem, measured) in sections {
+        for one in measured {
+            writer.write_record([
+                problem.id.to_owned(),
+                one.family.name().to_owned(),
+                one.setting.to_string(),
+                number(one.median()),
+                number(one.seconds.first().copied()),
+                number(one.seconds.last().copied()),
+                number(one.fold),
+                number(one.peak_to_peak),
+                one.failure.clone().unwrap_or_default(),
+            ])?;
+        }
+    }
+    writer.flush()
+}
+
+/// Processor and version.
+fn machine() -> String {
+    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = info
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    let name = name.map_or(std::env::consts::ARCH, |(_, name)| name);
+    format!("{name}, one thread, hertzian {}", env!("CARGO_PKG_VERSION"))
+}
+
+fn summary(options: &Options, sections: &[(Problem, Vec<Measured>)]) -> String {
+    let lines = sections
+        .iter()
+        .map(|(problem, measured)| format!("{}. {}\n", problem.title, page::verdict(measured)));
+    let written = options.out.join("index.html");
+    lines.collect::<String>() + &format!("written  {}\n", written.display())
+}

@@ -1,0 +1,100 @@
+//! The page with the charts, and what they say.
+
+use std::fmt::Write;
+
+use super::measure::Measured;
+use super::method::Family;
+use super::problem::Problem;
+
+const STYLE: &str = "\
+:root { color-scheme: light dark; --text: #1a1a1a; --ground: #ffffff; --line: #c8c8c8; }
+@media (prefers-color-scheme: dark) { :root { --text: #e8e8e8; --ground: #16181c; --line: #44484f; } }
+body { margin: 0 auto; max-width: 62rem; padding: 1rem 1.25rem 4rem; font: 1rem/1.5 system-ui, sans-serif; color: var(--text); background: var(--ground); }
+img { display: block; width: 100%; height: auto; margin: 0.75rem 0; background: #ffffff; border: 1px solid var(--line); }
+.table { overflow-x: auto; } table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
+th, td { padding: 0.15rem 0.9rem 0.15rem 0; text-align: left; border-bottom: 1px solid var(--line); white-space: nowrap; }";
+
+/// The page.
+pub fn html(sections: &[(Problem, Vec<Measured>)], machine: &str) -> String {
+    let mut text = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>Error against time</title>\n<style>\n{STYLE}\n</style>\n</head>\n<body>\n<h1>Error against time</h1>\n\
+         <p>{machine}. Every method traces the same curve, without multipliers. Errors are those of the fold of largest amplitude, and of \
+         peak-to-peak of one orbit on the branch to it, against exact values. Times are medians. A method that finds other folds than there are \
+         has failed, whatever the error of one of them.</p>\n"
+    );
+    for (problem, measured) in sections {
+        // Writing to a string does not fail.
+        let _ = write!(
+            text,
+            "<h2>{}</h2>\n<img alt=\"Error of the fold and of peak-to-peak over time\" src=\"{}.svg\">\n<p>{}</p>\n",
+            problem.title,
+            problem.id.replace('.', "_"),
+            verdict(measured)
+        );
+        table(&mut text, measured);
+    }
+    text.push_str("</body>\n</html>\n");
+    text
+}
+
+/// What to use when, as the figures have it.
+pub fn verdict(measured: &[Measured]) -> String {
+    let mut sentences = Vec::new();
+    for asked in [1e-3, 1e-6, 1e-9] {
+        let right = measured.iter().filter(|one| one.failure.is_none());
+        let enough = right.filter(|one| one.fold.is_some_and(|error| error <= asked));
+        let fastest = enough.min_by(|a, b| {
+            a.median()
+                .unwrap_or(f64::MAX)
+                .total_cmp(&b.median().unwrap_or(f64::MAX))
+        });
+        sentences.push(match fastest {
+            Some(one) => format!(
+                "For a fold to {asked:.0e}: {} with {}, {:.3} ms.",
+                one.family.name(),
+                one.setting,
+                1e3 * one.median().unwrap_or(f64::NAN)
+            ),
+            None => format!("A fold to {asked:.0e} was not reached."),
+        });
+    }
+    let sampled = |one: &&Measured| matches!(one.family, Family::Classical | Family::Primitive);
+    let (failed, all) = (
+        measured
+            .iter()
+            .filter(sampled)
+            .filter(|one| one.failure.is_some())
+            .count(),
+        measured.iter().filter(sampled).count(),
+    );
+    sentences.push(format!("Of the {all} sampled settings {failed} failed."));
+    sentences.join(" ")
+}
+
+fn table(text: &mut String, measured: &[Measured]) {
+    text.push_str(
+        "<div class=\"table\"><table>\n<tr><th>method</th><th>setting</th><th>ms, median</th><th>least</th><th>most</th>\
+         <th>error of the fold</th><th>of peak-to-peak</th><th>failure</th></tr>\n",
+    );
+    for one in measured {
+        let time =
+            |seconds: Option<&f64>| seconds.map_or_else(String::new, |s| format!("{:.3}", 1e3 * s));
+        let small =
+            |error: Option<f64>| error.map_or_else(String::new, |error| format!("{error:.1e}"));
+        let _ = writeln!(
+            text,
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+            one.family.name(),
+            one.setting,
+            time(one.median().as_ref()),
+            time(one.seconds.first()),
+            time(one.seconds.last()),
+            small(one.fold),
+            small(one.peak_to_peak),
+            one.failure.as_deref().unwrap_or_default()
+        );
+    }
+    text.push_str("</table></div>\n");
+}
