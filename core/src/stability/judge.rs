@@ -18,6 +18,9 @@ const PART: f64 = 0.3;
 const ACCEPTED: f64 = 1.0;
 /// A first attempt may miss the error aimed at by this factor.
 const LENIENCE: f64 = 3.0;
+/// An orbit that its correction changes by more than this part of its size is not known well enough for a verdict: the change of
+/// the multipliers is proportional to their error for small corrections only.
+const FAR: f64 = 0.1;
 /// The same, as a part of the distance from a verdict's boundary, and at least.
 const MARGIN: f64 = 0.1;
 const LEAST: f64 = 1e-11;
@@ -84,8 +87,12 @@ impl Judge {
             Some(finer) => {
                 plain = self.engine.multipliers(&orbit, LENIENCE * self.aim);
                 let orbit = Orbit::of(finer.balance(), finer.series());
-                let by_truncation =
-                    |found: &Found| distance(&plain.multipliers, &found.multipliers);
+                let by_truncation = |found: &Found| {
+                    if finer.change() > FAR {
+                        return f64::INFINITY;
+                    }
+                    distance(&plain.multipliers, &found.multipliers)
+                };
                 let corrected = self.sharp(&orbit, by_truncation);
                 let by_truncation = by_truncation(&corrected);
                 Some((corrected, by_truncation))

@@ -270,6 +270,24 @@ fn linear_oscillators() {
     }
 }
 
+/// A hundred oscillations in a period, with a stiffness that varies: the first steps are far too long. For small `omega` the phase
+/// of the multipliers is the integral of the frequency over a period, `theta = int sqrt(a - 2 q cos omega t) dt` (Wentzel,
+/// Kramers, Brillouin 1926), and their sum `2 cos theta`.
+#[test]
+fn many_oscillations_in_a_period() {
+    let (a, q, omega) = (1.0, 0.2, 0.01);
+    let count = 4000;
+    let mean: f64 = (0..count)
+        .map(|i| (a - 2.0 * q * (TAU * f64::from(i) / f64::from(count)).cos()).sqrt())
+        .sum::<f64>()
+        / f64::from(count);
+    let (found, error, _) = multipliers(&Mathieu { a, q, c: 0.0 }, Method::Default, omega, 1);
+    assert!(error < 1e-6, "{error:e}");
+    let expected = 2.0 * (TAU * mean / omega).cos();
+    let sum = found[0] + found[1];
+    assert!((sum - expected).norm() < 0.05, "{sum} {expected}");
+}
+
 /// Stiffness eigenvalues 2 and -1: the multipliers of the saddle are a million and a millionth, those of the oscillation near one.
 #[test]
 fn multipliers_over_twelve_decades() {

@@ -112,9 +112,10 @@ impl Monodromy {
             }
             (multipliers, error)
         };
+        let known = !multipliers.is_empty();
         Found {
+            error: if known { error } else { f64::INFINITY },
             multipliers,
-            error,
             bound: None,
         }
     }
@@ -200,7 +201,13 @@ impl Floquet for Monodromy {
         loop {
             let found = self.at_density(orbit, density);
             let factor = (found.error / (TARGET * aim)).powf(1.0 / 6.0);
-            if found.multipliers.is_empty() || density >= LARGEST_DENSITY || found.error <= aim {
+            // Steps that are far too long leave nothing finite: an infinite factor.
+            let factor = if factor.is_nan() {
+                f64::INFINITY
+            } else {
+                factor
+            };
+            if density >= LARGEST_DENSITY || found.error <= aim {
                 let next = density * factor.clamp(0.5, 1.3);
                 self.density = next.clamp(FIRST_DENSITY, LARGEST_DENSITY);
                 return found;
