@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use hertzian::stability::{Answer, Method};
-use hertzian::{Branch, Complex, FrequencyResponse};
+use hertzian::{Branch, Complex, Error, FrequencyResponse};
 
 hertzian::oscillator! {
     /// Contact on one side with a linear spring.
@@ -48,9 +48,14 @@ pub const fn linear(drive: f64) -> Linear {
     }
 }
 
-/// A branch of one point: the first orbit of a request.
+/// A branch of one point: the first orbit of a request, if one is found.
+pub fn start<'a>(request: &FrequencyResponse<'a>) -> Result<Branch<'a>, Error> {
+    request.run_with(|_| ControlFlow::Break(()))
+}
+
+/// The same of a request that has one.
 pub fn first<'a>(request: &FrequencyResponse<'a>) -> Branch<'a> {
-    request.run_with(|_| ControlFlow::Break(())).unwrap()
+    start(request).unwrap()
 }
 
 /// What a method says of the first orbit of a branch.
@@ -70,4 +75,9 @@ pub fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
         largest = largest.max((free.swap_remove(nearest) - x).norm());
     }
     largest
+}
+
+/// A number in a row of a table, if there is one.
+pub fn shown(number: Option<f64>) -> String {
+    number.map_or_else(|| "no orbit found".to_owned(), |x| format!("{x:.1e}"))
 }
