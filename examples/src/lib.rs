@@ -5,6 +5,7 @@
 
 pub mod attractors;
 pub mod model;
+pub mod multipliers;
 pub mod paper;
 pub mod response;
 pub mod work_precision;

@@ -1,5 +1,7 @@
 //! What a method says of an orbit of a branch.
 
+use std::time::Duration;
+
 use nalgebra::Complex;
 
 use super::judge::Judge;
@@ -29,6 +31,8 @@ pub struct Answer {
     pub bound: Option<f64>,
     /// What it cost, both orbits together.
     pub cost: Cost,
+    /// The time that took, without that of correcting the orbit.
+    pub elapsed: Duration,
 }
 
 /// The orbit has moved further than this by the time its factors are known: then they are those of another one.

@@ -4,6 +4,8 @@
 //! when the orbit is corrected for what its harmonics and samples leave out ([`truncation`](crate::truncation)). The
 //! multipliers given are those of the corrected orbit.
 
+use std::time::Instant;
+
 use super::method::{Floquet, Found};
 use super::orbit::Orbit;
 use super::{Answer, Method, Stability, distance};
@@ -71,6 +73,7 @@ impl Judge {
         finer: Option<&Finer<'_>>,
         u: &[f64],
     ) -> Answer {
+        let started = Instant::now();
         self.computed += 1;
         let orbit = Orbit::of(balance, &u[..u.len() - 1]);
         let plain;
@@ -123,6 +126,7 @@ impl Judge {
             by_truncation,
             bound,
             cost: self.engine.cost(),
+            elapsed: started.elapsed(),
         }
     }
 

@@ -1,0 +1,7 @@
+//! Errors and times of every method for multipliers, as a table and two pictures: `multipliers --help`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    hertzian_examples::multipliers::main()
+}

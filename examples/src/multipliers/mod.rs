@@ -1,0 +1,100 @@
+//! The program `multipliers`: how far every method is from the multipliers of the exact orbit, by harmonics and by time.
+
+pub mod charts;
+pub mod study;
+
+use std::fmt::Write;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use study::{Measured, decay, measure, oscillators};
+
+/// Measures every method for Floquet multipliers against the multipliers of the exact orbit.
+///
+/// Writes multipliers.csv, multipliers-harmonics.svg and multipliers-time.svg, and prints the orders that were observed.
+#[derive(Debug, Clone, PartialEq, Parser)]
+#[command(name = "multipliers", version)]
+pub struct Options {
+    /// Folder for the table and the pictures
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub folder: PathBuf,
+
+    /// Harmonics per period of the excitation
+    #[arg(long, value_name = "COUNT", num_args = 1.., default_values_t = [5, 7, 10, 14, 20, 28, 40, 56, 80])]
+    pub harmonics: Vec<usize>,
+}
+
+/// Reads the command line, does what it asks for, and says by the exit code how it went.
+pub fn main() -> ExitCode {
+    let options = Options::parse();
+    match run(&options) {
+        Ok(summary) => {
+            // Whoever reads the output may have stopped reading: not an error.
+            let _ = io::Write::write_all(&mut io::stdout(), summary.as_bytes());
+            ExitCode::SUCCESS
+        }
+        Err(failure) => {
+            eprintln!("multipliers: {failure}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Measures and writes; returns what is printed.
+///
+/// # Errors
+/// If an orbit is not found or a file cannot be written.
+pub fn run(options: &Options) -> Result<String, Box<dyn std::error::Error>> {
+    let mut summary = String::new();
+    writeln!(
+        summary,
+        "coefficients of the displacement fall as k to the power"
+    )?;
+    let mut all = Vec::new();
+    for oscillator in &oscillators() {
+        writeln!(summary, "  {}: {:.2}", oscillator.name, decay(oscillator)?)?;
+        all.push((oscillator.name, measure(oscillator, &options.harmonics)?));
+    }
+    writeln!(summary, "observed orders of the error in the harmonics")?;
+    for (name, measured) in &all {
+        for (method, order) in study::orders(measured) {
+            writeln!(summary, "  {name}, {method}: {order:.1}")?;
+        }
+    }
+    let file = |name: &str| options.folder.join(name);
+    write_table(&file("multipliers.csv"), &all)?;
+    charts::by_harmonics(&all).write(file("multipliers-harmonics.svg"))?;
+    charts::by_time(&all).write(file("multipliers-time.svg"))?;
+    Ok(summary)
+}
+
+fn write_table(path: &Path, all: &[(&str, Vec<Measured>)]) -> Result<(), csv::Error> {
+    let mut table = csv::Writer::from_path(path)?;
+    table.write_record([
+        "oscillator",
+        "method",
+        "harmonics",
+        "error",
+        "corrected_error",
+        "estimate",
+        "microseconds",
+    ])?;
+    for (name, measured) in all {
+        for m in measured {
+            table.write_record([
+                (*name).to_owned(),
+                m.method.to_string(),
+                m.harmonics.to_string(),
+                format!("{:.2e}", m.error),
+                format!("{:.2e}", m.corrected),
+                format!("{:.2e}", m.estimate),
+                format!("{:.1}", m.microseconds),
+            ])?;
+        }
+    }
+    table.flush()?;
+    Ok(())
+}
