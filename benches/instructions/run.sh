@@ -36,24 +36,29 @@ trap 'rm -rf "$folder"' EXIT
 # The C library chooses its functions by the processor too, unless it is told to take those that every one can run.
 export GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-AVX_Fast_Unaligned_Load,-ERMS
 
-sets=(baseline)
+# Instruction set and accuracy of powers.
+kinds=(baseline:full)
 if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
-    sets+=(avx2)
+    kinds+=(avx2:full avx2:fast)
 else
     echo 'this processor has no AVX2: its counts are not checked'
 fi
 
-# One line for each call: instruction set, law, batch, call, count.
-for set in "${sets[@]}"; do
-    mkdir "$folder/$set"
-    HERTZIAN_INSTRUCTIONS=$set valgrind --tool=callgrind --toggle-collect=measured --dump-after=measured \
-        --callgrind-out-file="$folder/$set/counts" "$CARGO_TARGET_DIR/release/hertzian-instructions" \
-        >"$folder/$set/names" 2>"$folder/$set/log" || { cat "$folder/$set/log" >&2; exit 1; }
+# One line for each call: instruction set and accuracy, law, batch, call, count.
+for kind in "${kinds[@]}"; do
+    mkdir "$folder/$kind"
+    HERTZIAN_INSTRUCTIONS=${kind%:*} HERTZIAN_POWERS=${kind#*:} valgrind --tool=callgrind \
+        --toggle-collect=measured --dump-after=measured --callgrind-out-file="$folder/$kind/counts" \
+        "$CARGO_TARGET_DIR/release/hertzian-instructions" >"$folder/$kind/names" 2>"$folder/$kind/log" || {
+        cat "$folder/$kind/log" >&2
+        exit 1
+    }
     call=0
     while IFS= read -r name; do
         call=$((call + 1))
-        printf '%s\t%s\t%s\n' "$set" "$name" "$(awk '$1 == "totals:" { print $2 }' "$folder/$set/counts.$call")"
-    done <"$folder/$set/names"
+        count=$(awk '$1 == "totals:" { print $2 }' "$folder/$kind/counts.$call")
+        printf '%s %s\t%s\t%s\n' "${kind%:*}" "${kind#*:}" "$name" "$count"
+    done <"$folder/$kind/names"
 done >"$folder/found"
 
 if [[ ${1:-} == --accept ]]; then
