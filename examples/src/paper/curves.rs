@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
-use hertzian::chart::{Chart, Curve, Markers, Reference};
+use hertzian::chart::{Chart, Curve, Markers, Reference, Scale};
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop};
 
 use super::exact;
@@ -108,6 +108,13 @@ impl<'t> Curves<'t> {
             },
             notes: Vec::new(),
         }
+    }
+
+    /// Shows small orbits beside large ones.
+    #[must_use]
+    pub fn logarithmic(mut self) -> Self {
+        self.chart = self.chart.scales(Scale::Linear, Scale::Logarithmic);
+        self
     }
 
     /// Traces a curve and adds it.

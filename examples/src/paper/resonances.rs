@@ -18,7 +18,7 @@ pub fn figure_2a(task: &Task<'_>) -> Result<Drawing, String> {
 /// If a curve does not begin.
 pub fn figure_2b(task: &Task<'_>) -> Result<Drawing, String> {
     let case = Case::continuous("", 0.6, [1.6, 0.38]).compared("2b");
-    Ok(Curves::new(task).trace(&case)?.drawn())
+    Ok(Curves::new(task).logarithmic().trace(&case)?.drawn())
 }
 
 /// Exponents above one, and the free vibration.
