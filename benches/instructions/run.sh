@@ -57,13 +57,23 @@ for kind in "${kinds[@]}"; do
     while IFS= read -r name; do
         call=$((call + 1))
         count=$(awk '$1 == "totals:" { print $2 }' "$folder/$kind/counts.$call")
+        if [[ ! $count =~ ^[1-9][0-9]*$ ]]; then
+            echo "nothing was counted of call $call, $name" >&2
+            exit 1
+        fi
         printf '%s %s\t%s\t%s\n' "${kind%:*}" "${kind#*:}" "$name" "$count"
     done <"$folder/$kind/names"
 done >"$folder/found"
 
+# If the program did not heed the instruction set, all of them would have the counts of one.
+if ! awk -F '\t' '$2 ~ /alpha/ && seen[$2, $3, $4, $5]++ { print "as many instructions on two sets: " $2; failed = 1 } END { exit failed }' \
+    "$folder/found"; then
+    exit 1
+fi
+
 if [[ ${1:-} == --accept ]]; then
     {
-        echo "# Instructions of each call at $(git -C "$here" describe --always --dirty), $(rustc --version)"
+        echo "# Instructions of each call, $(rustc --version)"
         cat "$folder/found"
     } >"$baseline"
     echo "written: $(wc -l <"$folder/found") counts"
@@ -73,12 +83,17 @@ fi
 if awk -F '\t' -v allowed=$allowed '
     /^#/ { next }
     { name = $1 ": " $2 ", " $3 ", " $4 }
-    NR == FNR { expected[name] = $5; next }
+    NR == FNR { expected[name] = $5; kind[name] = $1; next }
+    { measured[$1] }
     !(name in expected) { print "not in the baseline: " name; failed = 1; next }
-    { checked++; change = 100 * ($5 / expected[name] - 1) }
+    { checked++; found[name]; change = 100 * ($5 / expected[name] - 1) }
     change > allowed { printf "%+.1f %%, %d to %d instructions: %s\n", change, expected[name], $5, name; failed = 1 }
     change < -allowed { fewer++ }
     END {
+        for (name in expected) {
+            if (kind[name] in measured && !(name in found)) { print "not counted: " name; failed = 1 }
+        }
+        if (!checked) { failed = 1 }
         printf "%d counts compared, %d of them more than %d %% below the baseline\n", checked, fewer, allowed
         exit failed
     }
