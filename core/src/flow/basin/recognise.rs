@@ -18,7 +18,7 @@ use crate::flow::stroboscope::Stroboscope;
 const FIRST: f64 = 1e-2;
 /// Nearer returns than this are not told from rounding.
 const LAST: f64 = 1e-11;
-/// Batches and their periods that tell chaos from a long period.
+/// Batches that tell chaos from a long period, and the periods of one, unless they leave it open.
 const BATCHES: usize = 20;
 const BATCH: usize = 100;
 
@@ -75,7 +75,7 @@ impl<'a> Recogniser<'a> {
                 return Fate::Escaped;
             }
         }
-        self.is_chaotic()
+        self.judge(basin.patience / BATCHES)
     }
 
     fn refine(&mut self, period: usize, known: [&Catalogue; 2]) -> Option<Attractor> {
@@ -88,25 +88,34 @@ impl<'a> Recogniser<'a> {
         }
     }
 
-    /// Tells chaos from a long period by the largest exponent.
-    fn is_chaotic(&mut self) -> Fate {
-        let mut lyapunov = Lyapunov::new(&mut self.map, &self.state);
-        let batches = (0..BATCHES).map(|_| {
-            let batch = lyapunov.batch(BATCH)?;
-            Ok(batch.exponents[0])
-        });
-        let means: Result<Vec<f64>, FlowError> = batches.collect();
-        let Ok(means) = means else {
-            return Fate::Failed;
-        };
-        let largest = Estimate::of(means.into_iter());
-        // Where neighbours part by less than a factor e in all that time, rounding alone may have done it.
-        let parts = largest.value * (BATCHES * BATCH) as f64 > 1.0;
-        if parts && largest.value > 3.0 * largest.standard_error {
-            Fate::Chaotic
-        } else {
-            Fate::Long
+    /// Tells chaos from a long period by the largest exponent. Where that is not told from zero, as in intermittency, it looks
+    /// again with batches of the length `long`.
+    fn judge(&mut self, long: usize) -> Fate {
+        for length in [BATCH, long.max(BATCH)] {
+            let Ok(largest) = self.exponent(length) else {
+                return Fate::Failed;
+            };
+            let margin = 3.0 * largest.standard_error;
+            // Where neighbours part by less than a factor e in all that time, rounding alone may have done it.
+            let parts = largest.value * (BATCHES * length) as f64 > 1.0;
+            if parts && largest.value > margin {
+                return Fate::Chaotic;
+            }
+            if largest.value < -margin {
+                return Fate::Long;
+            }
         }
+        Fate::Long
+    }
+
+    /// The largest exponent of the motion from here.
+    fn exponent(&mut self, length: usize) -> Result<Estimate, FlowError> {
+        let mut lyapunov = Lyapunov::new(&mut self.map, &self.state);
+        for _ in 0..BATCHES {
+            lyapunov.batch(length)?;
+        }
+        let means = lyapunov.batches().iter().map(|batch| batch.exponents[0]);
+        Ok(Estimate::of(means))
     }
 }
 

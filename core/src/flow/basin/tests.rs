@@ -247,6 +247,16 @@ fn chaos_and_escape_are_classes_of_their_own() {
         .compute(flows(&model, 1), None, &always)
         .expect("basins");
     assert_eq!(chaos.count(Fate::Chaotic), 9, "{chaos:?}");
+    // In intermittency neighbours part by a hundredth in a period: two thousand periods do not tell it from zero.
+    let model = OneSided {
+        drive: 1.78,
+        ..MODEL
+    };
+    let mut slow = basin(1);
+    (slow.grid.columns.from, slow.grid.columns.to) = (-0.35, -0.35);
+    (slow.grid.rows.from, slow.grid.rows.to) = (0.335, 0.335);
+    let slow = slow.compute(flows(&model, 1), None, &always);
+    assert_eq!(slow.expect("basins").fates, [Fate::Chaotic]);
     crate::oscillator! {
         Resonance(x) {
             ddot(x) + x = cos(omega*t);
