@@ -304,9 +304,9 @@ impl<'a> Field<'a> {
             .map(|delta| by[delta.coefficient] * item_at(delta))
             .sum::<f64>();
         let law = self.system.law(facts.law);
-        let mut levels = vec![0.0; facts.levels.len()];
         for &(argument, coefficient) in &layout.arguments {
             if by[coefficient] != 0.0 {
+                let mut levels = vec![0.0; facts.levels.len()];
                 law.levels_by(&facts.arguments, argument, &mut levels);
                 change -= by[coefficient] * levels[level];
             }

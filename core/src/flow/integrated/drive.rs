@@ -64,7 +64,10 @@ impl<const S: usize> Engine<'_, S> {
             return Err(FlowError::NotFinite { phase: from });
         }
         self.begin(from, state, tangent.as_ref().and_then(|tangent| tangent.by));
-        let result = self.run(to - from, tangent, see);
+        // Room for the columns at the end of a step, borrowed apart from the rest.
+        let mut columns = std::mem::take(&mut self.columns);
+        let result = self.run(to - from, (tangent, &mut columns), see);
+        self.columns = columns;
         state[..n].copy_from_slice(&self.here.q);
         state[n..].copy_from_slice(&self.here.v);
         result
@@ -73,7 +76,7 @@ impl<const S: usize> Engine<'_, S> {
     fn run(
         &mut self,
         span: f64,
-        mut tangent: Option<&mut Tangent>,
+        (mut tangent, columns): (Option<&mut Tangent>, &mut Vec<f64>),
         mut see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
         if span == 0.0 {
@@ -82,7 +85,6 @@ impl<const S: usize> Engine<'_, S> {
         self.trial.width = span;
         self.settle(None)?;
         let order = 2 * self.here.q.len();
-        let mut columns = Vec::new();
         if let Some(tangent) = &tangent {
             columns.resize(tangent.columns.len(), 0.0);
             self.column_sizes.clear();
@@ -91,7 +93,7 @@ impl<const S: usize> Engine<'_, S> {
         }
         self.first_widths(span);
         while self.here.passed != span {
-            self.step(span, tangent.as_deref(), &mut columns)?;
+            self.step(span, tangent.as_deref(), columns)?;
             if let Some(see) = &mut see {
                 see(&View { engine: self });
             }
@@ -102,7 +104,7 @@ impl<const S: usize> Engine<'_, S> {
                 self.here.passed = span;
             }
             if let Some(tangent) = &mut tangent {
-                tangent.columns.copy_from_slice(&columns);
+                tangent.columns.copy_from_slice(columns);
             }
             if let Some((contact, level)) = landing {
                 self.here.on[contact] = Some(level);

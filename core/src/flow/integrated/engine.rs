@@ -81,6 +81,8 @@ pub(super) struct Engine<'a, const S: usize> {
     pub(super) right: Vec<f64>,
     /// Sizes of the columns of the tangent so far, `(by q, by v)`.
     pub(super) column_sizes: Vec<[f64; 2]>,
+    /// Room for tangent columns.
+    pub(super) columns: Vec<f64>,
     /// What errors of coordinates and rates are relative to.
     pub(super) scales: Vec<[f64; 2]>,
     /// Widths to try next: of a plain step, and of steps that are graded at their start and at their end.
@@ -146,6 +148,7 @@ impl<'a, const S: usize> Engine<'a, S> {
             lu: Lu::new(n * S),
             right: vec![0.0; n * S],
             column_sizes: Vec::new(),
+            columns: Vec::new(),
             scales: vec![[0.0; 2]; n],
             widths: [0.0; 3],
             aim: None,

@@ -1,6 +1,7 @@
 //! Tangents and sensitivities against differences of motions.
 
 use super::*;
+use crate::allocations::count;
 
 hertzian::oscillator! {
     /// Everything that a derivative can pass through: levels and exponents that are parameters, a contact that moves, forces
@@ -99,4 +100,21 @@ fn tangents_are_derivatives() {
             }
         }
     }
+}
+
+/// Moving again, with derivatives and shown to a watcher, allocates nothing.
+#[test]
+fn nothing_is_allocated_again() {
+    let model = PowerForm::new(true, 0.6, 0.032, 1.0, 1.0);
+    let mut flow = Integrated::new(&model, &model.values, 0.9, 1e-10).unwrap();
+    let mut tangent = Tangent::of_state(1, Some(Variable::Omega));
+    let mut run = || {
+        let (mut state, mut last) = ([1.2, 0.4], [0.0; 2]);
+        let mut see = |stretch: &dyn Stretch| stretch.state(stretch.phases().1, &mut last);
+        let by = Some(&mut tangent);
+        flow.advance(0.0, 4.0 * TAU, &mut state, by, Some(&mut see))
+            .unwrap();
+    };
+    run();
+    assert_eq!(count(run), 0);
 }
