@@ -168,14 +168,11 @@ impl Run<'_, '_> {
         });
     }
 
-    /// Estimated error of a symmetry-breaking point: where twice the harmonics, at the corrected orbit that `finer` holds, would
-    /// put it.
+    /// Estimated error of a symmetry-breaking point: where the harmonics of `finer`, at the corrected orbit that it holds, would put
+    /// it.
     fn symmetry_error(&self, point: &CurvePoint, step: f64) -> f64 {
         let finer = self.reader.finer.extended();
-        let fine = Resolution {
-            harmonics: 2 * self.resolution.harmonics,
-            ..self.resolution
-        };
+        let fine = self.reader.finer.balance().resolution();
         let Some(mut even) = self.follower.even_block(fine) else {
             return f64::INFINITY;
         };

@@ -169,3 +169,9 @@ pub const PERIOD_2_FOLDS: [f64; 2] = [0.2945288061872165, 2.009554757004068];
 /// Folds of Fig. 2b that the exact values do not list: a sweep with longer steps than they are apart passes over both. By
 /// this project, at 120 harmonics; the orbits in between are confirmed by direct integration.
 pub const FIGURE_2B_UNLISTED: [f64; 2] = [0.6394528, 0.6401352];
+
+/// Where orbits with odd symmetry lose it, in Fig. 2a below its main resonance.
+pub const FIGURE_2A_BREAKS: [f64; 2] = [0.353730954670214, 0.402310407656194];
+
+/// The same in Fig. 2b, above its folds.
+pub const FIGURE_2B_BREAKS: [f64; 2] = [0.868864958044575, 0.973916250536018];
