@@ -149,38 +149,38 @@ impl Jacobian {
         }
     }
 
-    /// Measures every unknown in its unit.
-    pub(crate) fn scale_columns(&mut self, unit: impl Fn(usize) -> f64) {
-        let last = self.partition.core.len();
-        let parameter = unit(self.partition.unknowns);
+    /// Measures every unknown in its unit, the parameter in the last one.
+    pub(crate) fn scale_columns(&mut self, units: &[f64]) {
+        let Partition {
+            unknowns,
+            core,
+            tail,
+            group,
+        } = &self.partition;
+        let last = core.len();
+        for (to, &unknown) in self.room.iter_mut().zip(core) {
+            *to = units[unknown];
+        }
+        self.room[last] = units[*unknowns];
+        for (to, &unknown) in self.tail_room.iter_mut().zip(tail) {
+            *to = units[unknown];
+        }
         for row in 0..=last {
-            let entries = self.core.row_mut(row);
-            for (x, &unknown) in entries.iter_mut().zip(&self.partition.core) {
-                *x *= unit(unknown);
-            }
-            entries[last] *= parameter;
-        }
-        let group = self.partition.group;
-        for (matrix, unknowns) in self
-            .groups
-            .iter_mut()
-            .zip(self.partition.tail.chunks_exact(group))
-        {
-            for row in 0..group {
-                for (x, &unknown) in matrix.row_mut(row).iter_mut().zip(unknowns) {
-                    *x *= unit(unknown);
-                }
-            }
-        }
-        for (index, &unknown) in self.partition.tail.iter().enumerate() {
-            self.column[index] *= parameter;
-            self.border[index] *= unit(unknown);
+            scale(self.core.row_mut(row), &self.room);
         }
         for row in self.coupling.chunks_exact_mut(last.max(1)) {
-            for (x, &unknown) in row.iter_mut().zip(&self.partition.core) {
-                *x *= unit(unknown);
+            scale(row, &self.room);
+        }
+        let groups = self.tail_room.chunks_exact(*group);
+        for (matrix, units) in self.groups.iter_mut().zip(groups) {
+            for row in 0..*group {
+                scale(matrix.row_mut(row), units);
             }
         }
+        for column in &mut self.column {
+            *column *= units[*unknowns];
+        }
+        scale(&mut self.border, &self.tail_room);
     }
 
     /// Factorises the tail, then the core with its new border.
@@ -329,6 +329,12 @@ impl Jacobian {
     }
 }
 
+fn scale(row: &mut [f64], units: &[f64]) {
+    for (x, unit) in row.iter_mut().zip(units) {
+        *x *= unit;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -360,7 +366,8 @@ mod tests {
         let (column, border): (Vec<f64>, Vec<f64>) = (0..=n).map(|i| (next(i), next(i))).unzip();
         jacobian.set_column(&column[..n]);
         jacobian.set_border(&border);
-        jacobian.scale_columns(|unknown| 1.0 + 0.1 * unknown as f64);
+        let units: Vec<f64> = (0..=n).map(|unknown| 1.0 + 0.1 * unknown as f64).collect();
+        jacobian.scale_columns(&units);
         jacobian
     }
 

@@ -431,6 +431,26 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     total(&add_products([0.0; LANES], a, b)) + rest
 }
 
+/// Scalar product of three lists, as long as the shortest, summed in lanes.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+pub fn weighted_dot(weights: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let n = weights.len().min(a.len()).min(b.len());
+    let ((w, w_rest), (a, a_rest), (b, b_rest)) = (
+        weights[..n].as_chunks::<LANES>(),
+        a[..n].as_chunks::<LANES>(),
+        b[..n].as_chunks::<LANES>(),
+    );
+    let rest = w_rest.iter().zip(a_rest).zip(b_rest);
+    let rest: f64 = rest.map(|((w, x), y)| w * x * y).sum();
+    let mut sum = [0.0; LANES];
+    for ((w, x), y) in w.iter().zip(a).zip(b) {
+        for l in 0..LANES {
+            sum[l] += w[l] * x[l] * y[l];
+        }
+    }
+    total(&sum) + rest
+}
+
 /// Adds the products of two lists of groups, lane by lane; the longer one is cut.
 #[inline(always)]
 fn add_products(mut sum: Group, a: &[Group], b: &[Group]) -> Group {

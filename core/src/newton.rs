@@ -10,6 +10,10 @@
 //! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems; the border is the
 //! unit vector of the parameter to solve at a fixed parameter, and a tangent for a step of pseudo-arclength.
 
+mod broyden;
+
+use broyden::Broyden;
+
 use crate::continuation::problem::{Norm, Problem, Scale};
 use crate::jacobian::Jacobian;
 use crate::linear::{Singular, dot};
@@ -100,6 +104,10 @@ pub struct Newton {
     trial: Vec<f64>,
     border: Vec<f64>,
     norm: Norm,
+    /// The updates made with the factors at hand.
+    memory: Broyden,
+    /// What counts as one for each extended unknown.
+    units: Vec<f64>,
     /// The scale of the factors at hand.
     scale: Scale,
     /// How far the unknowns have moved since the factors were made, in units of the scale.
@@ -134,6 +142,8 @@ const ROUNDING: f64 = 100.0;
 const LASTING: f64 = 0.5;
 /// Drift that does not change a tangent noticeably.
 const SMALL_DRIFT: f64 = 1e-8;
+/// Drift that is made up for along with what the Jacobian leaves out.
+const DRIFT_TO_REFINE: f64 = 1e-2;
 
 /// The last row of (1).
 #[derive(Debug, Clone, Copy)]
@@ -155,6 +165,8 @@ impl Newton {
             trial: vec![0.0; n + 1],
             border: vec![0.0; n + 1],
             norm: Norm::of(problem),
+            memory: Broyden::new(n + 1),
+            units: vec![1.0; n + 1],
             scale: Scale::UNIT,
             drift: f64::INFINITY,
             contraction: 0.0,
@@ -197,6 +209,8 @@ impl Newton {
         options: NewtonOptions,
     ) -> Result<Converged, NewtonError> {
         self.scale = scale;
+        self.norm.write_units(scale, &mut self.units);
+        self.memory.clear();
         // Until this correction shows its own, what is left out contracts as it did last.
         let usual = self.contraction;
         self.contraction = 0.0;
@@ -215,9 +229,7 @@ impl Newton {
                 self.evaluate(problem, u, border)
                     .map_err(|error| error.after(iteration))?;
             }
-            self.update.copy_from_slice(&self.residual);
-            self.jacobian.solve(&mut self.update);
-            unscale(&self.norm, scale, &mut self.update);
+            self.next_update(options.damped);
             size = self.norm.length(scale, &self.update);
             if !size.is_finite() {
                 return Err(NewtonError::NotFinite {
@@ -250,6 +262,7 @@ impl Newton {
                     break;
                 }
                 subtract(u, &self.update, 1.0);
+                self.memory.remember(&self.norm, scale, &self.update);
                 let ratio = size / previous;
                 renew = if previous.is_finite() {
                     ratio > CHORD && (self.jacobian.is_exact() || !renewed)
@@ -269,6 +282,17 @@ impl Newton {
             update: size,
             residual: largest(&self.residual),
         })
+    }
+
+    /// Writes the update that the residual asks for.
+    fn next_update(&mut self, plain: bool) {
+        self.update.copy_from_slice(&self.residual);
+        self.jacobian.solve(&mut self.update);
+        unscale(&self.units, &mut self.update);
+        if !plain {
+            self.memory
+                .improve(&self.norm, self.scale, &mut self.update);
+        }
     }
 
     /// Whether an update is the last one worth making: what is left after it, as the updates shrink, is far below the
@@ -317,7 +341,13 @@ impl Newton {
         if steep && !exact {
             return true;
         }
-        if self.drift > SMALL_DRIFT {
+        let allowed = match (self.jacobian.is_exact(), exact) {
+            (true, true) => REFINED,
+            (true, false) => SMALL_DRIFT,
+            // It is refined anyway.
+            (false, _) => DRIFT_TO_REFINE,
+        };
+        if self.drift > allowed {
             self.trial.copy_from_slice(&self.border);
             let border = std::mem::take(&mut self.trial);
             let row = Border {
@@ -361,15 +391,14 @@ impl Newton {
         wanted: f64,
     ) -> bool {
         let n = self.norm.unknowns();
+        self.memory.clear();
         let wanted = wanted * self.norm.length(self.scale, tangent);
         let (mut before, mut previous) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..REFINEMENTS {
             problem.apply(u, tangent, &mut self.residual[..n]);
             self.statistics.derivatives += 1;
             self.residual[n] = dot(&self.border, tangent) - 1.0;
-            self.update.copy_from_slice(&self.residual);
-            self.jacobian.solve(&mut self.update);
-            unscale(&self.norm, self.scale, &mut self.update);
+            self.next_update(false);
             let change = self.norm.length(self.scale, &self.update);
             // They need not shrink in every norm at once.
             let largest = before.max(previous);
@@ -377,6 +406,7 @@ impl Newton {
                 break;
             }
             subtract(tangent, &self.update, 1.0);
+            self.memory.remember(&self.norm, self.scale, &self.update);
             let rounding = change <= ROUNDING * wanted && change > 0.5 * largest;
             if change <= wanted || rounding {
                 return true;
@@ -389,7 +419,7 @@ impl Newton {
     /// Solves with the matrix of the last [`Newton::correct`], in place.
     pub fn solve(&mut self, vector: &mut [f64]) {
         self.jacobian.solve(vector);
-        unscale(&self.norm, self.scale, vector);
+        unscale(&self.units, vector);
     }
 
     /// Writes `psi` with `psi^T R_u = 0` and `psi^T R_lambda = 1`, which exists at a fold: there a small residual `r`
@@ -418,10 +448,10 @@ impl Newton {
         self.close(u, border)?;
         self.border.copy_from_slice(border.row);
         self.jacobian.set_border(border.row);
-        self.jacobian
-            .scale_columns(|unknown| self.norm.unit(self.scale, unknown));
+        self.jacobian.scale_columns(&self.units);
         self.statistics.factorisations += 1;
         self.drift = 0.0;
+        self.memory.clear();
         self.jacobian
             .factorise()
             .map_err(|at| NewtonError::Singular { iterations: 0, at })
@@ -495,9 +525,9 @@ fn residual(
 }
 
 /// From units of the scale to the units of the unknowns.
-fn unscale(norm: &Norm, scale: Scale, vector: &mut [f64]) {
-    for (unknown, x) in vector.iter_mut().enumerate() {
-        *x *= norm.unit(scale, unknown);
+fn unscale(units: &[f64], vector: &mut [f64]) {
+    for (x, unit) in vector.iter_mut().zip(units) {
+        *x *= unit;
     }
 }
 

@@ -1,6 +1,7 @@
 //! What continuation knows of the equations it follows.
 
 use crate::jacobian::{Jacobian, Partition};
+use crate::linear::weighted_dot;
 
 /// `n` equations in `n` unknowns and one parameter.
 ///
@@ -64,7 +65,10 @@ impl Scale {
 #[derive(Debug, Clone)]
 pub struct Norm {
     weights: Vec<f64>,
-    means: Vec<bool>,
+    /// The weights of what oscillates, zero for means.
+    oscillation: Vec<f64>,
+    /// Which unknowns are means.
+    means: Vec<usize>,
 }
 
 impl Norm {
@@ -73,9 +77,15 @@ impl Norm {
         let n = problem.unknowns();
         let mut weights = vec![0.0; n];
         problem.weights(&mut weights);
+        let means: Vec<usize> = (0..n).filter(|&unknown| problem.is_mean(unknown)).collect();
+        let mut oscillation = weights.clone();
+        for &mean in &means {
+            oscillation[mean] = 0.0;
+        }
         Self {
             weights,
-            means: (0..n).map(|unknown| problem.is_mean(unknown)).collect(),
+            oscillation,
+            means,
         }
     }
 
@@ -86,23 +96,37 @@ impl Norm {
 
     /// What counts as one for an extended unknown.
     pub fn unit(&self, scale: Scale, unknown: usize) -> f64 {
-        match self.means.get(unknown) {
-            None => scale.parameter,
-            Some(true) => scale.mean,
-            Some(false) => scale.oscillation,
+        if unknown == self.unknowns() {
+            scale.parameter
+        } else if self.means.contains(&unknown) {
+            scale.mean
+        } else {
+            scale.oscillation
         }
+    }
+
+    /// Writes what counts as one for each extended unknown.
+    pub fn write_units(&self, scale: Scale, units: &mut [f64]) {
+        units.fill(scale.oscillation);
+        for &mean in &self.means {
+            units[mean] = scale.mean;
+        }
+        units[self.unknowns()] = scale.parameter;
+    }
+
+    /// Weighted products of two extended vectors without the parameter: of what oscillates, and of means.
+    fn products(&self, a: &[f64], b: &[f64]) -> [f64; 2] {
+        let means = self.means.iter().map(|&i| self.weights[i] * a[i] * b[i]);
+        [weighted_dot(&self.oscillation, a, b), means.sum()]
     }
 
     /// Weighted product of two extended vectors.
     pub fn product(&self, scale: Scale, a: &[f64], b: &[f64]) -> f64 {
         let n = self.unknowns();
-        let mut sums = [0.0, 0.0];
-        for i in 0..n {
-            sums[usize::from(self.means[i])] += self.weights[i] * a[i] * b[i];
-        }
+        let [oscillation, means] = self.products(a, b);
         let square = |x: f64| x * x;
-        sums[0] / square(scale.oscillation)
-            + sums[1] / square(scale.mean)
+        oscillation / square(scale.oscillation)
+            + means / square(scale.mean)
             + a[n] * b[n] / square(scale.parameter)
     }
 
@@ -114,9 +138,12 @@ impl Norm {
     /// Writes the product with a vector as a linear form.
     pub fn linear_form(&self, scale: Scale, vector: &[f64], form: &mut [f64]) {
         let n = self.unknowns();
+        let square = |x: f64| x * x;
         for i in 0..n {
-            let unit = self.unit(scale, i);
-            form[i] = self.weights[i] * vector[i] / (unit * unit);
+            form[i] = self.weights[i] * vector[i] / square(scale.oscillation);
+        }
+        for &i in &self.means {
+            form[i] = self.weights[i] * vector[i] / square(scale.mean);
         }
         form[n] = vector[n] / (scale.parameter * scale.parameter);
     }
@@ -124,10 +151,7 @@ impl Norm {
     /// The scale at an orbit: the size of its oscillation and of its mean, neither below a hundredth of the largest so far,
     /// which is kept in `largest`. A branch that passes through rest is then not followed in ever smaller steps.
     pub fn scale_at(&self, u: &[f64], parameter: f64, largest: &mut [f64; 2]) -> Scale {
-        let mut squares = [0.0, 0.0];
-        for (i, weight) in self.weights.iter().enumerate() {
-            squares[usize::from(self.means[i])] += weight * u[i] * u[i];
-        }
+        let squares = self.products(u, u);
         for (largest, square) in largest.iter_mut().zip(squares) {
             *largest = largest.max(square.sqrt());
         }
