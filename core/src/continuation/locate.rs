@@ -1,12 +1,14 @@
 //! Locating where a test function vanishes between two points of a curve.
 //!
 //! The curve between them is parametrised by the arc length `s` of the chord's first tangent; every value of the test
-//! function is taken at a corrected solution. The root is bracketed and found by the method of Dowell and Jarratt
-//! (1971), "A modified regula falsi method for computing the root of an equation" (the Illinois rule), with bisection
-//! whenever it does not halve the bracket.
+//! function is taken at a corrected solution. The root is bracketed and found by inverse quadratic interpolation where the
+//! function is monotone enough for it, and by bisection elsewhere.
+//!
+//! Source: Chandrupatla (1997), A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without
+//! using derivatives.
 
 use super::follow::CurvePoint;
-use super::problem::Problem;
+use super::problem::{Problem, Scale};
 use crate::newton::{Border, Newton, NewtonOptions};
 
 /// A point where the test function vanishes.
@@ -19,9 +21,12 @@ pub(crate) struct Located {
     pub(crate) vanishes: bool,
 }
 
+/// Points closer together than this part of the arc length are the same.
+const CLOSEST: f64 = 1e-14;
+
 /// Where a test function changes sign between `a` and `b`: its zero, or the place where it jumps.
 ///
-/// `None` if a correction fails on the way, or a tangent is not that of the whole system.
+/// `None` if corrections fail on the way, or a tangent is not that of the whole system.
 pub(crate) fn locate<P: Problem>(
     problem: &mut P,
     newton: &mut Newton,
@@ -35,19 +40,32 @@ pub(crate) fn locate<P: Problem>(
     let mut border = vec![0.0; a.u.len()];
     newton.norm().linear_form(a.scale, &a.tangent, &mut border);
     let origin = crate::linear::dot(&border, &a.u);
-    let mut low = (0.0, test(a), a.clone());
-    let mut high = (length, test(b), b.clone());
-    let mut bisect = false;
+    let side = |s, point: &CurvePoint| Side {
+        s,
+        value: test(point),
+        point: point.clone(),
+    };
+    let (mut far, mut near) = (side(0.0, a), side(length, b));
+    let mut part = near.value / (near.value - far.value);
+    if !(part > 0.0 && part < 1.0) {
+        part = 0.5;
+    }
     for _ in 0..100 {
-        let width = high.0 - low.0;
-        let secant = low.0 - low.1 * width / (high.1 - low.1);
-        let inside = secant > low.0 && secant < high.0;
-        let s = if bisect || !inside {
-            0.5 * (low.0 + high.0)
-        } else {
-            secant
+        let mut at = |part: f64| {
+            let s = near.s + part * (far.s - near.s);
+            let trial = between((&near, &far), s, &border);
+            let row = Border {
+                row: &border,
+                value: origin + s,
+            };
+            let point = corrected(problem, newton, trial, row, a.scale, options)?;
+            Some((s, point))
         };
-        let point = corrected(problem, newton, &low, &high, s, (&border, origin), options)?;
+        // Where a correction fails, another place may do.
+        let (s, point) = match at(part) {
+            Some(found) => found,
+            None => at(0.5 * part + 0.2)?,
+        };
         let value = test(&point);
         if value.abs() <= tolerance {
             return Some(Located {
@@ -56,56 +74,64 @@ pub(crate) fn locate<P: Problem>(
                 vanishes: true,
             });
         }
-        if value * low.1 > 0.0 {
-            if s - low.0 < 0.5 * width {
-                high.1 *= 0.5;
-            }
-            low = (s, value, point);
-        } else {
-            if high.0 - s < 0.5 * width {
-                low.1 *= 0.5;
-            }
-            high = (s, value, point);
+        let new = Side { s, value, point };
+        // The zero is between the new side and the one of opposite sign; the third is what was left.
+        let mut third = std::mem::replace(&mut near, new);
+        if value * third.value <= 0.0 {
+            third = std::mem::replace(&mut far, third);
         }
-        bisect = high.0 - low.0 > 0.5 * width;
-        if high.0 - low.0 <= 1e-14 * length.abs() {
+        let closest = CLOSEST * (length / (far.s - near.s)).abs();
+        if closest >= 0.5 {
             break;
         }
+        part = interpolated(
+            (near.s, near.value),
+            (far.s, far.value),
+            (third.s, third.value),
+        )
+        .clamp(closest, 1.0 - closest);
     }
+    let last = if near.value.abs() < far.value.abs() {
+        near
+    } else {
+        far
+    };
     Some(Located {
         vanishes: false,
-        test: test(&low.2),
-        point: low.2,
+        test: last.value,
+        point: last.point,
     })
 }
 
-/// The solution at arc length `s`, from the interpolation between two known ones.
+/// A point at one side of the zero.
+struct Side {
+    s: f64,
+    value: f64,
+    point: CurvePoint,
+}
+
+/// Where to look next, as a part of the way from `a` to `b`, given a third point: by inverse quadratic interpolation if all
+/// three lie on a function that is monotone with that, and the middle otherwise.
+fn interpolated(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> f64 {
+    let place = (a.0 - b.0) / (c.0 - b.0);
+    let level = (a.1 - b.1) / (c.1 - b.1);
+    if !(level * level < place && (1.0 - level) * (1.0 - level) < 1.0 - place) {
+        return 0.5;
+    }
+    let part = a.1 / (b.1 - a.1) * c.1 / (b.1 - c.1)
+        + (c.0 - a.0) / (b.0 - a.0) * a.1 / (c.1 - a.1) * b.1 / (c.1 - b.1);
+    if part.is_finite() { part } else { 0.5 }
+}
+
+/// The solution near `u`, with the tangent of the whole system.
 fn corrected<P: Problem>(
     problem: &mut P,
     newton: &mut Newton,
-    low: &(f64, f64, CurvePoint),
-    high: &(f64, f64, CurvePoint),
-    s: f64,
-    (border, origin): (&[f64], f64),
+    mut u: Vec<f64>,
+    border: Border<'_>,
+    scale: Scale,
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
-    let part = (s - low.0) / (high.0 - low.0);
-    let mut u: Vec<f64> = low
-        .2
-        .u
-        .iter()
-        .zip(&high.2.u)
-        .map(|(x, y)| x + part * (y - x))
-        .collect();
-    let scale = low.2.scale;
-    let border = Border {
-        row: border,
-        value: origin + s,
-    };
-    newton
-        .correct(problem, &mut u, border, scale, options)
-        .ok()?;
-    // Once more, so that the matrix, and with it the test function, is that of the solution itself.
     newton
         .correct(problem, &mut u, border, scale, options)
         .ok()?;
@@ -118,4 +144,28 @@ fn corrected<P: Problem>(
         *t /= norm;
     }
     Some(CurvePoint { u, tangent, scale })
+}
+
+/// The cubic through two points with their tangents; a straight line where a tangent hardly follows the arc length.
+fn between((a, b): (&Side, &Side), s: f64, border: &[f64]) -> Vec<f64> {
+    let width = b.s - a.s;
+    let x = (s - a.s) / width;
+    let ahead = |side: &Side| crate::linear::dot(border, &side.point.tangent);
+    let (first, last) = (ahead(a), ahead(b));
+    let (share, start, end) = if first.min(last) > 0.5 * first.max(last) {
+        let y = 1.0 - x;
+        (
+            x * x * (3.0 - 2.0 * x),
+            x * y * y * width / first,
+            -x * x * y * width / last,
+        )
+    } else {
+        (x, 0.0, 0.0)
+    };
+    let points = a.point.u.iter().zip(&b.point.u);
+    let tangents = a.point.tangent.iter().zip(&b.point.tangent);
+    points
+        .zip(tangents)
+        .map(|((p, q), (t, r))| p + share * (q - p) + start * t + end * r)
+        .collect()
 }
