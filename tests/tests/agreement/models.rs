@@ -54,6 +54,12 @@ pub const MODELS: &[(&str, Model)] = &[
             layer: r.within(0.01, 1.0),
         })
     }),
+    ("seal", |r| {
+        Box::new(Seal {
+            c: r.within(0.0, 0.9),
+            n: r.within(1.05, 4.0),
+        })
+    }),
     ("Hunt-Crossley without tension", |r| {
         Box::new(NoTension {
             k: r.within(0.1, 9.0),
@@ -234,6 +240,21 @@ oscillator! {
         law rough(gap) { gap > 0 => gap^1.5 + layer^1.5*(gap/layer)^n, else => 0 }
 
         ddot(x) + rough(x) = 0.1*cos(omega*t) + 1;
+    }
+}
+
+oscillator! {
+    /// A power of what may not be negative and depends on the rate.
+    Seal(x) {
+        /// relaxation
+        param c in 0.0..;
+        /// exponent
+        param n > 1;
+
+        /// gap > 0 is penetration
+        law lip(gap) { gap > 0 => max(0, gap + c*dot(gap))^n, else => 0 }
+
+        ddot(x) + x + lip(x) = cos(omega*t);
     }
 }
 

@@ -32,7 +32,7 @@ impl Parser<'_> {
         let example = "the gap and the arguments in parentheses, as in `Contact(gap, k)`";
         self.list(example, |parser| {
             if gap.is_none() {
-                gap = Some(parser.name("the name of the gap")?);
+                gap = Some(parser.gap_alone()?);
             } else {
                 let argument = parser.argument_alone()?;
                 declaration.parameters.push(argument);
@@ -50,6 +50,21 @@ impl Parser<'_> {
         };
         surround(declaration, law);
         Ok(())
+    }
+
+    /// The gap is declared by its name alone.
+    fn gap_alone(&mut self) -> syn::Result<Ident> {
+        let name = self.name("the name of the gap")?;
+        let place = self.tokens.here();
+        let [more, less, unit, default] = [">", "<", ":", "="].map(|sign| self.tokens.is(sign));
+        if more || less || unit || default || self.tokens.take_word("in") {
+            let message = format!(
+                "the gap has no range, unit or default: write `{name}` alone, and say with a piece where there is a force, as in `{name} > 0 => k*{name}`"
+            );
+            self.diagnostics.report(place, message);
+            self.skip_to_next();
+        }
+        Ok(name)
     }
 
     /// `name range`

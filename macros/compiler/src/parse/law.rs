@@ -35,10 +35,15 @@ impl Parser<'_> {
             return Ok(name);
         };
         self.diagnostics.report(place, message);
+        self.skip_to_next();
+        Ok(name)
+    }
+
+    /// To the next name in a list, or its end.
+    pub(super) fn skip_to_next(&mut self) {
         while !self.tokens.is(",") && !matches!(self.tokens.peek(), Token::Close(_) | Token::End) {
             self.tokens.skip();
         }
-        Ok(name)
     }
 
     /// The pieces in braces.
