@@ -109,6 +109,13 @@ pub enum EventKind {
     PeriodDoubling,
     /// Another branch of orbits crosses or is met; a multiplier is one.
     BranchPoint,
+    /// Quasi-periodic motions begin: a pair of complex multipliers crosses the unit circle.
+    NeimarkSacker,
+    /// A gap touches a level, without speed. Multipliers lose their smoothness there, or jump.
+    Grazing {
+        /// Whether the branch turns back in what it varies there.
+        turns: bool,
+    },
 }
 
 impl fmt::Display for EventKind {
@@ -118,6 +125,8 @@ impl fmt::Display for EventKind {
             Self::SymmetryBreaking => "symmetry-breaking",
             Self::PeriodDoubling => "period-doubling",
             Self::BranchPoint => "branch-point",
+            Self::NeimarkSacker => "neimark-sacker",
+            Self::Grazing { .. } => "grazing",
         })
     }
 }

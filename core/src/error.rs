@@ -137,6 +137,18 @@ pub enum Error {
         /// What the attempts to find one came to.
         attempts: Attempts,
     },
+    /// A motion that should be free does not come back: the system has damping or an excitation.
+    NotFree {
+        /// How far it misses its beginning, relative to its size.
+        apart: f64,
+    },
+    /// What motions settle to could not be looked for.
+    Search {
+        /// Value of what is varied.
+        value: f64,
+        /// Why.
+        reason: String,
+    },
     /// No branch begins at an event, or none was found.
     NoBranch {
         /// What kind of event it is.
@@ -279,6 +291,13 @@ impl std::fmt::Display for Error {
                 f,
                 "no orbit of period {period} found at {parameter}: {attempts}; start where there is one, and follow it from there"
             ),
+            Self::NotFree { apart } => write!(
+                f,
+                "the motion misses its beginning by {apart:.1e} of its size after a period: set damping and excitation to zero"
+            ),
+            Self::Search { value, reason } => {
+                write!(f, "attractors at {value} could not be looked for: {reason}")
+            }
             Self::NoBranch { kind, value } => {
                 write!(f, "no further branch was found at the {kind} at {value:.9}")
             }

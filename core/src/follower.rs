@@ -1,6 +1,7 @@
 //! What it takes to compute further orbits of a branch, and those at a value.
 
 use crate::balance::{Balance, Parity, Resolution};
+use crate::block::Block;
 use crate::branch::{Event, EventKind, Orbit, Point};
 use crate::continuation::follow::{CurvePoint, FollowOptions};
 use crate::continuation::locate::locate;
@@ -13,7 +14,6 @@ use crate::newton::{Newton, NewtonOptions};
 use crate::reader::Reader;
 use crate::stability::Method;
 use crate::start::StartRequest;
-use crate::symmetry::EvenBlock;
 use crate::system::{System, Variable};
 use crate::truncation::Finer;
 
@@ -35,6 +35,10 @@ pub(crate) struct Follower<'a> {
     pub(crate) variable: Variable,
     pub(crate) resolution: Resolution,
     pub(crate) newton: NewtonOptions,
+    /// The orbits lack the odd symmetry that others of the system have.
+    pub(crate) asymmetric: bool,
+    /// Doublings of the period are looked for.
+    pub(crate) doublings: bool,
     /// How multipliers are computed, where they are.
     pub(crate) stability: Option<Method>,
     /// How harmonics follow the tolerance, where they do.
@@ -75,10 +79,11 @@ impl<'a> Follower<'a> {
         Reader::new(finer, self.stability, self.chooser.is_some())
     }
 
-    /// The even harmonics of that resolution, where orbits have odd ones only.
-    pub(crate) fn even_block(&self, resolution: Resolution) -> Option<EvenBlock<'a>> {
-        (resolution.parity == Parity::Odd).then(|| {
-            EvenBlock::new(
+    /// The harmonics that orbits of that resolution do not have: where they have odd ones only, or where doublings of the period
+    /// are looked for.
+    pub(crate) fn block(&self, resolution: Resolution) -> Option<Block<'a>> {
+        (resolution.parity == Parity::Odd || self.doublings).then(|| {
+            Block::new(
                 self.system,
                 &self.parameters,
                 self.omega,

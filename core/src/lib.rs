@@ -39,8 +39,10 @@ extern crate self as hertzian;
 mod aft;
 #[cfg(test)]
 mod allocations;
+pub mod backbone;
 mod balance;
 pub mod bifurcation;
+mod block;
 pub mod branch;
 #[cfg(test)]
 mod by_hand;

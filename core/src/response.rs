@@ -5,13 +5,15 @@ use std::time::Instant;
 
 use crate::aft::Aft;
 use crate::balance::{Parity, Resolution};
-use crate::branch::{Branch, Point};
-use crate::continuation::follow::FollowOptions;
+use crate::bifurcation::depart::depart;
+use crate::branch::{Branch, Event, EventKind, Orbit, Point};
+use crate::continuation::follow::{FollowOptions, Start};
 use crate::continuation::step::StepControl;
 use crate::error::Error;
+use crate::flow::shooting::Side;
 use crate::follower::Follower;
 use crate::fourier::series;
-use crate::harmonics::Chooser;
+use crate::harmonics::{Chooser, resize};
 use crate::layout::{ContactLayout, Layout};
 use crate::newton::NewtonOptions;
 use crate::run::Run;
@@ -70,6 +72,8 @@ pub struct FrequencyResponse<'a> {
     largest_step: f64,
     stability: bool,
     method: Method,
+    near: Option<Orbit>,
+    doublings: bool,
 }
 
 impl std::fmt::Debug for FrequencyResponse<'_> {
@@ -100,6 +104,8 @@ impl<'a> FrequencyResponse<'a> {
             max_points: 20_000,
             largest_step: StepControl::default().largest,
             stability: true,
+            near: None,
+            doublings: false,
             method: Method::default(),
         }
     }
@@ -197,6 +203,22 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
+    /// Whether doublings of the period are located too, where another balance, of twice the period, has the branch that begins.
+    /// Orbits of odd symmetry have none. Default: no, since it takes about as long again.
+    #[must_use]
+    pub fn doublings(mut self, wanted: bool) -> Self {
+        self.doublings = wanted;
+        self
+    }
+
+    /// The first orbit is near this one, and has its period.
+    #[must_use]
+    pub fn near_orbit(mut self, orbit: &Orbit) -> Self {
+        self.period = orbit.period;
+        self.near = Some(orbit.clone());
+        self
+    }
+
     /// Stop after this many points. Default: 20000.
     #[must_use]
     pub fn max_points(mut self, points: usize) -> Self {
@@ -224,9 +246,53 @@ impl<'a> FrequencyResponse<'a> {
         let started = Instant::now();
         let (follower, options) = self.check()?;
         let mut statistics = Statistics::default();
-        let first = start(follower.start_request(options), &mut statistics)?;
-        let mut run = Run::new(&follower, options, &first);
-        let stopped = run.follow(first, &mut visit)?;
+        let first = match &self.near {
+            None => start(follower.start_request(options), &mut statistics)?,
+            Some(orbit) => {
+                let mut u = orbit.series.clone();
+                u.push(options.from);
+                let length = series::length(follower.resolution.harmonics);
+                resize(&u, orbit.coordinates, length)
+            }
+        };
+        let run = Run::new(&follower, options, &first);
+        self.followed(run, Start::Near(first), &mut visit, (statistics, started))
+    }
+
+    /// The branch that begins at an event of another one, as [`run`](Self::run) would follow it: of twice the period at a doubling
+    /// ([`doublings`](Self::doublings)), of orbits without the symmetry where an odd symmetry breaks. There the two sides are mirror
+    /// images; at a doubling both are one branch.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, no branch begins there, or its first orbit was not found.
+    pub fn switch(&self, event: &Event, side: Side) -> Result<Branch<'a>, Error> {
+        let started = Instant::now();
+        let doubles = event.kind == EventKind::PeriodDoubling;
+        let request = Self {
+            period: event.point.orbit.period * if doubles { 2 } else { 1 },
+            near: None,
+            ..self.clone()
+        };
+        let (mut follower, options) = request.check()?;
+        follower.resolution.parity = Parity::All;
+        follower.asymmetric = !doubles;
+        let point = depart(&follower, event, side.sign())?;
+        let run = Run::new(&follower, options, &point.u);
+        let go = &mut |_: &Point| ControlFlow::Continue(());
+        let start = Start::Along(Box::new(point));
+        self.followed(run, start, go, (Statistics::default(), started))
+    }
+
+    /// The branch that a run gives.
+    fn followed(
+        &self,
+        mut run: Run<'_, 'a>,
+        start: Start,
+        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
+        (mut statistics, started): (Statistics, Instant),
+    ) -> Result<Branch<'a>, Error> {
+        let stopped = run.follow(start, visit)?;
+        let follower = run.follower.clone();
         let Run {
             points,
             events,
@@ -335,6 +401,8 @@ impl<'a> FrequencyResponse<'a> {
                 variable,
                 resolution,
                 newton,
+                doublings: self.doublings,
+                asymmetric: false,
                 stability: self.stability.then_some(self.method),
                 chooser: self.chooser(resolution),
                 from,

@@ -6,6 +6,7 @@ mod events;
 use std::ops::ControlFlow;
 
 use crate::balance::{Balance, Resolution};
+use crate::block::Block;
 use crate::branch::{Event, Point, Turn};
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, follow,
@@ -17,7 +18,6 @@ use crate::harmonics::{Chooser, resize};
 use crate::newton::{Newton, NewtonError};
 use crate::reader::Reader;
 use crate::statistics::Statistics;
-use crate::symmetry::EvenBlock;
 
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;
@@ -25,15 +25,15 @@ const SLOW_POINTS: usize = 2;
 
 /// What a run has gathered.
 pub(crate) struct Run<'f, 'a> {
-    follower: &'f Follower<'a>,
+    pub(crate) follower: &'f Follower<'a>,
     options: FollowOptions,
     resolution: Resolution,
     /// The size of the core, where it pays to have one, and before it grew last.
     core: usize,
     core_before: usize,
     reader: Reader<'a>,
-    /// The even harmonics, where the orbits have none.
-    even: Option<EvenBlock<'a>>,
+    /// The harmonics that the orbits do not have.
+    block: Option<Block<'a>>,
     chooser: Option<Chooser>,
     /// The resolution asked for when the walk was halted.
     wanted: Resolution,
@@ -59,7 +59,7 @@ impl<'f, 'a> Run<'f, 'a> {
             core,
             core_before: core,
             reader: follower.reader(resolution),
-            even: follower.even_block(resolution),
+            block: follower.block(resolution),
             chooser: follower.chooser.clone(),
             wanted: resolution,
             refused: false,
@@ -78,10 +78,9 @@ impl<'f, 'a> Run<'f, 'a> {
     /// If there is no first point.
     pub(crate) fn follow(
         &mut self,
-        first: Vec<f64>,
+        mut start: Start,
         visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
     ) -> Result<Stop, Error> {
-        let mut start = Start::Near(first);
         // Where the walk was halted last, in case that another resolution fails there.
         let mut last: Option<(Box<Halted>, Resolution, usize)> = None;
         loop {
@@ -114,7 +113,7 @@ impl<'f, 'a> Run<'f, 'a> {
                 }
             }
             self.reader = self.follower.reader(self.resolution);
-            self.even = self.follower.even_block(self.resolution);
+            self.block = self.follower.block(self.resolution);
         }
     }
 
@@ -157,7 +156,7 @@ impl<'f, 'a> Run<'f, 'a> {
     /// Adds the work that Newton's method does not count.
     fn count_others(&mut self) {
         let judged = self.reader.judge.as_ref().map_or(0, |judge| judge.computed);
-        let determinants = self.even.as_ref().map_or(0, |even| even.computed);
+        let determinants = self.block.as_ref().map_or(0, |block| block.computed);
         self.statistics.monodromies += judged;
         self.statistics.jacobians += determinants;
         self.statistics.factorisations += determinants;

@@ -11,15 +11,29 @@
 //! Source: Swift and Wiesenfeld (1984), Suppression of period doubling in symmetric systems (the symmetry `S`); Golubitsky,
 //! Stewart and Schaeffer (1988), Singularities and Groups in Bifurcation Theory II, chapter XIII (block structure).
 
-use crate::balance::{Balance, Parity, Resolution};
-use crate::continuation::problem::Problem;
-use crate::jacobian::Jacobian;
+use crate::branch::Orbit;
 use crate::layout::{ContactLayout, Layout, Term};
 use crate::system::{System, Variable, Wave};
 
 /// Values of the variable, as parts of its range, at which coefficients are looked at. A coefficient that vanishes at all of
 /// them, with its derivative, is taken to vanish throughout.
 const LOOKED_AT: [f64; 4] = [0.0, 0.36, 0.73, 1.0];
+
+/// What an orbit has beyond the odd symmetry, along that of another one: one for that orbit itself, zero for a symmetric orbit.
+pub(crate) fn broken(from: &Orbit, u: &[f64]) -> f64 {
+    let length = (u.len() - 1) / from.coordinates();
+    let (mut product, mut square) = (0.0, 0.0);
+    for i in 0..from.coordinates() {
+        let other = &u[i * length..][..length];
+        for (index, x) in from.series(i).iter().enumerate() {
+            if index.div_ceil(2).is_multiple_of(2) {
+                product += x * other.get(index).copied().unwrap_or(0.0);
+                square += x * x;
+            }
+        }
+    }
+    product / square
+}
 
 /// Whether solutions with odd harmonics only exist over a range of the variable.
 pub(crate) fn is_odd(
@@ -71,65 +85,4 @@ pub(crate) fn is_odd(
     load.into_iter().all(|entry| odd(entry.wave))
         && stiffness.into_iter().all(|entry| !odd(entry.wave))
         && layout.contacts.iter().all(contact)
-}
-
-/// The even harmonics at orbits that have none.
-#[derive(Debug)]
-pub(crate) struct EvenBlock<'a> {
-    balance: Balance<'a>,
-    jacobian: Jacobian,
-    residual: Vec<f64>,
-    border: Vec<f64>,
-    /// The last orbit, and its determinant.
-    orbit: Vec<f64>,
-    known: (f64, f64),
-    /// Determinants computed, each a Jacobian and a factorisation.
-    pub(crate) computed: usize,
-}
-
-impl<'a> EvenBlock<'a> {
-    /// For orbits of a balance of the odd harmonics.
-    pub(crate) fn new(
-        system: &'a dyn System,
-        parameters: &[f64],
-        omega: f64,
-        variable: Variable,
-        resolution: Resolution,
-    ) -> Self {
-        // Nothing is left out of the block: its determinant is what counts.
-        let resolution = Resolution {
-            parity: Parity::Even,
-            core: resolution.harmonics,
-            ..resolution
-        };
-        let balance = Balance::new(system, parameters, omega, variable, resolution);
-        let n = balance.unknowns();
-        let mut border = vec![0.0; n + 1];
-        border[n] = 1.0;
-        Self {
-            jacobian: Jacobian::new(balance.partition()),
-            residual: vec![0.0; n],
-            border,
-            balance,
-            orbit: vec![f64::NAN; n + 1],
-            known: (0.0, 0.0),
-            computed: 0,
-        }
-    }
-
-    /// The determinant of the block at an orbit: its sign, and the logarithm of its size. The sign is zero if the block is
-    /// singular. Of the same orbit again it is known.
-    pub(crate) fn determinant(&mut self, u: &[f64]) -> (f64, f64) {
-        if self.orbit == u {
-            return self.known;
-        }
-        self.orbit.copy_from_slice(u);
-        self.computed += 1;
-        self.jacobian.clear();
-        self.balance
-            .evaluate(u, &mut self.residual, Some(&mut self.jacobian));
-        self.jacobian.set_border(&self.border);
-        self.known = self.jacobian.determinant();
-        self.known
-    }
 }

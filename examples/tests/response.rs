@@ -405,3 +405,109 @@ fn what_is_wrong_with_a_file_is_said_with_its_place() {
     let failure = coarse(&folder, &["--model", &model]).expect_err("a failure");
     assert!(failure.to_string().starts_with("cannot read"));
 }
+
+fn all(json: &str) -> Value {
+    let text = std::fs::read_to_string(json).expect("a file");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// Figure 8a of Wang et al. (2021) by one command. Exact values: `amplitude_sweep` of reference values computed independently of this
+/// project, with 60 digits.
+#[test]
+fn the_cascade_of_figure_8a() {
+    let folder = Folder::new("cascade");
+    let [svg, json, csv] = ["a.svg", "a.json", "a.csv"].map(|name| folder.file(name));
+    let command = "--alpha 1 --one-sided --zeta 0.032 --load 1 --sweep drive --omega 1 --from 0.1 --to 2.0 \
+                   --bifurcations --follow 3";
+    let files = ["--svg", &svg, "--json", &json, "--csv", &csv];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    let outcome = run_with(&arguments).expect("a branch");
+    assert!(outcome.complete, "{}", outcome.summary);
+    let all = all(&json);
+    let events = all["events"].as_array().expect("events");
+    for (kind, period, drive) in [
+        ("period-doubling", 1, 1.282_584_167_663_767),
+        ("period-doubling", 2, 1.531_044_135_499_983),
+        ("period-doubling", 2, 1.880_077_405_264_828),
+        ("fold", 2, 2.009_554_757_004_067),
+        ("fold", 2, 0.294_528_806_187_216),
+        ("fold", 8, 1.779_836_025_884_334),
+    ] {
+        let is_it = |event: &&Value| {
+            let place = event["drive"].as_f64().expect("a number");
+            event["kind"] == kind && event["period"] == period && (place - drive).abs() < 1e-9
+        };
+        let event = events.iter().find(is_it);
+        let event = event.unwrap_or_else(|| panic!("{kind} {period} {drive}"));
+        assert!(event["branch"].is_u64());
+    }
+    let points = all["points"].as_array().expect("points");
+    for period in [1, 2, 4, 8] {
+        assert!(points.iter().any(|point| point["period"] == period));
+    }
+    for branch in 0..5 {
+        assert!(points.iter().any(|point| point["branch"] == branch));
+    }
+    check_csv(&csv, points);
+    for part in ["period 8", "period doubling", "grazing"] {
+        let picture = std::fs::read_to_string(&svg).expect("a picture");
+        assert!(picture.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn folds_are_tracked_in_two_parameters() {
+    let folder = Folder::new("track");
+    let [svg, json] = ["a.svg", "a.json"].map(|name| folder.file(name));
+    let command = "--alpha 1 --from 0.6 --to 1.6 --bifurcations --track fold --in omega,drive --within 0.03,0.5";
+    let files = ["--svg", &svg, "--json", &json];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    run_with(&arguments).expect("a branch");
+    let all = all(&json);
+    let tracks = all["tracks"].as_array().expect("tracks");
+    assert_eq!(tracks.len(), 1);
+    assert_eq!(tracks[0]["kind"], "fold");
+    assert_eq!(tracks[0]["names"][1], "drive");
+    assert!(tracks[0]["points"].as_array().map(Vec::len) > Some(20));
+    assert_eq!(tracks[0]["special"][0]["kind"], "cusp");
+}
+
+/// What `--in` names must be what varies and something else.
+#[test]
+fn a_plane_has_two_parameters() {
+    let folder = Folder::new("plane");
+    for plane in ["omega", "drive,load", "omega,nothing"] {
+        let arguments = ["--bifurcations", "--track", "fold", "--in", plane];
+        let failure = coarse(&folder, &arguments).expect_err("a refusal");
+        assert_eq!(failure.exit_code(), 2, "{failure}");
+    }
+}
+
+#[test]
+fn a_backbone_is_drawn_through_the_resonance() {
+    let folder = Folder::new("backbone");
+    let [svg, json] = ["a.svg", "a.json"].map(|name| folder.file(name));
+    let command = "--continuous --load 0 --zeta 0.01 --from 0.6 --to 1.7 --backbone";
+    let files = ["--svg", &svg, "--json", &json];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    run_with(&arguments).expect("a branch");
+    let all = all(&json);
+    for curve in ["free", "resonance"] {
+        let points = all["backbone"][curve].as_array().expect("a curve");
+        assert!(points.len() > 5, "{curve}");
+        for point in points {
+            let [omega, size]: [f64; 2] = numbers(point, &["omega", "peak_to_peak"])
+                .collect::<Vec<_>>()
+                .try_into()
+                .expect("two numbers");
+            let free = 0.954_693_569_728_51 * (0.5 * size).powf(0.25);
+            let tolerance = if curve == "free" { 1e-9 } else { 0.01 };
+            assert!(
+                (omega / free - 1.0).abs() < tolerance,
+                "{curve} {omega} {free}"
+            );
+        }
+    }
+    let picture = std::fs::read_to_string(&svg).expect("a picture");
+    assert!(picture.contains("free oscillation") && picture.contains("phase resonance"));
+}

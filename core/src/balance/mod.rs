@@ -195,6 +195,11 @@ impl<'a> Balance<'a> {
             .coefficients(&self.parameters, self.omega, &mut self.coefficients);
     }
 
+    /// Changes a parameter that is not the variable; takes effect when the variable is set.
+    pub(crate) fn set_parameter(&mut self, index: usize, value: f64) {
+        self.parameters[index] = value;
+    }
+
     fn base_divisor(&self) -> f64 {
         f64::from(self.system.facts().divisor) * self.resolution.period as f64
     }

@@ -34,7 +34,7 @@ pub struct Limb {
 }
 
 /// Where a branch comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Origin {
     /// It is the branch that was asked for.
@@ -47,6 +47,11 @@ pub enum Origin {
         event: usize,
         /// Side of the event.
         side: Side,
+    },
+    /// Nothing leads to it: motions were found to settle to one of its orbits.
+    Attractor {
+        /// Where, in what is varied.
+        value: f64,
     },
 }
 
@@ -166,6 +171,30 @@ impl<'a> Search<'a> {
                 });
             }
         }
+    }
+
+    /// Takes in the branch through an attractor, unless it is known.
+    ///
+    /// # Errors
+    /// If its orbit is not found.
+    pub(super) fn add_attractor(
+        &mut self,
+        value: f64,
+        period: usize,
+        state: &[f64],
+    ) -> Result<(), Error> {
+        let request = self.shooting.clone().period(period).near(state);
+        let orbit = request.orbit(value)?;
+        let known = |limb: &Limb| known::contains(&self.shooting, limb, &orbit);
+        if self.diagram.branches.iter().any(known) {
+            return Ok(());
+        }
+        let request = request
+            .near(orbit.state())
+            .max_points(self.points_left.max(2));
+        let branch = request.through(value)?;
+        self.add(Origin::Attractor { value }, 0, branch);
+        Ok(())
     }
 
     fn follow(&mut self, number: usize, index: usize) -> Result<(), Reason> {

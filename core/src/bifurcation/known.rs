@@ -1,6 +1,7 @@
 //! Recognising what is known already.
 
-use crate::flow::shooting::{Cycle, CycleEvent};
+use super::diagram::Limb;
+use crate::flow::shooting::{Cycle, CycleEvent, Shooting};
 
 /// Values and states of one event, found on two branches, differ by no more than this part, or by their stated errors.
 const SAME: f64 = 1e-6;
@@ -26,5 +27,27 @@ pub(super) fn visits(cycle: &Cycle, state: &[f64]) -> bool {
             // At a branch point states are known to the root of what the value is known to.
             (x - y).abs() <= SAME.sqrt() * size * unit
         })
+    })
+}
+
+/// Whether an orbit is on a branch: one of those near its value leads to it.
+pub(super) fn contains(shooting: &Shooting<'_>, limb: &Limb, orbit: &Cycle) -> bool {
+    if limb.period() != orbit.period {
+        return false;
+    }
+    let passes = |pair: &&[Cycle]| {
+        let [a, b] = [pair[0].value, pair[1].value];
+        (a - orbit.value) * (b - orbit.value) <= 0.0
+    };
+    limb.branch.cycles.windows(2).filter(passes).any(|pair| {
+        let nearer = |cycle: &Cycle| (cycle.value - orbit.value).abs();
+        let start = if nearer(&pair[0]) < nearer(&pair[1]) {
+            &pair[0]
+        } else {
+            &pair[1]
+        };
+        let request = shooting.clone().period(orbit.period).near(start.state());
+        let found = request.orbit(orbit.value);
+        found.is_ok_and(|found| visits(&found, orbit.state()))
     })
 }

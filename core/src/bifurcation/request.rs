@@ -4,6 +4,8 @@ use std::time::Instant;
 
 use super::diagram::{Diagram, Origin, Search};
 use crate::error::Error;
+use crate::flow;
+use crate::flow::basin::{Attractor, Basin};
 use crate::flow::shooting::Shooting;
 use crate::system::{System, Variable};
 use crate::validate;
@@ -12,6 +14,8 @@ use crate::validate;
 const BRANCHES: usize = 64;
 /// Orbits of all branches together.
 const POINTS: usize = 50_000;
+/// Tolerance of the flow by which motions settle, where it is not in closed form.
+const SETTLED: f64 = 1e-9;
 /// By this part of the range further branches may go beyond its ends.
 const BEYOND: f64 = 0.1;
 
@@ -50,12 +54,14 @@ pub struct Bifurcations<'a> {
     system: &'a dyn System,
     shooting: Shooting<'a>,
     vary: Option<String>,
+    omega: Option<f64>,
     from: Option<f64>,
     to: Option<f64>,
     depth: usize,
     branches: usize,
     points: usize,
     beyond: f64,
+    searched: Vec<(f64, Basin)>,
 }
 
 impl std::fmt::Debug for Bifurcations<'_> {
@@ -74,12 +80,14 @@ impl<'a> Bifurcations<'a> {
             system,
             shooting: Shooting::of(system),
             vary: None,
+            omega: None,
             from: None,
             to: None,
             depth: 3,
             branches: BRANCHES,
             points: POINTS,
             beyond: BEYOND,
+            searched: Vec::new(),
         }
     }
 
@@ -110,6 +118,14 @@ impl<'a> Bifurcations<'a> {
     #[must_use]
     pub fn omega(mut self, omega: f64) -> Self {
         self.shooting = self.shooting.omega(omega);
+        self.omega = Some(omega);
+        self
+    }
+
+    /// Period of the orbits of the first branch, in periods of the excitation. Default: 1.
+    #[must_use]
+    pub fn period(mut self, period: usize) -> Self {
+        self.shooting = self.shooting.period(period);
         self
     }
 
@@ -139,6 +155,15 @@ impl<'a> Bifurcations<'a> {
     #[must_use]
     pub fn beyond(mut self, part: f64) -> Self {
         self.beyond = part;
+        self
+    }
+
+    /// Also looks for branches that nothing leads to: at a value of what is varied, motions from a grid of initial states are
+    /// followed until they have settled, and the branch of every periodic orbit that they settle to, of whatever period, is
+    /// followed unless it is known.
+    #[must_use]
+    pub fn search(mut self, value: f64, basin: Basin) -> Self {
+        self.searched.push((value, basin));
         self
     }
 
@@ -174,9 +199,39 @@ impl<'a> Bifurcations<'a> {
         );
         search.add(Origin::First, 0, branch);
         search.exhaust();
+        for (value, basin) in &self.searched {
+            for attractor in self.attractors(*value, basin)? {
+                let (period, state) = (attractor.period, &attractor.points[0]);
+                search.add_attractor(*value, period, state)?;
+                search.exhaust();
+            }
+        }
         let mut diagram = search.diagram;
         diagram.elapsed = started.elapsed();
         Ok(diagram)
+    }
+
+    /// What motions settle to at a value.
+    fn attractors(&self, value: f64, basin: &Basin) -> Result<Vec<Attractor>, Error> {
+        let facts = self.system.facts();
+        let variable = validate::variable(facts, self.vary.as_deref())?;
+        let mut parameters = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut parameters);
+        let omega = match variable {
+            Variable::Omega => value,
+            Variable::Parameter(index) => {
+                parameters[index] = value;
+                self.omega.ok_or(Error::MissingEnd { name: "omega" })?
+            }
+        };
+        let options = flow::Options { tolerance: SETTLED };
+        let flow = flow::at(self.system, &parameters, omega, options)?;
+        let found = basin.compute(vec![flow], None, &|_| true);
+        let found = found.map_err(|error| Error::Search {
+            value,
+            reason: error.to_string(),
+        })?;
+        Ok(found.attractors)
     }
 
     fn check(&self) -> Result<(), Error> {

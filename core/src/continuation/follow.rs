@@ -59,8 +59,8 @@ pub enum Stop {
     LeftAtStart,
     /// The branch closed upon itself, be it one or several excitation periods later.
     Closed,
-    /// A branch of orbits of several excitation periods met one of a shorter period. It would go on through the same orbits,
-    /// one excitation period later.
+    /// A branch of orbits of several excitation periods met one of a shorter period, or one of orbits without a symmetry met one of
+    /// orbits with it. It would go on through the same orbits, shifted in time or mirrored.
     Joined {
         /// The shorter period, in excitation periods.
         period: usize,
@@ -93,7 +93,7 @@ impl std::fmt::Display for Stop {
             Self::Closed => write!(f, "closed upon itself"),
             Self::Joined { period, parameter } => write!(
                 f,
-                "joined a branch of orbits of period {period} at {parameter:.9}; beyond, the same orbits would follow again, one excitation period later"
+                "joined a branch of orbits of period {period} at {parameter:.9}; beyond, the same orbits would follow again, shifted or mirrored"
             ),
             Self::PointLimit { points } => write!(f, "reached the limit of {points} points"),
             Self::StepTooShort {

@@ -1,14 +1,17 @@
-//! What is located between two points of a branch: folds, the loss of a symmetry, and the end of a branch of longer orbits.
+//! What is located between two points of a branch: folds, the loss of a symmetry, doublings of the period, and the end of a branch of
+//! longer orbits.
 
 use super::Run;
 use crate::balance::{Balance, Resolution};
 use crate::branch::{Event, EventKind, Turn};
 use crate::continuation::follow::{CurvePoint, Stop};
 use crate::continuation::locate::{Located, locate};
+use crate::continuation::problem::Norm;
 use crate::fourier::series;
 use crate::harmonics::resize;
 use crate::newton::Newton;
 use crate::subharmonics::{is_shifted, passes_shorter_period};
+use crate::symmetry::broken;
 use crate::truncation::BEYOND;
 
 /// The test function of a fold is driven below this.
@@ -92,11 +95,14 @@ impl Run<'_, '_> {
         });
     }
 
-    /// Whether the branch has passed an orbit of a shorter period since its last point: what the orbits of the longer period
-    /// have in addition has changed its sign.
+    /// Whether the branch has passed an orbit of a shorter period, or a symmetric one, since its last point: what its orbits have
+    /// in addition has changed its sign.
     pub(super) fn joins(&self, u: &[f64]) -> bool {
         let orbit = self.points.last().map(|point| &point.orbit);
-        orbit.is_some_and(|orbit| passes_shorter_period(orbit, u).is_some())
+        orbit.is_some_and(|orbit| {
+            let symmetric = self.follower.asymmetric && broken(orbit, u) < 0.0;
+            symmetric || passes_shorter_period(orbit, u).is_some()
+        })
     }
 
     /// Locates where a branch of longer orbits joins one of a shorter period, and ends it there: what would follow are the
@@ -110,41 +116,41 @@ impl Run<'_, '_> {
         let Some(last) = self.points.last() else {
             return;
         };
-        let Some(joined) = passes_shorter_period(&last.orbit, &behind.u) else {
-            return;
+        let joined = passes_shorter_period(&last.orbit, &behind.u);
+        let addition = |point: &CurvePoint| match joined {
+            Some(joined) => joined.addition(&last.orbit, &point.u),
+            None => broken(&last.orbit, &point.u),
         };
-        let addition = |point: &CurvePoint| joined.addition(&last.orbit, &point.u);
+        let period = joined.map_or(last.orbit.period, |joined| joined.period);
         let options = self.options.newton;
         let between = (before, behind);
         let located = locate(balance, newton, between, options, JOINED, addition);
         let parameter = located.map_or_else(
-            || 0.5 * (before.parameter() + behind.parameter()),
+            || vertex(newton.norm(), before, behind),
             |located| located.point.parameter(),
         );
-        self.ended = Some(Stop::Joined {
-            period: joined.period,
-            parameter,
-        });
+        self.ended = Some(Stop::Joined { period, parameter });
     }
 
-    /// Locates where the even harmonics become singular between two symmetric orbits.
+    /// Locates where the harmonics that the orbits do not have become singular between two of them.
     pub(super) fn watch(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         (before, behind): (&CurvePoint, &CurvePoint),
     ) {
-        let Some(even) = &mut self.even else {
+        let Some(block) = &mut self.block else {
             return;
         };
-        let (a, b) = (even.determinant(&before.u), even.determinant(&behind.u));
+        let kind = block.kind;
+        let (a, b) = (block.determinant(&before.u), block.determinant(&behind.u));
         if a.0 * b.0 >= 0.0 {
             return;
         }
         let largest = a.1.max(b.1);
         let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
-        let even = std::cell::RefCell::new(even);
-        let test = |point: &CurvePoint| relative(even.borrow_mut().determinant(&point.u));
+        let block = std::cell::RefCell::new(block);
+        let test = |point: &CurvePoint| relative(block.borrow_mut().determinant(&point.u));
         let between = (before, behind);
         let options = self.options.newton;
         let located = locate(balance, newton, between, options, FOLD_TOLERANCE, test);
@@ -154,13 +160,13 @@ impl Run<'_, '_> {
         let u = &located.point.u;
         let error = if self.reader.finer.correct(u, newton) {
             let range = behind.parameter() - before.parameter();
-            self.symmetry_error(&located.point, 1e-4 * range)
+            self.block_error(&located.point, 1e-4 * range)
         } else {
             f64::INFINITY
         };
         let point = self.reader.read(balance, newton, u);
         self.events.push(Event {
-            kind: EventKind::SymmetryBreaking,
+            kind,
             point,
             error,
             test: located.test,
@@ -168,17 +174,16 @@ impl Run<'_, '_> {
         });
     }
 
-    /// Estimated error of a symmetry-breaking point: where the harmonics of `finer`, at the corrected orbit that it holds, would put
-    /// it.
-    fn symmetry_error(&self, point: &CurvePoint, step: f64) -> f64 {
+    /// Estimated error of such a point: where the harmonics of `finer`, at the corrected orbit that it holds, would put it.
+    fn block_error(&self, point: &CurvePoint, step: f64) -> f64 {
         let finer = self.reader.finer.extended();
         let fine = self.reader.finer.balance().resolution();
-        let Some(mut even) = self.follower.even_block(fine) else {
+        let Some(mut block) = self.follower.block(fine) else {
             return f64::INFINITY;
         };
         let coordinates = self.follower.system.facts().coordinates.len();
         let length = series::length(fine.harmonics);
-        let mut at = |u: &[f64]| even.determinant(&resize(u, coordinates, length));
+        let mut at = |u: &[f64]| block.determinant(&resize(u, coordinates, length));
         // The determinant along the tangent, by a central difference in the parameter.
         let value = point.parameter();
         let along = step / point.tangent[point.tangent.len() - 1];
@@ -199,5 +204,29 @@ impl Run<'_, '_> {
         } else {
             f64::INFINITY
         }
+    }
+}
+
+/// The parameter where it turns back between two points, on the cubic through both with their slopes (Hermite's); in the middle if
+/// that does not turn.
+fn vertex(norm: &Norm, before: &CurvePoint, behind: &CurvePoint) -> f64 {
+    let pairs = behind.u.iter().zip(&before.u);
+    let difference: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+    let length = norm.length(before.scale, &difference);
+    let last = difference.len() - 1;
+    let change = difference[last];
+    let [a, b] = [before, behind]
+        .map(|point| length * point.tangent[last] / norm.length(before.scale, &point.tangent));
+    // The slope is a + 2 c x + 3 d x^2 for x from 0 to 1.
+    let (c, d) = (3.0 * change - 2.0 * a - b, a + b - 2.0 * change);
+    let root = (c * c - 3.0 * a * d).sqrt();
+    let turns = [-a / (c + root), -a / (c - root)];
+    let inside = turns.into_iter().find(|x| (0.0..=1.0).contains(x));
+    let x = inside.unwrap_or(0.5);
+    let turned = before.parameter() + x * (a + x * (c + x * d));
+    if inside.is_some() {
+        turned
+    } else {
+        0.5 * (before.parameter() + behind.parameter())
     }
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::records::{PointRecord, Record};
 
 /// Columns of the CSV file; each multiplier has two.
-pub const COLUMNS: [&str; 18] = [
+pub const COLUMNS: [&str; 20] = [
     "omega",
     "drive",
     "peak_to_peak",
@@ -26,6 +26,8 @@ pub const COLUMNS: [&str; 18] = [
     "dissipated_power",
     "harmonics",
     "error",
+    "branch",
+    "period",
 ];
 
 /// Whether a file can be written there, as far as can be told without touching it.
@@ -99,5 +101,7 @@ pub fn row(point: &PointRecord) -> Vec<String> {
         number(point.dissipated_power),
         point.harmonics.to_string(),
         point.error.map_or(String::new(), number),
+        point.branch.to_string(),
+        point.period.to_string(),
     ]
 }

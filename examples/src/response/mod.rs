@@ -1,5 +1,7 @@
 //! The program `response`: traces a branch of periodic orbits, draws it, and says what is on it.
 
+pub mod backbone;
+pub mod bifurcations;
 pub mod boundary;
 pub mod files;
 pub mod model_file;

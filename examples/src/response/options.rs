@@ -84,6 +84,52 @@ pub struct Options {
     #[arg(long, value_name = "VALUE", num_args = 1..)]
     pub at: Vec<f64>,
 
+    /// Also find where the period doubles, a symmetry breaks, quasi-periodic motions begin, and a contact is touched
+    #[arg(long)]
+    pub bifurcations: bool,
+
+    /// Follow the branches that begin there too, and those that begin on them, to this depth
+    #[arg(long, value_name = "DEPTH", requires = "bifurcations")]
+    pub follow: Option<usize>,
+
+    /// Also look for branches that nothing leads to, among what motions settle to at this value of what varies
+    #[arg(
+        long,
+        value_name = "VALUE",
+        requires = "bifurcations",
+        allow_hyphen_values = true
+    )]
+    pub search: Vec<f64>,
+
+    /// Follow the curves of these bifurcations in two parameters
+    #[arg(long, value_enum, requires = "plane")]
+    pub track: Option<Tracked>,
+
+    /// The two parameters of --track; the first is what --sweep varies
+    #[arg(
+        long = "in",
+        id = "plane",
+        value_name = "PARAM,PARAM",
+        value_delimiter = ',',
+        num_args = 1..=2,
+        requires = "track"
+    )]
+    pub plane: Vec<String>,
+
+    /// Range of the second parameter of --track [default: from half to twice its value]
+    #[arg(
+        long,
+        value_name = "VALUE,VALUE",
+        value_delimiter = ',',
+        num_args = 1..=2,
+        requires = "track"
+    )]
+    pub within: Vec<f64>,
+
+    /// Also draw the free oscillation without damping and excitation, and where the response is in phase resonance
+    #[arg(long)]
+    pub backbone: bool,
+
     /// The picture
     #[arg(long, value_name = "FILE", default_value = "response.svg")]
     pub svg: PathBuf,
@@ -108,6 +154,17 @@ pub enum Sweep {
     Omega,
     /// The amplitude of the excitation
     Drive,
+}
+
+/// What is tracked in two parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Tracked {
+    /// Folds
+    Fold,
+    /// Period doublings
+    PeriodDoubling,
+    /// Where a symmetry breaks
+    BranchPoint,
 }
 
 /// How the harmonics of the contact force are computed.

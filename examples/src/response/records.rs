@@ -1,10 +1,12 @@
 //! What is written to JSON and CSV: plain numbers with stable names.
 
+use hertzian::flow::shooting::{CycleEvent, Track};
 use hertzian::observe::{amplitudes, phases};
 use hertzian::system::SystemFacts;
 use hertzian::{Branch, Event, Point, Statistics};
 use serde::Serialize;
 
+use super::backbone::Backbone;
 use super::options::Sweep;
 
 /// Everything about a branch.
@@ -18,6 +20,10 @@ pub struct Record {
     pub turns: Vec<TurnRecord>,
     /// Every solution at the values that were asked for.
     pub at: Vec<PointRecord>,
+    /// Curves of bifurcations in two parameters.
+    pub tracks: Vec<TrackRecord>,
+    /// Free oscillation and phase resonance.
+    pub backbone: Backbone,
     /// Why the branch ended.
     pub stopped: String,
     /// What it cost.
@@ -29,6 +35,10 @@ pub struct Record {
 /// One orbit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PointRecord {
+    /// Number of the branch: zero is the one that was asked for.
+    pub branch: usize,
+    /// Period of the orbit, in periods of the excitation.
+    pub period: usize,
     /// Frequency of the excitation.
     pub omega: f64,
     /// Amplitude of the excitation.
@@ -68,6 +78,10 @@ pub struct PointRecord {
 /// A special orbit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EventRecord {
+    /// Number of the branch.
+    pub branch: usize,
+    /// Period of the orbit, in periods of the excitation.
+    pub period: usize,
     /// What happens there.
     pub kind: String,
     /// Frequency of the excitation.
@@ -89,6 +103,53 @@ pub struct TurnRecord {
     pub drive: f64,
     /// Number of points of the branch before it.
     pub after: usize,
+}
+
+/// A curve of bifurcations in two parameters.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TrackRecord {
+    /// What bifurcates.
+    pub kind: String,
+    /// Period of the orbits, in periods of the excitation.
+    pub period: usize,
+    /// Names of the two parameters.
+    pub names: [String; 2],
+    /// Their values along the curve.
+    pub points: Vec<[f64; 2]>,
+    /// Its special points.
+    pub special: Vec<SpecialRecord>,
+}
+
+/// A special point of a curve of bifurcations.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpecialRecord {
+    /// What is special.
+    pub kind: String,
+    /// Values of the two parameters.
+    pub values: [f64; 2],
+    /// Estimated error of them.
+    pub error: f64,
+}
+
+impl TrackRecord {
+    /// Of a curve.
+    pub fn of(track: &Track) -> Self {
+        Self {
+            kind: track.kind.to_string(),
+            period: track.period,
+            names: track.names.clone(),
+            points: track.points.iter().map(|point| point.values).collect(),
+            special: track
+                .special
+                .iter()
+                .map(|special| SpecialRecord {
+                    kind: special.kind.to_string(),
+                    values: special.values,
+                    error: special.error,
+                })
+                .collect(),
+        }
+    }
 }
 
 /// Counts of the work done.
@@ -139,9 +200,27 @@ impl Record {
                 .collect(),
             turns: branch.turns.iter().map(turn).collect(),
             at: at.iter().map(point).collect(),
+            tracks: Vec::new(),
+            backbone: Backbone::default(),
             stopped: branch.stopped.to_string(),
             statistics: branch.statistics.into(),
             elapsed_seconds: branch.elapsed.as_secs_f64(),
+        }
+    }
+}
+
+impl EventRecord {
+    /// Of an event of a branch of a diagram.
+    pub fn of_cycle(branch: usize, event: &CycleEvent, facts: &SystemFacts) -> Self {
+        let cycle = &event.cycle;
+        Self {
+            branch,
+            period: cycle.period,
+            kind: event.kind.to_string(),
+            omega: cycle.omega,
+            drive: drive(&cycle.parameters, facts),
+            peak_to_peak: cycle.peak_to_peak(),
+            error: event.error,
         }
     }
 }
@@ -156,8 +235,10 @@ impl PointRecord {
         // A linear spring in both directions is no contact to the library: it never opens, and its force is x.
         let linear = motion.maximum.abs().max(motion.minimum.abs());
         Self {
+            branch: 0,
+            period: point.orbit.period,
             omega: point.omega(),
-            drive: drive(point, facts),
+            drive: drive(point.parameters.as_slice(), facts),
             peak_to_peak: motion.peak_to_peak(),
             max: motion.maximum,
             min: motion.minimum,
@@ -180,9 +261,11 @@ impl PointRecord {
 impl EventRecord {
     fn of(event: &Event, facts: &SystemFacts) -> Self {
         Self {
+            branch: 0,
+            period: event.point.orbit.period,
             kind: event.kind.to_string(),
             omega: event.point.omega(),
-            drive: drive(&event.point, facts),
+            drive: drive(&event.point.parameters, facts),
             peak_to_peak: event.point.peak_to_peak(),
             error: event.error,
         }
@@ -203,7 +286,7 @@ impl From<Statistics> for StatisticsRecord {
     }
 }
 
-fn drive(point: &Point, facts: &SystemFacts) -> f64 {
+fn drive(parameters: &[f64], facts: &SystemFacts) -> f64 {
     let drive = facts.parameters.iter().position(|p| p.name == "drive");
-    drive.map_or(f64::NAN, |index| point.parameters[index])
+    drive.map_or(f64::NAN, |index| parameters[index])
 }

@@ -8,6 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use hertzian::chart::{Chart, Reference};
 use hertzian::{Branch, Error, FrequencyResponse, Point, Stop, System};
 
+use super::backbone;
+use super::bifurcations;
 use super::boundary::loss_of_contact;
 use super::files;
 use super::model_file::ModelError;
@@ -100,15 +102,30 @@ pub fn run(
 
     let mut warnings = Vec::new();
     let at = solutions_at(options, &branch, &mut warnings);
-    let record = Record::of(&branch, model.facts(), options.sweep, &at);
-    let chart = picture(options, &branch, stop);
+    let mut record = Record::of(&branch, model.facts(), options.sweep, &at);
+    let found = bifurcations::find(options, &*model)?;
+    let mut chart = match &found {
+        Some(found) => found.chart(options),
+        None => picture(options, &branch, stop),
+    };
+    if options.backbone {
+        let (backbone, missing) = backbone::of(options, &*model, &branch);
+        chart = backbone.references().fold(chart, Chart::reference);
+        record.backbone = backbone;
+        warnings.extend(missing);
+    }
+    if let Some(found) = &found {
+        found.add_to(&mut record, options, &*model)?;
+        warnings.extend(found.warnings.iter().cloned());
+    }
     let written = write(options, &record, &chart)?;
     let complete = branch.stopped == Stop::ReachedEnd;
     if !complete {
         warnings.push(format!("the branch ended early: {}", branch.stopped));
     }
+    let further = found.map_or_else(String::new, |found| found.summary());
     Ok(Outcome {
-        summary: summary::of(options, &branch, &at, &written),
+        summary: summary::of(options, &branch, &at, &written) + &further,
         warnings,
         complete,
     })

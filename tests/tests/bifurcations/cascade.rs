@@ -8,7 +8,7 @@ use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Reason};
 use hertzian::flow::shooting::{CycleEvent, End};
 
 hertzian::oscillator! {
-    OneSided(x) {
+    pub OneSided(x) {
         param zeta >= 0;
         param load;
         param drive;
@@ -17,27 +17,27 @@ hertzian::oscillator! {
     }
 }
 
-const MODEL: OneSided = OneSided {
+pub const MODEL: OneSided = OneSided {
     zeta: 0.032,
     load: 1.0,
     drive: 0.1,
 };
 
 /// The drive at a bifurcation, and the multiplier that is not plus or minus one.
-struct Exact {
-    drive: f64,
-    multiplier: f64,
+pub struct Exact {
+    pub drive: f64,
+    pub multiplier: f64,
 }
 
-const A1: Exact = Exact {
+pub const A1: Exact = Exact {
     drive: 1.282_584_167_663_767,
     multiplier: -0.817_945_968_917_093,
 };
-const A4: Exact = Exact {
+pub const A4: Exact = Exact {
     drive: 1.531_044_135_499_983,
     multiplier: -0.635_978_721_580_046,
 };
-const A6: Exact = Exact {
+pub const A6: Exact = Exact {
     drive: 1.880_077_405_264_828,
     multiplier: -0.639_583_443_698_677,
 };
@@ -49,7 +49,7 @@ const PERIOD_2_LOWER_FOLD: Exact = Exact {
     drive: 0.294_528_806_187_216,
     multiplier: 0.795_091_307_354_537,
 };
-const PERIOD_8_FOLD: Exact = Exact {
+pub const PERIOD_8_FOLD: Exact = Exact {
     drive: 1.779_836_025_884_334,
     multiplier: 0.183_740_023_455_888,
 };

@@ -163,8 +163,10 @@ fn period_2_doubles_at_a4_and_a6_and_folds() {
     let request = shooting().period(2).near(&[-0.097, 0.283]);
     let branch = request.from(1.52).to(2.2).run().unwrap();
     assert_smooth(&branch);
-    let [a4, a6, fold, ..] = &branch.events[..] else {
-        panic!("{:?}", branch.events);
+    let grazing = |event: &&CycleEvent| matches!(event.kind, EventKind::Grazing { .. });
+    let events: Vec<_> = branch.events.iter().filter(|e| !grazing(e)).collect();
+    let [a4, a6, fold, ..] = events[..] else {
+        panic!("{events:?}");
     };
     assert_exact(a4, EventKind::PeriodDoubling, &A4);
     assert_exact(a6, EventKind::PeriodDoubling, &A6);

@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::companion::Companion;
-use super::cycle::{Cycle, CycleBranch, CycleEvent};
+use super::cycle::{Cycle, CycleBranch, CycleEvent, End};
 use super::run::Run;
 use super::setting::Setting;
 use super::start::{First, Guess, first};
 use super::switch::{self, Begun};
-use crate::continuation::follow::Start;
+use crate::continuation::follow::{Start, Stop};
 use crate::error::Error;
 use crate::system::Variable;
 
@@ -72,8 +72,7 @@ pub(super) fn branch_at(
     followed(setting, (first, along), [from, to], visit, started)
 }
 
-/// The branch through the orbit near a guess at a value: first towards the beginning of a range as far as it goes, and from
-/// the value to the other side.
+/// The branch through the orbit near a guess at a value, both ways.
 ///
 /// # Errors
 /// If there is no such orbit.
@@ -83,7 +82,7 @@ pub(super) fn branch_through(
     value: f64,
     [from, to]: [f64; 2],
     visit: See<'_>,
-) -> Result<[CycleBranch; 2], Error> {
+) -> Result<CycleBranch, Error> {
     let mut part = |side: f64| {
         let started = Instant::now();
         let found = first(setting, guess, value, setting.omega_at(value))?;
@@ -92,7 +91,11 @@ pub(super) fn branch_through(
         followed(setting, (first, along), [from, to], &mut *visit, started)
     };
     let forwards = (to - from).signum();
-    Ok([part(-forwards)?, part(forwards)?])
+    let forth = part(forwards)?;
+    if forth.end == End::Stopped(Stop::Closed) {
+        return Ok(forth);
+    }
+    Ok(CycleBranch::joined(part(-forwards)?, forth))
 }
 
 /// Called at every orbit.

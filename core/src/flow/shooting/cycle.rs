@@ -29,6 +29,8 @@ pub struct Cycle {
     pub stability: Stability,
     /// Extremes of every coordinate.
     pub extremes: Vec<Extremes>,
+    /// How often a gap crosses a level in the period.
+    pub switches: usize,
     /// Estimated error of the state, of velocities in units of omega: from the tolerance of the flow and from rounding.
     /// Not a number where no stability was asked for.
     pub error: f64,
@@ -145,6 +147,44 @@ pub struct CycleBranch {
 }
 
 impl CycleBranch {
+    /// Two parts of one branch from the same orbit on as one branch, the first backwards.
+    pub(crate) fn joined(back: Self, forth: Self) -> Self {
+        let count = back.cycles.len();
+        let mut branch = forth;
+        let mut cycles = back.cycles;
+        cycles.reverse();
+        // The first orbit of both is the same.
+        cycles.extend(branch.cycles.drain(..).skip(1));
+        let turned = |after: usize| count - after.min(count);
+        let mut events: Vec<CycleEvent> = back.events;
+        events.reverse();
+        for event in &mut events {
+            event.after = turned(event.after);
+        }
+        let mut turns: Vec<Turn> = back.turns;
+        turns.reverse();
+        for turn in &mut turns {
+            turn.after = turned(turn.after);
+        }
+        let shift = count.saturating_sub(1);
+        events.extend(branch.events.drain(..).map(|event| CycleEvent {
+            after: event.after + shift,
+            ..event
+        }));
+        turns.extend(branch.turns.drain(..).map(|turn| Turn {
+            after: turn.after + shift,
+            ..turn
+        }));
+        branch.statistics += back.statistics;
+        branch.elapsed += back.elapsed;
+        Self {
+            cycles,
+            events,
+            turns,
+            ..branch
+        }
+    }
+
     /// The events of one kind.
     pub fn events(&self, kind: EventKind) -> impl Iterator<Item = &CycleEvent> {
         self.events.iter().filter(move |event| event.kind == kind)

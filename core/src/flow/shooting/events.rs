@@ -7,6 +7,8 @@
 //! | fold | `l'` vanishes, and `det(M - I)` changes its sign with it |
 //! | branch point | `det(M - I)` vanishes and `l'` does not; or `l'` does, and `det(M - I)` keeps its sign: a branch that ends on another one, as of twice the period at a period doubling |
 //! | period doubling | `det(M + I)` vanishes; with odd symmetry the symmetry breaks there |
+//! | Neimark-Sacker | the product of `mu_i mu_j - 1` over all pairs of multipliers vanishes, and a pair is complex |
+//! | grazing | none: the number of times that a gap crosses a level changes, and so the place is found by halving |
 //!
 //! The bordered matrix of Newton's method has the determinant `det(M - I) / l'`, so these branch points are where it
 //! changes its sign.
@@ -16,7 +18,7 @@
 
 use std::cell::RefCell;
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use super::companion::{self, Companion, multipliers};
 use super::crossing::locate_crossing;
@@ -28,7 +30,7 @@ use crate::branch::{EventKind, Turn};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::newton::{Newton, NewtonOptions};
-use crate::stability::{Stability, distance};
+use crate::stability::{Stability, distance, eigenvalues};
 
 /// Brackets of an event are narrowed until rounding stops it, or this is reached.
 const VANISHED: f64 = 1e-14;
@@ -43,6 +45,9 @@ pub(super) struct Tests {
     minus: f64,
     /// `det(M + I)`
     plus: f64,
+    /// The product of `mu_i mu_j - 1`, and whether the pair that is nearest to one is complex.
+    pairs: f64,
+    complex: bool,
 }
 
 /// Which of them.
@@ -51,6 +56,7 @@ pub(super) enum Test {
     Slope,
     Minus,
     Plus,
+    Pairs,
 }
 
 /// A test function that changed its sign, and what that means.
@@ -84,10 +90,13 @@ impl Tests {
                 shifted.determinant()
             })
         };
+        let (pairs, complex) = map.map_or((f64::NAN, false), product_of_pairs);
         Self {
             slope,
             minus: determinant(-1.0),
             plus: determinant(1.0),
+            pairs,
+            complex,
         }
     }
 
@@ -96,6 +105,7 @@ impl Tests {
             Test::Slope => self.slope,
             Test::Minus => self.minus,
             Test::Plus => self.plus,
+            Test::Pairs => self.pairs,
         }
     }
 
@@ -125,11 +135,84 @@ impl Tests {
             let test = Test::Plus;
             changes.push(Change { test, kind });
         }
+        // A pair of real ones whose product is one is nothing special.
+        if a.pairs * b.pairs < 0.0 && a.complex && b.complex {
+            changes.push(Change {
+                test: Test::Pairs,
+                kind: EventKind::NeimarkSacker,
+            });
+        }
         changes
     }
 }
 
+/// The product of `mu_i mu_j - 1` over all pairs, and whether the pair whose product is nearest to one is complex.
+fn product_of_pairs(map: &DMatrix<f64>) -> (f64, bool) {
+    let values = eigenvalues(map);
+    let mut product = Complex::new(1.0, 0.0);
+    let mut nearest = (f64::INFINITY, false);
+    for (i, a) in values.iter().enumerate() {
+        for b in &values[i + 1..] {
+            let factor = a * b - 1.0;
+            product *= factor;
+            if factor.norm() < nearest.0 {
+                nearest = (factor.norm(), a.im != 0.0 && b.im != 0.0);
+            }
+        }
+    }
+    (product.re, nearest.1)
+}
+
 impl<'a> Run<'_, 'a> {
+    /// Locates the grazing between two points whose orbits cross levels a different number of times.
+    pub(super) fn grazing(
+        &mut self,
+        equations: &mut Equations<'a>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+    ) {
+        let after = self.cycles.len() - 1;
+        let many = self.cycles[after - 1].switches;
+        let half = if equations.span.half { 2 } else { 1 };
+        let Ok(other) = equations.again(self.setting) else {
+            return;
+        };
+        let other = RefCell::new(other);
+        // The direction of the parameter on either side, as near to the place as was looked.
+        let slopes = RefCell::new([0.0; 2]);
+        let side = |point: &CurvePoint| {
+            let mut other = other.borrow_mut();
+            let before = other.flow.work().switches;
+            let counted = other.trace(&point.u, &mut |_| {});
+            let switches = half * (other.flow.work().switches - before);
+            let behind = counted.is_err() || switches != many;
+            slopes.borrow_mut()[usize::from(behind)] = point.parameter_slope();
+            if behind { -1.0 } else { 1.0 }
+        };
+        let found = locate(equations, newton, between, self.options, 0.0, side);
+        add(&mut self.work, other.borrow().flow.work());
+        let Some(found) = found else {
+            return;
+        };
+        let [before, behind] = slopes.into_inner();
+        let Ok((cycle, _)) = observe(self.setting, equations, &found.point.u) else {
+            return;
+        };
+        let value = cycle.value;
+        // The place is halved to a part of 1e-14 of the step, but the orbits have the error of the flow.
+        let nearest = &self.cycles[after];
+        let error = nearest.error + 1e-12 * value.abs().max((behind - before).abs());
+        self.events.push(CycleEvent {
+            kind: EventKind::Grazing {
+                turns: before * behind < 0.0,
+            },
+            cycle,
+            error,
+            test: found.test,
+            after,
+        });
+    }
+
     /// Locates an event between two points.
     pub(super) fn event(
         &mut self,
@@ -152,7 +235,7 @@ impl<'a> Run<'_, 'a> {
         // A slope is relative to the range, and rounding to the value.
         let unit = match change.test {
             Test::Slope => (value.abs() / place.point.scale.parameter).max(1.0),
-            Test::Minus | Test::Plus => 1.0,
+            Test::Minus | Test::Plus | Test::Pairs => 1.0,
         };
         let vanishes = test.abs() <= self.setting.vanishing(equations.frame.ratio) * unit;
         let event = vanishes.then(|| self.event_at(equations, between, change, &place));
@@ -269,7 +352,10 @@ fn compared(
             EventKind::PeriodDoubling => -1.0,
             _ => 1.0,
         };
-        let nearest = found.iter().map(|m| (m - critical).norm());
+        let nearest = found.iter().map(|m| match kind {
+            EventKind::NeimarkSacker => (m.norm() - 1.0).abs(),
+            _ => (m - critical).norm(),
+        });
         let spread = part * distance(&found, &there)
             + nearest.fold(f64::INFINITY, f64::min)
             + companion::moved(&map, &found, half, noise * map.norm().max(1.0));

@@ -15,13 +15,17 @@ mod extremes;
 mod recurrence;
 mod request;
 mod run;
+mod series;
 mod setting;
 mod solve;
 mod start;
 mod switch;
 #[cfg(test)]
 mod tests;
+mod trace;
+mod track;
 
 pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
 pub use extremes::Extremes;
 pub use request::{Shooting, Side};
+pub use trace::{Special, SpecialKind, Track, TrackEnd, TrackPoint};

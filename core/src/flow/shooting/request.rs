@@ -2,11 +2,12 @@
 
 use std::ops::ControlFlow;
 
-use super::compute;
 use super::cycle::{Cycle, CycleBranch, CycleEvent};
 use super::setting::{Setting, Source};
 use super::start::Guess;
-use crate::branch::{EventKind, Orbit};
+use super::trace::{self, Track};
+use super::{compute, series};
+use crate::branch::{EventKind, Orbit, Point};
 use crate::continuation::step::StepControl;
 use crate::error::{Attempts, Error};
 use crate::flow::affine::Affine;
@@ -29,6 +30,16 @@ pub enum Side {
     One,
     /// The other one.
     Other,
+}
+
+impl Side {
+    /// One or minus one.
+    pub(crate) fn sign(self) -> f64 {
+        match self {
+            Self::One => 1.0,
+            Self::Other => -1.0,
+        }
+    }
 }
 
 /// Periodic orbits by shooting: set up step by step, then one [orbit](Shooting::orbit) or a [branch](Shooting::run).
@@ -236,24 +247,73 @@ impl<'a> Shooting<'a> {
             ..self.clone()
         };
         let ([from, to], setting) = request.ranged()?;
-        let side = match side {
-            Side::One => 1.0,
-            Side::Other => -1.0,
-        };
         let go = &mut |_: &Cycle| ControlFlow::Continue(());
-        compute::branch_at(&setting, event, side, [from, to], go)
+        compute::branch_at(&setting, event, side.sign(), [from, to], go)
     }
 
-    /// The branch through the orbit at a value inside the range: one part from there towards the beginning of the range and one
-    /// towards its end, as far as each goes. The second is empty of news if the first closes upon itself.
+    /// The branch through the orbit at a value inside the range, both ways as far as it goes; [`CycleBranch::end`] is that of the
+    /// part to the side where the range ends. A branch that closes upon itself (an isola) is followed once around.
     ///
     /// # Errors
     /// As [`orbit`](Self::orbit).
-    pub fn through(&self, value: f64) -> Result<[CycleBranch; 2], Error> {
+    pub fn through(&self, value: f64) -> Result<CycleBranch, Error> {
         let ([from, to], setting) = self.ranged()?;
         let guess = self.guess(value, self.aside(value, setting.variable))?;
         let go = &mut |_: &Cycle| ControlFlow::Continue(());
         compute::branch_through(&setting, &guess, value, [from, to], go)
+    }
+
+    /// An orbit as a point of a branch by harmonic balance: its Fourier series, of 20 harmonics for each period of the excitation,
+    /// with everything that is read off an orbit.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, or the motion cannot be computed.
+    pub fn point(&self, cycle: &Cycle) -> Result<Point, Error> {
+        let request = Self {
+            period: cycle.period,
+            segments: None,
+            ..self.clone()
+        };
+        let setting = request.setting(cycle.value, cycle.value)?;
+        series::point(self.system, &setting, cycle)
+    }
+
+    /// The curve of bifurcations through an event of a branch, as a second parameter (or `"omega"`) varies between two values: of
+    /// folds, period doublings, or points where an odd symmetry breaks. What is varied here stays in the range from
+    /// [`from`](Self::from) to [`to`](Self::to).
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, or there is no such curve.
+    pub fn track(
+        &self,
+        event: &CycleEvent,
+        second: &str,
+        [low, high]: [f64; 2],
+    ) -> Result<Track, Error> {
+        let facts = self.system.facts();
+        let request = Self {
+            period: event.cycle.period,
+            segments: None,
+            ..self.clone()
+        };
+        let ([from, to], setting) = request.ranged()?;
+        let variable = validate::variable(facts, Some(second))?;
+        validate::range(facts, variable, low, high)?;
+        if variable == setting.variable {
+            let must = "must be two different ones";
+            let value = low;
+            return Err(Error::Option {
+                name: "parameters of a curve",
+                value,
+                must,
+            });
+        }
+        let plane = trace::Plane {
+            second: variable,
+            name: second.to_owned(),
+            ranges: [[from, to], [low, high]],
+        };
+        trace::track(&setting, event, &plane)
     }
 
     /// The range, and everything else that was asked for, checked.

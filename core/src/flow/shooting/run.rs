@@ -187,6 +187,11 @@ impl<'r, 'a> Run<'r, 'a> {
                 }
             }
         }
+        if let [.., a, b] = &self.cycles[..]
+            && a.switches != b.switches
+        {
+            self.grazing(equations, newton, (before, behind));
+        }
         Continue::Continue(())
     }
 
@@ -268,12 +273,14 @@ pub(super) fn observe(
     let rate = setting.rate_at(value);
     let mut extremes = vec![Extremes::NONE; equations.order() / 2];
     let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
+    let before = equations.flow.work().switches;
     let map = if setting.stability {
         Some(equations.map(u, see)?)
     } else {
         equations.trace(u, see)?;
         None
     };
+    let switches = equations.flow.work().switches - before;
     let half = equations.span.half;
     if half {
         for extremes in &mut extremes {
@@ -289,6 +296,7 @@ pub(super) fn observe(
         states: equations.states_of(u),
         stability: Stability::unknown(),
         extremes,
+        switches: switches * if half { 2 } else { 1 },
         error: f64::NAN,
         iterations: 0,
     };

@@ -1,0 +1,299 @@
+//! Phase resonance of the damped and driven system.
+//!
+//! At phase resonance the first harmonic of a coordinate lags a quarter of a period behind that of its load, so that the load
+//! balances damping alone. With the load `a cos tau + b sin tau` and the harmonic `c cos tau + s sin tau`, the balance gets an
+//! unknown more, the frequency, and an equation more:
+//!
+//! ```text
+//! R(u, omega; A) = 0,      a c + b s = 0                                                                     (1)
+//! ```
+//!
+//! `A` is what is varied, usually the amplitude of the load; the derivative of `R` by it is a central difference.
+//!
+//! Source: Peeters, Kerschen and Golinval (2011), Dynamic testing of nonlinear vibrating structures using nonlinear normal modes,
+//! J. Sound Vib. 330 (phase lag quadrature); Volvert and Kerschen (2021), Phase resonance nonlinear modes of mechanical systems,
+//! J. Sound Vib. 511.
+
+use crate::aft::Aft;
+use crate::balance::{Balance, Parity, Resolution};
+use crate::branch::Orbit;
+use crate::continuation::follow::{Continue, FollowOptions, Start, Visit, follow};
+use crate::continuation::problem::Problem;
+use crate::continuation::step::StepControl;
+use crate::error::{Attempts, Error};
+use crate::fourier::series;
+use crate::harmonics::resize;
+use crate::jacobian::Jacobian;
+use crate::newton::{Newton, NewtonOptions};
+use crate::observe::Motion;
+use crate::response::FrequencyResponse;
+use crate::system::{System, Variable};
+use crate::validate;
+
+const HARMONICS: usize = 20;
+const POINTS: usize = 5000;
+/// Step of the difference by what is varied, relative to its value.
+const STEP: f64 = 1e-6;
+
+/// Where the first coordinate is in phase resonance with its load, as a parameter varies from the value that it has: set up step by
+/// step, then [run](PhaseResonance::run).
+#[derive(Clone)]
+pub struct PhaseResonance<'a> {
+    system: &'a dyn System,
+    vary: String,
+    to: f64,
+    between: [f64; 2],
+    harmonics: usize,
+}
+
+impl std::fmt::Debug for PhaseResonance<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PhaseResonance")
+            .field("system", &self.system.facts().name)
+            .field("vary", &self.vary)
+            .finish_non_exhaustive()
+    }
+}
+
+/// One orbit in phase resonance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResonancePoint {
+    /// What is varied.
+    pub value: f64,
+    /// The orbit.
+    pub orbit: Orbit,
+    /// Motion of the first coordinate.
+    pub motion: Motion,
+}
+
+impl<'a> PhaseResonance<'a> {
+    /// Of this system, as a parameter varies up or down to a value. The first orbit has a frequency between two others.
+    pub fn of(system: &'a dyn System, vary: &str, to: f64, between: [f64; 2]) -> Self {
+        Self {
+            system,
+            vary: vary.to_owned(),
+            to,
+            between,
+            harmonics: HARMONICS,
+        }
+    }
+
+    /// Number of harmonics. Default: 20.
+    #[must_use]
+    pub fn harmonics(mut self, harmonics: usize) -> Self {
+        self.harmonics = harmonics;
+        self
+    }
+
+    /// Follows the curve. It ends early where it cannot be continued.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, or no orbit in phase resonance is found at the first value.
+    pub fn run(&self) -> Result<Vec<ResonancePoint>, Error> {
+        let facts = self.system.facts();
+        let mut parameters = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut parameters);
+        let Variable::Parameter(index) = validate::variable(facts, Some(&self.vary))? else {
+            return Err(Error::UnknownParameter {
+                name: self.vary.clone(),
+                known: facts
+                    .parameters
+                    .iter()
+                    .map(|p| p.name.to_string())
+                    .collect(),
+            });
+        };
+        let from = parameters[index];
+        validate::range(facts, Variable::Parameter(index), from, self.to)?;
+        let harmonics = self.harmonics as f64;
+        validate::option(
+            "harmonics",
+            harmonics,
+            1.0..=1000.0,
+            "must be from 1 to 1000",
+        )?;
+        let first = self.first(&parameters, from)?;
+        let motion = Motion::of(first.series(0));
+        let coordinates = first.coordinates();
+        let mut u = first.series.clone();
+        u.push(first.omega);
+        let mut u = resize(&u, coordinates, series::length(self.harmonics));
+        u.push(from);
+        let balance = self.balance(&parameters, first.omega);
+        let mut equations = Resonance::new(balance, index, motion.peak_to_peak());
+        let mut newton = Newton::new(&equations);
+        let options = FollowOptions {
+            from,
+            to: self.to,
+            points: POINTS,
+            steps: StepControl::default(),
+            newton: NewtonOptions {
+                tolerance: 1e-10,
+                iterations: 20,
+                damped: false,
+            },
+        };
+        let mut points = Vec::new();
+        let visit = &mut |equations: &mut Resonance<'_>, _: &mut Newton, seen: Visit<'_>| {
+            if let Visit::Point(at) = seen {
+                points.push(equations.read(&at.u));
+            }
+            Continue::Continue(())
+        };
+        follow(&mut equations, &mut newton, Start::Near(u), options, visit).map_err(|reason| {
+            let parameter = from;
+            Error::NoStart { parameter, reason }
+        })?;
+        Ok(points)
+    }
+
+    fn balance(&self, parameters: &[f64], omega: f64) -> Balance<'a> {
+        let resolution = Resolution {
+            harmonics: self.harmonics,
+            core: self.harmonics,
+            parity: Parity::All,
+            samples: 8 * self.harmonics,
+            aft: Aft::Switched,
+            period: 1,
+        };
+        Balance::new(self.system, parameters, omega, Variable::Omega, resolution)
+    }
+
+    /// The orbit of the frequency response that is next to phase resonance.
+    fn first(&self, parameters: &[f64], value: f64) -> Result<Orbit, Error> {
+        let [low, high] = self.between;
+        let response = FrequencyResponse::of(self.system).from(low).to(high);
+        let response = response.harmonics(self.harmonics).stability(false);
+        let branch = response.run()?;
+        let mut balance = self.balance(parameters, low);
+        let mut lag = |orbit: &Orbit| {
+            balance.set(orbit.omega);
+            let (place, [a, b]) = load(&balance);
+            let series = orbit.series(0);
+            a * series[place] + b * series[place + 1]
+        };
+        let lags: Vec<f64> = branch.points.iter().map(|p| lag(&p.orbit)).collect();
+        let change = (1..lags.len()).find(|&i| lags[i - 1] * lags[i] < 0.0);
+        let nearest = change.map(|i| {
+            let nearer = lags[i - 1].abs() < lags[i].abs();
+            branch.points[i - usize::from(nearer)].orbit.clone()
+        });
+        nearest.ok_or(Error::NoSuchPeriod {
+            period: 1,
+            parameter: value,
+            attempts: Attempts::default(),
+        })
+    }
+}
+
+/// Where the harmonic of the excitation is in the series of the first coordinate, and the load there.
+fn load(balance: &Balance<'_>) -> (usize, [f64; 2]) {
+    let mut load = vec![0.0; balance.unknowns()];
+    balance.add_load(balance.coefficients(), 1.0, &mut load);
+    let divisor = balance.system().facts().divisor as usize;
+    let place = 2 * divisor - 1;
+    (place, [load[place], load[place + 1]])
+}
+
+/// The equations (1). The last of the extended unknowns is what is varied, the one before the frequency.
+struct Resonance<'a> {
+    balance: Balance<'a>,
+    index: usize,
+    /// What counts as one for displacements.
+    size: f64,
+    inner: Jacobian,
+    ahead: Vec<f64>,
+    behind: Vec<f64>,
+    column: Vec<f64>,
+}
+
+impl<'a> Resonance<'a> {
+    fn new(balance: Balance<'a>, index: usize, size: f64) -> Self {
+        let n = balance.unknowns();
+        Self {
+            inner: Jacobian::new(balance.partition()),
+            ahead: vec![0.0; n],
+            behind: vec![0.0; n],
+            column: vec![0.0; n + 1],
+            balance,
+            index,
+            size: if size > 0.0 { size } else { 1.0 },
+        }
+    }
+
+    fn read(&mut self, u: &[f64]) -> ResonancePoint {
+        let n = self.ahead.len();
+        self.balance.set_parameter(self.index, u[n + 1]);
+        self.balance.set(u[n]);
+        let orbit = Orbit {
+            series: u[..n].to_vec(),
+            coordinates: self.balance.layout().coordinates,
+            omega: u[n],
+            base: self.balance.base(),
+            period: 1,
+        };
+        ResonancePoint {
+            value: u[n + 1],
+            motion: Motion::of(orbit.series(0)),
+            orbit,
+        }
+    }
+}
+
+impl Problem for Resonance<'_> {
+    fn unknowns(&self) -> usize {
+        self.ahead.len() + 1
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
+        let n = self.ahead.len();
+        let value = u[n + 1];
+        if jacobian.is_some() {
+            let step = STEP * value.abs().max(STEP);
+            for (sign, to) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
+                self.balance.set_parameter(self.index, value + sign * step);
+                self.balance.evaluate(&u[..=n], to, None);
+            }
+            let pairs = self.ahead.iter().zip(&self.behind);
+            for (to, (a, b)) in self.column.iter_mut().zip(pairs) {
+                *to = (a - b) / (2.0 * step);
+            }
+        }
+        self.balance.set_parameter(self.index, value);
+        self.inner.clear();
+        let inner = jacobian.is_some().then_some(&mut self.inner);
+        self.balance.evaluate(&u[..=n], &mut residual[..n], inner);
+        let (place, [a, b]) = load(&self.balance);
+        let size = a.hypot(b);
+        let (a, b) = if size > 0.0 {
+            (a / size, b / size)
+        } else {
+            (1.0, 0.0)
+        };
+        residual[n] = a * u[place] + b * u[place + 1];
+        let Some(jacobian) = jacobian else {
+            return;
+        };
+        for i in 0..n {
+            let (from, to) = (self.inner.core_mut().row_mut(i), jacobian.core_mut());
+            to.row_mut(i)[..=n].copy_from_slice(&from[..=n]);
+        }
+        let row = jacobian.core_mut().row_mut(n);
+        row[place] = a;
+        row[place + 1] = b;
+        self.column[n] = 0.0;
+        jacobian.set_column(&self.column);
+    }
+
+    fn weights(&self, weights: &mut [f64]) {
+        let n = self.ahead.len();
+        self.balance.weights(&mut weights[..n]);
+        // The frequency counts relative to itself.
+        let unit = self.size / self.balance.omega();
+        weights[n] = unit * unit;
+    }
+
+    fn is_mean(&self, unknown: usize) -> bool {
+        unknown < self.ahead.len() && self.balance.is_mean(unknown)
+    }
+}

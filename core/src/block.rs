@@ -1,0 +1,148 @@
+//! The part of the Jacobian that belongs to harmonics which the orbits of a branch do not have.
+//!
+//! Orbits of odd symmetry have no even harmonics. Orbits of period `n`, as orbits of period `2 n`, have harmonic `k` at `2 k` and
+//! none of odd order. In both cases the Jacobian of the larger balance falls apart into two blocks: that of the harmonics which the
+//! orbits have, and that of the others. Where the determinant of the other block changes its sign, a branch of orbits
+//! crosses that do have them: the symmetry breaks, or the period doubles.
+//!
+//! This finds the bifurcations of the discrete balance, to rounding, and the branch that begins there is one of the same
+//! balance. Floquet multipliers of its orbits, which are integrated, would put them elsewhere by what the harmonics leave out.
+//!
+//! Source: Detroux, Renson, Masset and Kerschen (2015), The harmonic balance method for bifurcation analysis of large-scale
+//! nonlinear mechanical systems, section 4; Golubitsky, Stewart and Schaeffer (1988), Singularities and Groups in Bifurcation
+//! Theory II, chapter XIII (block structure).
+
+use crate::balance::{Balance, Parity, Resolution};
+use crate::branch::EventKind;
+use crate::continuation::problem::Problem;
+use crate::fourier::series;
+use crate::jacobian::Jacobian;
+use crate::system::{System, Variable};
+
+/// The block of one balance.
+#[derive(Debug)]
+pub(crate) struct Block<'a> {
+    /// What happens where it is singular.
+    pub(crate) kind: EventKind,
+    balance: Balance<'a>,
+    jacobian: Jacobian,
+    residual: Vec<f64>,
+    border: Vec<f64>,
+    /// The last orbit, as it was given and as an orbit of this balance, and its determinant.
+    orbit: Vec<f64>,
+    stretched: Vec<f64>,
+    known: (f64, f64),
+    /// Determinants computed, each a Jacobian and a factorisation.
+    pub(crate) computed: usize,
+}
+
+impl<'a> Block<'a> {
+    /// For orbits of a balance of this resolution: of the even harmonics if it has the odd ones only, and otherwise of the odd
+    /// harmonics of twice the period.
+    pub(crate) fn new(
+        system: &'a dyn System,
+        parameters: &[f64],
+        omega: f64,
+        variable: Variable,
+        resolution: Resolution,
+    ) -> Self {
+        // Nothing is left out of the block: its determinant is what counts.
+        let (kind, resolution) = if resolution.parity == Parity::Odd {
+            let even = Resolution {
+                parity: Parity::Even,
+                core: resolution.harmonics,
+                ..resolution
+            };
+            (EventKind::SymmetryBreaking, even)
+        } else {
+            let odd = Resolution {
+                parity: Parity::Odd,
+                harmonics: 2 * resolution.harmonics,
+                core: 2 * resolution.harmonics,
+                samples: 2 * resolution.samples,
+                period: 2 * resolution.period,
+                ..resolution
+            };
+            (EventKind::PeriodDoubling, odd)
+        };
+        let balance = Balance::new(system, parameters, omega, variable, resolution);
+        let n = balance.unknowns();
+        let mut border = vec![0.0; n + 1];
+        border[n] = 1.0;
+        Self {
+            kind,
+            jacobian: Jacobian::new(balance.partition()),
+            residual: vec![0.0; n],
+            border,
+            balance,
+            orbit: Vec::new(),
+            stretched: vec![0.0; n + 1],
+            known: (0.0, 0.0),
+            computed: 0,
+        }
+    }
+
+    /// The determinant of the block at an orbit: its sign, and the logarithm of its size. The sign is zero if the block is
+    /// singular. Of the same orbit again it is known.
+    pub(crate) fn determinant(&mut self, u: &[f64]) -> (f64, f64) {
+        if self.orbit == u {
+            return self.known;
+        }
+        self.orbit.clear();
+        self.orbit.extend_from_slice(u);
+        self.computed += 1;
+        if self.kind == EventKind::PeriodDoubling {
+            let coordinates = self.balance.layout().coordinates;
+            stretch(u, coordinates, &mut self.stretched);
+        } else {
+            self.stretched.copy_from_slice(u);
+        }
+        self.jacobian.clear();
+        let jacobian = Some(&mut self.jacobian);
+        self.balance
+            .evaluate(&self.stretched, &mut self.residual, jacobian);
+        self.jacobian.set_border(&self.border);
+        self.known = self.jacobian.determinant();
+        self.known
+    }
+}
+
+/// Steps of inverse iteration: each takes the part that is not in the null space down by the ratio of the two smallest singular
+/// values, which is below a part in a million at a located event.
+const INVERSE: usize = 3;
+
+impl Block<'_> {
+    /// The orbit as one of the larger balance, and the null vector of the block there, extended by a zero: at an event.
+    pub(crate) fn null_vector(&mut self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        self.orbit.clear();
+        self.determinant(u);
+        let n = self.residual.len();
+        let mut v: Vec<f64> = (0..=n).map(|i| (1.0 + i as f64).sin()).collect();
+        for _ in 0..INVERSE {
+            v[n] = 0.0;
+            self.jacobian.solve(&mut v);
+            let largest = v[..n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            for x in &mut v {
+                *x /= largest;
+            }
+        }
+        v[n] = 0.0;
+        (self.stretched.clone(), v)
+    }
+}
+
+/// Extended unknowns of an orbit as those of twice the period: harmonic `k` becomes harmonic `2 k`.
+fn stretch(u: &[f64], coordinates: usize, to: &mut [f64]) {
+    let from = (u.len() - 1) / coordinates;
+    let length = (to.len() - 1) / coordinates;
+    to.fill(0.0);
+    for i in 0..coordinates {
+        let (short, long) = (&u[i * from..][..from], &mut to[i * length..][..length]);
+        long[0] = short[0];
+        for k in 1..=series::harmonics(short) {
+            long[4 * k - 1] = short[2 * k - 1];
+            long[4 * k] = short[2 * k];
+        }
+    }
+    to[coordinates * length] = u[u.len() - 1];
+}

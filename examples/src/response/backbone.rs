@@ -1,0 +1,102 @@
+//! `--backbone`: free oscillation of the same oscillator, and its phase resonance.
+
+use hertzian::backbone::{FreeOscillation, PhaseResonance};
+use hertzian::chart::Reference;
+use hertzian::{Branch, Error, System};
+use serde::Serialize;
+
+use super::models::declared;
+use super::options::{Options, Sweep};
+use crate::model::ModelOptions;
+
+/// Smallest displacement from the state at rest, as a part of the largest of the branch.
+const SMALLEST: f64 = 0.02;
+/// Phase resonance is followed from the drive down to this part of it.
+const LEAST_DRIVE: f64 = 0.05;
+
+/// One point of a backbone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BackbonePoint {
+    /// Frequency.
+    pub omega: f64,
+    /// Largest less smallest displacement.
+    pub peak_to_peak: f64,
+    /// Amplitude of the excitation; zero of free oscillation.
+    pub drive: f64,
+}
+
+/// Both curves.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Backbone {
+    /// Free oscillation, without damping and excitation.
+    pub free: Vec<BackbonePoint>,
+    /// Phase resonance of the damped oscillator, as the drive falls.
+    pub resonance: Vec<BackbonePoint>,
+}
+
+/// The backbones of the oscillator over the displacements of a branch in the frequency, and why one of them is missing.
+pub fn of(options: &Options, model: &dyn System, branch: &Branch<'_>) -> (Backbone, Vec<String>) {
+    let mut warnings = Vec::new();
+    if options.model.file.is_some() || options.sweep == Sweep::Drive {
+        let message = "the backbone is that of a declared oscillator, over the frequency";
+        warnings.push(message.to_owned());
+        return (Backbone::default(), warnings);
+    }
+    let mut kept = |found: Result<Vec<BackbonePoint>, Error>| {
+        found.unwrap_or_else(|error| {
+            warnings.push(format!("backbone: {error}"));
+            Vec::new()
+        })
+    };
+    let free = kept(free(options, branch));
+    let resonance = kept(resonance(options, model));
+    (Backbone { free, resonance }, warnings)
+}
+
+fn free(options: &Options, branch: &Branch<'_>) -> Result<Vec<BackbonePoint>, Error> {
+    let ModelOptions { alpha, load, .. } = options.model;
+    let model = declared(&ModelOptions {
+        zeta: 0.0,
+        drive: 0.0,
+        ..options.model.clone()
+    });
+    let rest = load.signum() * load.abs().powf(1.0 / alpha);
+    let maxima = branch.points.iter().map(|point| point.motion().maximum);
+    let largest = maxima.fold(rest, f64::max);
+    let from = rest + SMALLEST * (largest - rest);
+    let curve = FreeOscillation::of(&*model).from(from).to(largest).run()?;
+    let points = curve.iter().map(|point| BackbonePoint {
+        omega: point.omega,
+        peak_to_peak: point.peak_to_peak(),
+        drive: 0.0,
+    });
+    Ok(points.collect())
+}
+
+fn resonance(options: &Options, model: &dyn System) -> Result<Vec<BackbonePoint>, Error> {
+    let to = LEAST_DRIVE * options.model.drive;
+    let between = [options.from, options.to];
+    let curve = PhaseResonance::of(model, "drive", to, between).run()?;
+    let points = curve.iter().map(|point| BackbonePoint {
+        omega: point.orbit.omega,
+        peak_to_peak: point.motion.peak_to_peak(),
+        drive: point.value,
+    });
+    Ok(points.collect())
+}
+
+impl Backbone {
+    /// Lines for the picture.
+    pub fn references(&self) -> impl Iterator<Item = Reference> {
+        let place = |point: &BackbonePoint| [point.omega, point.peak_to_peak];
+        let curves = [
+            ("free oscillation", &self.free),
+            ("phase resonance", &self.resonance),
+        ];
+        let curves = curves.into_iter().filter(|(_, points)| !points.is_empty());
+        curves.map(move |(label, points)| Reference {
+            label: label.to_owned(),
+            points: points.iter().map(place).collect(),
+        })
+    }
+}

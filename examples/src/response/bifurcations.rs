@@ -1,0 +1,364 @@
+//! `--bifurcations`, `--follow` and `--track`: what begins on the branch, by shooting.
+
+use std::f64::consts::TAU;
+use std::fmt::{self, Write};
+
+use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
+use hertzian::chart::{Chart, Markers, Scale, Trace};
+use hertzian::flow::basin::{Axis, Basin, Grid};
+use hertzian::flow::shooting::{CycleEvent, Track, TrackEnd};
+use hertzian::{Error, EventKind, Shooting, System};
+
+use super::options::{Options, Sweep, Tracked};
+use super::records::{EventRecord, PointRecord, Record, TrackRecord};
+
+/// Longest period of an orbit that is looked for, and cells along each side of a grid of initial states.
+const LONGEST: usize = 5;
+const CELLS: usize = 64;
+
+/// Sizes of orbits in a larger ratio than this are drawn over decades.
+const DECADES: f64 = 50.0;
+
+/// What was found.
+#[derive(Debug)]
+pub struct Found {
+    /// The branches; the first is the one that was asked for.
+    pub diagram: Diagram,
+    /// Curves of bifurcations in two parameters.
+    pub tracks: Vec<Track>,
+    /// What could not be done.
+    pub warnings: Vec<String>,
+}
+
+/// Everything beyond the branch itself that was asked for; nothing if nothing was.
+///
+/// # Errors
+/// If an option cannot be used, or there is no first orbit.
+pub fn find(options: &Options, model: &dyn System) -> Result<Option<Found>, Error> {
+    if !options.bifurcations && options.track.is_none() {
+        return Ok(None);
+    }
+    let mut request = Bifurcations::of(model)
+        .from(options.from)
+        .to(options.to)
+        .period(options.period)
+        .max_points(options.max_points)
+        .depth(options.follow.unwrap_or(0));
+    if options.sweep == Sweep::Drive {
+        request = request.vary("drive").omega(options.model.omega);
+    }
+    for &value in &options.search {
+        request = request.search(value, basin(options, value));
+    }
+    let diagram = request.run()?;
+    let mut found = Found {
+        diagram,
+        tracks: Vec::new(),
+        warnings: Vec::new(),
+    };
+    if let Some(kind) = options.track {
+        found.track(options, model, kind)?;
+    }
+    Ok(Some(found))
+}
+
+impl Found {
+    /// Tracks every event of a kind, but those that are on a curve already.
+    fn track(
+        &mut self,
+        options: &Options,
+        model: &dyn System,
+        tracked: Tracked,
+    ) -> Result<(), Error> {
+        let kind = match tracked {
+            Tracked::Fold => EventKind::Fold,
+            Tracked::PeriodDoubling => EventKind::PeriodDoubling,
+            Tracked::BranchPoint => EventKind::SymmetryBreaking,
+        };
+        let shooting = shooting(options, model);
+        let second = second(options, model)?;
+        let value = value_of(options, model, second);
+        let range = match options.within[..] {
+            [low, high] => [low, high],
+            _ => [0.5 * value, 2.0 * value],
+        };
+        let events: Vec<CycleEvent> = self
+            .diagram
+            .branches
+            .iter()
+            .filter(|limb| !limb.is_mirrored())
+            .flat_map(|limb| limb.branch.events(kind))
+            .cloned()
+            .collect();
+        for event in events {
+            let on_it = |track: &&Track| passes(track, &event, value);
+            if self.tracks.iter().any(|track| on_it(&track)) {
+                continue;
+            }
+            match shooting.track(&event, second, range) {
+                Ok(track) => self.tracks.push(track),
+                Err(error) => self
+                    .warnings
+                    .push(format!("{event} is not tracked: {error}")),
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts the events, and the branches other than the first, into the record.
+    ///
+    /// # Errors
+    /// If the motion of an orbit cannot be computed.
+    pub fn add_to(
+        &self,
+        record: &mut Record,
+        options: &Options,
+        model: &dyn System,
+    ) -> Result<(), Error> {
+        let shooting = shooting(options, model);
+        let facts = model.facts();
+        record.events.clear();
+        for (number, limb) in self.diagram.branches.iter().enumerate() {
+            let events = limb.branch.events.iter();
+            record
+                .events
+                .extend(events.map(|event| EventRecord::of_cycle(number, event, facts)));
+            if number == 0 {
+                continue;
+            }
+            for cycle in &limb.branch.cycles {
+                let point = PointRecord::of(&shooting.point(cycle)?, facts);
+                record.points.push(PointRecord {
+                    branch: number,
+                    ..point
+                });
+            }
+        }
+        record.tracks = self.tracks.iter().map(TrackRecord::of).collect();
+        Ok(())
+    }
+
+    /// The picture: of the curves in two parameters if there are any, of the branches otherwise.
+    pub fn chart(&self, options: &Options) -> Chart {
+        let title = super::summary::title(options);
+        let Some(track) = self.tracks.first() else {
+            let varied = match options.sweep {
+                Sweep::Omega => "excitation frequency ω",
+                Sweep::Drive => "drive",
+            };
+            return self
+                .diagram
+                .chart()
+                .scales(Scale::Linear, self.scale())
+                .title(title)
+                .x(varied)
+                .y("peak-to-peak of x");
+        };
+        let [x, y] = &track.names;
+        // The last entry is the value of what is an axis here.
+        let shared = title.rsplit_once(", ").filter(|_| options.period == 1);
+        let mut chart = Chart::new(shared.map_or(&*title, |(shared, _)| shared))
+            .x(x)
+            .y(y);
+        let mut special = Vec::new();
+        for track in &self.tracks {
+            chart = chart.trace(Trace {
+                label: format!("{}, period {}", track.kind, track.period),
+                points: track.points.iter().map(|point| point.values).collect(),
+            });
+            special.extend(&track.special);
+        }
+        for kind in ["cusp", "grazing", "fold-flip"] {
+            let of_kind = special.iter().filter(|s| s.kind.to_string() == kind);
+            let points: Vec<_> = of_kind.map(|special| special.values).collect();
+            if !points.is_empty() {
+                let label = kind.to_owned();
+                chart = chart.markers(Markers { label, points });
+            }
+        }
+        chart
+    }
+
+    /// Orbits of very different sizes are drawn over decades.
+    fn scale(&self) -> Scale {
+        let cycles = self
+            .diagram
+            .branches
+            .iter()
+            .flat_map(|limb| &limb.branch.cycles);
+        let sizes = cycles.map(hertzian::flow::shooting::Cycle::peak_to_peak);
+        let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
+            (low.min(size), high.max(size))
+        });
+        if low > 0.0 && high > DECADES * low {
+            Scale::Logarithmic
+        } else {
+            Scale::Linear
+        }
+    }
+
+    /// For people.
+    pub fn summary(&self) -> String {
+        let mut text = String::new();
+        // Writing to a string does not fail.
+        let _ = self.write(&mut text);
+        text
+    }
+
+    fn write(&self, text: &mut String) -> fmt::Result {
+        for (number, limb) in self.diagram.branches.iter().enumerate() {
+            describe(text, number, limb)?;
+        }
+        let deep = |reason: &Reason| matches!(reason, Reason::Depth);
+        let left = self.diagram.omitted.iter();
+        let deep = left.filter(|omitted| deep(&omitted.reason)).count();
+        if deep > 0 {
+            writeln!(
+                text,
+                "deeper     {deep} branches begin beyond the depth asked for"
+            )?;
+        }
+        for omitted in &self.diagram.omitted {
+            let reason = match &omitted.reason {
+                Reason::Failed(error) => error.to_string(),
+                Reason::Budget => "no more branches or orbits are allowed".to_owned(),
+                _ => continue,
+            };
+            writeln!(text, "omitted    on branch {}: {reason}", omitted.branch)?;
+        }
+        for track in &self.tracks {
+            let count = track.points.len();
+            let [x, y] = &track.names;
+            let (kind, period) = (track.kind, track.period);
+            let ends = track.ends.map(|end| match end {
+                TrackEnd::Left => "left the range".to_owned(),
+                TrackEnd::Closed => "closed".to_owned(),
+                TrackEnd::Stopped(stop) => stop.to_string(),
+            });
+            writeln!(
+                text,
+                "curve      {kind}, period {period}: {count} points in {x}, {y}; {}",
+                ends.join(" and ")
+            )?;
+            for special in &track.special {
+                let ([a, b], error) = (special.values, special.error);
+                writeln!(
+                    text,
+                    "  {:<8} {x} {a:.9}, {y} {b:.9} (error {error:.0e})",
+                    special.kind
+                )?;
+            }
+        }
+        let milliseconds = 1e3 * self.diagram.elapsed.as_secs_f64();
+        writeln!(text, "shooting   {milliseconds:.0} ms for all branches")
+    }
+}
+
+fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
+    let from = match limb.origin {
+        Origin::Event { branch, .. } => format!(", from branch {branch}"),
+        Origin::Attractor { value } => format!(", found at {value}"),
+        _ => String::new(),
+    };
+    let (period, count) = (limb.period(), limb.branch.cycles.len());
+    writeln!(
+        text,
+        "branch {number:<3} period {period}{from}: {count} orbits, {}",
+        limb.branch.end
+    )?;
+    for event in &limb.branch.events {
+        writeln!(text, "  {event}")?;
+    }
+    Ok(())
+}
+
+/// Initial states to which orbits of up to five periods in free flight under the load come near: one flight of `T` rises
+/// `W T^2 / 8` and falls back with the speed `W T / 2`.
+fn basin(options: &Options, value: f64) -> Basin {
+    let omega = match options.sweep {
+        Sweep::Omega => value,
+        Sweep::Drive => options.model.omega,
+    };
+    let time = LONGEST as f64 * TAU / omega;
+    let load = options.model.load.abs().max(options.model.drive);
+    let (height, speed) = (0.15 * load * time * time, 0.5 * load * time);
+    let axis = |entry: usize, from: f64, to: f64| Axis {
+        entry,
+        from,
+        to,
+        count: CELLS,
+    };
+    let grid = Grid {
+        start: vec![0.0, 0.0],
+        columns: axis(0, -height, 0.2 * height),
+        rows: axis(1, -speed, speed),
+    };
+    Basin {
+        longest: LONGEST,
+        patience: 3000,
+        ..Basin::new(grid)
+    }
+}
+
+/// Shooting over the range of the branch, and a part of it beyond.
+fn shooting<'a>(options: &Options, model: &'a dyn System) -> Shooting<'a> {
+    let margin = 0.1 * (options.to - options.from);
+    let above = |value: f64| {
+        if value > 0.0 {
+            value
+        } else {
+            options.from.min(options.to)
+        }
+    };
+    let request = Shooting::of(model)
+        .from(above(options.from - margin))
+        .to(above(options.to + margin));
+    match options.sweep {
+        Sweep::Omega => request,
+        Sweep::Drive => request.vary("drive").omega(options.model.omega),
+    }
+}
+
+/// The parameter of `--in` that is not what varies along the branch.
+fn second<'o>(options: &'o Options, model: &dyn System) -> Result<&'o str, Error> {
+    let first = options.varied();
+    let names = &options.plane;
+    let second = names.iter().find(|name| *name != first);
+    let has_first = names.iter().any(|name| name == first);
+    let parameters = model.facts().parameters.iter();
+    let known: Vec<String> = parameters
+        .map(|parameter| parameter.name.to_string())
+        .chain(["omega".to_owned()])
+        .collect();
+    let is_known = |name: &&String| has_first && known.contains(name);
+    match second.filter(is_known) {
+        Some(name) => Ok(name),
+        None => Err(Error::UnknownParameter {
+            name: names.join(","),
+            known,
+        }),
+    }
+}
+
+fn value_of(options: &Options, model: &dyn System, name: &str) -> f64 {
+    let facts = model.facts();
+    let mut values = vec![0.0; facts.parameters.len()];
+    model.values(&mut values);
+    let index = facts.parameters.iter().position(|p| p.name == name);
+    index.map_or(options.model.omega, |index| values[index])
+}
+
+/// Whether a curve passes an event, which has this value of the second parameter.
+fn passes(track: &Track, event: &CycleEvent, value: f64) -> bool {
+    let size = track
+        .points
+        .iter()
+        .fold(0.0, |m: f64, p| m.max(p.values[0].abs()));
+    track.period == event.cycle.period
+        && track.points.windows(2).any(|pair| {
+            let [a, b] = [pair[0].values, pair[1].values];
+            let part = (value - a[1]) / (b[1] - a[1]);
+            let at = a[0] + part * (b[0] - a[0]);
+            (0.0..=1.0).contains(&part) && (at - event.cycle.value).abs() < 1e-3 * size
+        })
+}

@@ -1,0 +1,184 @@
+//! Backbone curves: against the closed form without a load, and against quadratures of the period with one.
+//!
+//! Exact values: computed independently of this project by quadrature with 30 digits (`backbone_free` and `backbone` of the
+//! reference values).
+
+use hertzian::backbone::{FreeOscillation, FreePoint, PhaseResonance};
+use hertzian::{Error, System};
+
+hertzian::oscillator! {
+    Continuous(x) {
+        param alpha > 0;
+        param load;
+        ddot(x) + sgn(x)*|x|^alpha = load;
+    }
+}
+
+hertzian::oscillator! {
+    OneSided(x) {
+        param alpha > 0;
+        param load;
+        law contact(gap) { gap > 0 => gap^alpha, else => 0 }
+        ddot(x) + contact(x) = load;
+    }
+}
+
+hertzian::oscillator! {
+    Driven(x) {
+        param zeta >= 0;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^1.5 = drive*cos(omega*t);
+    }
+}
+
+/// Without a load `omega = coefficient a^((alpha - 1) / 2)`.
+const COEFFICIENTS: [(f64, f64); 6] = [
+    (0.6, 1.040_748_834_943_126_2),
+    (1.0, 1.0),
+    (1.5, 0.954_693_569_728_51),
+    (2.0, 0.914_681_356_501_962_4),
+    (2.5, 0.879_091_468_910_228_9),
+    (3.0, 0.847_213_084_793_979),
+];
+
+/// With the load one: one-sided, exponent, and largest and smallest displacement with the frequency.
+const WITH_LOAD: [(bool, f64, [[f64; 3]; 3]); 6] = [
+    (
+        false,
+        0.6,
+        [
+            [1.25, 0.758_108_854_590_462_4, 0.775_468_344_792_869],
+            [2.2, -0.006_564_994_776_920_48, 0.806_399_233_315_548],
+            [6.0, -2.419_177_732_772_473_9, 0.752_572_312_835_082],
+        ],
+    ),
+    (
+        false,
+        1.0,
+        [[1.25, 0.75, 1.0], [2.2, -0.2, 1.0], [6.0, -4.0, 1.0]],
+    ),
+    (
+        false,
+        1.5,
+        [
+            [1.25, 0.739_049_803_538_509_9, 1.221_363_830_907_07],
+            [2.2, -0.572_398_830_974_745_7, 1.128_591_127_167_62],
+            [6.0, -5.153_702_672_777_399, 1.469_276_534_239_28],
+        ],
+    ),
+    (
+        true,
+        0.6,
+        [
+            [2.2, -0.006_766_114_671_726_84, 0.805_539_677_220_709],
+            [3.0, -0.624_716_334_247_055_2, 0.758_704_585_680_86],
+            [6.0, -4.988_085_193_438_206, 0.528_746_263_746_882],
+        ],
+    ),
+    (
+        true,
+        1.0,
+        [
+            [2.2, -0.22, 0.975_882_628_847_801],
+            [3.0, -1.5, 0.821_021_053_874_229],
+            [6.0, -12.0, 0.470_923_351_150_636],
+        ],
+    ),
+    (
+        true,
+        1.5,
+        [
+            [2.2, -0.671_552_054_203_440_7, 1.041_675_598_198_08],
+            [3.0, -3.235_382_907_247_958_3, 0.781_146_845_933_312],
+            [6.0, -29.272_652_296_077_764, 0.358_681_000_526_892],
+        ],
+    ),
+];
+
+fn curve(system: &dyn System, from: f64, to: f64) -> Vec<FreePoint> {
+    let curve = FreeOscillation::of(system).from(from).to(to).run().unwrap();
+    let ends = [&curve[0], &curve[curve.len() - 1]].map(|point| point.ends[0][0]);
+    assert_eq!(ends, [from, to]);
+    curve
+}
+
+#[test]
+fn without_a_load_the_closed_form() {
+    for (alpha, coefficient) in COEFFICIENTS {
+        let model = Continuous { alpha, load: 0.0 };
+        for point in curve(&model, 0.5, 3.0) {
+            let amplitude = point.ends[0][0];
+            let expected = coefficient * amplitude.powf(0.5 * (alpha - 1.0));
+            let error = (point.omega / expected - 1.0).abs();
+            assert!(error < 1e-10, "{alpha} {amplitude}: {error:.1e}");
+            assert!((point.peak_to_peak() / (2.0 * amplitude) - 1.0).abs() < 1e-10);
+        }
+    }
+}
+
+#[test]
+fn with_a_load_the_quadratures() {
+    for (one_sided, alpha, rows) in WITH_LOAD {
+        let load = 1.0;
+        let model: Box<dyn System> = if one_sided {
+            Box::new(OneSided { alpha, load })
+        } else {
+            Box::new(Continuous { alpha, load })
+        };
+        for [largest, smallest, omega] in rows {
+            let point = &curve(&*model, largest, 1.01 * largest)[0];
+            let error = (point.omega / omega - 1.0).abs();
+            assert!(error < 1e-8, "{one_sided} {alpha} {largest}: {error:.1e}");
+            let error = (point.ends[1][0] - smallest).abs();
+            assert!(
+                error < 1e-8 * largest,
+                "{one_sided} {alpha} {largest}: {error:.1e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_damped_is_not_free() {
+    let model = Driven {
+        zeta: 0.01,
+        drive: 0.0,
+    };
+    let error = FreeOscillation::of(&model)
+        .from(0.5)
+        .to(1.0)
+        .run()
+        .unwrap_err();
+    assert!(matches!(error, Error::NotFree { .. }), "{error}");
+}
+
+/// The first harmonic of the damped system lags by a quarter, and its frequency is that of the free system of the same amplitude
+/// but for the square of the damping; halving the damping takes a quarter of the difference.
+#[test]
+fn phase_resonance_is_near_free_oscillation() {
+    let differences = [0.02, 0.01].map(|zeta| {
+        // The drive balances damping, so that the amplitudes are alike.
+        let model = Driven {
+            zeta,
+            drive: 2.0 * zeta,
+        };
+        let to = 2.0 * model.drive;
+        let curve = PhaseResonance::of(&model, "drive", to, [0.45, 1.4])
+            .run()
+            .unwrap();
+        assert!((curve[curve.len() - 1].value - to).abs() < 1e-12);
+        for point in &curve {
+            assert!(point.orbit.series(0)[1].abs() < 1e-8, "{point:?}");
+        }
+        let point = &curve[0];
+        let amplitude = 0.5 * point.motion.peak_to_peak();
+        let free = 0.954_693_569_728_51 * amplitude.powf(0.25);
+        (point.orbit.omega / free - 1.0).abs()
+    });
+    let [large, small] = differences;
+    assert!(large < 0.02, "{large:.1e}");
+    assert!(
+        small < 0.01 && small < 0.6 * large,
+        "{large:.1e} {small:.1e}"
+    );
+}

@@ -1,0 +1,123 @@
+//! Curves of bifurcations in two parameters: points of them are found again by following branches, where another test function
+//! decides.
+
+use hertzian::flow::shooting::{SpecialKind, Track};
+use hertzian::{EventKind, Shooting, System};
+
+use crate::cascade::OneSided;
+
+hertzian::oscillator! {
+    Hertz(x) {
+        param zeta >= 0;
+        param load;
+        param drive;
+        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^1.5, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+/// A contact of one exponent or the other, at a drive.
+fn model(hertz: bool, drive: f64) -> Box<dyn System> {
+    let (zeta, load) = (0.032, 1.0);
+    if hertz {
+        Box::new(Hertz { zeta, load, drive })
+    } else {
+        Box::new(OneSided { zeta, load, drive })
+    }
+}
+
+/// Five points, spread by the golden ratio, are events of branches in the frequency.
+fn assert_confirmed(track: &Track, hertz: bool) {
+    for index in 1..=5 {
+        let part = (f64::from(index) * 0.618_033_988_749_895).fract();
+        let point = &track.points[(part * track.points.len() as f64) as usize];
+        let [omega, drive] = point.values;
+        let model = model(hertz, drive);
+        // The branch is on one side of a fold, and close to another fold it is short.
+        let starts = [2e-4, 2e-5, 2e-3].iter().flat_map(|part| [-part, *part]);
+        let found = starts.into_iter().find_map(|part| {
+            let aside = |part: f64| omega * (1.0 + part);
+            let near = Shooting::of(&*model)
+                .period(track.period)
+                .near(&point.state);
+            let branch = near.from(aside(part)).to(aside(-part)).run().ok()?;
+            let values = branch.events(track.kind).map(|event| event.cycle.value);
+            values.min_by(|a, b| (a - omega).abs().total_cmp(&(b - omega).abs()))
+        });
+        let error = found.map(|value| (value - omega).abs());
+        assert!(
+            error.is_some_and(|e| e < 1e-8),
+            "{omega} {drive}: {found:?}"
+        );
+    }
+}
+
+fn folds(hertz: bool, omega: [f64; 2]) -> Track {
+    let model = model(hertz, 0.1);
+    let shooting = Shooting::of(&*model).from(omega[0]).to(omega[1]);
+    let branch = shooting.run().unwrap();
+    let fold = branch.folds().next().unwrap();
+    shooting.track(fold, "drive", [0.03, 0.5]).unwrap()
+}
+
+/// Folds are born in a cusp: below its drive there are none, above it two.
+fn assert_cusp(track: &Track, hertz: bool) {
+    let cusps = track.special.iter().filter(|s| s.kind == SpecialKind::Cusp);
+    let [cusp] = cusps.collect::<Vec<_>>()[..] else {
+        panic!("{:?}", track.special);
+    };
+    let [omega, drive] = cusp.values;
+    for (drive, expected) in [(0.99 * drive, 0), (1.01 * drive, 2)] {
+        let model = model(hertz, drive);
+        let shooting = Shooting::of(&*model).largest_step(0.02);
+        let branch = shooting.from(1.05 * omega).to(0.95 * omega).run().unwrap();
+        assert_eq!(branch.folds().count(), expected, "{drive}");
+    }
+}
+
+#[test]
+fn folds_of_a_linear_contact() {
+    let track = folds(false, [0.6, 1.6]);
+    assert_confirmed(&track, false);
+    assert_cusp(&track, false);
+}
+
+/// Where contact is lost, the curve of folds grazes.
+#[test]
+fn folds_of_a_hertzian_contact() {
+    let track = folds(true, [0.6, 1.6]);
+    assert_confirmed(&track, true);
+    assert_cusp(&track, true);
+    let grazing = track
+        .special
+        .iter()
+        .filter(|s| s.kind == SpecialKind::Grazing);
+    for special in grazing {
+        let [omega, drive] = special.values;
+        let model = model(true, drive);
+        // The orbit there touches zero.
+        let near = |values: [f64; 2]| (values[0] - omega).abs() + (values[1] - drive).abs();
+        let by_distance = |p: &&_, q: &&_| {
+            let [p, q]: [&hertzian::flow::shooting::TrackPoint; 2] = [p, q];
+            near(p.values).total_cmp(&near(q.values))
+        };
+        let nearest = track.points.iter().min_by(by_distance).unwrap();
+        let orbit = Shooting::of(&*model).near(&nearest.state).orbit(omega);
+        let Ok(orbit) = orbit else { continue };
+        assert!(orbit.extremes[0].minimum.abs() < 2e-2, "{orbit:?}");
+    }
+}
+
+#[test]
+fn period_doublings_of_both_contacts() {
+    for (hertz, drive, range) in [(false, 1.35, [1.2, 1.0]), (true, 1.0, [2.7, 2.2])] {
+        let model = model(hertz, drive);
+        let shooting = Shooting::of(&*model).from(range[0]).to(range[1]);
+        let branch = shooting.run().unwrap();
+        let doubling = branch.events(EventKind::PeriodDoubling).next().unwrap();
+        let track = shooting
+            .track(doubling, "drive", [0.9 * drive, 1.1 * drive])
+            .unwrap();
+        assert_confirmed(&track, hertz);
+    }
+}

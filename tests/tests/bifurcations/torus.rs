@@ -1,0 +1,79 @@
+//! Neimark-Sacker bifurcations.
+
+use std::f64::consts::TAU;
+
+use hertzian::{EventKind, Shooting};
+
+hertzian::oscillator! {
+    /// Two oscillators under a circulatory force, as of a shaft with internal friction.
+    Circulatory(x, y) {
+        param c > 0;
+        param k > 0;
+        param p;
+        param drive;
+        ddot(x) + c*dot(x) + k*x + p*y = drive*cos(omega*t);
+        ddot(y) + c*dot(y) + k*y - p*x = 0;
+    }
+}
+
+hertzian::oscillator! {
+    /// Two masses in a row, the second held to the ground, the first with an elastic stop at distance one.
+    /// Stiffness and clearance as in example 03 of NLvib (Krack and Gross 2019); damping is 0.03 of the stiffness matrix.
+    TwoMasses(x1, x2) {
+        param stop > 0;
+        param drive;
+        law stop_spring(gap) { gap > 1 => stop*(gap - 1), else => 0 }
+        ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop_spring(x1) = 0;
+        ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t);
+    }
+}
+
+/// `s^2 + c s + k + i p = 0` has the root `s = -i sqrt(k)` at `p = c sqrt(k)`: flutter.
+#[test]
+fn flutter_begins_where_the_characteristic_equation_says() {
+    let (c, k) = (0.1_f64, 1.44_f64);
+    let model = Circulatory {
+        c,
+        k,
+        p: 0.05,
+        drive: 0.3,
+    };
+    let shooting = Shooting::of(&model).vary("p").omega(0.7);
+    let branch = shooting.from(0.05).to(0.2).run().unwrap();
+    let [event] = &branch.events[..] else {
+        panic!("{:?}", branch.events);
+    };
+    assert_eq!(event.kind, EventKind::NeimarkSacker);
+    let error = (event.cycle.value - c * k.sqrt()).abs();
+    // Four multipliers are rounded.
+    assert!(
+        error < 1e-10 && error <= event.error + 1e-15,
+        "{event} {error:.1e}"
+    );
+    let angle = (k.sqrt() * TAU / 0.7).rem_euclid(TAU);
+    let multiplier = event.cycle.stability.multipliers[0];
+    let expected = [angle, TAU - angle];
+    let found = multiplier.arg().rem_euclid(TAU);
+    assert!(
+        expected.iter().any(|angle| (angle - found).abs() < 1e-8),
+        "{multiplier}"
+    );
+}
+
+/// At omega 0.61861 a torus is born and at 0.73878 the period doubles, by an independent computation with five digits.
+#[test]
+fn two_masses_with_a_stop() {
+    let model = TwoMasses {
+        stop: 100.0,
+        drive: 0.1,
+    };
+    let branch = Shooting::of(&model).from(0.55).to(0.8).run().unwrap();
+    for (kind, omega) in [
+        (EventKind::NeimarkSacker, 0.61861),
+        (EventKind::PeriodDoubling, 0.73878),
+    ] {
+        let near = |value: f64| (value - omega).abs() < 1e-5;
+        let found = branch.events(kind).any(|event| near(event.cycle.value));
+        assert!(found, "{kind} {omega}: {:?}", branch.events);
+    }
+}
