@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::follow::{FollowOptions, Start, Visit, follow};
+use super::follow::{FollowOptions, Outcome, Start, Stop, Visit, follow};
 use super::problem::Problem;
 use super::step::StepControl;
 use crate::jacobian::Jacobian;
@@ -84,4 +84,48 @@ fn a_pair_of_folds_is_not_stepped_over() {
             assert!(points < 400, "{points}");
         }
     }
+}
+
+/// A first step over a fold and out of the range ends at the orbit on the other limb, not at the first one again.
+#[test]
+fn a_branch_that_turns_at_its_start_ends_on_the_other_limb() {
+    let mut problem = Bend {
+        centre: 0.5,
+        width: 0.04,
+    };
+    // The fold is where tanh^2 is a third.
+    let fold = 0.5 - 0.04 * (1.0_f64 / 3.0).sqrt().atanh();
+    let first = fold - 0.001;
+    let from = first + 0.06 * ((0.5 - first) / 0.04).tanh();
+    let mut newton = Newton::new(&problem);
+    let options = FollowOptions {
+        from,
+        to: 1.0,
+        points: 100,
+        steps: StepControl::default(),
+        newton: NewtonOptions {
+            tolerance: 1e-9,
+            iterations: 12,
+            damped: false,
+        },
+    };
+    let (mut last, mut ends) = (first, Vec::new());
+    let start = Start::Near(vec![first, from]);
+    let outcome = follow(
+        &mut problem,
+        &mut newton,
+        start,
+        options,
+        &mut |_, _, seen| {
+            match seen {
+                Visit::Between(a, b) => ends.push((a.parameter_slope(), b.parameter_slope())),
+                Visit::Point(point) | Visit::Again(point) => last = point.u[0],
+            }
+            ControlFlow::Continue(())
+        },
+    );
+    assert!(matches!(outcome, Ok(Outcome::Stopped(Stop::LeftAtStart))));
+    assert!(last > fold && last - fold < 0.002, "{last}");
+    assert_eq!(ends.len(), 1);
+    assert!(ends[0].0 > 0.0 && ends[0].1 < 0.0, "{ends:?}");
 }

@@ -371,9 +371,19 @@ impl Walk {
         } else {
             return Ok((next, None));
         };
-        let part = (limit - from.parameter()) / (next.parameter() - from.parameter());
-        for (i, x) in self.trial.iter_mut().enumerate() {
-            *x = from.u[i] + part * (next.u[i] - from.u[i]);
+        let ahead = limit - from.parameter();
+        if ahead * from.parameter_slope() > 0.0 {
+            let part = ahead / (next.parameter() - from.parameter());
+            for (i, x) in self.trial.iter_mut().enumerate() {
+                *x = from.u[i] + part * (next.u[i] - from.u[i]);
+            }
+        } else {
+            // There is a fold in between, and the end of the range is on the side of the next point.
+            let last = next.u.len() - 1;
+            let part = (limit - next.parameter()) / next.tangent[last];
+            for (i, x) in self.trial.iter_mut().enumerate() {
+                *x = next.u[i] + part * next.tangent[i];
+            }
         }
         self.scale = from.scale;
         // A point beyond the range is never kept: the equations need not make sense there.
