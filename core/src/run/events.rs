@@ -70,18 +70,22 @@ impl Run<'_, '_> {
         });
     }
 
-    /// Reads a fold that was located. One that was passed before, but for a shift in time, is the sign of a branch that closes
-    /// after a part of the period.
+    /// Reads a fold that was located. One of longer orbits that was passed before, but for a shift in time, is the sign of a
+    /// branch that closes after a part of the period.
     fn fold(&mut self, balance: &mut Balance<'_>, newton: &mut Newton, located: &Located) {
         let u = &located.point.u;
         let error = self.reader.finer.fold_error(u, newton);
         let point = self.reader.read(balance, newton, u);
         let near = |other: &&Event| {
             let apart = (other.point.value - point.value).abs();
-            apart <= other.error + error + 1e-9 * (self.options.to - self.options.from).abs()
+            let errors = other.error + error;
+            let range = (self.options.to - self.options.from).abs();
+            other.kind == EventKind::Fold && errors.is_finite() && apart <= errors + 1e-9 * range
         };
         let mut passed = self.events.iter().filter(near);
-        if passed.any(|other| is_shifted(&other.point.orbit, &point.orbit)) {
+        if point.orbit.period > 1
+            && passed.any(|other| is_shifted(&other.point.orbit, &point.orbit))
+        {
             self.ended = Some(Stop::Closed);
             return;
         }
