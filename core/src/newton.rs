@@ -11,6 +11,8 @@
 //! unit vector of the parameter to solve at a fixed parameter, and a tangent for a step of pseudo-arclength.
 
 mod broyden;
+#[cfg(test)]
+mod tests;
 
 use broyden::Broyden;
 
@@ -24,7 +26,7 @@ use crate::statistics::Statistics;
 pub struct NewtonOptions {
     /// Converged when the update, in units of the scale, is at most this.
     pub tolerance: f64,
-    /// Give up after this many updates.
+    /// Give up after this many updates; after twice as many, if updates share factors.
     pub iterations: usize,
     /// Halve updates that do not reduce the residual: for starts far from the solution.
     pub damped: bool,
@@ -140,6 +142,8 @@ const ROUGHLY: f64 = 1e-4;
 const ROUNDING: f64 = 100.0;
 /// So much of a contraction is remembered after a correction that was too short to show it.
 const LASTING: f64 = 0.5;
+/// Updates that shrink by less than this do not shrink: that is rounding.
+const STAGNANT: f64 = 0.9;
 /// Drift that does not change a tangent noticeably.
 const SMALL_DRIFT: f64 = 1e-8;
 /// Drift that is made up for along with what the Jacobian leaves out.
@@ -277,6 +281,14 @@ impl Newton {
             updates = iteration + 1;
             (before, previous) = (previous, size);
         }
+        if size <= options.tolerance {
+            // They shrink slowly, but what was asked for is reached.
+            return Ok(Converged {
+                iterations: updates,
+                first: first.unwrap_or(size),
+                update: size,
+            });
+        }
         Err(NewtonError::NotConverged {
             iterations: updates,
             update: size,
@@ -309,13 +321,13 @@ impl Newton {
         }
         let ratio = size / previous;
         let (ratio, largest) = if self.jacobian.is_exact() {
-            (ratio, previous)
+            (ratio, 0.5 / STAGNANT * previous)
         } else if before.is_finite() {
             (ratio.max(usual), previous.max(before))
         } else {
             (ratio.max(usual), f64::INFINITY)
         };
-        size * ratio <= REMAINDER * tolerance || size > 0.5 * largest
+        size * ratio <= REMAINDER * tolerance || size > STAGNANT * largest
     }
 
     /// Largest ratio of successive updates in the last correction where the Jacobian leaves something out; zero otherwise.
