@@ -1,12 +1,15 @@
 //! What the harmonics and samples that were left out would change.
 //!
-//! The orbit is put into a balance of twice the harmonics and samples. Harmonics above `K` are there almost free
-//! masses, so their part of the residual gives them at once, and the residual that they leave in the first `K` harmonics
-//! gives the change of those by one step with the factors at hand:
+//! The orbit is put into a balance of twice the harmonics and samples. What contacts couple of the harmonics above `K` is small
+//! beside their inertia, so their part of the residual gives them one by one, and the residual that they leave in the first `K`
+//! harmonics gives the change of those by one step with the factors at hand:
 //!
 //! ```text
-//! v_k = M^-1 R_k(u, 0) / (k Omega)^2,  k > K;        du = -B^-1 [ R_1..K(u, v) ; 0 ]                          (1)
+//! v_k = -( K_0 + i k Omega C - (k Omega)^2 M )^-1 R_k(u, 0),  K < k <= 2 K;      du = -B^-1 [ R_1..K(u, v) ; 0 ]    (1)
 //! ```
+//!
+//! with complex amplitudes, and `K_0` the part of the linear stiffness that is constant. A linear mode that a harmonic above `2 K`
+//! meets is not seen.
 //!
 //! Where contact forces are integrated exactly, the orbit leaves no residual in the first `K` harmonics, `R_1..K(u, 0) = 0`. Then
 //! only what depends on the tail is evaluated: the contacts, and the stiffness that varies.
@@ -24,7 +27,7 @@
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
@@ -50,8 +53,8 @@ pub(crate) struct Finer<'a> {
     residual: Vec<f64>,
     /// Residual in the harmonics of the coarse balance, extended by a zero.
     core: Vec<f64>,
-    /// `M^-1`, row by row.
-    inverse_mass: Vec<f64>,
+    /// Mass, damping and constant stiffness, each row by row.
+    linear: [Vec<f64>; 3],
     /// The coarse balance, where contact forces are exact.
     plain: Option<Balance<'a>>,
     /// Series of a contact force; so much of it reaches the coarse harmonics.
@@ -86,7 +89,7 @@ impl<'a> Finer<'a> {
             orbit: vec![0.0; unknowns + 1],
             residual: vec![0.0; unknowns],
             core: vec![0.0; coordinates * series::length(coarse.harmonics) + 1],
-            inverse_mass: Vec::new(),
+            linear: Default::default(),
             force: vec![0.0; series::length(balance.force_harmonics())],
             short: series::length(plain.force_harmonics()),
             plain: (coarse.aft == Aft::Switched).then_some(plain),
@@ -112,7 +115,7 @@ impl<'a> Finer<'a> {
     }
 
     /// Adds the tail to an orbit of the coarse balance. Returns the residual that is left in the coarse harmonics,
-    /// extended by a zero; `None` if the mass matrix is singular or the residual is not finite.
+    /// extended by a zero; `None` if a matrix of (1) is singular or the residual is not finite.
     pub(crate) fn add_tail(&mut self, u: &[f64], newton: &mut Newton) -> Option<&mut [f64]> {
         let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
         let coordinates = self.balance.layout().coordinates;
@@ -206,42 +209,65 @@ impl<'a> Finer<'a> {
         }
     }
 
-    /// `v` of (1), from the residual.
+    /// `v` of (1), from the residual; `None` where a matrix is singular.
     fn solve_tail(&mut self) -> Option<()> {
-        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
-        self.invert_mass()?;
-        let coordinates = self.balance.layout().coordinates;
+        let fine = self.balance.length();
+        self.write_linear();
+        let n = self.balance.layout().coordinates;
         let base = self.balance.base();
-        for (i, row) in self.inverse_mass.chunks_exact(coordinates).enumerate() {
-            let tail = &mut self.orbit[i * fine..][..fine];
-            for (index, to) in tail.iter_mut().enumerate().skip(coarse) {
-                let frequency = base * index.div_ceil(2) as f64;
-                let residual = self.residual[index..].iter().step_by(fine);
-                let sum: f64 = row.iter().zip(residual).map(|(m, r)| m * r).sum();
-                *to = sum / (frequency * frequency);
+        let [mass, damping, stiffness] = &self.linear;
+        for k in self.coarse.harmonics + 1..=self.balance.resolution().harmonics {
+            let frequency = base * k as f64;
+            let real = |entry: usize| stiffness[entry] - frequency * frequency * mass[entry];
+            let imaginary = |entry: usize| frequency * damping[entry];
+            let at = |i: usize| i * fine + 2 * k - 1;
+            if n == 1 {
+                let (a, b) = (real(0), imaginary(0));
+                let square = a * a + b * b;
+                if square == 0.0 {
+                    return None;
+                }
+                let (c, s) = (self.residual[at(0)], self.residual[at(0) + 1]);
+                self.orbit[at(0)] = (b * s - a * c) / square;
+                self.orbit[at(0) + 1] = -(b * c + a * s) / square;
+                continue;
+            }
+            // The cosines of all coordinates, then their sines.
+            let matrix = DMatrix::from_fn(2 * n, 2 * n, |row, column| {
+                let entry = row % n * n + column % n;
+                match (row < n, column < n) {
+                    (true, false) => imaginary(entry),
+                    (false, true) => -imaginary(entry),
+                    _ => real(entry),
+                }
+            });
+            let residual = DVector::from_fn(2 * n, |row, _| -self.residual[at(row % n) + row / n]);
+            let tail = matrix.lu().solve(&residual)?;
+            for (row, &value) in tail.iter().enumerate() {
+                self.orbit[at(row % n) + row / n] = value;
             }
         }
         Some(())
     }
 
-    /// Writes `M^-1`, row by row; `None` if there is none.
-    fn invert_mass(&mut self) -> Option<()> {
+    /// Writes what of mass, damping and stiffness is constant, each row by row.
+    fn write_linear(&mut self) {
         let layout = self.balance.layout();
         let coefficients = self.balance.coefficients();
-        self.inverse_mass.clear();
-        if layout.coordinates == 1 {
-            let masses = layout.mass.iter();
-            let mass: f64 = masses.map(|entry| coefficients[entry.coefficient]).sum();
-            self.inverse_mass.push(1.0 / mass);
-            return (mass != 0.0).then_some(());
+        for matrix in &mut self.linear {
+            matrix.clear();
+            matrix.resize(layout.coordinates * layout.coordinates, 0.0);
         }
-        let mut mass: DMatrix<f64> = DMatrix::zeros(layout.coordinates, layout.coordinates);
-        for entry in &layout.mass {
-            mass[(entry.row, entry.column)] += coefficients[entry.coefficient];
+        for (matrix, entries) in
+            self.linear
+                .iter_mut()
+                .zip([&layout.mass, &layout.damping, &layout.stiffness])
+        {
+            for entry in entries.iter().filter(|entry| entry.wave.harmonic == 0) {
+                let place = entry.row * layout.coordinates + entry.column;
+                matrix[place] += coefficients[entry.coefficient];
+            }
         }
-        let inverse = mass.try_inverse()?.transpose();
-        self.inverse_mass.extend_from_slice(inverse.as_slice());
-        Some(())
     }
 
     /// Adds the tail and the change of the coarse harmonics, (1); false if that fails.
