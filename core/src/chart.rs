@@ -90,7 +90,7 @@ pub enum Line {
 /// A line to compare with, such as the limit of permanent contact: thin, grey and dash-dotted.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reference {
-    /// What the legend says of it.
+    /// What the legend says of it; nothing if it is empty.
     pub label: String,
     /// Points `[x, y]` in the order of the line.
     pub points: Vec<[f64; 2]>,

@@ -341,7 +341,7 @@ fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
         }
     }
     for (reference, lines) in chart.references.iter().zip(&contents.references) {
-        if !lines.is_empty() {
+        if !lines.is_empty() && !reference.label.is_empty() {
             add(Sample::Line(REFERENCE), &reference.label);
         }
     }

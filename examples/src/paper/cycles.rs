@@ -5,6 +5,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
+use hertzian::bifurcation::Bifurcations;
 use hertzian::chart::{Chart, Curve, Line, Markers, Run};
 use hertzian::flow::shooting::{Cycle, CycleBranch, CycleEvent};
 use hertzian::{Error, EventKind, Shooting, Verdict};
@@ -179,24 +180,23 @@ fn row(cycle: &Cycle) -> Vec<String> {
     ]
 }
 
-/// Orbits of period one, two and eight as the amplitude changes.
+/// Everything that is connected with period one by bifurcations, as the amplitude changes.
 ///
 /// # Errors
-/// If a branch does not begin.
+/// If the first branch does not begin.
 pub fn figure_8a(task: &Task<'_>) -> Result<Drawing, String> {
     let model = model(0.1);
-    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let request = Bifurcations::of(&model).vary("drive").omega(1.0);
+    let request = request.from(0.1).to(2.1).depth(3);
+    let diagram = request.run().map_err(|error| error.to_string())?;
     let mut figure = Cycles::new(task, "drive");
-    figure.follow(&shooting.clone().from(0.1).to(2.1))?;
-    // Large orbits of period two: upwards, and downwards to their fold; then on from there to where period one doubles.
-    let two = shooting.clone().period(2);
-    figure.follow(&two.clone().from(1.0).to(2.1))?;
-    let fold = figure.follow(&two.clone().from(1.0).to(0.2))?;
-    figure.continue_from(&fold, &two, [1.0, 2.1])?;
-    let eight = shooting.period(8).near(&PERIOD_8);
-    for to in [1.75, 1.8] {
-        figure.follow(&eight.clone().from(1.7798).to(to))?;
+    for limb in &diagram.branches {
+        figure.add(&limb.branch);
     }
+    figure.drawing.note = format!(
+        "{} branches, found from the first one by themselves.",
+        diagram.branches.len()
+    );
     let events = std::mem::take(&mut figure.events);
     for (period, kind, drive, what) in exact::AMPLITUDES {
         let alike = events
@@ -213,7 +213,7 @@ pub fn figure_8a(task: &Task<'_>) -> Result<Drawing, String> {
         };
         figure.drawing.values.push(value);
     }
-    Ok(figure.drawn("excitation amplitude A", [0.0, 40.0]))
+    Ok(figure.drawn("excitation amplitude A", [0.0, 28.0]))
 }
 
 /// Orbits of period one to five as the frequency changes.

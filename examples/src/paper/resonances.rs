@@ -1,7 +1,10 @@
 //! Figures 2 to 7: primary resonances and what bends them.
 
+use hertzian::backbone::{FreeOscillation, FreePoint};
+
 use super::curves::{Case, Curves};
 use super::figure::{Drawing, Task};
+use crate::response::models::ContinuousPower;
 
 /// Hardening without load.
 ///
@@ -44,8 +47,29 @@ fn skeletons(task: &Task<'_>, exponents: [f64; 4]) -> Result<Drawing, String> {
         let range = if alpha > 1.0 { [0.5, 2.4] } else { [1.9, 0.6] };
         let case = Case::continuous(format!("α = {alpha}"), alpha, range);
         figure = figure.trace(&case)?;
+        let label = if alpha == exponents[0] { "free" } else { "" };
+        figure = figure.reference(label, skeleton(alpha)?);
     }
     Ok(figure.drawn())
+}
+
+/// Frequency and peak-to-peak of the free vibration.
+fn skeleton(alpha: f64) -> Result<Vec<[f64; 2]>, String> {
+    let spring = ContinuousPower {
+        alpha,
+        zeta: 0.0,
+        load: 0.0,
+        drive: 0.0,
+    };
+    // With an exponent above one the frequency falls to zero with the amplitude.
+    let from = if alpha > 1.0 { 0.3 } else { 0.02 };
+    let free = FreeOscillation::of(&spring).from(from).to(9.0);
+    let points = free
+        .tolerance(1e-6)
+        .run()
+        .map_err(|error| error.to_string())?;
+    let place = |point: &FreePoint| [point.omega, point.peak_to_peak()];
+    Ok(points.iter().map(place).collect())
 }
 
 /// Loads on a spring of exponent 3/2.
