@@ -4,7 +4,7 @@
 //!
 //! A power that is not an integer belongs to a piece on which its base is not negative. The code is also run outside of
 //! its piece, for samples whose result is selected away, and at the ends of the piece, where the base is zero. So every
-//! function here is finite for a base that is zero or negative:
+//! power here is finite for a base that is zero or negative:
 //!
 //! - `b^e` for `b -> 0+` goes to zero for `e > 0` and is one for `e = 0`. For `e < 0` it is unbounded, and the value *at*
 //!   zero is defined as zero (see [`Law`](crate::law::Law)).

@@ -369,6 +369,8 @@ mod tests {
             (&open, 1.0, [f64::INFINITY, 1.0, f64::INFINITY]),
             (&closed, 1.0, [0.0, 1.0, 0.0]),
             (&closed, 0.4, [0.0; 3]),
+            (&open, 0.4, [f64::INFINITY, 0.0, f64::INFINITY]),
+            (&open, 0.6, [f64::INFINITY, 0.0, f64::INFINITY]),
         ] {
             let [force, by_gap, by_rate, by_argument] = &mut outputs;
             for output in [&mut *force, by_gap, by_rate, by_argument] {

@@ -96,7 +96,7 @@ fn each_power(of: Bases<'_>, power: &mut [f64], raise: impl Fn([f64; 2]) -> Rais
     keys
 }
 
-/// Powers, and those of an exponent one higher. Those of a base that is not positive are some numbers.
+/// Powers, and those of an exponent one higher, which is positive. Those of a base that is not positive are some numbers.
 #[inline(always)]
 pub(crate) fn two_powers<T: Target, const FAST: bool>(
     of: Bases<'_>,
@@ -116,6 +116,8 @@ pub(crate) fn two_powers<T: Target, const FAST: bool>(
         next,
         #[inline(always)]
         |log| raise::<T, FAST>(&exponent, log),
+        #[inline(always)]
+        |power, base| power * base,
     );
     if keys & UNUSUAL != 0 {
         each_two(
@@ -124,6 +126,7 @@ pub(crate) fn two_powers<T: Target, const FAST: bool>(
             next,
             #[inline(always)]
             |log| careful_raise::<T, FAST>(&exponent, log),
+            times,
         );
     }
 }
@@ -134,6 +137,7 @@ fn each_two(
     power: &mut [f64],
     next: &mut [f64],
     raise: impl Fn([f64; 2]) -> Raised,
+    times: impl Fn(f64, f64) -> f64,
 ) -> u64 {
     let count = of.base.len();
     let (whole, part) = (&of.whole[..count], &of.part[..count]);
@@ -142,17 +146,28 @@ fn each_two(
     for i in 0..count {
         let (base, raised) = (of.base[i], raise([whole[i], part[i]]));
         power[i] = raised.power;
-        next[i] = raised.power * base;
+        next[i] = times(raised.power, base);
         keys |= raised.key;
     }
     keys
 }
 
-/// Powers of an exponent one higher.
+/// Powers of an exponent one higher, which is positive.
 #[inline(always)]
 pub(crate) fn multiply(base: &[f64], power: &[f64], next: &mut [f64]) {
     for ((next, &power), &base) in next.iter_mut().zip(power).zip(base) {
-        *next = power * base;
+        *next = times(power, base);
+    }
+}
+
+/// The product of a power and its base, to an exponent that is positive: infinite where the base is, though the power may be
+/// zero there.
+#[inline(always)]
+fn times(power: f64, base: f64) -> f64 {
+    if base == f64::INFINITY {
+        base
+    } else {
+        power * base
     }
 }
 

@@ -1,7 +1,7 @@
 //! Cube roots without a branch and without a table, so that a loop of them becomes vectors.
 //!
 //! From an estimate `y` of `x^(-1/3)`, taken from the bits of `x`: an exponent divided by minus three, and a straight line for
-//! the fraction. With `e = 1 - x y^3`, at first below 0.102,
+//! the fraction. With `e = 1 - x y^3`, at first below 0.103,
 //!
 //! ```text
 //! y <- y (1 + e/3 + 2 e^2/9 + 14 e^3/81),   error of y: 35/243 e^4 < 1.6e-5                                  (1)

@@ -26,15 +26,16 @@
 //! | fast | `2 + 4 |a ln x|` | 0.9 |
 //!
 //! Both hold over the whole range, with subnormal bases, and with results that are subnormal or overflow (a subnormal
-//! result is within one of its own last digits more). Forces and derivatives that share an exponential have the
-//! rounding of a product more, and that of the difference of their exponents: less than `4 + 4 |a ln x|` in all.
+//! result is within one of its own last digits more). A force and its derivative share an exponential if
+//! the exponent of the derivative is at least -1/2: the force then has the rounding of a product more, and that of the
+//! difference of the exponents, less than `4 + 4 |a ln x|` in all.
 //!
 //! # Repeatability
 //!
 //! A power depends on nothing but its base, its exponent, the accuracy and the instruction set: not on its place in an
 //! array, the length of that, or the number of threads. Between instruction sets powers differ within these bounds,
 //! since a processor that fuses products and sums rounds once where another rounds twice. Where the last digits must
-//! be the same on all machines, pin `baseline`.
+//! be the same on all x86-64 machines, pin `baseline` in a program that is compiled for all of them.
 
 mod arrays;
 mod cube_root;

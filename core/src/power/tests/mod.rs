@@ -164,6 +164,30 @@ fn random_powers_are_within_their_bounds() {
     }
 }
 
+/// A force is made from the power of its derivative, if that has an exponent of at least -1/2.
+#[test]
+fn powers_made_from_the_one_below_are_within_their_bound() {
+    let mut random = Random::new(1827);
+    let mut exponents = vec![0.5, 0.6, 1.0, 1.5, 1.7, 2.2];
+    exponents.extend((0..20).map(|_| random.between(0.5, 5.0)));
+    for choice in choices() {
+        for &exponent in &exponents {
+            let mut base: Vec<f64> = (0..300).map(|_| any_size(&mut random)).collect();
+            base.extend((0..300).map(|_| 10_f64.powf(random.between(-3.0, 3.0))));
+            let found = evaluate(choice, &base, exponent - 1.0).next;
+            for (&x, &found) in base.iter().zip(&found) {
+                let error = ulps(found, x, exponent);
+                let subnormal = if found < f64::MIN_POSITIVE { 1.0 } else { 0.0 };
+                let bound = 4.0 + 4.0 * (exponent * x.ln()).abs() + subnormal;
+                assert!(
+                    error <= bound,
+                    "{choice:?}: {x:e}^{exponent} is off by {error} of {bound}"
+                );
+            }
+        }
+    }
+}
+
 proptest! {
     #[test]
     fn any_power_is_within_its_bound(
@@ -295,6 +319,7 @@ fn infinity_counts_as_itself_and_what_is_no_number_stays_so() {
         ] {
             let found = evaluate(choice, &[infinite, f64::NAN], exponent);
             assert_eq!(found.power[0], at_infinity, "{choice:?}, {exponent}");
+            assert_eq!(found.next[0], infinite, "{choice:?}, {exponent}");
             let [whole, part] = &found.logarithm;
             assert_eq!(whole[0] + part[0], infinite);
             assert!((whole[1] + part[1]).is_nan());
