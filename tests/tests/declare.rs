@@ -40,6 +40,22 @@ hertzian::oscillator! {
     }
 }
 
+/// The module has constants of the same names, which the generated code must not mean.
+#[allow(non_snake_case, reason = "these are the names of constants")]
+mod beside_constants {
+    pub const K: f64 = 4e4;
+    pub static E: f64 = 2.1e11;
+
+    hertzian::oscillator! {
+        pub Beam(x) {
+            param K > 0;
+            param E > 0;
+            law stop(gap) { gap > 1 => E*(gap - 1)^K, else => 0 }
+            ddot(x) + K*x + stop(x) = cos(omega*t);
+        }
+    }
+}
+
 hertzian::oscillator! {
     TwoWells(x) { ddot(x) + 0.1*dot(x) + ||x|-1|^1.5 = 0.2*cos(omega*t); }
 }
@@ -164,6 +180,15 @@ fn force(system: &dyn System, law: usize, arguments: &[f64], gap: f64, rate: f64
         .law(law)
         .force(On::AllPieces, arguments, &[gap], &[rate], &mut force);
     force[0]
+}
+
+#[test]
+fn parameters_may_be_called_as_constants_are() {
+    let model = beside_constants::Beam { K: 3.0, E: 2.0 };
+    let mut values = [f64::NAN; 2];
+    model.values(&mut values);
+    assert_eq!(values, [3.0, 2.0]);
+    assert_eq!([beside_constants::K, beside_constants::E], [4e4, 2.1e11]);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 //! derivatives that the compiler found symbolically; and dual numbers (num-dual), which differentiate the data of the
 //! *force* alone and so check the compiler's differentiation too. Gaps lie at distances from 1e-300 to 1e6 on both
 //! sides of every level, and at the level itself and its neighbours among floating-point numbers. How far two results
-//! may differ is computed along with them, see [`bound`].
+//! may differ is computed along with them, see [`bound`]. Batches run on the instruction sets of the processor in turns.
 
 mod bound;
 mod dual;
@@ -16,6 +16,7 @@ mod tree;
 use bound::Bound;
 use hertzian::generic::{Interpreted, PieceData};
 use hertzian::law::{Derivatives, Law, On, Parts};
+use hertzian::power::Instructions;
 use hertzian::system::{Place, System};
 use models::MODELS;
 use random::Random;
@@ -30,7 +31,9 @@ fn generated_interpreted_and_dual_numbers_agree() {
     let batches = points().div_ceil(BATCH);
     for (name, model) in MODELS {
         let mut random = Random::new(20_210_603);
-        for _ in 0..batches {
+        for batch in 0..batches {
+            // On those that the processor has, in turns.
+            Instructions::ALL[batch % Instructions::ALL.len()].pin();
             let system = model(&mut random);
             let interpreted = Interpreted::of(system.as_ref());
             assert!(!system.facts().contacts.is_empty(), "{name}: no contacts");

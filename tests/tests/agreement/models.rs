@@ -54,6 +54,19 @@ pub const MODELS: &[(&str, Model)] = &[
             layer: r.within(0.01, 1.0),
         })
     }),
+    ("flanks", |r| {
+        Box::new(Flanks {
+            play: r.within(0.0, 2.0),
+            drive_side: r.within(0.5, 3.0),
+            coast_side: r.within(0.5, 3.0),
+        })
+    }),
+    ("thirds and fourths", |r| {
+        Box::new(Fractions {
+            k: r.within(-2.0, 2.0),
+            play: r.within(0.0, 2.0),
+        })
+    }),
     ("seal", |r| {
         Box::new(Seal {
             c: r.within(0.0, 0.9),
@@ -240,6 +253,46 @@ oscillator! {
         law rough(gap) { gap > 0 => gap^1.5 + layer^1.5*(gap/layer)^n, else => 0 }
 
         ddot(x) + rough(x) = 0.1*cos(omega*t) + 1;
+    }
+}
+
+oscillator! {
+    /// Teeth with an exponent on each side: the bases of the two powers differ.
+    Flanks(x) {
+        /// half of the backlash
+        param play > 0;
+        /// exponent above
+        param drive_side > 0;
+        /// exponent below
+        param coast_side > 0;
+
+        /// gap beyond either flank
+        law teeth(gap) {
+            gap > play  => (gap - play)^drive_side,
+            gap < -play => -2*(-gap - play)^coast_side,
+            else        => 0,
+        }
+
+        ddot(x) + teeth(x) = cos(omega*t);
+    }
+}
+
+oscillator! {
+    /// Exponents of thirds and fourths, on both sides of a play.
+    Fractions(x) {
+        /// weight
+        param k;
+        /// half of the play
+        param play > 0;
+
+        /// gap beyond either side
+        law layers(gap) {
+            gap > play  => (gap - play)^(4/3) + k*(gap - play)^1.25,
+            gap < -play => -(-gap - play)^(5/3) - k*(-gap - play)^(2/3)*dot(gap),
+            else        => 0,
+        }
+
+        ddot(x) + layers(x) = cos(omega*t);
     }
 }
 

@@ -134,6 +134,10 @@ impl Plan {
                 Node::Power(base, exponent) => powers.extend(self.power(base, exponent)),
                 Node::PowerLog(base, exponent) => {
                     powers.extend(self.power(base, exponent));
+                    let thirds = dag.as_number(exponent);
+                    if thirds.is_some_and(|exponent| exponent.denominator() == 3) {
+                        powers.extend(self.cube_root(base));
+                    }
                     logarithms.extend(self.logarithm(base));
                 }
                 _ => {}
