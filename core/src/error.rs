@@ -137,6 +137,11 @@ pub enum Error {
         /// What the attempts to find one came to.
         attempts: Attempts,
     },
+    /// A motion that begins at rest does not come to rest again.
+    NeverAtRest {
+        /// Position of the first coordinate where it begins.
+        position: f64,
+    },
     /// A motion that should be free does not come back: the system has damping or an excitation.
     NotFree {
         /// How far it misses its beginning, relative to its size.
@@ -198,6 +203,31 @@ impl std::fmt::Display for Attempts {
             f,
             " led to an orbit of a shorter period, the others to none"
         )
+    }
+}
+
+impl Error {
+    /// What is written of backbones and of what begins at bifurcations.
+    fn of_bifurcations(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NeverAtRest { position } => {
+                write!(
+                    f,
+                    "the motion from rest at {position} does not come to rest again"
+                )
+            }
+            Self::NotFree { apart } => write!(
+                f,
+                "the motion misses its beginning by {apart:.1e} of its size after a period: set damping and excitation to zero"
+            ),
+            Self::Search { value, reason } => {
+                write!(f, "attractors at {value} could not be looked for: {reason}")
+            }
+            Self::NoBranch { kind, value } => {
+                write!(f, "no further branch was found at the {kind} at {value:.9}")
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -291,16 +321,10 @@ impl std::fmt::Display for Error {
                 f,
                 "no orbit of period {period} found at {parameter}: {attempts}; start where there is one, and follow it from there"
             ),
-            Self::NotFree { apart } => write!(
-                f,
-                "the motion misses its beginning by {apart:.1e} of its size after a period: set damping and excitation to zero"
-            ),
-            Self::Search { value, reason } => {
-                write!(f, "attractors at {value} could not be looked for: {reason}")
-            }
-            Self::NoBranch { kind, value } => {
-                write!(f, "no further branch was found at the {kind} at {value:.9}")
-            }
+            Self::NeverAtRest { .. }
+            | Self::NotFree { .. }
+            | Self::Search { .. }
+            | Self::NoBranch { .. } => self.of_bifurcations(f),
             Self::File { path, reason } => write!(f, "cannot write {path}: {reason}"),
         }
     }

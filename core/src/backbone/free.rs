@@ -28,9 +28,15 @@ use crate::newton::{Newton, NewtonOptions};
 use crate::system::{System, Variable};
 use crate::validate;
 
-/// Parts of a radian in which the first moment of rest is looked for, and how many.
+/// Times in which the first moment of rest is looked for, and how many.
 const STEP: f64 = 0.02;
 const STEPS: usize = 5000;
+/// Where there is none they grow, and then shrink until the moment stays, so many times at most.
+const COARSER: f64 = 100.0;
+const FINER: f64 = 5.0;
+const SCALES: usize = 12;
+/// Part of the time that it stays to.
+const SAME: f64 = 0.01;
 /// A motion that has not come back to this part of its size is not free.
 const RETURNED: f64 = 1e-6;
 const POINTS: usize = 5000;
@@ -213,27 +219,58 @@ impl<'a> FreeOscillation<'a> {
             let omega = validate::omega(*omega)?;
             return Ok(positions[1..].iter().copied().chain([omega]).collect());
         }
+        let time = self.half_period(equations)?;
+        Ok((1..n).map(|_| 0.0).chain([PI / time]).collect())
+    }
+
+    /// The time to the first moment of rest, at any scale of time: steps grow until there is one, and shrink until it stays.
+    fn half_period(&self, equations: &mut Equations<'_>) -> Result<f64, Error> {
+        let mut step = STEP;
+        let mut found = self.first_rest(equations, step)?;
+        for _ in 0..SCALES {
+            if found.is_some() {
+                break;
+            }
+            step *= COARSER;
+            found = self.first_rest(equations, step)?;
+        }
+        let never = Error::NeverAtRest {
+            position: self.from,
+        };
+        let mut time = found.ok_or(never.clone())?;
+        for _ in 0..SCALES {
+            step /= FINER;
+            let again = self.first_rest(equations, step)?.unwrap_or(time);
+            let same = (again - time).abs() <= SAME * again;
+            time = again;
+            if same && time > 10.0 * step {
+                return Ok(time);
+            }
+        }
+        Err(never)
+    }
+
+    /// The same, looked for in steps of this time.
+    fn first_rest(&self, equations: &mut Equations<'_>, step: f64) -> Result<Option<f64>, Error> {
+        let n = equations.flow.coordinates();
         let parameter = self.from;
-        let failed = |reason| Error::Motion { parameter, reason };
         let mut state = vec![0.0; 2 * n];
         state[0] = self.from;
         let (mut phase, mut before) = (0.0, 0.0);
+        equations.flow.set(Variable::Omega, 1.0);
         for _ in 0..STEPS {
-            let next = phase + STEP / equations.divisor;
-            equations
-                .flow
-                .advance(phase, next, &mut state, None, None)
-                .map_err(failed)?;
+            let next = phase + step / equations.divisor;
+            let moved = equations.flow.advance(phase, next, &mut state, None, None);
+            moved.map_err(|reason| Error::Motion { parameter, reason })?;
             let velocity = state[n];
             if before * velocity < 0.0 {
                 let part = before / (before - velocity);
                 let time = (phase + part * (next - phase)) * equations.divisor;
-                let rest = state[1..n].iter().map(|_| 0.0);
-                return Ok(rest.chain([PI / time]).collect());
+                return Ok(Some(time));
             }
             (phase, before) = (next, velocity);
         }
-        Err(failed(FlowError::NotFinite { phase }))
+        Ok(None)
     }
 }
 

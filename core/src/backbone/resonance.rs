@@ -109,8 +109,8 @@ impl<'a> PhaseResonance<'a> {
         validate::option(
             "harmonics",
             harmonics,
-            1.0..=1000.0,
-            "must be from 1 to 1000",
+            f64::from(facts.divisor)..=1000.0,
+            "must be at most 1000, and at least the divisor of the declaration",
         )?;
         let first = self.first(&parameters, from)?;
         let motion = Motion::of(first.series(0));
@@ -172,6 +172,15 @@ impl<'a> PhaseResonance<'a> {
             let series = orbit.series(0);
             a * series[place] + b * series[place + 1]
         };
+        if load(&self.balance(parameters, low)).1 == [0.0; 2] {
+            let must = "must act on the first coordinate, with the frequency of the excitation";
+            let name = "load";
+            return Err(Error::Option {
+                name,
+                value: 0.0,
+                must,
+            });
+        }
         let lags: Vec<f64> = branch.points.iter().map(|p| lag(&p.orbit)).collect();
         let change = (1..lags.len()).find(|&i| lags[i - 1] * lags[i] < 0.0);
         let nearest = change.map(|i| {

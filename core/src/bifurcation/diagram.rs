@@ -18,6 +18,8 @@ pub struct Diagram {
     pub branches: Vec<Limb>,
     /// Bifurcations whose further branch was not followed, and why.
     pub omitted: Vec<Omitted>,
+    /// Attractors whose branch was not followed, and searches that failed: the value and why.
+    pub missed: Vec<(f64, Reason)>,
     /// Time of the computation.
     pub elapsed: Duration,
 }
@@ -176,23 +178,25 @@ impl<'a> Search<'a> {
     /// Takes in the branch through an attractor, unless it is known.
     ///
     /// # Errors
-    /// If its orbit is not found.
+    /// Why it was not followed.
     pub(super) fn add_attractor(
         &mut self,
         value: f64,
         period: usize,
         state: &[f64],
-    ) -> Result<(), Error> {
+    ) -> Result<(), Reason> {
         let request = self.shooting.clone().period(period).near(state);
-        let orbit = request.orbit(value)?;
+        let orbit = request.orbit(value).map_err(Reason::Failed)?;
         let known = |limb: &Limb| known::contains(&self.shooting, limb, &orbit);
         if self.diagram.branches.iter().any(known) {
             return Ok(());
         }
-        let request = request
-            .near(orbit.state())
-            .max_points(self.points_left.max(2));
-        let branch = request.through(value)?;
+        if self.diagram.branches.len() >= self.most_branches || self.points_left < 4 {
+            return Err(Reason::Budget);
+        }
+        // Each of two parts may have half.
+        let request = request.near(orbit.state()).max_points(self.points_left / 2);
+        let branch = request.through(value).map_err(Reason::Failed)?;
         self.add(Origin::Attractor { value }, 0, branch);
         Ok(())
     }
@@ -234,10 +238,15 @@ impl<'a> Search<'a> {
     /// The branches that end at an event of another one.
     fn ending_at(&self, event: &CycleEvent) -> Vec<usize> {
         let limbs = self.diagram.branches.iter().enumerate();
+        let is_joint = |end: Option<End>, joint: Option<&CycleEvent>| {
+            let regular =
+                matches!(end, Some(End::Joined { period, .. }) if period == event.cycle.period);
+            regular && joint.is_some_and(|joint| known::is_same_place(joint, event))
+        };
         let ends = limbs.filter(|(_, limb)| {
-            let joined = matches!(limb.branch.end, End::Joined { .. });
-            let last = limb.branch.events.last().filter(|_| joined);
-            last.is_some_and(|last| known::is_same_place(last, event))
+            let joints = || limb.branch.events(EventKind::BranchPoint);
+            is_joint(Some(limb.branch.end), joints().last())
+                || is_joint(limb.branch.begin, joints().next())
         });
         ends.map(|(number, _)| number).collect()
     }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::diagram::{Diagram, Origin, Search};
+use super::diagram::{Diagram, Origin, Reason, Search};
 use crate::error::Error;
 use crate::flow;
 use crate::flow::basin::{Attractor, Basin};
@@ -23,8 +23,9 @@ const BEYOND: f64 = 0.1;
 /// [run](Bifurcations::run).
 ///
 /// The first branch is followed by [`Shooting`] along the range. At every period doubling, and where an odd symmetry breaks, the
-/// branch that begins there is followed too, and so on. A bifurcation where a known branch ends is not followed again. Nothing is
-/// left out silently: what was not followed is in [`Diagram::omitted`], with the reason.
+/// branch that begins there is followed too, and so on. A bifurcation where a known branch ends is not followed again. What begins at
+/// these two and was not followed is in [`Diagram::omitted`], with the reason. Where branches cross without a symmetry, the other one
+/// is not followed.
 ///
 /// ```
 /// use hertzian::EventKind;
@@ -150,8 +151,8 @@ impl<'a> Bifurcations<'a> {
         self
     }
 
-    /// Branches other than the first may go beyond the ends of the range by this part of it, as far as a parameter's declared
-    /// range allows. Default: 0.1.
+    /// Branches other than the first may go beyond the ends of the range by this part of it, as far as the equations
+    /// make sense there. Default: 0.1.
     #[must_use]
     pub fn beyond(mut self, part: f64) -> Self {
         self.beyond = part;
@@ -190,6 +191,13 @@ impl<'a> Bifurcations<'a> {
         let from = self.from.ok_or(Error::MissingEnd { name: "from" })?;
         let to = self.to.ok_or(Error::MissingEnd { name: "to" })?;
         self.check()?;
+        for &(value, _) in &self.searched {
+            if value < from.min(to) || value > from.max(to) {
+                let must = "must be in the range of the first branch";
+                let name = "search";
+                return Err(Error::Option { name, value, must });
+            }
+        }
         let first = self.shooting.clone().from(from).to(to);
         let branch = first.max_points(self.points.max(2)).run()?;
         let [low, high] = self.wider(from, to)?;
@@ -200,9 +208,15 @@ impl<'a> Bifurcations<'a> {
         search.add(Origin::First, 0, branch);
         search.exhaust();
         for (value, basin) in &self.searched {
-            for attractor in self.attractors(*value, basin)? {
+            let found = self.attractors(*value, basin).unwrap_or_else(|error| {
+                search.diagram.missed.push((*value, Reason::Failed(error)));
+                Vec::new()
+            });
+            for attractor in found {
                 let (period, state) = (attractor.period, &attractor.points[0]);
-                search.add_attractor(*value, period, state)?;
+                if let Err(reason) = search.add_attractor(*value, period, state) {
+                    search.diagram.missed.push((*value, reason));
+                }
                 search.exhaust();
             }
         }
@@ -246,12 +260,28 @@ impl<'a> Bifurcations<'a> {
     fn wider(&self, from: f64, to: f64) -> Result<[f64; 2], Error> {
         let facts = self.system.facts();
         let variable = validate::variable(facts, self.vary.as_deref())?;
-        let admits = |value: f64| match variable {
-            Variable::Omega => value > 0.0,
-            Variable::Parameter(index) => facts.parameters[index].admits(value),
+        let mut parameters = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut parameters);
+        let makes_sense = |value: f64| {
+            let (mut parameters, mut omega) = (parameters.clone(), self.omega.unwrap_or(value));
+            match variable {
+                Variable::Omega => omega = value,
+                Variable::Parameter(index) => parameters[index] = value,
+            }
+            validate::omega(omega).is_ok()
+                && validate::parameters(facts, &parameters).is_ok()
+                && validate::levels(self.system, &parameters, omega).is_ok()
+                && validate::mass(self.system, &parameters, omega).is_ok()
         };
         let margin = self.beyond * (to - from);
-        let widened = |end: f64, by: f64| if admits(end + by) { end + by } else { end };
+        // As much of it as makes sense.
+        let widened = |end: f64, by: f64| {
+            let parts = [1.0, 0.5, 0.25, 0.125, 0.0625];
+            let ends = parts.into_iter().map(|part| end + part * by);
+            ends.into_iter()
+                .find(|&end| makes_sense(end))
+                .unwrap_or(end)
+        };
         Ok([widened(from, -margin), widened(to, margin)])
     }
 }

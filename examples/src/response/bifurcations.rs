@@ -226,6 +226,13 @@ impl Found {
             };
             writeln!(text, "omitted    on branch {}: {reason}", omitted.branch)?;
         }
+        for (value, reason) in &self.diagram.missed {
+            let reason = match reason {
+                Reason::Failed(error) => error.to_string(),
+                _ => "no more branches or orbits are allowed".to_owned(),
+            };
+            writeln!(text, "missed     an attractor at {value}: {reason}")?;
+        }
         for track in &self.tracks {
             let count = track.points.len();
             let [x, y] = &track.names;

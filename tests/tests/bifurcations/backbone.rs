@@ -138,6 +138,26 @@ fn with_a_load_the_quadratures() {
     }
 }
 
+hertzian::oscillator! {
+    Stiff(x) {
+        param stiffness > 0;
+        ddot(x) + stiffness*x = 0;
+    }
+}
+
+/// From a tenth of a millisecond to hours.
+#[test]
+fn any_scale_of_time() {
+    for stiffness in [1e-8_f64, 1e8] {
+        let model = Stiff { stiffness };
+        for point in curve(&model, 1.0, 1.5) {
+            let error = (point.omega / stiffness.sqrt() - 1.0).abs();
+            assert!(error < 1e-9, "{stiffness} {error:.1e}");
+            assert!((point.ends[1][0] + point.ends[0][0]).abs() < 1e-9);
+        }
+    }
+}
+
 #[test]
 fn what_is_damped_is_not_free() {
     let model = Driven {
@@ -153,7 +173,7 @@ fn what_is_damped_is_not_free() {
 }
 
 /// The first harmonic of the damped system lags by a quarter, and its frequency is that of the free system of the same amplitude
-/// but for the square of the damping; halving the damping takes a quarter of the difference.
+/// but for an order of the damping: halving the damping takes at least two fifths of the difference.
 #[test]
 fn phase_resonance_is_near_free_oscillation() {
     let differences = [0.02, 0.01].map(|zeta| {

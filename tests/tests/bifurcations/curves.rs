@@ -2,7 +2,7 @@
 //! decides.
 
 use hertzian::flow::shooting::{SpecialKind, Track};
-use hertzian::{EventKind, Shooting, System};
+use hertzian::{Error, EventKind, Shooting, System};
 
 use crate::cascade::OneSided;
 
@@ -92,20 +92,32 @@ fn folds_of_a_hertzian_contact() {
         .special
         .iter()
         .filter(|s| s.kind == SpecialKind::Grazing);
+    let grazing: Vec<_> = grazing.collect();
+    assert_eq!(grazing.len(), 2);
     for special in grazing {
-        let [omega, drive] = special.values;
-        let model = model(true, drive);
-        // The orbit there touches zero.
-        let near = |values: [f64; 2]| (values[0] - omega).abs() + (values[1] - drive).abs();
-        let by_distance = |p: &&_, q: &&_| {
-            let [p, q]: [&hertzian::flow::shooting::TrackPoint; 2] = [p, q];
-            near(p.values).total_cmp(&near(q.values))
-        };
-        let nearest = track.points.iter().min_by(by_distance).unwrap();
-        let orbit = Shooting::of(&*model).near(&nearest.state).orbit(omega);
-        let Ok(orbit) = orbit else { continue };
-        assert!(orbit.extremes[0].minimum.abs() < 2e-2, "{orbit:?}");
+        let [before, behind] = [special.after - 1, special.after].map(|i| &track.points[i]);
+        assert_ne!(before.switches, behind.switches);
+        for k in 0..2 {
+            let ends = [before.values[k], behind.values[k]];
+            let range = ends[0].min(ends[1])..=ends[0].max(ends[1]);
+            assert!(range.contains(&special.values[k]), "{special:?} {ends:?}");
+        }
     }
+}
+
+/// An event must be inside the ranges of its curve.
+#[test]
+fn a_curve_begins_inside_its_ranges() {
+    let model = model(false, 0.1);
+    let shooting = Shooting::of(&*model).from(0.6).to(1.6);
+    let branch = shooting.run().unwrap();
+    let fold = branch.folds().next().unwrap();
+    let outside = shooting.track(fold, "drive", [0.2, 0.5]).unwrap_err();
+    let is_named = |error: &Error, expected: &str| matches!(error, Error::Option { name, .. } if *name == expected);
+    assert!(is_named(&outside, "within"), "{outside}");
+    let narrow = Shooting::of(&*model).from(1.2).to(1.6);
+    let outside = narrow.track(fold, "drive", [0.03, 0.5]).unwrap_err();
+    assert!(is_named(&outside, "from"), "{outside}");
 }
 
 #[test]

@@ -138,6 +138,7 @@ fn followed<'a>(
         cycles,
         events,
         turns,
+        begin: None,
         end,
         statistics,
         work,

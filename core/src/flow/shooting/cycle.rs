@@ -136,6 +136,8 @@ pub struct CycleBranch {
     pub events: Vec<CycleEvent>,
     /// Places where a test function changes its sign, but jumps instead of vanishing, as where an orbit grazes a level.
     pub turns: Vec<Turn>,
+    /// Why it ended at its beginning, where it was followed both ways from an orbit.
+    pub begin: Option<End>,
     /// Why it ended.
     pub end: End,
     /// What the continuation cost.
@@ -177,10 +179,12 @@ impl CycleBranch {
         }));
         branch.statistics += back.statistics;
         branch.elapsed += back.elapsed;
+        super::run::add(&mut branch.work, back.work);
         Self {
             cycles,
             events,
             turns,
+            begin: Some(back.end),
             ..branch
         }
     }

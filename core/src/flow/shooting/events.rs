@@ -34,6 +34,8 @@ use crate::stability::{Stability, distance, eigenvalues};
 
 /// Brackets of an event are narrowed until rounding stops it, or this is reached.
 const VANISHED: f64 = 1e-14;
+/// What rounding leaves in the value of a grazing, where the distance from a level has a root to be told apart from.
+const TOUCHED: f64 = 2e-12;
 /// What rounding leaves in the value of an event.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -146,6 +148,21 @@ impl Tests {
     }
 }
 
+/// What the other multipliers make of a determinant that vanishes with the one nearest to a critical value, and of its rounding.
+fn others(equations: &mut Equations<'_>, u: &[f64], critical: f64) -> f64 {
+    let Ok(map) = equations.map(u, &mut |_| {}) else {
+        return 1.0;
+    };
+    let mut distances: Vec<f64> = eigenvalues(&map)
+        .iter()
+        .map(|m| (m - critical).norm())
+        .collect();
+    distances.sort_by(f64::total_cmp);
+    let product: f64 = distances.iter().skip(1).product();
+    let largest = distances.last().copied().unwrap_or(1.0);
+    product.max(1.0) * largest.max(1.0)
+}
+
 /// The product of `mu_i mu_j - 1` over all pairs, and whether the pair whose product is nearest to one is complex.
 fn product_of_pairs(map: &DMatrix<f64>) -> (f64, bool) {
     let values = eigenvalues(map);
@@ -178,37 +195,38 @@ impl<'a> Run<'_, 'a> {
             return;
         };
         let other = RefCell::new(other);
-        // The direction of the parameter on either side, as near to the place as was looked.
-        let slopes = RefCell::new([0.0; 2]);
+        // The last points on either side, as near to the place as was looked.
+        let nearest = RefCell::new([between.0.clone(), between.1.clone()]);
         let side = |point: &CurvePoint| {
             let mut other = other.borrow_mut();
             let before = other.flow.work().switches;
             let counted = other.trace(&point.u, &mut |_| {});
             let switches = half * (other.flow.work().switches - before);
             let behind = counted.is_err() || switches != many;
-            slopes.borrow_mut()[usize::from(behind)] = point.parameter_slope();
+            nearest.borrow_mut()[usize::from(behind)] = point.clone();
             if behind { -1.0 } else { 1.0 }
         };
-        let found = locate(equations, newton, between, self.options, 0.0, side);
+        // Near the place Newton's method may fail: then what is known is the bracket.
+        let _ = locate(equations, newton, between, self.options, 0.0, side);
         add(&mut self.work, other.borrow().flow.work());
-        let Some(found) = found else {
+        let [before, behind] = nearest.into_inner();
+        let Ok((cycle, _)) = observe(self.setting, equations, &before.u) else {
+            let (value, test) = (before.parameter(), f64::NAN);
+            self.turns.push(Turn { value, test, after });
             return;
         };
-        let [before, behind] = slopes.into_inner();
-        let Ok((cycle, _)) = observe(self.setting, equations, &found.point.u) else {
-            return;
-        };
-        let value = cycle.value;
-        // The place is halved to a part of 1e-14 of the step, but the orbits have the error of the flow.
-        let nearest = &self.cycles[after];
-        let error = nearest.error + 1e-12 * value.abs().max((behind - before).abs());
+        // The orbits have the error of the flow: it is taken from states to the parameter by what both change in the step.
+        let change = (between.1.parameter() - between.0.parameter()).abs();
+        let rate = change / equations.apart(&between.0.u, &between.1.u);
+        let bracket = (behind.parameter() - before.parameter()).abs();
+        let error = bracket + self.cycles[after].error * rate + TOUCHED * cycle.value.abs();
         self.events.push(CycleEvent {
             kind: EventKind::Grazing {
-                turns: before * behind < 0.0,
+                turns: before.parameter_slope() * behind.parameter_slope() < 0.0,
             },
             cycle,
             error,
-            test: found.test,
+            test: 1.0,
             after,
         });
     }
@@ -235,7 +253,9 @@ impl<'a> Run<'_, 'a> {
         // A slope is relative to the range, and rounding to the value.
         let unit = match change.test {
             Test::Slope => (value.abs() / place.point.scale.parameter).max(1.0),
-            Test::Minus | Test::Plus | Test::Pairs => 1.0,
+            Test::Minus => others(equations, &place.point.u, 1.0),
+            Test::Plus => others(equations, &place.point.u, -1.0),
+            Test::Pairs => 1.0,
         };
         let vanishes = test.abs() <= self.setting.vanishing(equations.frame.ratio) * unit;
         let event = vanishes.then(|| self.event_at(equations, between, change, &place));

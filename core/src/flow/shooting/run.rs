@@ -187,7 +187,8 @@ impl<'r, 'a> Run<'r, 'a> {
                 }
             }
         }
-        if let [.., a, b] = &self.cycles[..]
+        if self.setting.stability
+            && let [.., a, b] = &self.cycles[..]
             && a.switches != b.switches
         {
             self.grazing(equations, newton, (before, behind));

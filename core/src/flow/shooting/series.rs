@@ -80,7 +80,7 @@ pub(super) fn point(
         },
         stability: cycle.stability.clone(),
         observed,
-        error: (size > 0.0 && cycle.error.is_finite()).then(|| cycle.error / size),
+        error: (size > 0.0 && !cycle.error.is_nan()).then(|| cycle.error / size),
     })
 }
 

@@ -115,8 +115,9 @@ pub(super) struct Plane {
 const POINTS: usize = 600;
 /// Shorter steps lead nowhere: where orbits graze, a determinant has the root of the distance in it, and no tangent.
 const SHORTEST: f64 = 1e-5;
-/// A slope of the parameters counts as none below this.
+/// A slope of the second parameter counts as none below this, and that of the first, where the second has none, below the other.
 const VANISHED: f64 = 1e-9;
+const FLAT: f64 = 1e-3;
 
 /// Half of a curve, as it is followed.
 struct Half {
@@ -142,6 +143,13 @@ pub(super) fn track(
             return Err(Error::NoBranch { kind, value });
         }
     };
+    let at = [event.cycle.value, second_of(event, plane.second)];
+    for ((value, range), name) in at.into_iter().zip(plane.ranges).zip(["from", "within"]) {
+        if value < range[0].min(range[1]) || value > range[0].max(range[1]) {
+            let must = "is the value at the event, and must be inside the range of the curve";
+            return Err(Error::Option { name, value, must });
+        }
+    }
     let [mut back, forth] = [-1.0, 1.0].map(|side| half(setting, event, plane, shift, side));
     let (back, mut forth) = (back.as_mut().map_err(|e| e.clone())?, forth?);
     let count = back.points.len();
@@ -149,7 +157,7 @@ pub(super) fn track(
     back.special.reverse();
     // The first point of both is the event.
     let mut points = std::mem::take(&mut back.points);
-    points.extend(forth.points.drain(1..));
+    points.extend(forth.points.drain(..).skip(1));
     let mut special = std::mem::take(&mut back.special);
     for special in &mut special {
         special.after = count - special.after;
@@ -237,6 +245,14 @@ fn half(
     })
 }
 
+/// The value of the second parameter at an event.
+fn second_of(event: &CycleEvent, second: Variable) -> f64 {
+    match second {
+        Variable::Omega => event.cycle.omega,
+        Variable::Parameter(index) => event.cycle.parameters[index],
+    }
+}
+
 /// The problem of the curve, and the event as its unknowns.
 fn curve<'a>(
     setting: &Setting<'a>,
@@ -259,10 +275,7 @@ fn curve<'a>(
     };
     let equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
     let mut u = equations.unknowns_of(&cycle.states, cycle.value);
-    u.push(match plane.second {
-        Variable::Omega => cycle.omega,
-        Variable::Parameter(index) => cycle.parameters[index],
-    });
+    u.push(second_of(event, plane.second));
     let size = 0.5
         * cycle
             .extremes
@@ -343,7 +356,13 @@ impl<'a> Watch<'_, 'a> {
         if changed(last) && changed(last - 1) {
             let slope = CurvePoint::parameter_slope;
             let found = locate(curve, newton, between, self.options, VANISHED, slope);
-            self.keep(SpecialKind::Cusp, found.map(|f| f.point), between);
+            // Where the slopes jump, as at a touch, nothing is born.
+            if let Some(found) = found.filter(|found| found.vanishes) {
+                let other = found.point.tangent[last - 1] / curve.units[1];
+                if other.abs() < FLAT {
+                    self.keep(SpecialKind::Cusp, Some(found.point), between);
+                }
+            }
         }
         let [Some(a), Some(b)] = [before, behind].map(|at| self.point(curve, &at.u)) else {
             return;
@@ -386,7 +405,17 @@ impl<'a> Watch<'_, 'a> {
         let last = before.u.len() - 1;
         let ends = [last - 1, last].map(|entry| [before.u[entry], behind.u[entry]]);
         let (values, error) = match located {
-            Some(point) => ([point.u[last - 1], point.u[last]], 1e-8),
+            Some(point) => {
+                // A slope that counts as none, over a step of the length that counts as one.
+                let [first, second] = self.plane.ranges.map(|r| (r[1] - r[0]).abs());
+                let flow = if self.setting.source.exact {
+                    0.0
+                } else {
+                    self.setting.source.tolerance
+                };
+                let error = (VANISHED + 10.0 * flow) * first.max(second);
+                ([point.u[last - 1], point.u[last]], error)
+            }
             None => (
                 ends.map(|[a, b]| 0.5 * (a + b)),
                 ends.iter()
