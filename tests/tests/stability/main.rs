@@ -1,5 +1,7 @@
 //! Multipliers and verdicts against orbits that are known better.
 
 mod draw;
+mod exact;
 mod orbits;
 mod truth;
+mod two_masses;
