@@ -1,4 +1,4 @@
-//! Errors and times of every method for multipliers, as a table and two pictures: `multipliers --help`.
+//! Errors and times of the methods for multipliers, as a table and two pictures: `multipliers --help`.
 
 use std::process::ExitCode;
 

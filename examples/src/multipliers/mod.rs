@@ -1,4 +1,4 @@
-//! The program `multipliers`: how far every method is from the multipliers of the exact orbit, by harmonics and by time.
+//! The program `multipliers`: how far the methods are from the multipliers of the exact orbit, by harmonics and by time.
 
 pub mod charts;
 pub mod study;
@@ -12,7 +12,7 @@ use clap::Parser;
 
 use study::{Measured, decay, measure, oscillators};
 
-/// Measures every method for Floquet multipliers against the multipliers of the exact orbit.
+/// Measures the methods for Floquet multipliers against the multipliers of the exact orbit; Hill's with the sorting by symmetry.
 ///
 /// Writes multipliers.csv, multipliers-harmonics.svg and multipliers-time.svg, and prints the orders that were observed.
 #[derive(Debug, Clone, PartialEq, Parser)]

@@ -1,9 +1,10 @@
 //! Oscillators whose multipliers are known, and what every method makes of them.
 
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 use hertzian::flow::shooting::Cycle;
-use hertzian::stability::{Answer, Method, Projection, Sorting};
+use hertzian::stability::{Method, Projection, Sorting};
 use hertzian::{Branch, Complex, Error, FrequencyResponse, Shooting, System};
 
 hertzian::oscillator! {
@@ -40,7 +41,6 @@ pub struct Oscillator {
     system: Box<dyn System>,
     drive: f64,
     omega: f64,
-    period: usize,
 }
 
 /// A method on an orbit of some harmonics.
@@ -68,8 +68,9 @@ pub const METHODS: [Method; 5] = [
     Method::KoopmanHill(Projection::Direct),
     Method::KoopmanHill(Projection::Subharmonic),
 ];
-/// Times are the least of so many.
+/// Times below the limit are the least of so many.
 const TURNS: usize = 5;
+const LONG: Duration = Duration::from_millis(20);
 /// The exact orbit: tolerance of the flow.
 const EXACT: f64 = 1e-12;
 /// Harmonics between which the decay of coefficients is fitted.
@@ -79,21 +80,19 @@ const ROUNDING: f64 = 1e-11;
 
 /// Contact that is lost, and springs whose stiffness vanishes or is unbounded where they change their sign.
 pub fn oscillators() -> Vec<Oscillator> {
-    let of = |name, system, omega, period| Oscillator {
+    let drive = 1.0;
+    let of = |name, system, omega| Oscillator {
         name,
         system,
-        drive: 1.0,
+        drive,
         omega,
-        period,
     };
-    let drive = 1.0;
     let continuous = |alpha| Box::new(Continuous { alpha, drive });
     vec![
-        of("one-sided, exponent 1", Box::new(Linear { drive }), 1.0, 1),
-        of("the same, period 2", Box::new(Linear { drive }), 1.0, 2),
-        of("one-sided, exponent 3/2", Box::new(Hertz { drive }), 0.8, 1),
-        of("continuous, exponent 3/2", continuous(1.5), 0.8, 1),
-        of("continuous, exponent 0.6", continuous(0.6), 0.7, 1),
+        of("one-sided, exponent 1", Box::new(Linear { drive }), 1.0),
+        of("one-sided, exponent 3/2", Box::new(Hertz { drive }), 0.8),
+        of("continuous, exponent 3/2", continuous(1.5), 0.8),
+        of("continuous, exponent 0.6", continuous(0.6), 0.7),
     ]
 }
 
@@ -105,7 +104,6 @@ impl Oscillator {
             .omega(self.omega)
             .from(self.drive)
             .to(1.01 * self.drive)
-            .period(self.period)
             .harmonics(harmonics)
             .tolerance(1e-10)
             .stability(false)
@@ -130,18 +128,22 @@ pub fn measure(oscillator: &Oscillator, harmonics: &[usize]) -> Result<Vec<Measu
         let branch = oscillator.branch(harmonics)?;
         let exact = oscillator.exact(&branch)?.stability.multipliers;
         for method in METHODS {
-            let answers: Vec<Answer> = (0..TURNS)
-                .map(|_| branch.multipliers(&branch.points[0], method))
-                .collect();
-            let times = answers.iter().map(|answer| answer.elapsed.as_secs_f64());
-            let answer = &answers[0];
+            let answer = branch.multipliers(&branch.points[0], method);
+            let mut least = answer.elapsed;
+            for _ in 0..TURNS {
+                // What takes long is as well timed once.
+                if least < LONG {
+                    let again = branch.multipliers(&branch.points[0], method);
+                    least = least.min(again.elapsed);
+                }
+            }
             measured.push(Measured {
                 method,
                 harmonics,
                 error: distance(&answer.uncorrected, &exact),
                 corrected: distance(&answer.stability.multipliers, &exact),
                 estimate: answer.stability.error,
-                microseconds: 1e6 * times.fold(f64::INFINITY, f64::min),
+                microseconds: 1e6 * least.as_secs_f64(),
             });
         }
     }
@@ -165,7 +167,7 @@ fn distance(found: &[Complex<f64>], exact: &[Complex<f64>]) -> f64 {
 pub fn decay(oscillator: &Oscillator) -> Result<f64, Error> {
     let branch = oscillator.branch(FIT[1] + 50)?;
     let series = branch.points[0].orbit.series(0);
-    let points = (FIT[0] * oscillator.period..=FIT[1] * oscillator.period).map(|k| {
+    let points = (FIT[0]..=FIT[1]).map(|k| {
         let size = series[2 * k - 1].hypot(series[2 * k]);
         [(k as f64).ln(), size.ln()]
     });
