@@ -14,5 +14,8 @@ struct Bifurcations;
 #[doc = include_str!("../../docs/book/src/attractors.md")]
 struct Attractors;
 
+#[doc = include_str!("../../docs/book/src/stability.md")]
+struct StabilityOfOrbits;
+
 #[doc = include_str!("../../docs/book/src/theory.md")]
 struct Theory;

@@ -16,7 +16,7 @@
 //! - by symmetry: those with the smallest (1) of which none is a shifted copy of another.
 //!
 //! Whether the choice can be right is checked by Liouville's formula: the product of the multipliers is the determinant that the
-//! mean of the damping gives, and what it misses by, as an error of the smallest multiplier, is the error stated. The truncation
+//! mean of the damping gives, and what it misses by, as an error of one of them, is the error stated. The truncation
 //! itself shows when the orbit is given more harmonics.
 //!
 //! Cost: all eigenvalues of a dense matrix of order `2 n (2 K + 1)`, for the sortings by eigenvectors these too.
@@ -156,13 +156,15 @@ impl Mode {
     }
 }
 
-/// What the product of multipliers misses the determinant by, as an error of the smallest of them.
+/// What the product of multipliers misses the determinant by, as an error of one of them: of two the smaller, whose relative error
+/// is the larger; of more it may be any, so that the largest is taken.
 pub(super) fn defect(multipliers: &[Complex<f64>], determinant: f64) -> f64 {
-    let Some((last, others)) = multipliers.split_last() else {
+    let (Some(first), Some(last)) = (multipliers.first(), multipliers.last()) else {
         return f64::INFINITY;
     };
-    let others: Complex<f64> = others.iter().product();
-    let error = (last - Complex::new(determinant, 0.0) / others).norm();
+    let product: Complex<f64> = multipliers.iter().product();
+    let size = if multipliers.len() == 2 { last } else { first }.norm();
+    let error = size * (Complex::new(1.0, 0.0) - Complex::new(determinant, 0.0) / product).norm();
     if error.is_nan() { f64::INFINITY } else { error }
 }
 

@@ -47,6 +47,9 @@ pub(super) struct Linearised {
     damping: Vec<f64>,
 }
 
+/// Phases no farther from each other than this are the same but for rounding.
+const SAME: f64 = 1e-12;
+
 /// The column `M^-1 e` and the row `d` of a contact, with its slopes at the nodes.
 #[derive(Debug, Default)]
 struct Pair {
@@ -201,7 +204,7 @@ impl Linearised {
         orbit: &Orbit<'_>,
         path: &Path,
         panel: &Panel,
-        ends: [Option<Cut>; 2],
+        ends: [&[Cut]; 2],
     ) -> usize {
         self.nodes.place(panel);
         let mut count = 0;
@@ -217,11 +220,17 @@ impl Linearised {
                 pair.by_rate.resize(self.nodes.gap.len(), by_rate);
                 continue;
             }
-            self.nodes.motion(
-                contact,
-                panel,
-                ends.map(|cut| cut.filter(|cut| cut.contact == index)),
-            );
+            // Its own cut at the very end, where another may switch as well.
+            let [start, end] = ends;
+            let own = |cuts: &[Cut], edge: Option<&Cut>| {
+                let here = |cut: &&Cut| {
+                    let apart = edge.map_or(f64::INFINITY, |edge| (cut.tau - edge.tau).abs());
+                    cut.contact == index && apart < SAME
+                };
+                cuts.iter().find(here).copied()
+            };
+            let ends = [own(start, start.last()), own(end, end.first())];
+            self.nodes.motion(contact, panel, ends);
             pair.evaluate(orbit, contact, layout, &mut self.nodes);
             count += self.nodes.taus.len();
         }

@@ -11,7 +11,8 @@ use super::orbit::Orbit;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Method {
-    /// The cheapest whose estimated error clears what is wanted: see [`stability`](super).
+    /// The monodromy matrix with as few steps as the verdict needs, which measurements show to be the cheapest: see
+    /// [`stability`](super).
     #[default]
     Default,
     /// The monodromy matrix, integrated from switch to switch: the authority.

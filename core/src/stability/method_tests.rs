@@ -270,6 +270,68 @@ fn linear_oscillators() {
     }
 }
 
+hertzian::oscillator! {
+    /// Mathieu's equation whose stiffness varies 48 times in a period.
+    Fast(x) {
+        param a;
+        param q;
+        param c in 0.0..;
+        ddot(x) + c*dot(x) + (a - 2*q*cos(48*omega*t))*x = 0;
+    }
+}
+
+/// Steps that just meet the waves of the stiffness would see it constant: the multipliers are powers of those of one wave.
+#[test]
+fn fast_waves_are_seen() {
+    for (a, q) in [(0.3, 0.1), (2.1, 0.3), (1.0, 0.4)] {
+        let (one, ..) = multipliers(&Mathieu { a, q, c: 0.05 }, Method::Monodromy, 48.0, 1);
+        let exact: Vec<_> = one.iter().map(|multiplier| multiplier.powu(48)).collect();
+        let fast = Fast { a, q, c: 0.05 };
+        let (found, error, _) = multipliers(&fast, Method::Monodromy, 1.0, 1);
+        let distance = distance(&found, &exact);
+        assert!(distance < error + 1e-11, "{a} {q}: {distance:e} {error:e}");
+    }
+}
+
+hertzian::oscillator! {
+    /// Three contacts, two of which switch together.
+    Apart(x) {
+        param alpha > 0;
+        law rough(gap) { gap > 0 => gap^alpha, else => 0 }
+        law linear(gap) { gap > 0 => gap, else => 0 }
+        law stop(gap) { gap > 0.3 => 2*(gap - 0.3), else => 0 }
+        ddot(x) + 0.1*dot(x) + 0.2*x + rough(x) + linear(x) + stop(x) = 0;
+    }
+}
+
+hertzian::oscillator! {
+    /// The same as one.
+    Together(x) {
+        param alpha > 0;
+        law contact(gap) {
+            gap > 0.3 => gap^alpha + gap + 2*(gap - 0.3),
+            0 < gap <= 0.3 => gap^alpha + gap,
+            else => 0,
+        }
+        ddot(x) + 0.1*dot(x) + 0.2*x + contact(x) = 0;
+    }
+}
+
+/// A panel is graded towards every contact that switches at its end, not only towards one.
+#[test]
+fn contacts_that_switch_together() {
+    for alpha in [0.6, 1.5] {
+        let (apart, error, _) = multipliers(&Apart { alpha }, Method::Monodromy, 0.7, 1);
+        let (together, other, _) = multipliers(&Together { alpha }, Method::Monodromy, 0.7, 1);
+        let distance = distance(&apart, &together);
+        assert!(
+            distance < error + other + 1e-11,
+            "{alpha}: {distance:e} {error:e}"
+        );
+        assert!(error < 1e-9, "{error:e}");
+    }
+}
+
 /// A hundred oscillations in a period, with a stiffness that varies: the first steps are far too long. For small `omega` the phase
 /// of the multipliers is the integral of the frequency over a period, `theta = int sqrt(a - 2 q cos omega t) dt` (Wentzel,
 /// Kramers, Brillouin 1926), and their sum `2 cos theta`.

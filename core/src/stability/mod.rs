@@ -2,6 +2,10 @@
 //!
 //! A [`Method`] computes multipliers of an orbit as it is. The verdict ([`Stability`]) compares those of the orbit with those of
 //! the same orbit corrected for what its harmonics and samples leave out, and adds the method's own error.
+//!
+//! [`Method::Default`] is the monodromy matrix, which was the cheapest at equal error on every orbit that was tried, with as few
+//! steps as the verdict needs: to 1e-6 or a part of the error of the orbit, and more exactly where the largest multiplier is near
+//! the unit circle. No verdict is given of an orbit that its correction changes by more than a tenth of its size.
 
 mod answer;
 mod exponential;

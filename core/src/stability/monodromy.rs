@@ -29,7 +29,7 @@ use std::f64::consts::TAU;
 use super::linearised::{Linearised, Panel};
 use super::method::{Cost, Floquet, Found};
 use super::orbit::Orbit;
-use super::path::{Cut, Path};
+use super::path::Path;
 use super::walk::{Walk, WalkOfFactors, WalkOfMany, WalkOfTwo};
 use crate::fourier::grading::Grading;
 
@@ -37,6 +37,8 @@ use crate::fourier::grading::Grading;
 const FIRST_DENSITY: f64 = 8.0;
 /// Steps per period at most.
 const LARGEST_DENSITY: f64 = 2048.0;
+/// Steps for each wave of a stiffness or a direction that varies in time, at least.
+const STEPS_PER_WAVE: f64 = 2.0;
 /// Numbers of steps on a panel; above, powers of two and half as many more.
 const COUNTS: [usize; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
 /// The next orbit shall have this part of the error aimed at.
@@ -123,27 +125,26 @@ impl Monodromy {
     fn integrate(&mut self, walk: &mut impl Walk, orbit: &Orbit<'_>, density: f64) {
         self.path.begin();
         if self.path.cuts.is_empty() {
-            self.panel(walk, orbit, (0.0, TAU), [None, None], density);
+            self.panel(walk, orbit, (0.0, TAU), None, density);
         }
         for index in 0..self.path.cuts.len() {
             let (from, to) = (self.path.cuts[index], self.path.next(index));
             self.path.pass(&from);
             if to.tau > from.tau {
-                let ends = [Some(from), Some(to)];
-                self.panel(walk, orbit, (from.tau, to.tau), ends, density);
+                self.panel(walk, orbit, (from.tau, to.tau), Some(index), density);
             }
             let matrices = walk.matrices();
             self.linearised.jump(orbit, &self.path, &to, matrices);
         }
     }
 
-    /// Goes from one cut to the next.
+    /// Goes from a cut to the next.
     fn panel(
         &mut self,
         walk: &mut impl Walk,
         orbit: &Orbit<'_>,
         (start, end): (f64, f64),
-        ends: [Option<Cut>; 2],
+        cut: Option<usize>,
         density: f64,
     ) {
         if self.linearised.is_constant(orbit, &self.path) {
@@ -154,10 +155,11 @@ impl Monodromy {
             walk.constant();
             return;
         }
-        let power = |cut: Option<Cut>| cut.map_or(1, |cut| self.path.grading(&cut));
+        let ends = cut.map_or([&[][..]; 2], |index| self.path.ends(index));
+        let [start_power, end_power] = ends.map(|cuts| self.path.grading(cuts));
         let grading = Grading {
-            start: power(ends[0]),
-            end: power(ends[1]),
+            start: start_power,
+            end: end_power,
         }
         .balanced();
         let least = if grading == Grading::NONE { 1 } else { FEWEST };
@@ -197,7 +199,9 @@ impl Floquet for Monodromy {
             return Found::NOTHING;
         }
         self.path.load(orbit);
-        let mut density = self.density;
+        // What varies by itself between two nodes of a step shows in no estimate.
+        let waves = orbit.layout.highest_harmonic() * orbit.period;
+        let mut density = self.density.max(STEPS_PER_WAVE * waves as f64);
         loop {
             let found = self.at_density(orbit, density);
             let factor = (found.error / (TARGET * aim)).powf(1.0 / 6.0);

@@ -29,6 +29,9 @@ pub(super) enum Event {
     Near,
 }
 
+/// Cuts no farther from each other than this switch together.
+const TOGETHER: f64 = 1e-3;
+
 /// A phase at which the orbit is cut.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cut {
@@ -164,8 +167,25 @@ impl Path {
         }
     }
 
-    /// The power with which a panel must be graded towards a cut at one of its ends.
-    pub(super) fn grading(&self, cut: &Cut) -> u32 {
+    /// The cuts at both ends of the panel behind a cut: of several contacts that switch together all count, also those that are a
+    /// little farther away. The one at the end itself is the last and the first of them.
+    pub(super) fn ends(&self, index: usize) -> [&[Cut]; 2] {
+        let cuts = &self.cuts;
+        let start = cuts[index].tau - TOGETHER;
+        let first = cuts[..index].partition_point(|cut| cut.tau < start);
+        let next = if index + 1 < cuts.len() { index + 1 } else { 0 };
+        let end = cuts[next].tau + TOGETHER;
+        let count = cuts[next..].partition_point(|cut| cut.tau <= end);
+        [&cuts[first..=index], &cuts[next..next + count]]
+    }
+
+    /// The power with which a panel must be graded towards cuts at one of its ends.
+    pub(super) fn grading(&self, cuts: &[Cut]) -> u32 {
+        let powers = cuts.iter().map(|cut| self.power(cut));
+        powers.max().unwrap_or(1)
+    }
+
+    fn power(&self, cut: &Cut) -> u32 {
         let contact = &self.contacts[cut.contact];
         let [lower, upper] = contact.powers[contact.piece];
         if contact.piece == cut.level {
