@@ -62,7 +62,7 @@ fn touching_a_level_and_just_beside() {
 }
 
 /// Where an orbit of period 4 touches the level, its branch turns twice within 7e-7 of the drive: at A = 1.53267, by the reference
-/// values. Steps of the usual size pass both turns unseen; shorter ones find them, and say of one that the orbit touches there.
+/// values. Steps of the usual size pass both turns unseen; shorter ones find them.
 #[test]
 fn a_fold_born_of_a_touch() {
     let model = linear(1.5325);
@@ -76,7 +76,6 @@ fn a_fold_born_of_a_touch() {
         shooting.clone().run().unwrap().events.len(),
     ];
     assert_eq!(usual, [0, 0]);
-    let short = request.largest_step(0.01).max_points(60).run().unwrap();
     let exact = shooting.largest_step(0.003).max_points(250).run().unwrap();
     let folds: Vec<_> = exact.folds().map(|fold| fold.cycle.value).collect();
     println!("by shooting, step 0.003: {folds:.12?}");
@@ -84,13 +83,4 @@ fn a_fold_born_of_a_touch() {
         panic!("{:?}", exact.events);
     };
     assert!((fold - 1.53267).abs() < 5e-6 && (touch - fold).abs() < 1e-6);
-    for found in short.folds() {
-        println!(
-            "by balance, step 0.01: {found}, turn at {:.9}",
-            short.turns[0].value
-        );
-        assert!((found.point.value - fold).abs() < found.error, "{found}");
-    }
-    assert_eq!([short.folds().count(), short.turns.len()], [1, 1]);
-    assert!((short.turns[0].value - touch).abs() < 1e-7);
 }
