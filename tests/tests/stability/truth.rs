@@ -4,12 +4,14 @@ use std::f64::consts::TAU;
 
 use hertzian::flow::shooting::Cycle;
 use hertzian::flow::{self, FlowError, Options};
-use hertzian::{Complex, Point, Shooting, System};
+use hertzian::{Complex, Event, Point, Shooting, System};
 
 use crate::draw::Random;
 
 /// Tolerance of the flow, relative to the size of the motion.
 const TOLERANCE: f64 = 1e-11;
+/// Sizes of orbits beside a fold that differ by less than this part are on one side of it.
+const NEAR: f64 = 0.02;
 /// A perturbation shall grow or fall by this factor.
 const FACTOR: f64 = 1e2;
 /// Size of the perturbation of an unstable orbit, relative to the orbit; of a stable one, times the factor.
@@ -25,6 +27,19 @@ pub fn refined(system: &dyn System, point: &Point) -> Option<Cycle> {
     let apart = (cycle.peak_to_peak() - size).abs() / size;
     let known = point.error.unwrap_or(f64::INFINITY).max(1e-7);
     (apart < 1e2 * known).then_some(cycle)
+}
+
+/// The orbit beside a fold of the branch, where the true fold may lie on the other side of its frequency: at a frequency that is
+/// farther from the fold by twice the error stated for it.
+pub fn refined_beside(system: &dyn System, point: &Point, fold: &Event) -> Option<Cycle> {
+    let away = (point.value - fold.point.value).signum();
+    let value = point.value + away * 2.0 * fold.error;
+    let shooting = Shooting::of(system)
+        .near_orbit(&point.orbit)
+        .tolerance(TOLERANCE);
+    let cycle = shooting.orbit(value).ok()?;
+    let apart = cycle.peak_to_peak() / point.peak_to_peak() - 1.0;
+    (apart.abs() < NEAR).then_some(cycle)
 }
 
 /// Largest distance between two pairs of multipliers, each with its nearest.
