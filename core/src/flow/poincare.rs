@@ -114,9 +114,9 @@ impl<'a> Section<'a> {
             last: 0.0,
         };
         let (flow, phase) = map.flow();
+        search.last = (self.function)(phase, state);
+        search.passed(search.last);
         for period in 0..periods {
-            search.last = (self.function)(phase, state);
-            search.passed(search.last);
             let mut show = |stretch: &dyn Stretch| {
                 search.scan(stretch, &mut |at, state, rises| {
                     see(Crossing {
