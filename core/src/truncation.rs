@@ -22,7 +22,8 @@
 //! | du | + | v from K to 3/2 K | + | v from 3/2 K to 2 K |,                                                  (2)
 //! ```
 //!
-//! which do not vanish together.
+//! which do not vanish together. To second order the extremes move as well: with the slope `d` of the change and the curvature `c`
+//! of the orbit there, each adds `d^2 / 2 c`, which counts where a harmonic meets a resonance and is a quarter of its period late.
 //!
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
@@ -323,18 +324,30 @@ impl<'a> Finer<'a> {
         let (few, many) = (series::harmonics(before), series::harmonics(corrected));
         let part = |k: usize| usize::from(k > few) + usize::from(k > few.midpoint(many));
         let mut parts = [0.0; 3];
+        let (mut moved, mut most) = (0.0, 0.0);
         for (tau, sign) in phases.into_iter().zip([-1.0, 1.0]) {
             let (sine, cosine) = tau.sin_cos();
             let (mut c, mut s) = (sign, 0.0);
+            let (mut slope, mut curvature) = (0.0, 0.0);
             for k in 1..=many {
                 (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
-                for (index, wave) in [(2 * k - 1, c), (2 * k, s)] {
-                    let change = corrected[index] - before.get(index).copied().unwrap_or(0.0);
+                let rate = k as f64;
+                for (index, wave, turned) in [(2 * k - 1, c, -s), (2 * k, s, c)] {
+                    let old = before.get(index).copied().unwrap_or(0.0);
+                    let change = corrected[index] - old;
                     parts[part(k)] += change * wave;
+                    slope += change * rate * turned;
+                    curvature += old * rate * rate * wave;
+                    most += change.abs();
                 }
             }
+            if slope != 0.0 {
+                moved += 0.5 * slope * slope / f64::abs(curvature);
+            }
         }
-        parts.iter().map(|part| part.abs()).sum()
+        // The extremes do not move by more than all changes together.
+        let moved = f64::min(moved, most);
+        parts.iter().map(|part| part.abs()).sum::<f64>() + moved
     }
 
     /// Estimated error of the parameter at a fold, whose factors Newton's method holds.

@@ -241,6 +241,36 @@ fn the_true_error_is_at_most_three_times_the_stated_one() {
     );
 }
 
+hertzian::oscillator! {
+    /// A linear mode, lightly damped, with a weak spring on one side.
+    Mode(x) {
+        param damping >= 0;
+        law side(gap) { gap > 0 => 0.01*gap, else => 0 }
+        ddot(x) + damping*dot(x) + x + side(x) = cos(omega*t);
+    }
+}
+
+/// Ten times the frequency meets the resonance: the tenth harmonic is large, although five are asked for.
+#[test]
+fn a_linear_mode_among_the_harmonics_left_out_is_in_the_stated_error() {
+    let model = Mode { damping: 0.01 };
+    let orbit = |harmonics| {
+        let request = FrequencyResponse::of(&model).from(0.09).to(0.11);
+        let branch = request.harmonics(harmonics).run().unwrap();
+        let mut orbits = branch.at(0.100_249_69).unwrap();
+        assert_eq!(orbits.len(), 1);
+        orbits.remove(0)
+    };
+    let (few, many) = (orbit(5), orbit(40));
+    let error = (few.peak_to_peak() / many.peak_to_peak() - 1.0).abs();
+    let stated = few.error.unwrap();
+    assert!(error > 1e-3, "{error:e}");
+    assert!(
+        error < MARGIN * stated && stated < 10.0 * error,
+        "{error:e} {stated:e}"
+    );
+}
+
 /// A pair of folds of Fig. 2b, 0.0007 apart, that the exact values do not list: found, and confirmed by direct
 /// integration of the three orbits in between.
 #[test]
