@@ -231,13 +231,38 @@ fn a_basin_that_was_interrupted_goes_on_to_the_same_bytes() {
     );
     assert!(outcome.expect("the rest").complete);
     assert_eq!(folder.results("part"), folder.results("whole"));
-    // The checkpoint belongs to this request.
-    let other = [&task[..5], &["--grid", "41"], &kept[..2]].concat();
-    let failure = run_in(&folder, "other", &other).expect_err("a refusal");
-    assert!(
-        failure.to_string().contains("another computation"),
-        "{failure}"
-    );
+    // The checkpoint belongs to this request, and to this law.
+    for change in [["--grid", "41"], ["--alpha", "1.5"]] {
+        let other = [&task[..], &change, &kept[..2]].concat();
+        let failure = run_in(&folder, "other", &other).expect_err("a refusal");
+        assert!(
+            failure.to_string().contains("another computation"),
+            "{failure}"
+        );
+    }
+}
+
+/// Without damping nothing settles: a table of classes only.
+#[test]
+fn a_basin_without_periodic_attractors_is_written() {
+    let folder = Folder::new("none");
+    let task = [
+        "--basin",
+        "--alpha",
+        "1",
+        "--zeta",
+        "0",
+        "--grid",
+        "4",
+        "--patience",
+        "50",
+    ];
+    run_in(&folder, "none", &task).expect("basins");
+    let text = folder.text("none.csv");
+    let columns = |line: &str| line.split(',').count();
+    let mut lines = text.lines().map(columns);
+    let head = lines.next();
+    assert!(lines.all(|count| Some(count) == head), "{text}");
 }
 
 #[test]

@@ -42,13 +42,14 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     let mut array = Npy::<i16>::new(columns);
     let labels: Vec<i16> = basins.fates.iter().map(|fate| fate.label()).collect();
     labels.chunks(columns).for_each(|row| array.row(row));
+    let names: Vec<String> = names
+        .into_iter()
+        .chain(entries(&facts.coordinates))
+        .chain(multipliers)
+        .collect();
     Ok(Results {
-        names: names
-            .into_iter()
-            .chain(entries(&facts.coordinates))
-            .chain(multipliers)
-            .collect(),
-        rows: rows(&basins),
+        rows: rows(&basins, names.len()),
+        names,
         array: array.to_bytes(),
         svg: chart(task, &request, &basins)?.to_svg(),
         summary: summary(&basins),
@@ -90,8 +91,8 @@ pub fn request(task: &Task<'_>, count: usize) -> Result<Basin, Failure> {
     })
 }
 
-/// A row for every point of every periodic orbit, then one for each other class.
-fn rows(basins: &Basins) -> Vec<Vec<String>> {
+/// A row for every point of every periodic orbit, then one for each other class; all have so many columns.
+fn rows(basins: &Basins, columns: usize) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     for (index, attractor) in basins.attractors.iter().enumerate() {
         let cells = basins.count(Fate::Periodic(index)).to_string();
@@ -108,12 +109,11 @@ fn rows(basins: &Basins) -> Vec<Vec<String>> {
             rows.push([&head[..], &state, &parts].concat());
         }
     }
-    let width = rows.first().map_or(0, Vec::len);
     for (fate, name, _) in OTHERS {
         let count = basins.count(fate);
         if count > 0 {
             let mut row = vec![fate.label().to_string(), name.to_owned(), count.to_string()];
-            row.resize(width.max(3), String::new());
+            row.resize(columns, String::new());
             rows.push(row);
         }
     }

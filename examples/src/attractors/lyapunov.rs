@@ -49,7 +49,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         }
         let found = lyapunov.exponents();
         let periods = (lyapunov.batches().len() * length) as f64;
-        let mut row = vec![drive.unwrap_or(options.model.drive), periods];
+        let mut row = vec![task.amplitude(drive)?, periods];
         row.extend(
             found
                 .exponents

@@ -34,7 +34,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
             complete = false;
             break;
         }
-        let value = drive.unwrap_or(task.options.model.drive);
+        let value = task.amplitude(drive)?;
         let (basins, start) = settled(task, drive)?;
         complete &= basins.complete;
         let mut portrait = Portrait {

@@ -184,6 +184,17 @@ impl<'t> Task<'t> {
         Ok(values)
     }
 
+    /// The amplitude that is given, or else that of the oscillator; NaN if it has none.
+    ///
+    /// # Errors
+    /// If the oscillator has no amplitude, and one is given.
+    pub fn amplitude(&self, drive: Option<f64>) -> Result<f64, Failure> {
+        let values = self.values(drive)?;
+        let mut parameters = self.system.facts().parameters.iter();
+        let position = parameters.position(|parameter| parameter.name == "drive");
+        Ok(position.map_or(f64::NAN, |index| values[index]))
+    }
+
     /// The flow, at an amplitude if one is given.
     ///
     /// # Errors
@@ -250,8 +261,15 @@ impl<'t> Task<'t> {
         };
         let facts = self.system.facts();
         let (omega, tolerance) = (self.options.model.omega, self.options.tolerance);
+        // The equation does not say what its laws are.
+        let model = &self.options.model;
+        let laws = match &model.file {
+            Some(path) => std::fs::read_to_string(path)
+                .map_err(|error| Failure::Option(format!("{}: {error}", path.display())))?,
+            None => format!("continuous {}, alpha {:?}", model.continuous, model.alpha),
+        };
         let identity = format!(
-            "hertzian {}, {} with {:?}, omega {omega:?}, tolerance {tolerance:?}, {request:?}",
+            "hertzian {}, {}, {laws}, with {:?}, omega {omega:?}, tolerance {tolerance:?}, {request:?}",
             env!("CARGO_PKG_VERSION"),
             facts.equation,
             self.values(None)?,
