@@ -7,8 +7,12 @@ use hertzian::{Branch, FrequencyResponse};
 use super::models::declared;
 use crate::model::ModelOptions;
 
-/// Frequencies at which the boundary is computed.
+/// Frequencies at which the boundary is computed first.
 const FREQUENCIES: usize = 61;
+/// How often the space between two of them is halved at most.
+const HALVINGS: usize = 3;
+/// Where the middle lies within this part of the largest value beside the straight line, a line is what one sees.
+const STRAIGHT: f64 = 0.002;
 /// The orbit never leaves one piece of the law, so a few harmonics are as good as many.
 const HARMONICS: usize = 6;
 const SAMPLES: usize = 64;
@@ -28,11 +32,39 @@ pub fn loss_of_contact(
         return Vec::new();
     }
     let (first, last) = frequencies.into_inner();
-    (0..FREQUENCIES)
+    let touch = |omega| [omega, at_frequency(options, omega).unwrap_or(f64::NAN)];
+    let mut points: Vec<_> = (0..FREQUENCIES)
         .map(|index| first + (last - first) * index as f64 / (FREQUENCIES - 1) as f64)
         .take_while(|_| !interrupted())
-        .map(|omega| [omega, at_frequency(options, omega).unwrap_or(f64::NAN)])
-        .collect()
+        .map(touch)
+        .collect();
+    for _ in 0..HALVINGS {
+        points = halved(&points, |omega| (!interrupted()).then(|| touch(omega)));
+    }
+    points
+}
+
+/// The points, with those in the middle between two of them where three in a row bend.
+fn halved(points: &[[f64; 2]], touch: impl Fn(f64) -> Option<[f64; 2]>) -> Vec<[f64; 2]> {
+    let largest = points.iter().fold(0.0, |largest: f64, p| largest.max(p[1]));
+    let bends = |middle: usize| {
+        let Some([[x, a], [y, b], [z, c]]) = middle
+            .checked_sub(1)
+            .and_then(|first| points.get(first..first + 3))
+        else {
+            return false;
+        };
+        let line = a + (c - a) * (y - x) / (z - x);
+        (b - line).abs() > STRAIGHT * largest
+    };
+    let mut all = Vec::with_capacity(2 * points.len());
+    for (index, &point) in points.iter().enumerate() {
+        all.push(point);
+        let next = points.get(index + 1);
+        let wanted = next.filter(|_| bends(index) || bends(index + 1));
+        all.extend(wanted.and_then(|next| touch(f64::midpoint(point[0], next[0]))));
+    }
+    all
 }
 
 /// Peak-to-peak of the orbit that touches zero at one frequency.
