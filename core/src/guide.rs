@@ -17,5 +17,8 @@ struct Attractors;
 #[doc = include_str!("../../docs/book/src/stability.md")]
 struct StabilityOfOrbits;
 
+#[doc = include_str!("../../docs/book/src/measured-contact.md")]
+struct MeasuredContact;
+
 #[doc = include_str!("../../docs/book/src/theory.md")]
 struct Theory;
