@@ -103,6 +103,15 @@ pub enum Error {
         /// Twice the number of coordinates.
         expected: usize,
     },
+    /// There are not as many values as parameters.
+    Values {
+        /// Values given.
+        values: usize,
+        /// Number of parameters.
+        expected: usize,
+    },
+    /// A force is not affine on one of its pieces, or a stiffness or a direction varies in time: there is no closed form.
+    NotAffine,
     /// There is no orbit: the branch that comes near turns back before.
     Beyond {
         /// The value asked for.
@@ -207,6 +216,24 @@ impl std::fmt::Display for Attempts {
 }
 
 impl Error {
+    /// What is written of flows and states.
+    fn of_motions(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::State { entries, expected } => write!(
+                f,
+                "the state has {entries} entries instead of {expected}: all positions, then all velocities"
+            ),
+            Self::Values { values, expected } => {
+                write!(f, "{values} values were given for {expected} parameters")
+            }
+            Self::NotAffine => write!(
+                f,
+                "the motion has no closed form: a force is not affine on one of its pieces, or a stiffness or a direction varies in time"
+            ),
+            _ => Ok(()),
+        }
+    }
+
     /// What is written of backbones and of what begins at bifurcations.
     fn of_bifurcations(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -291,10 +318,7 @@ impl std::fmt::Display for Error {
             Self::NoStart { parameter, reason } => {
                 write!(f, "no periodic orbit found at {parameter}: {reason}")
             }
-            Self::State { entries, expected } => write!(
-                f,
-                "the state has {entries} entries instead of {expected}: all positions, then all velocities"
-            ),
+            Self::State { .. } | Self::Values { .. } | Self::NotAffine => self.of_motions(f),
             Self::Beyond { parameter, fold } => write!(
                 f,
                 "no periodic orbit at {parameter} near the given one: its branch turns back at {fold:.12}, {:.1e} away",

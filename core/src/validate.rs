@@ -63,8 +63,22 @@ pub(crate) fn omega(value: f64) -> Result<f64, Error> {
     }
 }
 
-/// Every parameter is finite and within its declared range.
+/// Everything that a system needs before it can be evaluated: parameters, frequency, levels and masses.
+pub(crate) fn values(system: &dyn System, values: &[f64], frequency: f64) -> Result<(), Error> {
+    omega(frequency)?;
+    parameters(system.facts(), values)?;
+    levels(system, values, frequency)?;
+    mass(system, values, frequency)
+}
+
+/// There is a value for every parameter, finite and within its declared range.
 pub(crate) fn parameters(facts: &SystemFacts, values: &[f64]) -> Result<(), Error> {
+    if values.len() != facts.parameters.len() {
+        return Err(Error::Values {
+            values: values.len(),
+            expected: facts.parameters.len(),
+        });
+    }
     facts
         .parameters
         .iter()
@@ -112,6 +126,12 @@ pub(crate) fn option(
     }
 }
 
+/// Levels are finite and none is below the one before it.
+pub(crate) fn in_order(levels: &[f64]) -> bool {
+    let finite = levels.iter().all(|level| level.is_finite());
+    finite && levels.windows(2).all(|pair| pair[0] <= pair[1])
+}
+
 /// The levels of every contact's law are in increasing order.
 pub(crate) fn levels(system: &dyn System, parameters: &[f64], omega: f64) -> Result<(), Error> {
     let layout = Layout::of(system);
@@ -123,8 +143,7 @@ pub(crate) fn levels(system: &dyn System, parameters: &[f64], omega: f64) -> Res
         contact.arguments(&coefficients, &mut arguments);
         let mut levels = vec![0.0; law.facts().levels.len()];
         law.levels(&arguments, &mut levels);
-        let ordered = levels.windows(2).all(|pair| pair[0] <= pair[1]);
-        if !ordered || levels.iter().any(|level| !level.is_finite()) {
+        if !in_order(&levels) {
             return Err(Error::Levels {
                 law: law.facts().name.to_string(),
                 levels,

@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn compare(model: &dyn System, force: Force) -> Result<(), Box<dyn Error>> {
     let values = [libraries::ZETA, libraries::LOAD, DRIVE];
     let mut contenders = Vec::new();
-    if let Some(flow) = Affine::new(model, &values, 1.0) {
+    if let Ok(flow) = Affine::new(model, &values, 1.0) {
         contenders.push(Contender::new("exact", 0.0, moved(flow)));
     }
     for exponent in 3..=13 {

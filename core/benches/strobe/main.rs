@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         drive: 1.78,
     };
     let values = [model.zeta, model.load, model.drive];
-    let mut exact = Affine::new(&model, &values, 1.0).ok_or("the system is not affine")?;
+    let mut exact = Affine::new(&model, &values, 1.0)?;
     let mut integrated = Integrated::new(&model, &values, 1.0, 1e-10)?;
     let mut plain = Plain::new(&mut exact)?;
 
@@ -128,7 +128,7 @@ fn changed(flow: &mut dyn Flow, by: Option<Variable>) -> Result<f64, Box<dyn Err
         let value = 1.7 + 1e-6 * turn as f64;
         let mut state = START;
         let from = Instant::now();
-        flow.set(Variable::Parameter(2), value);
+        flow.set(Variable::Parameter(2), value)?;
         tangent.clone_from(&unit);
         flow.advance(0.0, TAU, &mut state, by.map(|_| &mut tangent), None)?;
         times.push(from.elapsed().as_secs_f64() * 1e9);

@@ -257,11 +257,12 @@ impl<'a> FreeOscillation<'a> {
         let mut state = vec![0.0; 2 * n];
         state[0] = self.from;
         let (mut phase, mut before) = (0.0, 0.0);
-        equations.flow.set(Variable::Omega, 1.0);
+        let motion = |reason| Error::Motion { parameter, reason };
+        equations.flow.set(Variable::Omega, 1.0).map_err(motion)?;
         for _ in 0..STEPS {
             let next = phase + step / equations.divisor;
             let moved = equations.flow.advance(phase, next, &mut state, None, None);
-            moved.map_err(|reason| Error::Motion { parameter, reason })?;
+            moved.map_err(motion)?;
             let velocity = state[n];
             if before * velocity < 0.0 {
                 let part = before / (before - velocity);
@@ -295,20 +296,20 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// Sets `state` to rest at the positions of the unknowns.
-    fn begin(&mut self, u: &[f64]) {
+    /// Sets `state` to rest at the positions of the unknowns, and the frequency to theirs.
+    fn begin(&mut self, u: &[f64]) -> Result<(), FlowError> {
         let n = self.column.len();
-        self.flow.set(Variable::Omega, u[n - 1]);
         self.state.fill(0.0);
         self.state[0] = u[n];
         self.state[1..n].copy_from_slice(&u[..n - 1]);
+        self.flow.set(Variable::Omega, u[n - 1])
     }
 
     /// The oscillation, and how far it misses its beginning, relative to its size.
     fn read(&mut self, u: &[f64]) -> Result<(FreePoint, f64), FlowError> {
         let n = self.column.len();
         let half = PI / self.divisor;
-        self.begin(u);
+        self.begin(u)?;
         let first = self.state[..n].to_vec();
         self.flow.advance(0.0, half, &mut self.state, None, None)?;
         let other = self.state[..n].to_vec();
@@ -335,16 +336,17 @@ impl Problem for Equations<'_> {
 
     fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
         let n = self.column.len();
-        self.begin(u);
+        let begun = self.begin(u);
         self.tangent.columns.fill(0.0);
         for i in 0..2 * n {
             self.tangent.columns[i * 2 * n + i] = 1.0;
         }
         let half = PI / self.divisor;
         let tangent = jacobian.is_some().then_some(&mut self.tangent);
-        let moved = self.flow.advance(0.0, half, &mut self.state, tangent, None);
         // A frequency that is not positive is none.
-        if moved.is_err() || u[n - 1] <= 0.0 {
+        let moved =
+            begun.and_then(|()| self.flow.advance(0.0, half, &mut self.state, tangent, None));
+        if moved.is_err() {
             residual.fill(f64::NAN);
             return;
         }

@@ -17,7 +17,7 @@ pub fn record(
     see: &mut dyn FnMut(f64, &[f64]),
 ) -> Result<(), FlowError> {
     let mut between = state.to_vec();
-    let (flow, phase) = map.flow();
+    let phase = map.start();
     for period in 0..periods {
         let before = period as f64;
         see(before, state);
@@ -34,7 +34,7 @@ pub fn record(
                 next += 1;
             }
         };
-        flow.advance(phase, phase + TAU, state, None, Some(&mut show))?;
+        map.show_period(state, &mut show)?;
     }
     see(periods as f64, state);
     Ok(())

@@ -14,7 +14,7 @@
 //!
 //! Source: Benettin, Galgani, Giorgilli and Strelcyn (1980), Meccanica 15, 9.
 
-use super::divergence::Divergence;
+use super::divergence::{Divergence, Integral};
 use super::estimate::Estimate;
 use super::stroboscope::Stroboscope;
 use super::{FlowError, Stretch, Tangent};
@@ -38,7 +38,7 @@ pub struct Batch {
     /// Means (2) per period over the batch.
     pub exponents: Vec<f64>,
     /// The mean integral of the divergence; `None` if it was not asked for.
-    pub divergence: Option<f64>,
+    pub divergence: Option<Integral>,
 }
 
 /// Lyapunov exponents.
@@ -50,7 +50,7 @@ pub struct Exponents {
     /// Their sum, as the determinants of the tangent maps give it (3).
     pub sum: Estimate,
     /// Their sum, as the divergence gives it.
-    pub divergence: Option<f64>,
+    pub divergence: Option<Integral>,
 }
 
 impl<'s, 'a> Lyapunov<'s, 'a> {
@@ -92,7 +92,7 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
     /// If the motion cannot be continued.
     pub fn batch(&mut self, periods: usize) -> Result<&Batch, FlowError> {
         self.sums.fill(0.0);
-        let mut integral = 0.0;
+        let mut integral = Integral::default();
         for _ in 0..periods {
             match &mut self.divergence {
                 None => self.map.map_with(&mut self.state, &mut self.tangent)?,
@@ -129,7 +129,10 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
         let exponents = (0..self.state.len())
             .map(|i| Estimate::of(all().map(move |batch| batch.exponents[i])))
             .collect();
-        let divergence: Option<f64> = all().map(|batch| batch.divergence).sum();
+        let divergence = all().try_fold(Integral::default(), |mut sum, batch| {
+            sum += batch.divergence?;
+            Some(sum)
+        });
         Exponents {
             exponents,
             sum: Estimate::of(all().map(|batch| batch.exponents.iter().sum())),
@@ -205,7 +208,7 @@ mod tests {
 
     fn check_sum(found: &Exponents) {
         let sum: f64 = found.exponents.iter().map(|e| e.value).sum();
-        let divergence = found.divergence.expect("asked for");
+        let divergence = found.divergence.expect("asked for").value;
         assert!((sum - found.sum.value).abs() < 1e-13);
         assert!(
             (found.sum.value - divergence).abs() < 1e-10,
@@ -237,7 +240,7 @@ mod tests {
         let exact = [root - 5.0, -root - 5.0].map(|rate| TAU * rate);
         assert!((found.exponents[0].value - exact[0]).abs() < 1e-12);
         assert!(found.exponents[1].value.is_nan());
-        let sum = found.divergence.expect("asked for");
+        let sum = found.divergence.expect("asked for").value;
         assert!((sum - exact[0] - exact[1]).abs() < 1e-10);
     }
 
@@ -274,10 +277,13 @@ mod tests {
     /// Reference: 0.0129 +- 0.0005, from the same source: type-I intermittency.
     #[test]
     fn in_intermittency() {
-        let found = exponents(1.78, [-0.35, 0.335], (40, 20_000));
+        let length = std::env::var("HERTZIAN_PERIODS").ok();
+        let length = length.map_or(4000, |text| text.parse().expect("a number"));
+        let found = exponents(1.78, [-0.35, 0.335], (40, length));
         let largest = found.exponents[0];
         let error = (largest.standard_error.powi(2) + 0.0005_f64.powi(2)).sqrt();
-        assert!(largest.standard_error < 0.001, "{largest}");
+        let most = 0.001 * (20_000.0 / length as f64).sqrt();
+        assert!(largest.standard_error < most, "{largest}");
         assert!((largest.value - 0.0129).abs() < 3.0 * error, "{largest}");
         check_sum(&found);
     }

@@ -15,10 +15,14 @@ pub mod shooting;
 pub mod stroboscope;
 pub mod sweep;
 
+mod error;
 mod field;
 mod gap;
 mod integrated;
+#[cfg(test)]
+mod tests;
 
+pub use error::FlowError;
 pub use integrated::Integrated;
 
 use crate::error::Error;
@@ -34,14 +38,23 @@ pub trait Flow: Send {
     /// Number of coordinates `n`; a state has `2 n` entries.
     fn coordinates(&self) -> usize;
 
-    /// Changes the frequency or a parameter.
-    fn set(&mut self, variable: Variable, value: f64);
+    /// Whether a variable may have a value: a parameter in its declared range, a positive and finite frequency.
+    fn admits(&self, variable: Variable, value: f64) -> bool;
 
-    /// Moves a state from a phase to a later one, and the tangent with it. Every smooth stretch of the motion is shown to
-    /// `see` once it is complete, in order and without gaps.
+    /// Changes the frequency or a parameter. The declared range is not asked for, so that a search may look beyond its end:
+    /// see [`admits`](Self::admits).
     ///
     /// # Errors
-    /// If the motion cannot be continued. State and tangent are then those of the phase that the error tells.
+    /// If there is no such parameter, the value is not finite, a frequency is not positive, levels would be out of order, or the
+    /// mass matrix would be singular. The flow is then as before.
+    fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError>;
+
+    /// Moves a state from a phase to another one, and the tangent with it; back in time if that is an earlier one. Every smooth
+    /// stretch of the motion is shown to `see` once it is complete, in order and without gaps.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued: state and tangent are then those of the phase that the error tells. If the state or the
+    /// tangent has the wrong number of entries: nothing has moved then.
     fn advance(
         &mut self,
         from: f64,
@@ -103,8 +116,8 @@ impl Default for Options {
 /// ```
 ///
 /// # Errors
-/// If a parameter, the frequency or the tolerance is outside its range, the levels of a law are out of order, or the mass
-/// matrix is singular.
+/// If a parameter, the frequency or the tolerance is outside its range, the levels of a law are out of order, the mass matrix is
+/// singular, or the system has no coordinates.
 pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn Flow + '_>, Error> {
     let mut values = vec![0.0; system.facts().parameters.len()];
     system.values(&mut values);
@@ -114,7 +127,7 @@ pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn F
 /// As [`of`], at given values of the parameters.
 ///
 /// # Errors
-/// As [`of`].
+/// As [`of`], and if there are not as many values as parameters.
 pub fn at<'a>(
     system: &'a dyn System,
     values: &[f64],
@@ -123,8 +136,8 @@ pub fn at<'a>(
 ) -> Result<Box<dyn Flow + 'a>, Error> {
     let integrated = Integrated::new(system, values, omega, options.tolerance)?;
     Ok(match affine::Affine::new(system, values, omega) {
-        Some(affine) => Box::new(affine),
-        None => Box::new(integrated),
+        Ok(affine) => Box::new(affine),
+        Err(_) => Box::new(integrated),
     })
 }
 
@@ -152,7 +165,7 @@ impl Tangent {
 
 /// A stretch of motion without switches.
 pub trait Stretch {
-    /// Its first and its last phase.
+    /// Its first and its last phase, in the order in which the motion passed them.
     fn phases(&self) -> (f64, f64);
 
     /// Writes the state at a phase between them, as accurate as the motion itself.
@@ -171,76 +184,3 @@ pub struct Work {
     /// Crossings of levels.
     pub switches: usize,
 }
-
-/// Why a motion cannot be continued.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum FlowError {
-    /// The tolerance asks for steps that vanish beside the phase.
-    StepTooShort {
-        /// Where.
-        phase: f64,
-        /// The last step tried.
-        step: f64,
-    },
-    /// A state, a force or a derivative is not a number.
-    NotFinite {
-        /// Where.
-        phase: f64,
-    },
-    /// More switches in one period than anything that moves has: chatter.
-    TooManySwitches {
-        /// Where.
-        phase: f64,
-        /// How many.
-        switches: usize,
-    },
-    /// The motion rests on a level at which the force jumps, held by the jump: it sticks.
-    Rests {
-        /// Where.
-        phase: f64,
-    },
-    /// A gap touches a level at which the force jumps, without speed: the motion has no derivative there.
-    Grazes {
-        /// Where.
-        phase: f64,
-    },
-    /// The mass matrix is singular.
-    SingularMass {
-        /// Its determinant.
-        determinant: f64,
-    },
-}
-
-impl std::fmt::Display for FlowError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::StepTooShort { phase, step } => {
-                write!(f, "the step fell to {step:.1e} at the phase {phase}")
-            }
-            Self::NotFinite { phase } => write!(f, "the motion is not finite at the phase {phase}"),
-            Self::TooManySwitches { phase, switches } => {
-                write!(
-                    f,
-                    "{switches} switches within one period at the phase {phase}"
-                )
-            }
-            Self::Rests { phase } => write!(
-                f,
-                "the motion rests on a level at which the force jumps, at the phase {phase}"
-            ),
-            Self::Grazes { phase } => write!(
-                f,
-                "a gap touches a level at which the force jumps, at the phase {phase}: the motion has no derivative there"
-            ),
-            Self::SingularMass { determinant } => {
-                write!(
-                    f,
-                    "the mass matrix is singular: its determinant is {determinant}"
-                )
-            }
-        }
-    }
-}
-
-impl std::error::Error for FlowError {}

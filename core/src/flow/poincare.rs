@@ -1,8 +1,8 @@
 //! Poincare sections: where a motion passes a surface, located on its dense output.
 //!
 //! A surface is `g(tau, state) = 0`. Along each smooth stretch `g` is sampled; a change of sign is closed in to the last bits of
-//! the phase. Where `g` comes near zero and turns back between samples, its extremum is closed in as well, so that two
-//! crossings in quick succession are not lost.
+//! the phase. Where `g` has the same sign at two samples, comes nearer to zero behind the first and goes away from it before the
+//! second, its extremum between them is closed in as well, so that two crossings in quick succession are not lost.
 //!
 //! Source of the iteration: Chandrupatla (1997), Advances in Engineering Software 28, 145.
 
@@ -11,11 +11,15 @@ use std::f64::consts::TAU;
 use super::gap::Gap;
 use super::stroboscope::Stroboscope;
 use super::{FlowError, Stretch};
+use crate::error::Error;
 use crate::layout::Layout;
 use crate::system::System;
+use crate::validate;
 
 /// Samples in one period, at least.
 const SAMPLES: f64 = 64.0;
+/// Part of the distance of two samples over which a slope is taken: a dip that ends within it has a depth of about its square.
+const ASIDE: f64 = 1e-5;
 /// Golden section: each step keeps this part of an interval.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -37,6 +41,8 @@ type Function<'a> = dyn Fn(f64, &[f64]) -> f64 + Send + Sync + 'a;
 pub struct Section<'a> {
     function: Box<Function<'a>>,
     direction: Direction,
+    /// Entries that a state must have.
+    entries: usize,
 }
 
 /// A crossing of a surface.
@@ -61,29 +67,44 @@ impl<'a> Section<'a> {
         Self {
             function: Box::new(function),
             direction,
+            entries: 0,
         }
     }
 
     /// One entry of the state passes a value: a coordinate, or with `entry >= n` its rate.
     pub fn entry(entry: usize, value: f64, direction: Direction) -> Self {
-        Self::new(direction, move |_, state| state[entry] - value)
+        Self {
+            entries: entry + 1,
+            ..Self::new(direction, move |_, state| state[entry] - value)
+        }
     }
 
-    /// The gap of a contact of a system passes a value, at given values of the parameters and of `omega`; `None` if there is no
-    /// such contact.
+    /// The gap of a contact of a system passes a value, at given values of the parameters and of `omega`.
+    ///
+    /// # Errors
+    /// If there is no such contact, or the values cannot be used.
     pub fn gap(
         system: &dyn System,
         (parameters, omega): (&[f64], f64),
         contact: usize,
         (value, direction): (f64, Direction),
-    ) -> Option<Self> {
+    ) -> Result<Self, Error> {
+        validate::values(system, parameters, omega)?;
         let layout = Layout::of(system);
+        let contact = layout.contacts.get(contact).ok_or(Error::Option {
+            name: "contact",
+            value: contact as f64,
+            must: "must be the position of a contact, counted from zero",
+        })?;
         let mut coefficients = vec![0.0; layout.coefficients];
         system.coefficients(parameters, omega, &mut coefficients);
         let base = omega / f64::from(system.facts().divisor);
-        let gap = Gap::new(layout.contacts.get(contact)?, &coefficients, base);
+        let gap = Gap::new(contact, &coefficients, base);
         let distance = move |phase: f64, state: &[f64]| gap.at(phase, state).0 - value;
-        Some(Self::new(direction, distance))
+        Ok(Self {
+            entries: 2 * layout.coordinates,
+            ..Self::new(direction, distance)
+        })
     }
 
     fn counts(&self, rises: bool) -> bool {
@@ -99,7 +120,8 @@ impl<'a> Section<'a> {
     /// A motion that starts on the surface and leaves it has not crossed it.
     ///
     /// # Errors
-    /// If the motion cannot be continued. What came before has been shown.
+    /// If the motion cannot be continued: what came before has been shown. If a state has not the entries that the surface asks
+    /// for.
     pub fn follow(
         &self,
         map: &mut Stroboscope<'_>,
@@ -107,13 +129,19 @@ impl<'a> Section<'a> {
         periods: usize,
         see: &mut dyn FnMut(Crossing<'_>),
     ) -> Result<(), FlowError> {
+        if state.len() < self.entries || state.len() != map.order() {
+            return Err(FlowError::Entries {
+                entries: state.len(),
+                expected: map.order(),
+            });
+        }
         let mut search = Search {
             section: self,
             state: state.to_vec(),
             side: None,
             last: 0.0,
         };
-        let (flow, phase) = map.flow();
+        let phase = map.start();
         search.last = (self.function)(phase, state);
         search.passed(search.last);
         for period in 0..periods {
@@ -127,7 +155,7 @@ impl<'a> Section<'a> {
                     });
                 });
             };
-            flow.advance(phase, phase + TAU, state, None, Some(&mut show))?;
+            map.show_period(state, &mut show)?;
         }
         Ok(())
     }
@@ -173,23 +201,44 @@ impl Search<'_, '_> {
                 from + (to - from) * (i / count)
             }
         };
-        let mut before = (from, self.last);
-        let mut here = before;
+        let mut here = (from, self.last);
         for i in 1..=count as usize {
             let phase = at(i as f64);
             let next = (phase, self.value(stretch, phase));
-            if i > 1 && turns_back(before.1, here.1, next.1) {
-                let extreme = self.extremum(stretch, before.0, next.0, here.1 > 0.0);
-                if extreme.1 * here.1 < 0.0 {
-                    self.cross(stretch, before, extreme, see);
-                    self.cross(stretch, extreme, next, see);
-                }
+            if let Some(extreme) = self.dip(stretch, here, next) {
+                self.cross(stretch, here, extreme, see);
+                self.cross(stretch, extreme, next, see);
+            } else {
+                self.cross(stretch, here, next, see);
             }
-            self.cross(stretch, here, next, see);
-            before = here;
             here = next;
         }
         self.last = here.1;
+    }
+
+    /// The extremum between two places that are not on different sides, if it may lie on the other side.
+    fn dip(
+        &mut self,
+        stretch: &dyn Stretch,
+        from: (f64, f64),
+        to: (f64, f64),
+    ) -> Option<(f64, f64)> {
+        let sign = if from.1 == 0.0 { to.1 } else { from.1 }.signum();
+        if from.1 * to.1 < 0.0 || sign.is_nan() {
+            return None;
+        }
+        let aside = ASIDE * (to.0 - from.0);
+        // The value at the start may be that of the stretch before, and differ from this one by rounding.
+        let behind = self.value(stretch, from.0 + aside) - self.value(stretch, from.0);
+        if sign * behind >= 0.0 {
+            return None;
+        }
+        let before = to.1 - self.value(stretch, to.0 - aside);
+        if sign * before <= 0.0 {
+            return None;
+        }
+        let extreme = self.extremum(stretch, from.0, to.0, sign > 0.0);
+        (sign * extreme.1 < 0.0).then_some(extreme)
     }
 
     /// Shows the crossing between two places, if there is one.
@@ -277,16 +326,11 @@ impl Search<'_, '_> {
     }
 }
 
-/// Whether the middle one of three values on one side of zero is the nearest to it.
-fn turns_back(before: f64, here: f64, next: f64) -> bool {
-    let one_side = before * here > 0.0 && here * next > 0.0;
-    one_side && here.abs() <= before.abs() && here.abs() <= next.abs()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::flow::affine::Affine;
+    use crate::flow::{Flow, Integrated};
 
     crate::oscillator! {
         Linear(x) {
@@ -337,22 +381,56 @@ mod tests {
         assert_eq!(crossings(offset, Direction::Falling).len(), 4);
     }
 
-    /// Two crossings within a hundredth of the distance of samples, and a turn just before the surface.
+    /// Two crossings within a hundredth of the distance of samples, and a turn just before the surface: wherever the pair lies
+    /// between samples, and with stretches that begin anywhere.
     #[test]
     fn two_crossings_between_samples_are_both_found() {
-        let depth = 1e-7;
-        let found = crossings(1.0 - depth, Direction::Both);
+        let model = Linear { drive: 0.0 };
+        let flow = |exact: bool| -> Box<dyn Flow + '_> {
+            if exact {
+                return Box::new(Affine::new(&model, &[0.0], 1.0).expect("affine"));
+            }
+            Box::new(Integrated::new(&model, &[0.0], 1.0, 1e-13).expect("a flow"))
+        };
+        let depth: f64 = 1e-7;
         let half = depth.sqrt() / 2_f64.sqrt();
-        assert_eq!(found.len(), 8, "{found:?}");
-        for (k, pair) in found.chunks(2).enumerate() {
-            let middle = std::f64::consts::PI * (k as f64 + 0.5);
-            for (crossing, sign) in pair.iter().zip([-1.0, 1.0]) {
-                let error = crossing.0 - middle - sign * half;
-                // A crossing at a shallow angle is known to rounding over the slope.
-                assert!(error.abs() < 1e-11, "{error:e}");
+        for (exact, step) in (0..200).map(|k| (k < 100, k % 100)) {
+            // From just before a pair to just behind the next one.
+            let start = std::f64::consts::PI * (0.5 + 0.99 * f64::from(step) / 100.0) + 1e-3;
+            let mut found = Vec::new();
+            for depth in [depth, -depth] {
+                let mut state = [(2.0 * start).cos(), -2.0 * (2.0 * start).sin()];
+                let mut map = Stroboscope::new(flow(exact)).phase(start);
+                Section::entry(0, depth - 1.0, Direction::Both)
+                    .follow(&mut map, &mut state, 2, &mut |crossing| {
+                        found.push(start + TAU * crossing.periods);
+                    })
+                    .expect("a motion");
+            }
+            assert_eq!(found.len(), 8, "{start} {found:?}");
+            for (k, pair) in found.chunks(2).enumerate() {
+                let middle = std::f64::consts::PI * (k as f64 + 1.5);
+                for (crossing, sign) in pair.iter().zip([-1.0, 1.0]) {
+                    let error = crossing - middle - sign * half;
+                    // A crossing at a shallow angle is known to the error of the motion over the slope.
+                    assert!(error.abs() < 1e-9, "{error:e}");
+                }
             }
         }
-        assert_eq!(crossings(1.0 + depth, Direction::Both).len(), 0);
+    }
+
+    /// A state that is too short for the surface, or for the system, is an error.
+    #[test]
+    fn entries_are_counted() {
+        let model = Linear { drive: 0.0 };
+        for (entry, entries) in [(7, 2), (0, 1), (0, 4)] {
+            let section = Section::entry(entry, 0.0, Direction::Both);
+            let mut state = vec![0.0; entries];
+            let error = section
+                .follow(&mut map(&model), &mut state, 1, &mut |_| {})
+                .expect_err("no such entry");
+            assert!(matches!(error, FlowError::Entries { .. }), "{error}");
+        }
     }
 
     /// A surface through the start, through switches and at the ends of periods is passed once each time.
@@ -360,13 +438,17 @@ mod tests {
     fn a_surface_at_the_end_of_a_stretch_is_crossed_once() {
         let model = Linear { drive: 0.0 };
         let section = Section::new(Direction::Both, |_, state| state[1]);
-        let mut count = 0;
+        let mut quarters = Vec::new();
         let mut state = [1.0, 0.0];
         section
-            .follow(&mut map(&model), &mut state, 10, &mut |_| count += 1)
+            .follow(&mut map(&model), &mut state, 10, &mut |crossing| {
+                quarters.push((4.0 * crossing.periods).round() as usize);
+            })
             .expect("a motion");
-        // x' = -2 sin 2 tau: at pi/2, pi, 3 pi/2 and, but for rounding, 2 pi of every period.
-        assert!((39..=40).contains(&count), "{count}");
+        // x' = -2 sin 2 tau: at every quarter of a period. The last one is where the motion ends, on either side by rounding.
+        let last = quarters.len();
+        assert!(last == 39 || last == 40);
+        assert_eq!(quarters, (1..=last).collect::<Vec<_>>());
     }
 
     /// A stop that moves, `g = x - b cos tau`, and does not push: the motion is `cos 2 tau`, and the crossings are where both
@@ -400,6 +482,11 @@ mod tests {
         for (found, expected) in phases.iter().zip(expected) {
             assert!((found - expected).abs() < 1e-13, "{found} {expected}");
         }
-        assert!(Section::gap(&model, (&[0.0], 1.0), 1, (0.0, Direction::Both)).is_none());
+        let of = |values, contact| {
+            let section = Section::gap(&model, (values, 1.0), contact, (0.0, Direction::Both));
+            section.map(|_| ()).expect_err("it cannot be")
+        };
+        assert!(matches!(of(&[0.0], 1), Error::Option { .. }));
+        assert!(matches!(of(&[0.0, 0.0], 0), Error::Values { .. }));
     }
 }

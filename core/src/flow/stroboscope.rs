@@ -21,7 +21,7 @@ use crate::system::Variable;
 /// }
 ///
 /// let model = Linear { drive: 3.0 };
-/// let flow = Affine::new(&model, &[3.0], 1.0).ok_or("not affine")?;
+/// let flow = Affine::new(&model, &[3.0], 1.0)?;
 /// let mut map = Stroboscope::new(Box::new(flow));
 /// let mut state = [0.0, 0.0];
 /// for _ in 0..100 {
@@ -74,13 +74,20 @@ impl<'a> Stroboscope<'a> {
     }
 
     /// Changes the frequency or a parameter.
-    pub fn set(&mut self, variable: Variable, value: f64) {
-        self.flow.set(variable, value);
+    ///
+    /// # Errors
+    /// If there is no such parameter, the value is outside its declared range, or the equations could not be evaluated. The map
+    /// is then as before.
+    pub fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
+        if !self.flow.admits(variable, value) {
+            return Err(FlowError::Value { variable, value });
+        }
+        self.flow.set(variable, value)
     }
 
-    /// The flow, and the phase at which states are looked at.
-    pub fn flow(&mut self) -> (&mut (dyn Flow + 'a), f64) {
-        (&mut *self.flow, self.phase)
+    /// The phase at which states are looked at.
+    pub fn start(&self) -> f64 {
+        self.phase
     }
 
     /// How many periods have been computed.
@@ -111,9 +118,24 @@ impl<'a> Stroboscope<'a> {
         tangent: Option<&mut Tangent>,
         see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
-        self.periods += self.fold as u64;
+        self.pass(self.fold, state, tangent, see)
+    }
+
+    /// Moves a state over one period and shows it, however many the map is over.
+    pub(super) fn show_period(&mut self, state: &mut [f64], see: See<'_>) -> Result<(), FlowError> {
+        self.pass(1, state, None, Some(see))
+    }
+
+    fn pass(
+        &mut self,
+        periods: usize,
+        state: &mut [f64],
+        tangent: Option<&mut Tangent>,
+        see: Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        self.periods += periods as u64;
         // The phase does not grow with the number of periods, so that a state returns to itself to the last bit.
-        let end = self.phase + TAU * self.fold as f64;
+        let end = self.phase + TAU * periods as f64;
         self.flow.advance(self.phase, end, state, tangent, see)
     }
 }

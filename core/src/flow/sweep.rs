@@ -18,9 +18,9 @@ pub struct Sweep {
     pub values: Vec<f64>,
     /// Where the motion starts, and starts again after it has escaped.
     pub start: Vec<f64>,
-    /// Periods that are dropped at every value.
+    /// Applications of the map that are dropped at every value.
     pub transient: usize,
-    /// Periods that are looked at after those.
+    /// Applications of the map that are looked at after those.
     pub periods: usize,
     /// A state with an entry beyond this has escaped.
     pub escape: f64,
@@ -33,10 +33,34 @@ pub struct Row {
     pub value: f64,
     /// States, one after the other: of the stroboscope, or where the motion crossed a section.
     pub points: Vec<f64>,
-    /// The motion grew without bound or could not be computed, and started again.
-    pub escaped: bool,
+    /// Why it has no points; the motion started again.
+    pub ended: Option<Ended>,
     /// The state that the next value goes on from.
     last: Vec<f64>,
+}
+
+/// Why nothing was seen at a value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ended {
+    /// The motion grew beyond the bound.
+    Escaped,
+    /// The variable cannot have this value, or the motion could not be computed.
+    Failed(FlowError),
+}
+
+impl From<FlowError> for Ended {
+    fn from(error: FlowError) -> Self {
+        Self::Failed(error)
+    }
+}
+
+impl std::fmt::Display for Ended {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Escaped => write!(f, "the motion grew beyond the bound"),
+            Self::Failed(error) => error.fmt(f),
+        }
+    }
 }
 
 impl Sweep {
@@ -68,17 +92,18 @@ impl Sweep {
         let last = rows.last().map(|row| row.last.clone());
         let mut state = last.unwrap_or_else(|| self.start.clone());
         for &value in &self.values[rows.len()..] {
-            map.set(self.variable, value);
             let mut points = Vec::new();
-            let escaped = self.row(map, section, &mut state, &mut points).is_err();
-            if escaped {
+            let ended = map.set(self.variable, value).map_err(Ended::from);
+            let ended = ended.and_then(|()| self.row(map, section, &mut state, &mut points));
+            let ended = ended.err();
+            if ended.is_some() {
                 points.clear();
-                state.copy_from_slice(&self.start);
+                state.clone_from(&self.start);
             }
             let row = Row {
                 value,
                 points,
-                escaped,
+                ended,
                 last: state.clone(),
             };
             if let Some(log) = &mut log {
@@ -93,14 +118,14 @@ impl Sweep {
         Ok(rows)
     }
 
-    /// One value. An error says that the motion has escaped.
+    /// One value.
     fn row(
         &self,
         map: &mut Stroboscope<'_>,
         section: Option<&Section<'_>>,
         state: &mut [f64],
         points: &mut Vec<f64>,
-    ) -> Result<(), Escaped> {
+    ) -> Result<(), Ended> {
         for _ in 0..self.transient {
             map.map(state)?;
             self.stays(state)?;
@@ -108,7 +133,7 @@ impl Sweep {
         for _ in 0..self.periods {
             if let Some(section) = section {
                 let mut see = |crossing: Crossing<'_>| points.extend_from_slice(crossing.state);
-                section.follow(map, state, 1, &mut see)?;
+                section.follow(map, state, map.folded(), &mut see)?;
             } else {
                 map.map(state)?;
                 points.extend_from_slice(state);
@@ -118,18 +143,9 @@ impl Sweep {
         Ok(())
     }
 
-    fn stays(&self, state: &[f64]) -> Result<(), Escaped> {
+    fn stays(&self, state: &[f64]) -> Result<(), Ended> {
         let inside = state.iter().all(|x| x.abs() <= self.escape);
-        if inside { Ok(()) } else { Err(Escaped) }
-    }
-}
-
-/// The motion has escaped, or cannot be computed.
-struct Escaped;
-
-impl From<FlowError> for Escaped {
-    fn from(_: FlowError) -> Self {
-        Self
+        if inside { Ok(()) } else { Err(Ended::Escaped) }
     }
 }
 
@@ -138,7 +154,11 @@ impl Row {
         let mut writer = Writer::default();
         writer.numbers(&[self.value]);
         writer.numbers(&self.points);
-        writer.whole(usize::from(self.escaped));
+        writer.numbers(&match self.ended {
+            None => vec![],
+            Some(Ended::Escaped) => vec![0.0],
+            Some(Ended::Failed(error)) => error.numbers().to_vec(),
+        });
         writer.numbers(&self.last);
         writer.0
     }
@@ -148,7 +168,12 @@ impl Row {
         Some(Self {
             value: *reader.numbers()?.first()?,
             points: reader.numbers()?,
-            escaped: reader.whole()? != 0,
+            ended: match reader.numbers()?[..] {
+                [] => None,
+                [_] => Some(Ended::Escaped),
+                [kind, a, b] => Some(Ended::Failed(FlowError::of_numbers([kind, a, b])?)),
+                _ => return None,
+            },
             last: reader.numbers()?,
         })
     }
@@ -230,7 +255,7 @@ mod tests {
             let before = row.value > 0.294_529;
             assert_eq!(distinct(row), 1 + usize::from(before), "{}", row.value);
         }
-        assert!(up.iter().chain(&down).all(|row| !row.escaped));
+        assert!(up.iter().chain(&down).all(|row| row.ended.is_none()));
         // At A = 1: the exact states of both.
         let at_one = up.iter().find(|row| (row.value - 1.0).abs() < 1e-9);
         let first = at_one.expect("a row").points[0];
@@ -306,7 +331,8 @@ mod tests {
         let rows = sweep
             .run(&mut map, None, None, &mut |_| true)
             .expect("rows");
-        assert!(rows[0].escaped && rows[0].points.is_empty());
-        assert!(!rows[1].escaped && (rows[1].points[0] - 1.0).abs() < 1e-12);
+        assert_eq!(rows[0].ended, Some(Ended::Escaped));
+        assert!(rows[0].points.is_empty());
+        assert!(rows[1].ended.is_none() && (rows[1].points[0] - 1.0).abs() < 1e-12);
     }
 }

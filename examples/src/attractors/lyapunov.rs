@@ -32,9 +32,8 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         let mut map = task.map(drive)?;
         let start = task.start()?;
         let mut lyapunov = Lyapunov::new(&mut map, &start);
-        if let Some(divergence) = Divergence::new(task.system, &values, options.model.omega) {
-            lyapunov = lyapunov.divergence(divergence);
-        }
+        let divergence = Divergence::new(task.system, &values, options.model.omega)?;
+        lyapunov = lyapunov.divergence(divergence);
         lyapunov.settle(options.transient.unwrap_or(5000))?;
         for batch in 0..batches {
             if !task.goes_on() {
@@ -56,7 +55,8 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
                 .iter()
                 .flat_map(|e| [e.value, e.standard_error]),
         );
-        row.extend([found.sum.value, found.divergence.unwrap_or(f64::NAN)]);
+        let divergence = found.divergence.unwrap_or_default();
+        row.extend([found.sum.value, divergence.value]);
         table.row(&row);
         describe(&mut summary, &task.title(drive, "")?, &found);
         let largest: Vec<f64> = lyapunov.batches().iter().map(|b| b.exponents[0]).collect();
@@ -71,11 +71,11 @@ fn describe(text: &mut String, title: &str, found: &Exponents) {
     for (index, exponent) in found.exponents.iter().enumerate() {
         let _ = writeln!(text, "exponent   {}: {exponent} per period", index + 1);
     }
-    let divergence = found.divergence.unwrap_or(f64::NAN);
+    let divergence = found.divergence.unwrap_or_default();
     let _ = writeln!(
         text,
-        "sum        {:.12}; the divergence over the same motion gives {divergence:.12}",
-        found.sum.value
+        "sum        {:.12}; the divergence over the same motion gives {:.12} +- {:.0e}",
+        found.sum.value, divergence.value, divergence.error
     );
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use hertzian::chart::{Chart, Cloud};
 use hertzian::flow::poincare::{Direction, Section};
-use hertzian::flow::sweep::{Row, Sweep};
+use hertzian::flow::sweep::{Ended, Row, Sweep};
 use hertzian::system::Variable;
 
 use super::options::Swept;
@@ -133,11 +133,19 @@ fn results(
         rows.len(),
         swept.name()
     );
-    let escaped = rows.iter().filter(|row| row.escaped).count();
+    let ends: Vec<_> = rows.iter().filter_map(|row| row.ended).collect();
+    let escaped = ends.iter().filter(|&&end| end == Ended::Escaped).count();
     if escaped > 0 {
         let _ = writeln!(
             summary,
             "escaped    at {escaped} of them; the motion started again"
+        );
+    }
+    if let Some(first) = ends.iter().find(|&&end| end != Ended::Escaped) {
+        let _ = writeln!(
+            summary,
+            "failed     at {} of them, first: {first}; the motion started again",
+            ends.len() - escaped
         );
     }
     Ok(table.with(chart.to_svg(), summary, complete))

@@ -161,6 +161,12 @@ fn runs(branch: &CycleBranch, place: impl Fn(&Cycle) -> [f64; 2]) -> Vec<Run> {
             }),
         }
     }
+    // Where the branch joins another one.
+    let count = branch.cycles.len();
+    let end = branch.events.iter().find(|event| event.after == count);
+    if let (Some(run), Some(end)) = (runs.last_mut(), end) {
+        run.points.push(place(&end.cycle));
+    }
     runs
 }
 

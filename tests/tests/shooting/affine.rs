@@ -197,6 +197,10 @@ fn period_2_joins_period_1_at_a1() {
         error <= joint.error && joint.error < 1e-11,
         "{joint} {error:.1e}"
     );
+    // It lies behind the last orbit of the branch.
+    assert_eq!(joint.after, branch.cycles.len());
+    let last = branch.cycles.last().unwrap();
+    assert!(last.value > joint.cycle.value);
 }
 
 /// From a state near it to three digits.

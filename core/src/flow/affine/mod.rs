@@ -7,6 +7,7 @@
 //!
 //! A motion that touches an end without crossing it stays on its piece; perturbations do not jump there.
 
+mod backwards;
 mod crossing;
 mod equations;
 mod exponential;
@@ -26,6 +27,8 @@ use self::crossing::value_and_slope;
 use self::model::Model;
 use self::scalar::{Scalar, Span};
 use self::table::{COEFFICIENTS, Polynomial, Table};
+use crate::error::Error;
+use crate::flow::error::{admits, check_entries};
 use crate::flow::{Flow, FlowError, See, Stretch, Tangent, Work};
 use crate::system::{System, Variable};
 
@@ -49,16 +52,25 @@ pub struct Affine<'a> {
     column: Vec<f64>,
     /// The state at the end of a stretch.
     next: Vec<f64>,
+    /// The flow of the reversed motion; made when it is needed.
+    reversed: Option<Box<Self>>,
     work: Work,
 }
 
 impl<'a> Affine<'a> {
-    /// The flow at given values; `None` if the system is not of this kind, or `omega` is not positive.
-    pub fn new(system: &'a dyn System, parameters: &[f64], omega: f64) -> Option<Self> {
-        let model = Model::new(system, parameters, omega)?;
+    /// The flow at given values.
+    ///
+    /// # Errors
+    /// [`Error::NotAffine`] if the system is not of this kind; if parameters or the frequency are outside their ranges, levels are
+    /// out of order, or the mass matrix is singular.
+    pub fn new(system: &'a dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
+        Model::new(system, parameters, omega).map(Self::of)
+    }
+
+    fn of(model: Model<'a>) -> Self {
         let (order, contacts) = (model.basis.order(), model.contacts.len());
         let most = order - 1 - model.basis.coordinates;
-        Some(Self {
+        Self {
             z: vec![0.0; order],
             rows: vec![[0.0; COEFFICIENTS]; most],
             rows_by: vec![[0.0; COEFFICIENTS]; most],
@@ -69,8 +81,9 @@ impl<'a> Affine<'a> {
             work: Work::default(),
             scalar: Scalar::new(&model),
             filled: false,
+            reversed: None,
             model,
-        })
+        }
     }
 
     /// Moves over at most one period.
@@ -206,13 +219,16 @@ impl Flow for Affine<'_> {
         self.model.basis.coordinates
     }
 
-    fn set(&mut self, variable: Variable, value: f64) {
-        match variable {
-            Variable::Omega => self.model.omega = value,
-            Variable::Parameter(index) => self.model.parameters[index] = value,
-        }
-        self.model.touch();
+    fn admits(&self, variable: Variable, value: f64) -> bool {
+        admits(self.model.system(), variable, value)
+    }
+
+    fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
         self.filled = false;
+        self.model.set(variable, value)?;
+        self.reversed
+            .as_mut()
+            .map_or(Ok(()), |reversed| reversed.set(variable, value))
     }
 
     fn advance(
@@ -223,6 +239,10 @@ impl Flow for Affine<'_> {
         mut tangent: Option<&mut Tangent>,
         mut see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
+        check_entries(self.coordinates(), state, tangent.as_deref())?;
+        if to < from {
+            return self.go_back((from, to), state, tangent, see);
+        }
         let by = tangent.as_ref().and_then(|tangent| tangent.by);
         self.model.refresh(by, from)?;
         if state.iter().any(|x| !x.is_finite()) || !from.is_finite() || !to.is_finite() {

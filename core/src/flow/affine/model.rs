@@ -8,9 +8,12 @@ use super::equations::Assembly;
 use super::exponential::Room;
 use super::table::{Table, Watch};
 use super::terms::{Basis, Line, Terms};
+use crate::error::Error;
 use crate::flow::FlowError;
+use crate::flow::error::check_value;
 use crate::layout::Layout;
 use crate::system::{Place, System, Variable, Wave};
+use crate::validate::{self, in_order};
 
 /// Cells in a period at most. Beyond, the fastest rate of the system is so high that the phase hardly resolves it.
 const FINEST: f64 = 1e8;
@@ -47,6 +50,8 @@ pub(super) struct Model<'a> {
     pub(super) basis: Basis,
     pub(super) parameters: Vec<f64>,
     pub(super) omega: f64,
+    /// The motion is `q(-t)`.
+    backwards: bool,
     coefficients: Vec<f64>,
     pub(super) terms: Terms,
     /// Derivatives by the variable.
@@ -66,11 +71,29 @@ pub(super) struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// `None` unless every piece is affine, and stiffness and directions are constant.
-    pub(super) fn new(system: &'a dyn System, parameters: &[f64], omega: f64) -> Option<Self> {
-        if !is_covered(system) || omega.is_nan() || omega <= 0.0 {
-            return None;
+    /// # Errors
+    /// Unless every piece is affine, and stiffness and directions are constant; if values are not usable.
+    pub(super) fn new(
+        system: &'a dyn System,
+        parameters: &[f64],
+        omega: f64,
+    ) -> Result<Self, Error> {
+        if system.facts().coordinates.is_empty() {
+            return Err(Error::NoCoordinates);
         }
+        if !is_covered(system) {
+            return Err(Error::NotAffine);
+        }
+        validate::values(system, parameters, omega)?;
+        Ok(Self::of(system, parameters, omega, false))
+    }
+
+    /// The same system at the same values, with time reversed.
+    pub(super) fn reversed(&self) -> Self {
+        Self::of(self.system, &self.parameters, self.omega, !self.backwards)
+    }
+
+    fn of(system: &'a dyn System, parameters: &[f64], omega: f64, backwards: bool) -> Self {
         let layout = Layout::of(system);
         let basis = Basis::of(&layout);
         let moves = |contact: &crate::layout::ContactLayout| contact.offset_harmonic() > 0;
@@ -86,10 +109,11 @@ impl<'a> Model<'a> {
                 lines_by: vec![Line::default(); pieces],
             }
         });
-        Some(Self {
+        Self {
             system,
             parameters: parameters.to_vec(),
             omega,
+            backwards,
             coefficients: vec![0.0; layout.coefficients],
             terms: Terms::new(&layout, &basis),
             terms_by: Terms::new(&layout, &basis),
@@ -105,12 +129,31 @@ impl<'a> Model<'a> {
             room: Room::new(&basis, rows(&basis, moving)),
             basis,
             layout,
-        })
+        }
     }
 
-    /// The values have changed.
-    pub(super) fn touch(&mut self) {
+    pub(super) fn system(&self) -> &'a dyn System {
+        self.system
+    }
+
+    /// Changes the frequency or a parameter; not if the equations could not be evaluated then.
+    pub(super) fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
+        check_value(self.system, variable, value)?;
+        let present = match variable {
+            Variable::Omega => &mut self.omega,
+            Variable::Parameter(index) => &mut self.parameters[index],
+        };
+        let before = std::mem::replace(present, value);
         self.stale = true;
+        let refreshed = self.refresh(None, 0.0);
+        if refreshed.is_err() {
+            match variable {
+                Variable::Omega => self.omega = before,
+                Variable::Parameter(index) => self.parameters[index] = before,
+            }
+            self.stale = true;
+        }
+        refreshed
     }
 
     /// Makes everything belong to the present values, and the derivatives to a variable.
@@ -130,11 +173,13 @@ impl<'a> Model<'a> {
     fn refresh_values(&mut self, phase: f64) -> Result<(), FlowError> {
         let (system, layout, basis) = (self.system, &self.layout, &self.basis);
         system.coefficients(&self.parameters, self.omega, &mut self.coefficients);
-        let usable = self.omega > 0.0 && self.coefficients.iter().all(|x| x.is_finite());
-        if !usable {
+        if self.coefficients.iter().any(|x| !x.is_finite()) {
             return Err(FlowError::NotFinite { phase });
         }
         self.terms.fill(layout, basis, &self.coefficients);
+        if self.backwards {
+            self.terms.reverse(basis);
+        }
         self.terms.base = self.omega / f64::from(system.facts().divisor);
         if self.assembly.set_mass(basis, &self.terms).is_err() {
             let n = basis.coordinates;
@@ -145,10 +190,16 @@ impl<'a> Model<'a> {
             let law = system.law(layout.contacts[index].law);
             let terms = &self.terms.contacts[index];
             law.levels(&terms.arguments, &mut contact.levels);
+            if !in_order(&contact.levels) {
+                return Err(FlowError::Levels { contact: index });
+            }
             contact.push.copy_from_slice(&terms.force);
             self.assembly.solve(&mut contact.push);
             for (piece, line) in contact.lines.iter_mut().enumerate() {
                 *line = Line::of(law, &terms.arguments, &contact.levels, piece);
+                if self.backwards {
+                    line.by_rate = -line.by_rate;
+                }
             }
         }
         for combination in &mut self.combinations {
@@ -166,6 +217,9 @@ impl<'a> Model<'a> {
         let derivatives = &mut self.coefficients;
         system.coefficients_by(variable, &self.parameters, self.omega, derivatives);
         self.terms_by.fill(layout, basis, derivatives);
+        if self.backwards {
+            self.terms_by.reverse(basis);
+        }
         self.terms_by.base = match variable {
             Variable::Omega => 1.0 / f64::from(system.facts().divisor),
             Variable::Parameter(_) => 0.0,
@@ -184,6 +238,11 @@ impl<'a> Model<'a> {
                 for (piece, line) in contact.lines_by.iter_mut().enumerate() {
                     let by = (argument, factor);
                     line.add_derivative(law, arguments, &contact.levels, piece, by);
+                }
+            }
+            if self.backwards {
+                for line in &mut contact.lines_by {
+                    line.by_rate = -line.by_rate;
                 }
             }
         }

@@ -135,6 +135,7 @@ impl Scalar {
                 let (cell, s) = place(range);
                 let next = interval.state(cell, s, &z);
                 if !(next[0].is_finite() && next[1].is_finite()) {
+                    *state = [z[0], z[1]];
                     let phase = span.begin + done;
                     return Err(FlowError::NotFinite { phase });
                 }

@@ -141,6 +141,20 @@ impl Terms {
     }
 }
 
+impl Terms {
+    /// Those of the motion backwards, `q(-t)`: rates and the sines of the phase change their signs.
+    pub(super) fn reverse(&mut self, basis: &Basis) {
+        let negate = |x: &mut f64| *x = -*x;
+        self.damping.iter_mut().for_each(negate);
+        let offsets = self.contacts.iter_mut().map(|terms| &mut terms.offset);
+        for waves in offsets.chain([&mut self.load]) {
+            for waves in waves.chunks_exact_mut(basis.waves()) {
+                waves[1..].iter_mut().skip(1).step_by(2).for_each(negate);
+            }
+        }
+    }
+}
+
 /// An affine piece: `phi = force + by_gap (g - at) + by_rate g'`, or its derivative by a variable at fixed `at`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Line {

@@ -17,9 +17,12 @@ mod waves;
 use nalgebra::DMatrix;
 
 use super::FlowError;
+use super::error::check_value;
 use crate::law::{Law, On};
 use crate::layout::{Entry, Layout, Term};
+use crate::linear::{Lu, Matrix};
 use crate::system::{Part, System, Variable, Wave};
+use crate::validate::in_order;
 
 /// A system at values of its parameters and of `omega`.
 pub(crate) struct Field<'a> {
@@ -32,8 +35,10 @@ pub(crate) struct Field<'a> {
     coefficients: Vec<f64>,
     /// The entries of `M^-1` that are not zero: row, column, value.
     inverse_mass: Vec<(usize, usize, f64)>,
-    /// Zero only if the mass matrix is singular.
-    singular: Option<f64>,
+    /// Room for the mass matrix, its factors, and a column of its inverse.
+    mass: Matrix,
+    lu: Lu,
+    column: Vec<f64>,
     /// Harmonics of all waves but the constant.
     harmonics: Vec<u32>,
     damping: Vec<Item>,
@@ -64,6 +69,13 @@ pub(crate) struct Contact {
     moving: bool,
 }
 
+/// Room for derivatives of the coefficients, and of the levels of a contact.
+#[derive(Debug)]
+pub(crate) struct Room<'r> {
+    pub(crate) by: &'r mut [f64],
+    pub(crate) levels: &'r mut [f64],
+}
+
 /// A gap at one instant.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gap {
@@ -76,7 +88,14 @@ pub(crate) struct Gap {
 
 impl<'a> Field<'a> {
     /// The equations of a system.
-    pub(crate) fn new(system: &'a dyn System, values: &[f64], omega: f64) -> Self {
+    ///
+    /// # Errors
+    /// If levels are out of order or the mass matrix is singular.
+    pub(crate) fn new(
+        system: &'a dyn System,
+        values: &[f64],
+        omega: f64,
+    ) -> Result<Self, FlowError> {
         let layout = Layout::of(system);
         let harmonics = harmonics(&layout);
         let position = |wave: Wave| {
@@ -110,8 +129,10 @@ impl<'a> Field<'a> {
             omega,
             base: 0.0,
             coefficients: vec![0.0; layout.coefficients],
-            inverse_mass: Vec::new(),
-            singular: None,
+            inverse_mass: Vec::with_capacity(layout.coordinates.pow(2)),
+            mass: Matrix::zeros(layout.coordinates),
+            lu: Lu::new(layout.coordinates),
+            column: vec![0.0; layout.coordinates],
             damping: layout.damping.iter().map(entry).collect(),
             stiffness: layout.stiffness.iter().map(entry).collect(),
             load: layout.load.iter().map(entry).collect(),
@@ -119,8 +140,8 @@ impl<'a> Field<'a> {
             harmonics,
             layout,
         };
-        field.update();
-        field
+        field.update()?;
+        Ok(field)
     }
 
     pub(crate) fn coordinates(&self) -> usize {
@@ -132,48 +153,67 @@ impl<'a> Field<'a> {
         self.base
     }
 
-    /// Changes the frequency or a parameter.
-    pub(crate) fn set(&mut self, variable: Variable, value: f64) {
-        match variable {
-            Variable::Omega => self.omega = value,
-            Variable::Parameter(index) => self.values[index] = value,
+    /// Changes the frequency or a parameter; not if the equations could not be evaluated then.
+    pub(crate) fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
+        check_value(self.system, variable, value)?;
+        let present = match variable {
+            Variable::Omega => &mut self.omega,
+            Variable::Parameter(index) => &mut self.values[index],
+        };
+        let before = std::mem::replace(present, value);
+        let updated = self.update();
+        if updated.is_err() {
+            match variable {
+                Variable::Omega => self.omega = before,
+                Variable::Parameter(index) => self.values[index] = before,
+            }
+            self.update()?;
         }
-        self.update();
+        updated
     }
 
-    /// The mass matrix can be inverted.
-    pub(crate) fn regular(&self) -> Result<(), FlowError> {
-        self.singular.map_or(Ok(()), |determinant| {
-            Err(FlowError::SingularMass { determinant })
-        })
-    }
-
-    fn update(&mut self) {
+    fn update(&mut self) -> Result<(), FlowError> {
         self.base = self.omega / f64::from(self.system.facts().divisor);
         self.system
             .coefficients(&self.values, self.omega, &mut self.coefficients);
-        let n = self.coordinates();
-        let mut mass = DMatrix::zeros(n, n);
-        for entry in &self.layout.mass {
-            mass[(entry.row, entry.column)] += self.coefficients[entry.coefficient];
-        }
-        let determinant: f64 = mass.determinant();
-        self.inverse_mass.clear();
-        let inverse = mass
-            .try_inverse()
-            .filter(|inverse| inverse.iter().all(|x| x.is_finite()));
-        self.singular = inverse.is_none().then_some(determinant);
-        if let Some(inverse) = inverse {
-            let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-            self.inverse_mass
-                .extend(entries.map(|(i, j)| (i, j, inverse[(i, j)])));
-            self.inverse_mass.retain(|&(_, _, value)| value != 0.0);
-        }
-        for (contact, layout) in self.contacts.iter_mut().zip(&self.layout.contacts) {
+        self.invert_mass()?;
+        let contacts = self.contacts.iter_mut().zip(&self.layout.contacts);
+        for (index, (contact, layout)) in contacts.enumerate() {
             layout.arguments(&self.coefficients, &mut contact.arguments);
             let law = self.system.law(contact.law);
             law.levels(&contact.arguments, &mut contact.levels);
+            if !in_order(&contact.levels) {
+                return Err(FlowError::Levels { contact: index });
+            }
         }
+        Ok(())
+    }
+
+    fn invert_mass(&mut self) -> Result<(), FlowError> {
+        let n = self.coordinates();
+        self.mass.clear();
+        for entry in &self.layout.mass {
+            self.mass.row_mut(entry.row)[entry.column] += self.coefficients[entry.coefficient];
+        }
+        if self.lu.factorise(&mut self.mass).is_err() {
+            let mut mass = DMatrix::zeros(n, n);
+            for entry in &self.layout.mass {
+                mass[(entry.row, entry.column)] += self.coefficients[entry.coefficient];
+            }
+            let determinant = mass.determinant();
+            return Err(FlowError::SingularMass { determinant });
+        }
+        self.inverse_mass.clear();
+        for j in 0..n {
+            self.column.fill(0.0);
+            self.column[j] = 1.0;
+            self.lu.solve(&self.mass, &mut self.column);
+            let entries = self.column.iter().enumerate();
+            let entries = entries.filter(|&(_, &value)| value != 0.0);
+            self.inverse_mass
+                .extend(entries.map(|(i, &value)| (i, j, value)));
+        }
+        Ok(())
     }
 
     /// The law of a contact.
@@ -282,7 +322,7 @@ impl<'a> Field<'a> {
         level: usize,
         column: &[f64],
         (q, phase): (&[f64], f64),
-        by: Option<(Variable, &mut [f64])>,
+        by: Option<(Variable, Room<'_>)>,
     ) -> f64 {
         let item_at = |item: &Item| self.wave(item, phase).0;
         let (facts, layout) = (&self.contacts[contact], &self.layout.contacts[contact]);
@@ -290,11 +330,10 @@ impl<'a> Field<'a> {
         let mut change: f64 = gap
             .map(|d| self.coefficients[d.coefficient] * item_at(d) * column[d.row])
             .sum();
-        let Some((variable, by)) = by else {
+        let Some((variable, Room { by, levels })) = by else {
             return change;
         };
-        self.system
-            .coefficients_by(variable, &self.values, self.omega, by);
+        self.coefficients_by(variable, by);
         let gap = facts.gap.iter();
         change += gap
             .map(|d| by[d.coefficient] * item_at(d) * q[d.row])
@@ -306,8 +345,8 @@ impl<'a> Field<'a> {
         let law = self.system.law(facts.law);
         for &(argument, coefficient) in &layout.arguments {
             if by[coefficient] != 0.0 {
-                let mut levels = vec![0.0; facts.levels.len()];
-                law.levels_by(&facts.arguments, argument, &mut levels);
+                let levels = &mut levels[..facts.levels.len()];
+                law.levels_by(&facts.arguments, argument, levels);
                 change -= by[coefficient] * levels[level];
             }
         }
@@ -326,11 +365,14 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Whether an argument of a contact's law depends on a variable.
-    pub(crate) fn depends(&self, contact: usize, argument: usize, variable: Variable) -> bool {
-        let mut by = vec![0.0; self.coefficients.len()];
+    /// The derivatives of all coefficients by a variable.
+    pub(crate) fn coefficients_by(&self, variable: Variable, by: &mut [f64]) {
         self.system
-            .coefficients_by(variable, &self.values, self.omega, &mut by);
+            .coefficients_by(variable, &self.values, self.omega, by);
+    }
+
+    /// Whether an argument of a contact's law depends on the variable that the derivatives of the coefficients are by.
+    pub(crate) fn depends(&self, contact: usize, argument: usize, by: &[f64]) -> bool {
         self.layout.contacts[contact]
             .arguments
             .iter()

@@ -132,8 +132,7 @@ impl Field<'_> {
         out: &mut Slopes<S>,
     ) {
         let by = &mut out.coefficients;
-        self.system
-            .coefficients_by(variable, &self.values, self.omega, by);
+        self.coefficients_by(variable, by);
         for row in &mut out.rows {
             *row = [0.0; S];
         }

@@ -58,7 +58,6 @@ impl<const S: usize> Engine<'_, S> {
         see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
         let n = self.field.coordinates();
-        self.field.regular()?;
         let finite = state.iter().all(|x| x.is_finite()) && from.is_finite() && to.is_finite();
         if !finite {
             return Err(FlowError::NotFinite { phase: from });

@@ -64,6 +64,8 @@ pub(super) struct Engine<'a, const S: usize> {
     /// Powers that grade a step at the lower and the upper end of each piece of each contact, and for which variable.
     pub(super) powers: Vec<Vec<[u32; 2]>>,
     powers_by: Option<Variable>,
+    /// They belong to the present values.
+    powers_known: bool,
     pub(super) here: Here,
     pub(super) trial: Trial,
     pub(super) batch: Batch<S>,
@@ -75,6 +77,8 @@ pub(super) struct Engine<'a, const S: usize> {
     pub(super) coefficients: Vec<f64>,
     pub(super) weights: Vec<f64>,
     pub(super) slopes: Slopes<S>,
+    /// Room for derivatives of the levels of one contact.
+    pub(super) levels_by: Vec<f64>,
     pub(super) slopes_here: Slopes<1>,
     pub(super) matrix: Matrix,
     pub(super) lu: Lu,
@@ -106,11 +110,16 @@ impl<'a, const S: usize> Engine<'a, S> {
         };
         let rows = || vec![[0.0; S]; n];
         let points = rule.points.len();
+        let levels = field.contacts.iter().map(|contact| contact.levels.len());
+        let levels = levels.max().unwrap_or(0);
         Self {
             tolerance,
             tables: vec![Tables::new(&rule, Map::PLAIN)],
-            powers: Vec::new(),
+            powers: (0..contacts)
+                .map(|contact| vec![[1; 2]; field.law(contact).facts().pieces.len()])
+                .collect(),
             powers_by: None,
+            powers_known: false,
             here: Here {
                 from: 0.0,
                 passed: 0.0,
@@ -143,6 +152,7 @@ impl<'a, const S: usize> Engine<'a, S> {
             coefficients: vec![0.0; points],
             weights: vec![0.0; points],
             slopes: Slopes::new(&field),
+            levels_by: vec![0.0; levels],
             slopes_here: Slopes::new(&field),
             matrix: Matrix::zeros(n * S),
             lu: Lu::new(n * S),
@@ -160,9 +170,9 @@ impl<'a, const S: usize> Engine<'a, S> {
     }
 
     /// Changes the frequency or a parameter.
-    pub(super) fn set(&mut self, variable: Variable, value: f64) {
-        self.field.set(variable, value);
-        self.powers.clear();
+    pub(super) fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
+        self.powers_known = false;
+        self.field.set(variable, value)
     }
 
     /// The phase.
@@ -201,11 +211,9 @@ impl<'a, const S: usize> Engine<'a, S> {
             self.here.gaps[contact] = gap;
         }
         self.find_levels();
-        if self.powers.is_empty() || self.powers_by != by {
-            self.powers = (0..self.here.on.len())
-                .map(|contact| self.powers_of(contact, by))
-                .collect();
-            self.powers_by = by;
+        if !self.powers_known || self.powers_by != by {
+            self.find_powers(by);
+            (self.powers_by, self.powers_known) = (by, true);
         }
     }
 
@@ -235,24 +243,29 @@ impl<'a, const S: usize> Engine<'a, S> {
     }
 
     /// The powers that make the force and its derivatives analytic at either end of each piece.
-    fn powers_of(&self, contact: usize, by: Option<Variable>) -> Vec<[u32; 2]> {
-        let facts = self.field.law(contact).facts();
-        let arguments = &self.field.contacts[contact].arguments;
-        let used = |term: &&TermFacts| match term.of {
-            Quantity::ByArgument(argument) => {
-                by.is_some_and(|by| self.field.depends(contact, argument, by))
+    fn find_powers(&mut self, by: Option<Variable>) {
+        let slopes = &mut self.slopes.coefficients;
+        if let Some(by) = by {
+            self.field.coefficients_by(by, slopes);
+        }
+        for (contact, powers) in self.powers.iter_mut().enumerate() {
+            let facts = self.field.law(contact).facts();
+            let arguments = &self.field.contacts[contact].arguments;
+            let used = |term: &&TermFacts| match term.of {
+                Quantity::ByArgument(argument) => {
+                    by.is_some() && self.field.depends(contact, argument, slopes)
+                }
+                _ => true,
+            };
+            for (piece, powers) in facts.pieces.iter().zip(powers) {
+                let terms = piece.terms.iter().filter(used);
+                let lower = terms
+                    .clone()
+                    .map(|term| (term.lower.value(arguments), term.logarithm));
+                let upper = terms.map(|term| (term.upper.value(arguments), term.logarithm));
+                *powers = [grading::power_for(&lower), grading::power_for(&upper)];
             }
-            _ => true,
-        };
-        let powers = |piece: &crate::law::PieceFacts| {
-            let terms = piece.terms.iter().filter(used);
-            let lower = terms
-                .clone()
-                .map(|term| (term.lower.value(arguments), term.logarithm));
-            let upper = terms.map(|term| (term.upper.value(arguments), term.logarithm));
-            [grading::power_for(&lower), grading::power_for(&upper)]
-        };
-        facts.pieces.iter().map(powers).collect()
+        }
     }
 
     /// The power at a level, from the side of the present piece.

@@ -13,13 +13,14 @@ mod drive;
 mod engine;
 mod map;
 mod roots;
-mod rule;
+pub(super) mod rule;
 mod step;
 mod switch;
 mod tangent;
 #[cfg(test)]
 mod tests;
 
+use super::error::{admits, check_entries};
 use super::field::Field;
 use super::{Flow, FlowError, See, Tangent, Work};
 use crate::error::Error;
@@ -54,27 +55,31 @@ impl<'a> Integrated<'a> {
     /// states of a motion, relative to its largest ones; tangents are held to the same.
     ///
     /// # Errors
-    /// If a parameter, the frequency or the tolerance is outside its range, or the mass matrix is singular.
+    /// If a parameter, the frequency or the tolerance is outside its range, levels are out of order, the mass matrix is singular,
+    /// or the system has no coordinates.
     pub fn new(
         system: &'a dyn System,
         values: &[f64],
         omega: f64,
         tolerance: f64,
     ) -> Result<Self, Error> {
-        let omega = validate::omega(omega)?;
         validate::option(
             "tolerance",
             tolerance,
             1e-14..=1e-2,
             "must be between 1e-14 and 1e-2",
         )?;
-        validate::parameters(system.facts(), values)?;
         if system.facts().coordinates.is_empty() {
             return Err(Error::NoCoordinates);
         }
-        validate::levels(system, values, omega)?;
-        validate::mass(system, values, omega)?;
-        let field = Field::new(system, values, omega);
+        validate::values(system, values, omega)?;
+        let field = Field::new(system, values, omega).map_err(|reason| match reason {
+            FlowError::SingularMass { determinant } => Error::SingularMass { determinant },
+            _ => Error::Motion {
+                parameter: omega,
+                reason,
+            },
+        })?;
         let engine = match tolerance {
             t if t > 1e-6 => Rank::Low(Box::new(Engine::new(field, tolerance))),
             t if t > 1e-9 => Rank::Middle(Box::new(Engine::new(field, tolerance))),
@@ -89,8 +94,12 @@ impl Flow for Integrated<'_> {
         engine!(&self.engine, engine => engine.field.coordinates())
     }
 
-    fn set(&mut self, variable: Variable, value: f64) {
-        engine!(&mut self.engine, engine => engine.set(variable, value));
+    fn admits(&self, variable: Variable, value: f64) -> bool {
+        engine!(&self.engine, engine => admits(engine.field.system, variable, value))
+    }
+
+    fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
+        engine!(&mut self.engine, engine => engine.set(variable, value))
     }
 
     fn advance(
@@ -101,6 +110,8 @@ impl Flow for Integrated<'_> {
         tangent: Option<&mut Tangent>,
         see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
+        check_entries(self.coordinates(), state, tangent.as_deref())?;
+        let tangent = tangent.filter(|tangent| !tangent.columns.is_empty());
         engine!(&mut self.engine, engine => engine.advance((from, to), state, tangent, see))
     }
 

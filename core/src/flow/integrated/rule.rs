@@ -21,9 +21,9 @@ pub(super) const HIGHEST: usize = 4;
 
 /// The rule of `S` nodes. Matrices are stored by columns: `[k][j]` belongs to the value at node `k` and the result at `j`.
 #[derive(Debug)]
-pub(super) struct Rule<const S: usize> {
-    pub(super) nodes: [f64; S],
-    pub(super) weights: [f64; S],
+pub(in crate::flow) struct Rule<const S: usize> {
+    pub(in crate::flow) nodes: [f64; S],
+    pub(in crate::flow) weights: [f64; S],
     /// Integrals from the start to a node, (1).
     pub(super) before: [[f64; S]; S],
     /// Integrals from a node to the end.
@@ -41,7 +41,7 @@ pub(super) struct Rule<const S: usize> {
 }
 
 impl<const S: usize> Rule<S> {
-    pub(super) fn new() -> Self {
+    pub(in crate::flow) fn new() -> Self {
         let gauss = gauss::rule(S);
         let nodes: [f64; S] = std::array::from_fn(|j| gauss.nodes[j]);
         let weights: [f64; S] = std::array::from_fn(|j| gauss.weights[j]);
@@ -90,6 +90,11 @@ impl<const S: usize> Rule<S> {
         }
     }
 
+    /// The size of the first Legendre coefficient that is left out, from the last four that are known.
+    pub(in crate::flow) fn tail(&self, values: &[f64; S]) -> f64 {
+        tail(&self.highest, values)
+    }
+
     /// Weights with which values at the points give the value at `u`.
     pub(super) fn interpolation(&self, u: f64, weights: &mut [f64]) {
         if let Some(hit) = self.points.iter().position(|&point| point == u) {
@@ -128,6 +133,28 @@ fn polynomials<const S: usize>(u: f64) -> Vec<f64> {
         values.push(((2.0 * m + 1.0) * x * values[n] - m * values[n - 1]) / (m + 1.0));
     }
     values
+}
+
+/// The size of the first Legendre coefficient that is left out, from the last four that are known.
+pub(super) fn tail<const S: usize>(highest: &[[f64; S]; HIGHEST], a: &[f64; S]) -> f64 {
+    let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|index| dot(&highest[index], a).abs());
+    let (last, before) = (c0 + c1, c2 + c3);
+    let ratio = if before > 0.0 {
+        (last / before).sqrt().min(1.0)
+    } else {
+        1.0
+    };
+    last * ratio
+}
+
+pub(super) fn dot<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
+    let mut sums = [0.0; 4];
+    for (x, y) in x.chunks_exact(4).zip(y.chunks_exact(4)) {
+        for l in 0..4 {
+            sums[l] += x[l] * y[l];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 fn barycentric(points: &[f64]) -> Vec<f64> {

@@ -23,7 +23,7 @@ use crate::flow::field::batch::{Anchor, End};
 
 use super::engine::{Engine, write_scales};
 use super::map::Tables;
-use super::rule::HIGHEST;
+use super::rule::{dot, tail};
 
 /// Sweeps before a step is given up.
 const MOST_SWEEPS: usize = 30;
@@ -371,18 +371,6 @@ impl<const S: usize> Engine<'_, S> {
     }
 }
 
-/// The size of the first Legendre coefficient that is left out, from the last four that are known.
-pub(super) fn tail<const S: usize>(highest: &[[f64; S]; HIGHEST], a: &[f64; S]) -> f64 {
-    let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|index| dot(&highest[index], a).abs());
-    let (last, before) = (c0 + c1, c2 + c3);
-    let ratio = if before > 0.0 {
-        (last / before).sqrt().min(1.0)
-    } else {
-        1.0
-    };
-    last * ratio
-}
-
 /// The larger of two numbers; a NaN if either is one.
 pub(super) fn larger(x: f64, y: f64) -> f64 {
     if x > y || x.is_nan() { x } else { y }
@@ -414,16 +402,6 @@ fn largest_difference<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
     } else {
         f64::INFINITY
     }
-}
-
-pub(super) fn dot<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
-    let mut sums = [0.0; 4];
-    for (x, y) in x.chunks_exact(4).zip(y.chunks_exact(4)) {
-        for l in 0..4 {
-            sums[l] += x[l] * y[l];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 /// Equation (2) of [`map`](super::map): rates and changes of position at the nodes.

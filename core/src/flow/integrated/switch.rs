@@ -12,6 +12,7 @@
 //!
 //! Source: Leine and Nijmeijer (2004), Dynamics and Bifurcations of Non-Smooth Mechanical Systems, chapter 7.
 
+use crate::flow::field::Room;
 use crate::flow::{FlowError, Tangent};
 
 use super::engine::Engine;
@@ -132,7 +133,11 @@ impl<const S: usize> Engine<'_, S> {
         let last = tangent.columns.len() / order - 1;
         for (index, column) in tangent.columns.chunks_exact_mut(order).enumerate() {
             let by = tangent.by.filter(|_| index == last);
-            let by = by.map(|by| (by, &mut self.slopes.coefficients[..]));
+            let room = Room {
+                by: &mut self.slopes.coefficients,
+                levels: &mut self.levels_by,
+            };
+            let by = by.map(|by| (by, room));
             let at = (&self.here.q[..], phase);
             let moved = self.field.gap_change(contact, level, column, at, by);
             let (_, v) = column.split_at_mut(order / 2);

@@ -14,7 +14,8 @@
 use crate::flow::{FlowError, Tangent};
 
 use super::engine::Engine;
-use super::step::{dot, larger, tail};
+use super::rule::{dot, tail};
+use super::step::larger;
 
 impl<const S: usize> Engine<'_, S> {
     /// Makes the matrix of (1) for the trial and factorises it.

@@ -170,7 +170,7 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// If the motion cannot be continued.
     pub(super) fn states_from(&mut self, state: &[f64], value: f64) -> Result<Vec<f64>, FlowError> {
-        self.flow.set(self.frame.variable, value);
+        self.flow.set(self.frame.variable, value)?;
         let mut state = state.to_vec();
         let mut states = state.clone();
         for segment in 1..self.span.segments {
@@ -191,7 +191,7 @@ impl<'a> Equations<'a> {
         value: f64,
         halves: usize,
     ) -> Result<(), FlowError> {
-        self.flow.set(self.frame.variable, value);
+        self.flow.set(self.frame.variable, value)?;
         let to = 0.5 * TAU * halves as f64;
         self.flow.advance(0.0, to, state, None, None)
     }
@@ -279,7 +279,7 @@ impl<'a> Equations<'a> {
         u: &[f64],
         see: &mut dyn FnMut(&dyn Stretch),
     ) -> Result<DMatrix<f64>, FlowError> {
-        self.flow.set(self.frame.variable, u[u.len() - 1]);
+        self.flow.set(self.frame.variable, u[u.len() - 1])?;
         for segment in 0..self.span.segments {
             self.begin(u, segment);
             self.advance(segment, true, Some(see))?;
@@ -293,7 +293,7 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// If the motion cannot be continued.
     pub(super) fn segment_maps(&mut self, u: &[f64]) -> Result<Vec<DMatrix<f64>>, FlowError> {
-        self.flow.set(self.frame.variable, u[u.len() - 1]);
+        self.flow.set(self.frame.variable, u[u.len() - 1])?;
         let order = self.order();
         let mut maps = Vec::with_capacity(self.span.segments);
         for segment in 0..self.span.segments {
@@ -330,7 +330,7 @@ impl<'a> Equations<'a> {
         u: &[f64],
         see: &mut dyn FnMut(&dyn Stretch),
     ) -> Result<(), FlowError> {
-        self.flow.set(self.frame.variable, u[u.len() - 1]);
+        self.flow.set(self.frame.variable, u[u.len() - 1])?;
         for segment in 0..self.span.segments {
             self.begin(u, segment);
             self.advance(segment, false, Some(see))?;
@@ -346,7 +346,11 @@ impl Problem for Equations<'_> {
 
     fn evaluate(&mut self, u: &[f64], residual: &mut [f64], mut jacobian: Option<&mut Jacobian>) {
         self.failure = None;
-        self.flow.set(self.frame.variable, u[u.len() - 1]);
+        if let Err(failure) = self.flow.set(self.frame.variable, u[u.len() - 1]) {
+            self.failure = Some(failure);
+            residual.fill(f64::NAN);
+            return;
+        }
         for segment in 0..self.span.segments {
             self.begin(u, segment);
             if let Err(failure) = self.advance(segment, jacobian.is_some(), None) {

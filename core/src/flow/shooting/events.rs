@@ -240,8 +240,8 @@ impl<'a> Run<'_, 'a> {
         change: Change,
     ) {
         let options = self.options;
-        // The point behind the event has been stored already.
-        let after = self.cycles.len() - 1;
+        // The point behind the event has been stored already, unless it is on the branch that this one joins.
+        let after = self.cycles.len() - usize::from(self.joined.is_none());
         let place = self.place(equations, newton, between, options, change, VANISHED);
         let Some(place) = place else {
             let value = 0.5 * (between.0.parameter() + between.1.parameter());

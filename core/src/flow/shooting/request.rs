@@ -415,14 +415,14 @@ impl<'a> Shooting<'a> {
         ] {
             validate::option(name, value, range, must)?;
         }
-        let Some(Guess::State(state)) = &self.near else {
-            return Ok(());
+        let (entries, state) = match &self.near {
+            None => return Ok(()),
+            Some(Guess::State(state)) => (state.len(), &state[..]),
+            Some(Guess::Series(orbit)) => (2 * orbit.coordinates, &[][..]),
         };
-        if state.len() != 2 * coordinates {
-            return Err(Error::State {
-                entries: state.len(),
-                expected: 2 * coordinates,
-            });
+        if entries != 2 * coordinates {
+            let expected = 2 * coordinates;
+            return Err(Error::State { entries, expected });
         }
         let bad = state.iter().find(|x| !x.is_finite());
         bad.map_or(Ok(()), |&value| {
@@ -438,7 +438,7 @@ impl<'a> Shooting<'a> {
     fn source(&self, parameters: &[f64], omega: f64) -> Source<'a> {
         let system = self.system;
         let parameters = parameters.to_vec();
-        let exact = Affine::new(system, &parameters, omega).is_some();
+        let exact = Affine::new(system, &parameters, omega).is_ok();
         Source {
             make: Box::new(move |tolerance| {
                 flow::at(system, &parameters, omega, Options { tolerance })

@@ -28,7 +28,7 @@ pub(super) struct Run<'r, 'a> {
     companion: Companion<'a>,
     size: f64,
     /// What the branch has met.
-    joined: Option<Recurrence>,
+    pub(super) joined: Option<Recurrence>,
     before: Option<Tests>,
     last: Option<Tests>,
     pub(super) cycles: Vec<Cycle>,

@@ -89,7 +89,11 @@ fn sampled(setting: &Setting<'_>, cycle: &Cycle, each: usize) -> Result<Vec<f64>
     let coordinates = cycle.extremes.len();
     let count = each * cycle.period;
     let mut flow = setting.flow(setting.source.tolerance)?;
-    flow.set(setting.variable, cycle.value);
+    let motion = |reason| Error::Motion {
+        parameter: cycle.value,
+        reason,
+    };
+    flow.set(setting.variable, cycle.value).map_err(motion)?;
     let mut samples = vec![0.0; coordinates * count];
     let mut index = 0;
     let mut keep = |_: f64, state: &[f64]| {
@@ -103,11 +107,6 @@ fn sampled(setting: &Setting<'_>, cycle: &Cycle, each: usize) -> Result<Vec<f64>
     };
     let mut map = Stroboscope::new(flow);
     let mut state = cycle.state().to_vec();
-    history::record(&mut map, &mut state, (cycle.period, each), &mut keep).map_err(|reason| {
-        Error::Motion {
-            parameter: cycle.value,
-            reason,
-        }
-    })?;
+    history::record(&mut map, &mut state, (cycle.period, each), &mut keep).map_err(motion)?;
     Ok(samples)
 }

@@ -243,7 +243,7 @@ fn a_period_doubles_where_the_branch_of_twice_the_period_ends() {
     assert!((one + 1.0).norm() < 1e-10, "{one}");
     // Beyond it the motion settles on twice the period.
     let mut flow = setting.flow(1e-6).unwrap();
-    flow.set(Variable::Parameter(2), 7.3);
+    flow.set(Variable::Parameter(2), 7.3).unwrap();
     let mut state = doubling.cycle.state().to_vec();
     for _ in 0..1000 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();

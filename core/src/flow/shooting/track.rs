@@ -77,7 +77,10 @@ impl<'a> Curve<'a> {
     /// `F` at extended unknowns into `room`, with `M` and the derivatives of `F`; returns `g`.
     fn evaluate_at(&mut self, u: &[f64], to: Part) -> f64 {
         let n = self.room.len();
-        self.equations.flow.set(self.second, u[n + 1]);
+        if let Err(failure) = self.equations.flow.set(self.second, u[n + 1]) {
+            self.equations.failure = Some(failure);
+            return f64::NAN;
+        }
         self.inner.clear();
         let residual = match to {
             Part::Here => &mut self.room,

@@ -153,9 +153,9 @@ fn check_tangent(
         };
         if direction < start.len() {
             state[direction] += step;
-            flow.set(by, value);
+            flow.set(by, value).unwrap();
         } else {
-            flow.set(by, value + step);
+            flow.set(by, value + step).unwrap();
         }
         flow.advance(0.0, to, &mut state, None, None).unwrap();
         state

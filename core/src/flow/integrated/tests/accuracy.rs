@@ -1,7 +1,7 @@
 //! How accurate motions are: the tolerance, the work that an exponent costs, and what is conserved.
 
 use super::*;
-use crate::flow::divergence::Divergence;
+use crate::flow::divergence::{Divergence, Integral};
 
 /// One-sided or not, exponent and load of the motions that are compared.
 const MOTIONS: [(bool, f64, f64); 6] = [
@@ -122,7 +122,7 @@ fn areas_shrink_by_the_integrated_divergence() {
         let mut flow = Integrated::new(&model, &model.values, 0.9, 1e-12).unwrap();
         let mut divergence = Divergence::new(&model, &model.values, 0.9).unwrap();
         let mut tangent = Tangent::of_state(1, None);
-        let (mut state, mut sum) = ([1.2, 0.4], 0.0);
+        let (mut state, mut sum) = ([1.2, 0.4], Integral::default());
         let mut see = |stretch: &dyn Stretch| sum += divergence.over(stretch);
         let by = Some(&mut tangent);
         flow.advance(0.0, 3.0 * TAU, &mut state, by, Some(&mut see))
@@ -130,7 +130,7 @@ fn areas_shrink_by_the_integrated_divergence() {
         let [a, b, c, d] = tangent.columns[..] else {
             unreachable!()
         };
-        let error = (a * d - b * c) / f64::exp(sum) - 1.0;
+        let error = (a * d - b * c) / f64::exp(sum.value) - 1.0;
         assert!(error.abs() < 1e-10, "{one_sided} {alpha}: {error:e}");
     }
 }

@@ -94,11 +94,16 @@ impl Flow for RungeKutta {
         1
     }
 
-    fn set(&mut self, variable: Variable, value: f64) {
+    fn admits(&self, _: Variable, value: f64) -> bool {
+        value.is_finite()
+    }
+
+    fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
         match variable {
             Variable::Omega => self.omega = value,
             Variable::Parameter(index) => self.parameters[index] = value,
         }
+        Ok(())
     }
 
     fn advance(

@@ -1,0 +1,208 @@
+//! What the flow in closed form and the integrated one promise alike.
+
+use std::f64::consts::TAU;
+
+use super::affine::Affine;
+use super::*;
+use crate::error::Error;
+
+crate::oscillator! {
+    /// Two stops that move, with friction of their own; levels, masses and damping are parameters.
+    Play(x) {
+        param mass;
+        param zeta in 0.0..;
+        param half >= 0;
+        law stops(gap) {
+            gap > half   => 3*(gap - half) + 0.2*dot(gap) + 0.1,
+            gap <= -half => 2*(gap + half),
+            else         => 0,
+        }
+        mass*ddot(x) + 2*zeta*dot(x) + 0.4*x + stops(x - 0.1*sin(2*omega*t))
+            = cos(omega*t) + 0.3*sin(3*omega*t);
+    }
+}
+
+const MODEL: Play = Play {
+    mass: 1.0,
+    zeta: 0.05,
+    half: 0.5,
+};
+const VALUES: [f64; 3] = [1.0, 0.05, 0.5];
+
+fn flows() -> [Box<dyn Flow>; 2] {
+    [
+        Box::new(Affine::new(&MODEL, &VALUES, 0.9).unwrap()),
+        Box::new(Integrated::new(&MODEL, &VALUES, 0.9, 1e-13).unwrap()),
+    ]
+}
+
+/// Backwards a motion comes to where it began, along the way it went, and its derivatives to the unit matrix.
+#[test]
+fn motions_return_the_way_they_came() {
+    let (from, to) = (0.3, 0.3 + 1.7 * TAU);
+    let start = [0.2, 0.7];
+    let [mut exact, _] = flows();
+    let at = |flow: &mut dyn Flow, phase: f64| {
+        let mut state = start;
+        flow.advance(from, phase, &mut state, None, None).unwrap();
+        state
+    };
+    for mut flow in flows() {
+        for by in [
+            Variable::Omega,
+            Variable::Parameter(1),
+            Variable::Parameter(2),
+        ] {
+            let (mut state, mut tangent) = (start, Tangent::of_state(1, Some(by)));
+            flow.advance(from, to, &mut state, Some(&mut tangent), None)
+                .unwrap();
+            let (mut phase, mut between) = (to, [0.0; 2]);
+            let mut see = |stretch: &dyn Stretch| {
+                let (first, last) = stretch.phases();
+                assert!((first - phase).abs() < 1e-12 && last < first);
+                let middle = 0.5 * (first + last);
+                stretch.state(middle, &mut between);
+                let known = at(&mut *exact, middle);
+                for (x, y) in between.iter().zip(known) {
+                    assert!((x - y).abs() < 1e-11, "{middle}: {x} {y}");
+                }
+                phase = last;
+            };
+            let before = flow.work();
+            flow.advance(to, from, &mut state, Some(&mut tangent), Some(&mut see))
+                .unwrap();
+            assert!((phase - from).abs() < 1e-12);
+            assert!(flow.work().switches > before.switches + 4);
+            let unit = Tangent::of_state(1, Some(by)).columns;
+            for (x, y) in state.iter().zip(start) {
+                assert!((x - y).abs() < 1e-11, "{by:?} {x} {y}");
+            }
+            for (x, y) in tangent.columns.iter().zip(unit) {
+                assert!((x - y).abs() < 1e-10, "{by:?} {:?}", tangent.columns);
+            }
+        }
+    }
+}
+
+/// What cannot be set is refused, and the flow goes on as before.
+#[test]
+fn values_that_cannot_be_are_refused() {
+    let refused = [
+        (Variable::Omega, -1.0),
+        (Variable::Omega, 0.0),
+        (Variable::Omega, f64::NAN),
+        (Variable::Parameter(0), 0.0),
+        (Variable::Parameter(1), f64::INFINITY),
+        (Variable::Parameter(2), -0.5),
+        (Variable::Parameter(99), 1.0),
+    ];
+    for mut flow in flows() {
+        let mut before = [0.2, 0.7];
+        flow.advance(0.0, TAU, &mut before, None, None).unwrap();
+        for (variable, value) in refused {
+            let error = flow.set(variable, value).unwrap_err();
+            match variable {
+                Variable::Parameter(0) => {
+                    assert_eq!(error, FlowError::SingularMass { determinant: 0.0 });
+                }
+                Variable::Parameter(2) => assert_eq!(error, FlowError::Levels { contact: 0 }),
+                _ => assert!(matches!(error, FlowError::Value { .. }), "{error}"),
+            }
+            let mut state = [0.2, 0.7];
+            flow.advance(0.0, TAU, &mut state, None, None).unwrap();
+            assert_eq!(state, before);
+        }
+        assert!(flow.admits(Variable::Parameter(1), 0.0));
+        assert!(!flow.admits(Variable::Parameter(1), -0.1));
+        assert!(!flow.admits(Variable::Parameter(99), 1.0));
+        assert!(!flow.admits(Variable::Omega, -1.0));
+    }
+}
+
+/// States and tangents that do not fit are errors, and nothing moves.
+#[test]
+fn entries_are_counted() {
+    for mut flow in flows() {
+        for entries in [0, 1, 4] {
+            let mut state = vec![0.1; entries];
+            let error = flow.advance(0.0, 1.0, &mut state, None, None).unwrap_err();
+            let expected = 2;
+            assert_eq!(error, FlowError::Entries { entries, expected });
+            assert!(state.iter().all(|&x| x == 0.1));
+        }
+        for (entries, by) in [(0, Some(Variable::Omega)), (3, None), (1, None)] {
+            let columns = vec![0.0; entries];
+            let mut tangent = Tangent { columns, by };
+            let mut state = [0.1, 0.2];
+            let error = flow.advance(0.0, 1.0, &mut state, Some(&mut tangent), None);
+            assert!(matches!(error, Err(FlowError::Entries { .. })), "{error:?}");
+        }
+        let mut none = Tangent {
+            columns: Vec::new(),
+            by: None,
+        };
+        flow.advance(0.0, 1.0, &mut [0.1, 0.2], Some(&mut none), None)
+            .unwrap();
+    }
+}
+
+/// As many values as parameters, each in its range; levels in order.
+#[test]
+fn flows_of_unusable_values_are_refused() {
+    let refused: [(&[f64], f64); 5] = [
+        (&[1.0], 0.9),
+        (&[1.0, 0.05, 0.5, 0.0], 0.9),
+        (&[1.0, -0.05, 0.5], 0.9),
+        (&[0.0, 0.05, 0.5], 0.9),
+        (&VALUES, -0.9),
+    ];
+    for (values, omega) in refused {
+        let options = Options::default();
+        let errors = [
+            at(&MODEL, values, omega, options).map(|_| ()).unwrap_err(),
+            Affine::new(&MODEL, values, omega).map(|_| ()).unwrap_err(),
+            divergence::Divergence::new(&MODEL, values, omega)
+                .map(|_| ())
+                .unwrap_err(),
+        ];
+        let [first, others @ ..] = &errors;
+        assert!(others.iter().all(|error| error == first), "{errors:?}");
+        let few = matches!(first, Error::Values { expected: 3, .. });
+        assert_eq!(few, values.len() != 3, "{first}");
+    }
+}
+
+/// Errors come back from the numbers that a checkpoint keeps.
+#[test]
+fn errors_are_kept_as_numbers() {
+    for error in [
+        FlowError::StepTooShort {
+            phase: 1.5,
+            step: 1e-17,
+        },
+        FlowError::NotFinite { phase: 2.5 },
+        FlowError::TooManySwitches {
+            phase: 0.1,
+            switches: 2001,
+        },
+        FlowError::Rests { phase: 0.2 },
+        FlowError::Grazes { phase: 0.3 },
+        FlowError::SingularMass { determinant: 0.0 },
+        FlowError::Value {
+            variable: Variable::Omega,
+            value: -1.0,
+        },
+        FlowError::Value {
+            variable: Variable::Parameter(3),
+            value: -2.0,
+        },
+        FlowError::Levels { contact: 2 },
+        FlowError::Entries {
+            entries: 3,
+            expected: 2,
+        },
+    ] {
+        assert_eq!(FlowError::of_numbers(error.numbers()), Some(error));
+    }
+    assert_eq!(FlowError::of_numbers([0.0; 3]), None);
+}
