@@ -182,7 +182,7 @@ impl Chart {
         self
     }
 
-    /// Shows this part of the plane, whatever there is to show; an axis must be linear.
+    /// Shows this part of the plane, whatever there is to show. An end that has no place on a logarithmic axis is ignored.
     #[must_use]
     pub fn limits(mut self, x: [f64; 2], y: [f64; 2]) -> Self {
         self.limits = Some([x, y]);

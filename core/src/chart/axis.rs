@@ -57,14 +57,15 @@ impl Range {
         }
     }
 
-    /// A linear range with these ends; opened if they are the same.
-    pub(super) fn between(from: f64, to: f64) -> Self {
-        let (low, high) = (from.min(to), from.max(to));
-        if high > low {
-            let scale = Scale::Linear;
+    /// A range with these ends; opened if they are the same, or one of them has no place on such an axis.
+    pub(super) fn between(scale: Scale, [from, to]: [f64; 2]) -> Self {
+        if let (Some(a), Some(b)) = (coordinate(scale, from), coordinate(scale, to))
+            && a != b
+        {
+            let (low, high) = (a.min(b), a.max(b));
             return Self { scale, low, high };
         }
-        Self::of(Scale::Linear, [low, high].into_iter(), false)
+        Self::of(scale, [from, to].into_iter(), false)
     }
 
     /// Where a value is on the axis: 0 at the low end, 1 at the high end. `None` if it cannot be drawn.
@@ -213,6 +214,17 @@ mod tests {
             label
         });
         (labels.collect(), ticks.power)
+    }
+
+    #[test]
+    fn chosen_ends_are_kept_on_both_scales() {
+        let linear = Range::between(Scale::Linear, [0.0, 4.0]);
+        assert_eq!(linear.position(1.0), Some(0.25));
+        let decades = Range::between(Scale::Logarithmic, [100.0, 1.0]);
+        assert!((decades.position(10.0).unwrap() - 0.5).abs() < 1e-15);
+        // Zero has no place there: only the other end is shown.
+        let half = Range::between(Scale::Logarithmic, [0.0, 10.0]);
+        assert!((half.position(10.0).unwrap() - 0.5).abs() < 1e-12);
     }
 
     #[test]

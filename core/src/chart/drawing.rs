@@ -1,6 +1,6 @@
 //! Puts a chart on the page.
 
-use super::axis::{Range, Ticks, superscript};
+use super::axis::{Range, Scale, Ticks, superscript};
 use super::cloud::{self, Dots};
 use super::legend::{Entry, Legend, Sample};
 use super::polyline::polylines;
@@ -110,9 +110,17 @@ impl Plot {
     fn of(chart: &Chart, free: f64) -> Self {
         let values = |k: usize| shown(chart).map(move |point| point[k]);
         let cells = chart.raster.as_ref().map(|raster| [raster.x, raster.y]);
-        let (x, y) = match cells.or(chart.limits) {
-            Some([x, y]) => (Range::between(x[0], x[1]), Range::between(y[0], y[1])),
-            None => (
+        let (x, y) = match (cells, chart.limits) {
+            // Cells are of one size.
+            (Some([x, y]), _) => (
+                Range::between(Scale::Linear, x),
+                Range::between(Scale::Linear, y),
+            ),
+            (None, Some([x, y])) => (
+                Range::between(chart.x.scale, x),
+                Range::between(chart.y.scale, y),
+            ),
+            (None, None) => (
                 Range::of(chart.x.scale, values(0), false),
                 Range::of(chart.y.scale, values(1), true),
             ),

@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use hertzian::chart::{Chart, Curve, Markers, Reference, Scale};
-use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop};
+use hertzian::flow::shooting::Side;
+use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop, System};
 
 use super::exact;
 use super::figure::{Drawing, Table, Task, Value};
@@ -13,6 +14,9 @@ use crate::response::boundary::loss_of_contact;
 use crate::response::files;
 use crate::response::models::declared;
 use crate::response::records::PointRecord;
+
+/// Column of peak-to-peak in the data: the name of the curve comes before those of the program `response`.
+const PEAK_TO_PEAK: usize = 3;
 
 /// A curve of a figure.
 #[derive(Debug, Clone)]
@@ -84,7 +88,8 @@ impl Case {
 pub struct Curves<'t> {
     task: &'t Task<'t>,
     chart: Chart,
-    marks: [Vec<[f64; 2]>; 2],
+    curves: Vec<Curve>,
+    marks: Vec<(EventKind, Vec<[f64; 2]>)>,
     drawing: Drawing,
     notes: Vec<String>,
 }
@@ -98,7 +103,8 @@ impl<'t> Curves<'t> {
             chart: Chart::new(format!("{}: {}", task.figure.name, task.figure.parameters))
                 .x("excitation frequency ω")
                 .y("peak-to-peak displacement"),
-            marks: Default::default(),
+            curves: Vec::new(),
+            marks: Vec::new(),
             drawing: Drawing {
                 data: Table {
                     names: names.map(str::to_owned).collect(),
@@ -123,38 +129,88 @@ impl<'t> Curves<'t> {
     /// If no orbit is found to start from.
     pub fn trace(mut self, case: &Case) -> Result<Self, String> {
         let system = declared(&case.model);
-        let [from, to] = case.range;
-        // A picture alone needs no more than the eye can see.
-        let tolerance = if case.exact.is_empty() { 1e-4 } else { 1e-6 };
-        let branch = FrequencyResponse::of(&*system)
-            .from(from)
-            .to(to)
-            .tolerance(tolerance)
-            .run_with(|_| {
-                if self.task.interrupted.load(Ordering::Relaxed) {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
-            })
-            .map_err(|error| error.to_string())?;
-        self.add(&case.label, &branch);
-        self.compare(case, &branch);
+        let request = request(&*system, case);
+        let branch = self.followed(case, &request)?;
+        self.compare(case, &branch.events);
         Ok(self)
     }
 
-    /// Adds a branch: its curve, its data and its special orbits.
+    /// Traces a curve, and what begins where its orbits lose their symmetry.
+    ///
+    /// # Errors
+    /// If no orbit is found to start from.
+    pub fn trace_all(mut self, case: &Case) -> Result<Self, String> {
+        let system = declared(&case.model);
+        let request = request(&*system, case);
+        let branch = self.followed(case, &request)?;
+        let mut events = branch.events.clone();
+        let breaks = |event: &&Event| event.kind == EventKind::SymmetryBreaking;
+        // Such a branch ends where it meets the curve again: it does not begin there once more.
+        let mut ends = Vec::new();
+        for event in branch.events.iter().filter(breaks) {
+            if ends
+                .iter()
+                .any(|end: &f64| (end - event.point.value).abs() < 1e-5)
+            {
+                continue;
+            }
+            match request.clone().doublings(true).switch(event, Side::One) {
+                Ok(broken) => {
+                    if let Stop::Joined { parameter, .. } = broken.stopped {
+                        ends.push(parameter);
+                    }
+                    self.add("without symmetry", &broken);
+                    let joint = |event: &&Event| event.kind != EventKind::BranchPoint;
+                    events.extend(broken.events.iter().filter(joint).cloned());
+                }
+                Err(error) => self.notes.push(format!(
+                    "What begins at {:.6} was not followed: {error}.",
+                    event.point.value
+                )),
+            }
+        }
+        let unnamed = Case {
+            label: String::new(),
+            ..case.clone()
+        };
+        self.compare(&unnamed, &events);
+        Ok(self)
+    }
+
+    /// Traces a curve until it ends or is interrupted.
+    fn followed<'s>(
+        &mut self,
+        case: &Case,
+        request: &FrequencyResponse<'s>,
+    ) -> Result<Branch<'s>, String> {
+        let task = self.task;
+        let followed = request.run_with(|_| {
+            if task.interrupted.load(Ordering::Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        let branch = followed.map_err(|error| error.to_string())?;
+        self.add(&case.label, &branch);
+        Ok(branch)
+    }
+
+    /// Adds a branch: its curve, its data and its special orbits. Branches of one name have one place in the legend.
     pub fn add(&mut self, label: &str, branch: &Branch<'_>) {
         let facts = branch.system().facts();
-        self.chart = std::mem::take(&mut self.chart).curve(Curve {
-            label: label.to_owned(),
-            runs: branch.runs(),
-        });
+        match self.curves.iter_mut().find(|curve| curve.label == label) {
+            Some(curve) => curve.runs.extend(branch.runs()),
+            None => self.curves.push(Curve {
+                label: label.to_owned(),
+                runs: branch.runs(),
+            }),
+        }
         for event in &branch.events {
             let place = [event.point.value, event.point.peak_to_peak()];
-            match event.kind {
-                EventKind::Fold => self.marks[0].push(place),
-                _ => self.marks[1].push(place),
+            match self.marks.iter_mut().find(|(kind, _)| *kind == event.kind) {
+                Some((_, points)) => points.push(place),
+                None => self.marks.push((event.kind, vec![place])),
             }
         }
         for point in &branch.points {
@@ -162,18 +218,24 @@ impl<'t> Curves<'t> {
             row.extend(files::row(&PointRecord::of(point, facts)));
             self.drawing.data.rows.push(row);
         }
-        if branch.stopped != Stop::ReachedEnd {
+        let joined = matches!(branch.stopped, Stop::Joined { .. });
+        if branch.stopped != Stop::ReachedEnd && !joined {
             let why = &branch.stopped;
             self.notes
                 .push(format!("The curve {label} ended early: {why}."));
         }
     }
 
-    /// Puts the special orbits of a branch beside the exact ones: each to the nearest of its kind.
-    fn compare(&mut self, case: &Case, branch: &Branch<'_>) {
-        let known = exact::frequencies(case.exact);
-        let mut unclaimed: Vec<&Event> = branch.events.iter().collect();
-        for &(kind, omega) in known {
+    /// Puts special orbits beside the exact ones, each to the nearest of its kind, if there is something to compare with.
+    fn compare(&mut self, case: &Case, events: &[Event]) {
+        if case.exact.is_empty() {
+            return;
+        }
+        let [from, to] = case.range;
+        let within = |omega: f64| from.min(to) <= omega && omega <= from.max(to);
+        let known = exact::frequencies(case.exact).iter();
+        let mut unclaimed: Vec<&Event> = events.iter().collect();
+        for &(kind, omega) in known.filter(|(_, omega)| within(*omega)) {
             let distance = |event: &Event| (event.point.value - omega).abs();
             let alike = unclaimed.iter().enumerate().filter(|(_, e)| e.kind == kind);
             let nearest = alike.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
@@ -186,10 +248,19 @@ impl<'t> Curves<'t> {
                     None => Value::missing(what, omega),
                 });
         }
+        if !unclaimed.is_empty() {
+            let more = "Special orbits without a reference are ours alone: those that were computed independently are not all.";
+            self.notes.push(more.to_owned());
+        }
         for event in unclaimed {
             let what = described(case, event.kind);
             self.drawing.values.push(value(what, event));
         }
+    }
+
+    /// Adds a value to compare.
+    pub fn value(&mut self, value: Value) {
+        self.drawing.values.push(value);
     }
 
     /// Adds a line to compare with.
@@ -208,31 +279,56 @@ impl<'t> Curves<'t> {
         let [from, to] = case.range;
         let stop = || self.task.interrupted.load(Ordering::Relaxed);
         let points = loss_of_contact(&case.model, from..=to, stop);
-        self.reference("loss of contact", points)
+        let drawn = self
+            .drawing
+            .data
+            .rows
+            .iter()
+            .filter_map(|row| row.get(PEAK_TO_PEAK)?.parse().ok());
+        let top = drawn.fold(0.0, f64::max);
+        let low = points
+            .iter()
+            .map(|point| point[1])
+            .fold(f64::INFINITY, f64::min);
+        let mut figure = self.reference("loss of contact", points);
+        // Where no curve reaches it, the chart would not either.
+        if top < low && low.is_finite() {
+            figure.chart = figure
+                .chart
+                .limits([from.min(to), from.max(to)], [0.0, 1.2 * low]);
+        }
+        figure
     }
 
     /// What came of it.
     pub fn drawn(self) -> Drawing {
         let Self {
             chart,
-            marks: [folds, others],
+            curves,
+            marks,
             mut drawing,
             notes,
             ..
         } = self;
-        drawing.svg = chart
-            .markers(Markers {
-                label: "fold".to_owned(),
-                points: folds,
-            })
-            .markers(Markers {
-                label: "symmetry-breaking".to_owned(),
-                points: others,
-            })
-            .to_svg();
+        let drawn = curves.into_iter().fold(chart, Chart::curve);
+        let marked = marks.into_iter().fold(drawn, |chart, (kind, points)| {
+            let label = kind.to_string();
+            chart.markers(Markers { label, points })
+        });
+        drawing.svg = marked.to_svg();
         drawing.note = notes.join(" ");
         drawing
     }
+}
+
+/// What is asked for. A picture alone needs no more than the eye can see.
+fn request<'a>(system: &'a dyn System, case: &Case) -> FrequencyResponse<'a> {
+    let [from, to] = case.range;
+    let tolerance = if case.exact.is_empty() { 1e-4 } else { 1e-6 };
+    FrequencyResponse::of(system)
+        .from(from)
+        .to(to)
+        .tolerance(tolerance)
 }
 
 fn described(case: &Case, kind: EventKind) -> String {

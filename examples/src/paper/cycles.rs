@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use hertzian::bifurcation::Bifurcations;
-use hertzian::chart::{Chart, Curve, Line, Markers, Run};
+use hertzian::chart::{Chart, Curve, Line, Markers, Run, Scale};
 use hertzian::flow::shooting::{Cycle, CycleBranch, CycleEvent};
 use hertzian::{Error, EventKind, Shooting, Verdict};
 
@@ -38,6 +38,7 @@ struct Cycles<'t> {
     curves: Vec<Curve>,
     marks: Vec<(EventKind, Vec<[f64; 2]>)>,
     events: Vec<CycleEvent>,
+    scale: Scale,
     drawing: Drawing,
 }
 
@@ -49,6 +50,7 @@ impl<'t> Cycles<'t> {
             curves: Vec::new(),
             marks: Vec::new(),
             events: Vec::new(),
+            scale: Scale::Linear,
             drawing: Drawing {
                 data: Table {
                     names: names.map(str::to_owned).to_vec(),
@@ -113,6 +115,7 @@ impl<'t> Cycles<'t> {
     fn drawn(mut self, x: &str, y: [f64; 2]) -> Drawing {
         let title = format!("{}: {}", self.task.figure.name, self.task.figure.parameters);
         let mut chart = Chart::new(title).x(x).y("peak-to-peak displacement");
+        chart = chart.scales(Scale::Linear, self.scale);
         let ends = self.curves.iter().flat_map(|curve| &curve.runs);
         let values = ends.flat_map(|run| &run.points).map(|point| point[0]);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
@@ -238,7 +241,17 @@ pub fn figure_9a(task: &Task<'_>) -> Result<Drawing, String> {
         let fold = figure.follow(&near.from(1.0).to(2.2))?;
         figure.continue_from(&fold, &orbits, [1.0, 0.4])?;
     }
-    Ok(figure.drawn("excitation frequency ω", [0.0, 120.0]))
+    for (period, _, exact) in exact::COEXISTING {
+        let state = COEXISTING.iter().find(|known| known.0 == period);
+        let orbits = shooting.clone().period(period);
+        let near = state.map_or(orbits.clone(), |known| orbits.near(&known.1));
+        let cycle = near.orbit(1.0).map_err(|error| error.to_string())?;
+        let what = format!("period {period} at ω = 1: peak-to-peak");
+        let value = Value::of(what, cycle.peak_to_peak()).exact(Some(exact));
+        figure.drawing.values.push(value);
+    }
+    figure.scale = Scale::Logarithmic;
+    Ok(figure.drawn("excitation frequency ω", [0.4, 150.0]))
 }
 
 /// Table 1: multipliers of period eight beside its fold.

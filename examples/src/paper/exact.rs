@@ -6,10 +6,10 @@
 #![allow(
     clippy::unreadable_literal,
     clippy::excessive_precision,
-    reason = "numbers as they were published, to be searched for"
+    reason = "numbers as they were computed, to be searched for"
 )]
 
-use hertzian::EventKind::{self, Fold, SymmetryBreaking};
+use hertzian::EventKind::{self, Fold, PeriodDoubling, SymmetryBreaking};
 
 /// Special orbits on a curve of a figure: what happens, and at which frequency.
 pub fn frequencies(curve: &str) -> &'static [(EventKind, f64)] {
@@ -17,7 +17,7 @@ pub fn frequencies(curve: &str) -> &'static [(EventKind, f64)] {
     found.map_or(&[], |(_, events)| events)
 }
 
-const FREQUENCIES: [(&str, &[(EventKind, f64)]); 7] = [
+const FREQUENCIES: [(&str, &[(EventKind, f64)]); 9] = [
     (
         "2a",
         &[
@@ -27,6 +27,8 @@ const FREQUENCIES: [(&str, &[(EventKind, f64)]); 7] = [
             (SymmetryBreaking, 0.353730954670214),
             (Fold, 0.241956653790653),
             (Fold, 0.252011071022547),
+            (Fold, 0.382084326345429),
+            (Fold, 0.385408321288445),
         ],
     ),
     (
@@ -42,6 +44,25 @@ const FREQUENCIES: [(&str, &[(EventKind, f64)]); 7] = [
             (Fold, 0.401353864568085),
             (Fold, 0.400955186850763),
             (Fold, 0.457909272249307),
+            (Fold, 0.902396742342991),
+            (Fold, 0.934177569964217),
+            (PeriodDoubling, 0.904833344193996),
+            (PeriodDoubling, 0.896507260971036),
+        ],
+    ),
+    (
+        "2a, primary",
+        &[(Fold, 0.909513715044238), (Fold, 1.332696002393464)],
+    ),
+    (
+        "2b, primary",
+        &[
+            (Fold, 0.704927892945083),
+            (Fold, 1.320305358301798),
+            (SymmetryBreaking, 0.973916250536018),
+            (SymmetryBreaking, 0.868864958044575),
+            (Fold, 0.600295303778675),
+            (Fold, 0.655311078341127),
         ],
     ),
     (
@@ -77,7 +98,7 @@ const FREQUENCIES: [(&str, &[(EventKind, f64)]); 7] = [
 pub const AMPLITUDES: [(usize, EventKind, f64, &str); 6] = [
     (
         1,
-        EventKind::PeriodDoubling,
+        PeriodDoubling,
         1.282584167663767669,
         "A₁: period 1 doubles",
     ),
@@ -85,13 +106,13 @@ pub const AMPLITUDES: [(usize, EventKind, f64, &str); 6] = [
     (2, Fold, 2.009554757004067908, "A₃: period 2 folds, upper"),
     (
         2,
-        EventKind::PeriodDoubling,
+        PeriodDoubling,
         1.531044135499983048,
         "A₄: period 2 doubles",
     ),
     (
         2,
-        EventKind::PeriodDoubling,
+        PeriodDoubling,
         1.880077405264828835,
         "A₆: period 2 doubles",
     ),
@@ -141,3 +162,11 @@ pub const TABLE_1: [Column; 4] = [
 
 /// Largest Lyapunov exponents per period at two amplitudes, with their standard errors.
 pub const LYAPUNOV: [(f64, f64, f64); 2] = [(1.78, 0.0129, 0.0005), (1.785, 0.214, 0.004)];
+
+/// Frequency of the free vibration of amplitude one without load, for some exponents: the closed form.
+pub const BACKBONES: [(f64, f64); 4] = [
+    (0.6, 1.040748834943126),
+    (1.5, 0.95469356972851),
+    (2.0, 0.9146813565019625),
+    (3.0, 0.8472130847939791),
+];

@@ -57,8 +57,9 @@ const INTRODUCTION: &str = "\
 Resonances and Complex Responses for Nonlinear Spring Systems in Power-Form Order</cite>, Appl. Sci. 11, 7722, of the oscillator</p>
 <p>x″ + 2 ζ H(x) x′ + H(x) sgn(x) |x|<sup>α</sup> = A cos ωt + W,</p>
 <p>with H = 1 (continuous), or H(x) = 1 for x &gt; 0 and 0 otherwise (one-sided: a contact that opens). Stable orbits are solid, \
-unstable ones dashed, undecided ones dotted. Exact values are from an independent computation in higher precision; each error that \
-is stated is the program’s own estimate, made without them.</p>
+unstable ones dashed, undecided ones dotted. References were computed independently of this \
+project, in higher precision, and are exact to more digits than are shown, but for the Lyapunov exponents, which are means with a standard error. \
+Each error that is stated is the program’s own estimate, made without them. Fig. 1 of the paper, a sketch of the oscillator, is left out.</p>
 ";
 
 fn section(text: &mut String, drawn: &Drawn) {
@@ -106,7 +107,7 @@ fn values(text: &mut String, drawing: &Drawing) {
         return;
     }
     let printed = drawing.values.iter().any(|value| value.printed.is_some());
-    text.push_str("<div class=\"table\"><table>\n<tr><th></th><th>ours</th><th>error stated</th><th>exact</th><th>difference</th>");
+    text.push_str("<div class=\"table\"><table>\n<tr><th></th><th>ours</th><th>error stated</th><th>reference</th><th>difference</th>");
     text.push_str(if printed {
         "<th>the paper</th></tr>\n"
     } else {

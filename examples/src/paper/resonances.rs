@@ -3,7 +3,8 @@
 use hertzian::backbone::{FreeOscillation, FreePoint};
 
 use super::curves::{Case, Curves};
-use super::figure::{Drawing, Task};
+use super::exact;
+use super::figure::{Drawing, Task, Value};
 use crate::response::models::ContinuousPower;
 
 /// Hardening without load.
@@ -11,8 +12,8 @@ use crate::response::models::ContinuousPower;
 /// # Errors
 /// If a curve does not begin.
 pub fn figure_2a(task: &Task<'_>) -> Result<Drawing, String> {
-    let case = Case::continuous("", 1.5, [0.2, 1.7]).compared("2a");
-    Ok(Curves::new(task).trace(&case)?.drawn())
+    let case = Case::continuous("symmetric", 1.5, [0.2, 1.7]).compared("2a");
+    Ok(Curves::new(task).trace_all(&case)?.drawn())
 }
 
 /// Softening without load, with superharmonic resonances.
@@ -20,8 +21,8 @@ pub fn figure_2a(task: &Task<'_>) -> Result<Drawing, String> {
 /// # Errors
 /// If a curve does not begin.
 pub fn figure_2b(task: &Task<'_>) -> Result<Drawing, String> {
-    let case = Case::continuous("", 0.6, [1.6, 0.38]).compared("2b");
-    Ok(Curves::new(task).logarithmic().trace(&case)?.drawn())
+    let case = Case::continuous("symmetric", 0.6, [1.6, 0.38]).compared("2b");
+    Ok(Curves::new(task).logarithmic().trace_all(&case)?.drawn())
 }
 
 /// Exponents above one, and the free vibration.
@@ -45,8 +46,17 @@ fn skeletons(task: &Task<'_>, exponents: [f64; 4]) -> Result<Drawing, String> {
     for alpha in exponents {
         // From the side to which the resonance does not lean.
         let range = if alpha > 1.0 { [0.5, 2.4] } else { [1.9, 0.6] };
+        let exact = match alpha {
+            1.5 => "2a, primary",
+            0.6 => "2b, primary",
+            _ => "",
+        };
         let case = Case::continuous(format!("α = {alpha}"), alpha, range);
-        figure = figure.trace(&case)?;
+        figure = figure.trace(&case.compared(exact))?;
+        if let Some(&(_, exact)) = exact::BACKBONES.iter().find(|known| known.0 == alpha) {
+            let what = format!("α = {alpha}: free vibration of amplitude one, ω");
+            figure.value(Value::of(what, at_amplitude_one(alpha)?).exact(Some(exact)));
+        }
         let label = if alpha == exponents[0] { "free" } else { "" };
         figure = figure.reference(label, skeleton(alpha)?);
     }
@@ -55,12 +65,7 @@ fn skeletons(task: &Task<'_>, exponents: [f64; 4]) -> Result<Drawing, String> {
 
 /// Frequency and peak-to-peak of the free vibration.
 fn skeleton(alpha: f64) -> Result<Vec<[f64; 2]>, String> {
-    let spring = ContinuousPower {
-        alpha,
-        zeta: 0.0,
-        load: 0.0,
-        drive: 0.0,
-    };
+    let spring = spring(alpha);
     // With an exponent above one the frequency falls to zero with the amplitude.
     let from = if alpha > 1.0 { 0.3 } else { 0.02 };
     let free = FreeOscillation::of(&spring).from(from).to(9.0);
@@ -72,6 +77,24 @@ fn skeleton(alpha: f64) -> Result<Vec<[f64; 2]>, String> {
     Ok(points.iter().map(place).collect())
 }
 
+/// Frequency of the free vibration of amplitude one.
+fn at_amplitude_one(alpha: f64) -> Result<f64, String> {
+    let spring = spring(alpha);
+    let free = FreeOscillation::of(&spring).from(1.0).to(1.01);
+    let points = free.run().map_err(|error| error.to_string())?;
+    let first = points.first().ok_or("no free vibration was found")?;
+    Ok(first.omega)
+}
+
+fn spring(alpha: f64) -> ContinuousPower {
+    ContinuousPower {
+        alpha,
+        zeta: 0.0,
+        load: 0.0,
+        drive: 0.0,
+    }
+}
+
 /// Loads on a spring of exponent 3/2.
 ///
 /// # Errors
@@ -81,7 +104,7 @@ pub fn figure_4a(task: &Task<'_>) -> Result<Drawing, String> {
         task,
         1.5,
         [0.7, 2.0],
-        &[(0.0, ""), (1.0, "4a, W = 1"), (5.0, "4a, W = 5")],
+        &[(0.0, "2a, primary"), (1.0, "4a, W = 1"), (5.0, "4a, W = 5")],
     )
 }
 
@@ -90,7 +113,8 @@ pub fn figure_4a(task: &Task<'_>) -> Result<Drawing, String> {
 /// # Errors
 /// If a curve does not begin.
 pub fn figure_4b(task: &Task<'_>) -> Result<Drawing, String> {
-    loads(task, 0.6, [1.4, 0.42], &[(0.0, ""), (1.0, ""), (5.0, "")])
+    let known = [(0.0, "2b, primary"), (1.0, ""), (5.0, "")];
+    loads(task, 0.6, [1.4, 0.42], &known)
 }
 
 fn loads(
