@@ -64,6 +64,7 @@ impl Orbit {
 
 /// One orbit of a branch.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Point {
     /// Value of what the branch varies: omega or a parameter.
     pub value: f64,
@@ -133,6 +134,7 @@ impl fmt::Display for EventKind {
 
 /// A special orbit of a branch, located until its test function vanished.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Event {
     /// What happens there.
     pub kind: EventKind,
@@ -164,6 +166,7 @@ impl fmt::Display for Event {
 ///
 /// A sampled balance of a force that jumps does this, and so does an orbit that grazes a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Turn {
     /// What the branch varies, where the jump is.
     pub value: f64,

@@ -4,7 +4,6 @@
 
 use std::borrow::Cow;
 
-use crate::generic::LawData;
 use crate::law::{
     ArgumentFacts, Derivatives, Exponent, Law, LawFacts, LevelFacts, On, Parts, PieceFacts,
     Quantity, RateDependence, TermFacts, Variation,
@@ -26,7 +25,6 @@ pub(crate) struct PowerForm {
 struct PowerLaw {
     one_sided: bool,
     facts: LawFacts,
-    data: LawData,
 }
 
 const COSINE: Wave = Wave {
@@ -149,16 +147,7 @@ impl PowerLaw {
             rate: RateDependence::Linear,
             odd: !one_sided,
         };
-        let data = LawData {
-            nodes: Cow::Borrowed(&[]),
-            levels: Cow::Borrowed(&[]),
-            pieces: Cow::Borrowed(&[]),
-        };
-        Self {
-            one_sided,
-            facts,
-            data,
-        }
+        Self { one_sided, facts }
     }
 
     /// Force and derivatives by gap, rate, `zeta` and `alpha`.
@@ -192,10 +181,6 @@ impl PowerLaw {
 impl Law for PowerLaw {
     fn facts(&self) -> &LawFacts {
         &self.facts
-    }
-
-    fn data(&self) -> &LawData {
-        &self.data
     }
 
     fn levels(&self, _arguments: &[f64], levels: &mut [f64]) {

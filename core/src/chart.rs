@@ -78,6 +78,7 @@ pub struct Run {
 
 /// What a line says of the solutions it shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Line {
     /// Stable: solid.
     Stable,

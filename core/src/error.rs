@@ -2,7 +2,9 @@
 
 use crate::branch::EventKind;
 use crate::flow::FlowError;
-use crate::newton::NewtonError;
+
+pub use crate::linear::Singular;
+pub use crate::newton::NewtonError;
 
 /// Why there is no result.
 #[derive(Debug, Clone, PartialEq)]
@@ -181,6 +183,7 @@ pub enum Error {
 
 /// What attempts to find an orbit of a longer period came to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Attempts {
     /// As many as there are disturbances to begin with.
     pub planned: usize,

@@ -19,12 +19,22 @@ pub use law::InterpretedLaw;
 #[cfg(feature = "text")]
 pub use text::{Declaration, DeclarationError, Fault, UnknownParameter};
 
-/// A system whose laws are interpreted; everything else is the system's own.
+/// A system whose laws are interpreted; everything else is the system's own, and so is a law that has no
+/// [data](Law::data).
 ///
 /// It computes what the system computes, from the same declaration, without the generated kernels.
 pub struct Interpreted<'a> {
     system: &'a dyn System,
-    laws: Vec<InterpretedLaw>,
+    /// In the order of the system's; `None` where it has no data.
+    laws: Vec<Option<InterpretedLaw>>,
+}
+
+impl std::fmt::Debug for Interpreted<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Interpreted")
+            .field("system", &self.system.facts().name)
+            .finish_non_exhaustive()
+    }
 }
 
 impl<'a> Interpreted<'a> {
@@ -65,7 +75,10 @@ impl System for Interpreted<'_> {
     }
 
     fn law(&self, index: usize) -> &dyn Law {
-        &self.laws[index]
+        match &self.laws[index] {
+            Some(law) => law,
+            None => self.system.law(index),
+        }
     }
 }
 
@@ -104,6 +117,7 @@ pub struct PieceData {
 
 /// One operation. A `usize` is the position of an operand.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Node {
     /// A number.
     Number(f64),

@@ -24,8 +24,10 @@ pub trait Law: Send + Sync {
     /// What is known of the law without evaluating it.
     fn facts(&self) -> &LawFacts;
 
-    /// The same law as data, for the interpreter.
-    fn data(&self) -> &LawData;
+    /// The same law as data, for the interpreter; `None` for a law that has none, as one written by hand.
+    fn data(&self) -> Option<&LawData> {
+        None
+    }
 
     /// Writes the gaps at which pieces meet, in increasing order. `levels.len()` is the number of levels.
     fn levels(&self, arguments: &[f64], levels: &mut [f64]);
@@ -69,8 +71,14 @@ pub trait Law: Send + Sync {
     fn parts(&self) -> Option<Parts<'_>>;
 }
 
+impl std::fmt::Debug for dyn Law + '_ {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Law({})", self.facts().name)
+    }
+}
+
 /// The two laws of the gap alone of which a law that is linear in its rate consists, see [`Law::parts`].
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Parts<'a> {
     /// `f(g)`, the force at zero rate.
     pub spring: &'a dyn Law,

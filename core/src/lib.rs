@@ -32,6 +32,7 @@
 //! The modules [`system`] and [`law`](mod@law) are the contract between generated code and the runtime; a system written by hand
 //! against them is as good as a declared one. [`generic`] interprets the same declarations.
 #![deny(missing_docs)]
+#![warn(missing_debug_implementations)]
 
 // Generated code names this crate `::hertzian`; inside the crate itself that name must exist too.
 extern crate self as hertzian;
@@ -51,7 +52,7 @@ pub mod chart;
 mod continuation;
 #[doc(hidden)]
 pub mod emitted;
-mod error;
+pub mod error;
 pub mod export;
 pub mod flow;
 mod follower;
@@ -87,16 +88,15 @@ mod truncation;
 mod validate;
 
 pub use aft::Aft;
+pub use bifurcation::Bifurcations;
 pub use branch::{Branch, Event, EventKind, Orbit, Point, Turn};
 pub use continuation::follow::Stop;
-pub use error::{Attempts, Error};
-pub use flow::shooting::Shooting;
+pub use error::Error;
+pub use flow::shooting::{Cycle, CycleBranch, CycleEvent, Shooting, Side};
 pub use hertzian_macros::{law, oscillator};
-pub use linear::Singular;
 pub use nalgebra::Complex;
-pub use newton::NewtonError;
 pub use response::FrequencyResponse;
-pub use stability::{Stability, Verdict};
+pub use stability::{Method, Stability, Verdict};
 pub use statistics::Statistics;
 pub use system::System;
 

@@ -38,6 +38,7 @@ pub struct Matrix {
 
 /// The matrix could not be factorised.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Singular {
     /// Column without a usable pivot.
     pub column: usize,

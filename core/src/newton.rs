@@ -45,6 +45,7 @@ pub struct Converged {
 
 /// Why an iteration ended without a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum NewtonError {
     /// The updates did not become small.
     NotConverged {

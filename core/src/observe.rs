@@ -11,6 +11,7 @@ use reader::Reader;
 
 /// What is read off one orbit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Observed {
     /// One entry per coordinate.
     pub motions: Vec<Motion>,
@@ -25,6 +26,7 @@ pub struct Observed {
 
 /// What is read off the motion of one coordinate over a period.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Motion {
     /// Largest value.
     pub maximum: f64,
@@ -60,6 +62,7 @@ impl Motion {
 
 /// What is read off one contact over a period of the orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ContactMotion {
     /// Largest force by size, one-sided limits at switches included.
     pub peak_force: f64,

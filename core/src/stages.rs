@@ -5,6 +5,8 @@ use crate::branch::{Branch, Point};
 use crate::continuation::problem::Problem;
 use crate::jacobian::Jacobian;
 
+pub use crate::fourier::crossings::{Crossing, CrossingFinder, NearMiss};
+
 /// The balance of a branch at one of its points, with the core that a run takes.
 #[derive(Debug)]
 pub struct Stages<'a> {

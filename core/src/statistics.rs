@@ -2,6 +2,7 @@
 
 /// Counts of the work done.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Statistics {
     /// Evaluations of the residual alone.
     pub residuals: usize,

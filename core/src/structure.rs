@@ -45,6 +45,15 @@ pub struct Structure {
     laws: Vec<Arc<dyn Law>>,
 }
 
+impl std::fmt::Debug for Structure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Structure")
+            .field("name", &self.facts.name)
+            .field("values", &self.values)
+            .finish_non_exhaustive()
+    }
+}
+
 /// A number, or a named parameter that a continuation may vary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Value {

@@ -102,7 +102,7 @@ fn parameters_are_varied_by_name() {
 #[test]
 fn what_does_not_fit_is_said_with_numbers() {
     let square = |size| DMatrix::<f64>::identity(size, size);
-    let fails = |builder: hertzian::structure::Builder| builder.build().err().expect("a fault");
+    let fails = |builder: hertzian::structure::Builder| builder.build().expect_err("a fault");
     assert_eq!(
         fails(Structure::of(&square(2), &square(3), &square(2))),
         StructureError::MatrixSize {
@@ -197,7 +197,7 @@ fn arguments_lie_in_the_ranges_of_the_law() {
     ] {
         assert_eq!(build(play, n).err(), Some(expected));
     }
-    let fault = build(0.5.into(), 0.5).err().expect("a fault");
+    let fault = build(0.5.into(), 0.5).expect_err("a fault");
     assert_eq!(
         fault.to_string(),
         "argument `n` of law `Flanks` is 0.5, outside its range [1, 3]"

@@ -1,4 +1,6 @@
-//! The procedural macro of hertzian: a thin wrapper around `hertzian-compiler`.
+//! The procedural macros of `hertzian`: a thin wrapper around `hertzian-compiler`.
+//!
+//! Depend on `hertzian`, which re-exports them: generated code calls it.
 
 use proc_macro::TokenStream;
 

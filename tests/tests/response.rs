@@ -3,8 +3,9 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
+use hertzian::error::NewtonError;
 use hertzian::observe::{amplitudes, phases};
-use hertzian::{Aft, Error, FrequencyResponse, NewtonError, Stop, System, Verdict};
+use hertzian::{Aft, Error, FrequencyResponse, Stop, System, Verdict};
 
 hertzian::oscillator! {
     /// Nothing but linear terms.

@@ -124,7 +124,6 @@ pub fn run(sides: Sides, instructions: Instructions, zeta: f64, samples: &mut Sa
             };
             clone(zeta, inputs, force, by_gap, by_rate);
         },
-        #[cfg(not(target_arch = "x86_64"))]
-        _ => unreachable!("no processor of this kind has them"),
+        _ => unreachable!("no clone for them"),
     }
 }

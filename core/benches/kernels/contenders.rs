@@ -29,7 +29,7 @@ pub fn contenders(subject: &'static Subject, call: Call) -> Vec<Contender> {
         let arguments = subject.arguments;
         let generated = move |s: &mut Samples| evaluate(subject.law, call, arguments, s);
         add("generated", Box::new(generated));
-        let law = InterpretedLaw::of(subject.law);
+        let law = InterpretedLaw::of(subject.law).expect("a generated law");
         add(
             "interpreted",
             Box::new(move |s| evaluate(&law, call, arguments, s)),

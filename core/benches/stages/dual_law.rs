@@ -16,7 +16,7 @@ impl DualLaw {
     pub fn of(law: &dyn Law) -> Self {
         Self {
             facts: law.facts().clone(),
-            data: law.data().clone(),
+            data: law.data().expect("a generated law").clone(),
         }
     }
 }
@@ -48,8 +48,8 @@ impl Law for DualLaw {
         &self.facts
     }
 
-    fn data(&self) -> &LawData {
-        &self.data
+    fn data(&self) -> Option<&LawData> {
+        Some(&self.data)
     }
 
     fn levels(&self, _arguments: &[f64], levels: &mut [f64]) {

@@ -4,10 +4,10 @@ use std::fmt;
 use std::hint::black_box;
 use std::time::Instant;
 
-use hertzian::fourier::crossings::{Crossing, CrossingFinder, NearMiss};
 use hertzian::generic::InterpretedLaw;
 use hertzian::law::Law;
 use hertzian::stages::Stages;
+use hertzian::stages::{Crossing, CrossingFinder, NearMiss};
 use hertzian::system::System;
 use hertzian::{Branch, FrequencyResponse, Point};
 
@@ -56,7 +56,7 @@ pub struct Whole {
 
 impl Whole {
     pub fn of(system: &dyn System, harmonics: usize) -> Self {
-        let interpreted = InterpretedLaw::of(system.law(0));
+        let interpreted = InterpretedLaw::of(system.law(0)).expect("a generated law");
         let dual = DualLaw::of(system.law(0));
         let laws: [&dyn Law; 3] = [system.law(0), &interpreted, &dual];
         let systems = laws.map(|law| With { system, law });

@@ -83,7 +83,7 @@ impl Law for Observed<'_> {
         self.law.facts()
     }
 
-    fn data(&self) -> &LawData {
+    fn data(&self) -> Option<&LawData> {
         self.law.data()
     }
 

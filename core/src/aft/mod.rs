@@ -13,6 +13,7 @@ use switched::SwitchedAft;
 
 /// How the harmonics of a contact force are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum Aft {
     /// Integrated from switch to switch: exact, whatever the number of harmonics.
     #[default]

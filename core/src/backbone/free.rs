@@ -79,6 +79,7 @@ impl std::fmt::Debug for FreeOscillation<'_> {
 
 /// One free oscillation.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FreePoint {
     /// Its frequency.
     pub omega: f64,

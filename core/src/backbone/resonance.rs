@@ -57,6 +57,7 @@ impl std::fmt::Debug for PhaseResonance<'_> {
 
 /// One orbit in phase resonance.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ResonancePoint {
     /// What is varied.
     pub value: f64,

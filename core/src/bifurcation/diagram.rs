@@ -13,6 +13,7 @@ use crate::flow::shooting::{CycleBranch, CycleEvent, End, Shooting, Side};
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Diagram {
     /// The branches, in the order in which they were found.
     pub branches: Vec<Limb>,
@@ -26,6 +27,7 @@ pub struct Diagram {
 
 /// One branch of a diagram.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Limb {
     /// Where it comes from.
     pub origin: Origin,
@@ -59,6 +61,7 @@ pub enum Origin {
 
 /// A bifurcation whose further branch was not followed.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Omitted {
     /// Number of the branch in the diagram.
     pub branch: usize,

@@ -24,6 +24,7 @@ pub struct Raster {
 
 /// A colour of cells. All differ in lightness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Colour {
     /// One of twelve; neighbours in the list are far from each other in lightness. Others repeat them.
     Class(usize),

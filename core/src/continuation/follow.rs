@@ -52,6 +52,7 @@ impl CurvePoint {
 
 /// Why following ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Stop {
     /// The parameter reached the end of its range.
     ReachedEnd,

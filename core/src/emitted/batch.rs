@@ -34,6 +34,7 @@ pub trait Kernel<const A: usize, const V: usize> {
 }
 
 /// The kernel of a piece without force.
+#[derive(Debug)]
 pub struct Nothing;
 
 impl<const A: usize, const V: usize> Kernel<A, V> for Nothing {

@@ -32,6 +32,7 @@ pub trait ByArgument {
 }
 
 /// The law that kernels, facts and data make.
+#[derive(Debug)]
 pub struct Generated<K, const A: usize, const L: usize, const V: usize> {
     facts: LawFacts,
     data: LawData,
@@ -69,8 +70,8 @@ impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> Law
         &self.facts
     }
 
-    fn data(&self) -> &LawData {
-        &self.data
+    fn data(&self) -> Option<&LawData> {
+        Some(&self.data)
     }
 
     fn levels(&self, arguments: &[f64], levels: &mut [f64]) {
@@ -151,7 +152,7 @@ impl<T: Declared> Law for T {
         self.declared().facts()
     }
 
-    fn data(&self) -> &LawData {
+    fn data(&self) -> Option<&LawData> {
         self.declared().data()
     }
 

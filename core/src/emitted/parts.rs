@@ -10,9 +10,11 @@ use super::law::{ByArgument, Kernels};
 use crate::law::On;
 
 /// The spring `f` of a law: the law at zero rate.
+#[derive(Debug)]
 pub struct Spring<K>(PhantomData<fn() -> K>);
 
 /// The primitive `G` of the rate term of a law.
+#[derive(Debug)]
 pub struct Primitive<K>(PhantomData<fn() -> K>);
 
 /// Declares the kernels of a part: those of the whole law, run through a batch that changes their values.

@@ -86,6 +86,14 @@ pub struct Divergence<'a> {
     panels: Vec<(f64, i32)>,
 }
 
+impl std::fmt::Debug for Divergence<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Divergence")
+            .field("system", &self.system.facts().name)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a> Divergence<'a> {
     /// The divergence at values of the parameters and of `omega`.
     ///

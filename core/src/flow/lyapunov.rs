@@ -32,8 +32,18 @@ pub struct Lyapunov<'s, 'a> {
     batches: Vec<Batch>,
 }
 
+impl std::fmt::Debug for Lyapunov<'_, '_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Lyapunov")
+            .field("state", &self.state)
+            .field("batches", &self.batches)
+            .finish_non_exhaustive()
+    }
+}
+
 /// What one batch of periods gave.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Batch {
     /// Means (2) per period over the batch.
     pub exponents: Vec<f64>,
@@ -43,6 +53,7 @@ pub struct Batch {
 
 /// Lyapunov exponents.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Exponents {
     /// Largest first, per period of the declaration. NaN for those so far below the largest that neighbours are pressed
     /// together beyond ten decades in one application of the map; with one coordinate, `divergence` less the largest then.

@@ -45,8 +45,17 @@ pub struct Section<'a> {
     entries: usize,
 }
 
+impl std::fmt::Debug for Section<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Section")
+            .field("direction", &self.direction)
+            .finish_non_exhaustive()
+    }
+}
+
 /// A crossing of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Crossing<'a> {
     /// Periods since the start.
     pub periods: f64,

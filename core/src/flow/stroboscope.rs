@@ -38,6 +38,16 @@ pub struct Stroboscope<'a> {
     periods: u64,
 }
 
+impl std::fmt::Debug for Stroboscope<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Stroboscope")
+            .field("phase", &self.phase)
+            .field("fold", &self.fold)
+            .field("periods", &self.periods)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a> Stroboscope<'a> {
     /// The map over one period, from phase zero.
     pub fn new(flow: Box<dyn Flow + 'a>) -> Self {

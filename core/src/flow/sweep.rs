@@ -28,6 +28,7 @@ pub struct Sweep {
 
 /// What was seen at one value.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Row {
     /// The value.
     pub value: f64,

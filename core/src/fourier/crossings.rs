@@ -43,8 +43,9 @@ pub struct NearMiss {
     pub curvature: f64,
 }
 
-/// Appends the crossings in order of phase, as [`CrossingFinder`] finds them; it serves callers for whom a finder is not
+/// Appends the crossings in order of phase, as [`CrossingFinder`] finds them; it serves tests, for which a finder is not
 /// worth keeping.
+#[cfg(test)]
 pub fn crossings(series: &[f64], level: f64, found: &mut Vec<Crossing>) {
     let mut finder = CrossingFinder::new(waves::highest(series));
     finder.sample(series);

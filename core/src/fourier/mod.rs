@@ -1,9 +1,9 @@
-//! Fourier series of periodic quantities: their layout, their samples and the places where they cross a level.
+//! Fourier series of periodic quantities.
 
-pub mod crossings;
+pub(crate) mod crossings;
 pub(crate) mod gauss;
 pub(crate) mod grading;
 pub(crate) mod kernels;
 pub(crate) mod phases;
-pub mod sampled;
+pub(crate) mod sampled;
 pub mod series;

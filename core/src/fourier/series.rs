@@ -24,6 +24,9 @@ pub const fn harmonics(series: &[f64]) -> usize {
 /// Value at a phase, by Clenshaw's recurrence.
 ///
 /// Source: Clenshaw (1955), A note on the summation of Chebyshev series; both sums share one recurrence in `cos tau`.
+///
+/// # Panics
+/// If the series is empty: it has no mean.
 pub fn value(series: &[f64], tau: f64) -> f64 {
     let (sine, cosine) = tau.sin_cos();
     let (mut c1, mut c2, mut s1, mut s2) = (0.0, 0.0, 0.0, 0.0);
@@ -35,6 +38,9 @@ pub fn value(series: &[f64], tau: f64) -> f64 {
 }
 
 /// Value, first and second derivative with respect to the phase.
+///
+/// # Panics
+/// If the series is empty.
 pub fn value_and_derivatives(series: &[f64], tau: f64) -> (f64, f64, f64) {
     let (sine, cosine) = tau.sin_cos();
     let (mut x, mut x1, mut x2) = (series[0], 0.0, 0.0);
@@ -50,7 +56,10 @@ pub fn value_and_derivatives(series: &[f64], tau: f64) -> (f64, f64, f64) {
     (x, x1, x2)
 }
 
-/// Writes the derivative with respect to the phase.
+/// Writes the derivative with respect to the phase, into a series of the same length.
+///
+/// # Panics
+/// If the series is empty, or the derivative is.
 pub fn differentiate(series: &[f64], derivative: &mut [f64]) {
     derivative[0] = 0.0;
     for (index, (from, to)) in series[1..]
@@ -65,6 +74,9 @@ pub fn differentiate(series: &[f64], derivative: &mut [f64]) {
 }
 
 /// Mean of the product of two series over a period; a shorter one counts as padded with zeros.
+///
+/// # Panics
+/// If one is empty.
 pub fn mean_product(a: &[f64], b: &[f64]) -> f64 {
     let oscillating: f64 = a[1..].iter().zip(&b[1..]).map(|(x, y)| x * y).sum();
     a[0] * b[0] + 0.5 * oscillating
@@ -73,7 +85,7 @@ pub fn mean_product(a: &[f64], b: &[f64]) -> f64 {
 /// Adds `factor * wave(tau) * series(tau)` to `sum`, dropping harmonics above those of `sum`.
 ///
 /// From `cos h cos k = (cos(k - h) + cos(k + h)) / 2` and its companions, for every pair of (1).
-pub fn add_product(series: &[f64], wave: Wave, factor: f64, sum: &mut [f64]) {
+pub(crate) fn add_product(series: &[f64], wave: Wave, factor: f64, sum: &mut [f64]) {
     let h = wave.harmonic as usize;
     if h == 0 {
         for (to, from) in sum.iter_mut().zip(series) {
@@ -116,7 +128,7 @@ fn add_pair(sum: &mut [f64], k: isize, c: f64, s: f64) {
 }
 
 /// Adds `value * wave(tau)`, unless the wave is above the harmonics of the series.
-pub fn add_wave(sum: &mut [f64], harmonic: usize, part: Part, value: f64) {
+pub(crate) fn add_wave(sum: &mut [f64], harmonic: usize, part: Part, value: f64) {
     if harmonic > harmonics(sum) {
         return;
     }

@@ -102,16 +102,17 @@ impl InterpretedLaw {
         }
     }
 
-    /// The interpreted twin of a law, made from the law's own facts and data.
+    /// The interpreted twin of a law, made from the law's own facts and data; `None` if it or one of its parts has no data.
     ///
     /// # Panics
     /// As [`InterpretedLaw::new`].
-    pub fn of(law: &dyn Law) -> Self {
-        let twin = |law: &dyn Law| Self::new(law.facts().clone(), law.data().clone());
-        match law.parts() {
-            None => twin(law),
-            Some(parts) => twin(law).with_parts(twin(parts.spring), twin(parts.primitive)),
-        }
+    pub fn of(law: &dyn Law) -> Option<Self> {
+        let twin = |law: &dyn Law| Some(Self::new(law.facts().clone(), law.data()?.clone()));
+        let whole = twin(law)?;
+        Some(match law.parts() {
+            None => whole,
+            Some(parts) => whole.with_parts(twin(parts.spring)?, twin(parts.primitive)?),
+        })
     }
 
     fn evaluate(&self, call: Call, on: On, inputs: Inputs<'_>, out: &mut [&mut [f64]]) {
@@ -199,8 +200,8 @@ impl Law for InterpretedLaw {
         &self.facts
     }
 
-    fn data(&self) -> &LawData {
-        &self.data
+    fn data(&self) -> Option<&LawData> {
+        Some(&self.data)
     }
 
     fn levels(&self, arguments: &[f64], levels: &mut [f64]) {

@@ -184,7 +184,7 @@ fn the_level_belongs_to_the_piece_that_the_facts_say() {
     let law = hertz(None);
     let mut facts = law.facts().clone();
     facts.levels.to_mut()[0].belongs_above = true;
-    let above = InterpretedLaw::new(facts, law.data().clone());
+    let above = InterpretedLaw::new(facts, law.data().expect("data").clone());
     let of = |law: &dyn Law| evaluate(law, 0, On::AllPieces, &[ZETA, 1.5], &[0.0], &[1.0])[0][0];
     assert_eq!(of(&law), 0.0);
     assert_eq!(of(&above), 2.0 * ZETA);
@@ -223,7 +223,7 @@ fn a_twin_has_the_same_parts() {
     assert!(law.parts().is_none());
     let mut facts = law.facts().clone();
     facts.rate = RateDependence::None;
-    let nodes = &law.data().nodes;
+    let nodes = &law.data().expect("data").nodes;
     let part = |force, by_gap, by| {
         let pieces = vec![piece(5, 5, 5, [5, 5]), piece(force, by_gap, 5, by)];
         let mut nodes = nodes.to_vec();
@@ -233,7 +233,7 @@ fn a_twin_has_the_same_parts() {
     let law = law
         .clone()
         .with_parts(part(9, 13, [5, 15]), part(16, 7, [17, 5]));
-    let twin = InterpretedLaw::of(&law);
+    let twin = InterpretedLaw::of(&law).expect("data");
     let parts = twin.parts().expect("a law that is linear in its rate");
     let of = |law: &dyn Law| evaluate(law, 0, On::AllPieces, &[ZETA, 1.5], &[4.0], &[3.0]);
     let [force, by_gap, by_rate, by_zeta] = of(parts.spring);

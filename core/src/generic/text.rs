@@ -46,6 +46,7 @@ pub struct Declaration {
 
 /// Everything that is wrong with a declaration; at least one fault.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct DeclarationError {
     /// What is wrong, and where.
     pub faults: Vec<Fault>,
@@ -53,6 +54,7 @@ pub struct DeclarationError {
 
 /// A parameter was to be set that the declaration does not have.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct UnknownParameter {
     /// The name asked for.
     pub name: String,

@@ -10,6 +10,7 @@ const VARIABLE: &str = "HERTZIAN_INSTRUCTIONS";
 
 /// An instruction set that inner loops are compiled for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Instructions {
     /// What every processor of the target has: on x86-64, vectors of two numbers.
     Baseline,

@@ -57,6 +57,7 @@ const VARIABLE: &str = "HERTZIAN_POWERS";
 
 /// How accurate the powers of generated laws are: see [the module](self).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Accuracy {
     /// To about one unit in the last place for the exponents of contacts.
     #[default]

@@ -14,6 +14,7 @@ use crate::truncation::Finer;
 
 /// What a [`Method`] says of one orbit: see [`Branch::multipliers`].
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Answer {
     /// The method.
     pub method: Method,

@@ -25,6 +25,7 @@ pub enum Method {
 
 /// Which eigenvalues of the Hill matrix are taken for Floquet exponents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Sorting {
     /// Those with the smallest imaginary part by size. Two real negative multipliers can come out as one of them twice.
     ImaginaryPart,
@@ -36,6 +37,7 @@ pub enum Sorting {
 
 /// How the solution is read off the exponential of the Hill matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Projection {
     /// From its mean.
     Direct,
@@ -71,6 +73,7 @@ impl std::fmt::Display for Method {
 
 /// What multipliers cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Cost {
     /// Evaluations of the derivatives of a contact's force at one instant.
     pub slopes: usize,

@@ -33,6 +33,7 @@ pub(crate) use spectrum::{distance, eigenvalues};
 
 /// What is known of the stability of an orbit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Stability {
     /// The verdict.
     pub verdict: Verdict,

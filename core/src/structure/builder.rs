@@ -8,6 +8,7 @@ use crate::system::{ContactFacts, Part, Place, SystemFacts, Wave};
 const PIVOT: f64 = 1e-13;
 
 /// A structure being described; nothing is checked before [`Builder::build`].
+#[derive(Debug)]
 pub struct Builder {
     pub(super) name: String,
     pub(super) matrices: [DMatrix<f64>; 3],

@@ -8,6 +8,7 @@ use crate::law::Law;
 /// A law at work in a structure.
 ///
 /// The gap is `direction . q - offset`, and the force acts along the same direction unless another is given.
+#[derive(Debug)]
 pub struct Contact {
     pub(super) law: Arc<dyn Law>,
     pub(super) arguments: Vec<Value>,

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// What is wrong with a structure.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum StructureError {
     /// A matrix is not as many rows and columns as the structure has coordinates.
     MatrixSize {

@@ -6,7 +6,7 @@ use std::fmt::{self, Write};
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
 use hertzian::flow::basin::{Axis, Basin, Grid};
-use hertzian::flow::shooting::{CycleEvent, Track, TrackEnd};
+use hertzian::flow::shooting::{CycleEvent, Track};
 use hertzian::{Error, EventKind, Shooting, System};
 
 use super::options::{Options, Sweep, Tracked};
@@ -237,15 +237,10 @@ impl Found {
             let count = track.points.len();
             let [x, y] = &track.names;
             let (kind, period) = (track.kind, track.period);
-            let ends = track.ends.map(|end| match end {
-                TrackEnd::Left => "left the range".to_owned(),
-                TrackEnd::Closed => "closed".to_owned(),
-                TrackEnd::Stopped(stop) => stop.to_string(),
-            });
+            let [begin, end] = &track.ends;
             writeln!(
                 text,
-                "curve      {kind}, period {period}: {count} points in {x}, {y}; {}",
-                ends.join(" and ")
+                "curve      {kind}, period {period}: {count} points in {x}, {y}; {begin} and {end}"
             )?;
             for special in &track.special {
                 let ([a, b], error) = (special.values, special.error);

@@ -1,4 +1,7 @@
 //! Compiler of hertzian declarations: parse, check, lower, differentiate, simplify, emit.
+//!
+//! A part of the crate `hertzian`, which re-exports its macros: depend on that one. What is public here serves the tests, benches
+//! and fuzzing of the compiler, and may change in any version; the runtime asks for exactly its own.
 #![deny(missing_docs)]
 
 pub mod ast;

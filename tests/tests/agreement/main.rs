@@ -14,7 +14,7 @@ mod random;
 mod tree;
 
 use bound::Bound;
-use hertzian::generic::{Interpreted, PieceData};
+use hertzian::generic::{Interpreted, LawData, PieceData};
 use hertzian::law::{Derivatives, Law, On, Parts};
 use hertzian::power::Instructions;
 use hertzian::system::{Place, System};
@@ -124,7 +124,8 @@ fn check_whole(name: &str, law: &dyn Law, parts: Parts, arguments: &[f64], rando
     for (i, (&gap, &rate)) in gaps.iter().zip(&rates).enumerate() {
         let piece = piece_of(law, &levels, gap);
         let bound = |law: &dyn Law, output: fn(&PieceData) -> usize| {
-            bound::nodes(law.data(), gap, rate, arguments)[output(&law.data().pieces[piece])].error
+            let data = data(law);
+            bound::nodes(data, gap, rate, arguments)[output(&data.pieces[piece])].error
         };
         let slope = primitive[1][i];
         let of_slope =
@@ -159,9 +160,14 @@ fn check_whole(name: &str, law: &dyn Law, parts: Parts, arguments: &[f64], rando
     }
 }
 
+/// A generated law has data.
+fn data(law: &dyn Law) -> &LawData {
+    law.data().expect("data of a generated law")
+}
+
 /// The levels of a law, with their derivatives checked.
 fn levels(law: &dyn Law, arguments: &[f64]) -> Vec<f64> {
-    let data = law.data();
+    let data = data(law);
     let mut levels = vec![f64::NAN; data.levels.len()];
     law.levels(arguments, &mut levels);
     let mut by = levels.clone();
@@ -237,7 +243,7 @@ fn check_pieces(
     let rate = std::iter::repeat_with(|| random.magnitude(-6.0, 6.0));
     let rates: Vec<f64> = rate.take(gaps.len()).collect();
     let [generated, interpreted] = laws.map(|law| evaluate(law, on, arguments, gaps, &rates));
-    let data = laws[0].data();
+    let data = data(laws[0]);
     for (i, (&gap, &rate)) in gaps.iter().zip(&rates).enumerate() {
         let piece = match on {
             On::Piece(piece) => piece,

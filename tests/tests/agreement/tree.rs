@@ -43,6 +43,7 @@ pub fn evaluate<N: Numbers>(data: &LawData, gap: N, rate: N, arguments: &[N]) ->
             Node::Cosine(a) => values[a].cosine(),
             Node::Exponential(a) => values[a].exponential(),
             Node::Tanh(a) => values[a].tanh(),
+            _ => panic!("{node:?} is a node that is not known here"),
         };
         values.push(value);
     }

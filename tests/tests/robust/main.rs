@@ -16,7 +16,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use draw::{Random, Request, model};
-use hertzian::{Branch, Error, NewtonError, Point, Stop, System};
+use hertzian::error::NewtonError;
+use hertzian::{Branch, Error, Point, Stop, System};
 
 /// Cases by default.
 const MODELS: u64 = 300;
@@ -100,7 +101,7 @@ fn ended(stop: Stop) -> String {
         Stop::Joined { .. } => "curve, joined one of a shorter period".to_owned(),
         Stop::PointLimit { .. } => "curve, as many points as asked for".to_owned(),
         Stop::StepTooShort { reason, .. } => format!("stopped early: {}", in_words(reason)),
-        Stop::Interrupted => "interrupted".to_owned(),
+        other => other.to_string(),
     }
 }
 
@@ -124,6 +125,7 @@ fn in_words(reason: NewtonError) -> &'static str {
         NewtonError::NotConverged { .. } => "not converged",
         NewtonError::Singular { .. } => "singular",
         NewtonError::NotFinite { .. } => "not finite",
+        _ => "otherwise",
     }
 }
 

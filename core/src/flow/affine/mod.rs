@@ -57,6 +57,15 @@ pub struct Affine<'a> {
     work: Work,
 }
 
+impl std::fmt::Debug for Affine<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Affine")
+            .field("coordinates", &self.model.basis.coordinates)
+            .field("work", &self.work)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a> Affine<'a> {
     /// The flow at given values.
     ///

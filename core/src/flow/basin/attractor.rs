@@ -7,6 +7,7 @@ use crate::flow::log::{Reader, Writer};
 
 /// A stable periodic orbit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Attractor {
     /// Its shortest period, in periods of the declaration.
     pub period: usize,
@@ -20,6 +21,7 @@ pub struct Attractor {
 
 /// What becomes of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Fate {
     /// It settles to a periodic orbit, by its number.
     Periodic(usize),

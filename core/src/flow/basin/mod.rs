@@ -44,6 +44,7 @@ pub struct Basin {
 
 /// Basins of attraction.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Basins {
     /// What becomes of the motion of every cell, row by row; see [`Grid::state`].
     pub fates: Vec<Fate>,
@@ -57,6 +58,7 @@ pub struct Basins {
 
 /// How far a computation is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Progress {
     /// Cells that are done.
     pub done: usize,

@@ -33,6 +33,15 @@ pub struct Integrated<'a> {
     engine: Rank<'a>,
 }
 
+impl std::fmt::Debug for Integrated<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Integrated")
+            .field("coordinates", &self.coordinates())
+            .field("work", &self.work())
+            .finish_non_exhaustive()
+    }
+}
+
 /// The engine, by its number of nodes.
 enum Rank<'a> {
     Low(Box<Engine<'a, 8>>),

@@ -12,6 +12,7 @@ use crate::statistics::Statistics;
 
 /// A periodic orbit, as a state that returns to itself.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Cycle {
     /// Value of what is varied: omega or a parameter.
     pub value: f64,
@@ -58,6 +59,7 @@ impl Cycle {
 
 /// A special orbit of a branch, located until its test function vanished.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CycleEvent {
     /// What happens there.
     pub kind: EventKind,
@@ -87,6 +89,7 @@ impl fmt::Display for CycleEvent {
 
 /// Why a branch ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum End {
     /// Following it ended.
     Stopped(Stop),
@@ -127,6 +130,7 @@ impl fmt::Display for End {
 
 /// A branch of orbits in the order in which it was followed.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CycleBranch {
     /// Name of what it varies.
     pub varied: String,

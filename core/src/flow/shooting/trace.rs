@@ -29,6 +29,7 @@ use crate::system::Variable;
 
 /// A curve of bifurcations in the plane of two parameters.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Track {
     /// What bifurcates.
     pub kind: EventKind,
@@ -46,6 +47,7 @@ pub struct Track {
 
 /// One bifurcation of a curve.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct TrackPoint {
     /// Values of the two parameters.
     pub values: [f64; 2],
@@ -59,6 +61,7 @@ pub struct TrackPoint {
 
 /// A special point of a curve.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Special {
     /// What is special.
     pub kind: SpecialKind,
@@ -84,6 +87,7 @@ pub enum SpecialKind {
 
 /// Why a curve ended on one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum TrackEnd {
     /// A parameter left its range.
     Left,
@@ -91,6 +95,16 @@ pub enum TrackEnd {
     Closed,
     /// Following it ended otherwise.
     Stopped(Stop),
+}
+
+impl std::fmt::Display for TrackEnd {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Left => f.write_str("left the range"),
+            Self::Closed => f.write_str("closed"),
+            Self::Stopped(stop) => stop.fmt(f),
+        }
+    }
 }
 
 impl std::fmt::Display for SpecialKind {
