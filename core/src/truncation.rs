@@ -41,6 +41,8 @@ use crate::system::{System, Variable};
 pub(crate) const BEYOND: f64 = 1.5;
 /// A correction smaller than this part of the orbit is below what Newton's method leaves.
 pub(crate) const NOTHING: f64 = 1e-13;
+/// An oscillation smaller than this part of the mean is one of rounding.
+const STILL: f64 = 1e-12;
 /// Relative error of an event that rounding and the last updates leave.
 const ROUNDING: f64 = 1e-12;
 
@@ -299,10 +301,13 @@ impl<'a> Finer<'a> {
             let (same, tail) = corrected.split_at(coarse);
             let core = same.iter().zip(plain).map(|(a, b)| (a - b).abs());
             let change: f64 = core.chain(tail.iter().map(|x| x.abs())).sum();
-            let size: f64 = plain[1..].iter().map(|x| x.abs()).sum();
+            let oscillation: f64 = plain[1..].iter().map(|x| x.abs()).sum();
+            let size = oscillation.max(STILL * plain[0].abs());
             largest = (largest.0.max(change), largest.1.max(size));
         }
-        self.change = largest.0 / largest.1;
+        // An orbit at rest is known to rounding of where it is.
+        let (change, size) = largest;
+        self.change = if change > 0.0 { change / size } else { 0.0 };
     }
 
     /// A bound on the change of a coordinate by the last correction, relative to the size of the largest oscillation.

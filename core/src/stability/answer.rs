@@ -20,6 +20,10 @@ pub struct Answer {
     pub method: Method,
     /// Multipliers of the corrected orbit, the sum of both errors, and the verdict.
     pub stability: Stability,
+    /// What varies along the branch, for the corrected orbit: an orbit is corrected across its branch, and lies a little farther along
+    /// the axis then. At the value of the point itself multipliers differ from those given by their slope times this distance,
+    /// which no error has in it. The slope grows without bound towards a fold.
+    pub value: f64,
     /// Multipliers of the orbit as it is, largest modulus first; empty if the method found none.
     pub uncorrected: Vec<Complex<f64>>,
     /// Estimated error of the method.

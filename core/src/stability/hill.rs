@@ -188,7 +188,7 @@ impl Floquet for Hill {
         Found {
             error: defect(&multipliers, coefficients.determinant()),
             multipliers,
-            bound: None,
+            ..Found::NOTHING
         }
     }
 

@@ -3,14 +3,29 @@
 //! Two errors are estimated: that of the method, by the method itself; and that of the orbit, by the change of the multipliers
 //! when the orbit is corrected for what its harmonics and samples leave out ([`truncation`](crate::truncation)). The
 //! multipliers given are those of the corrected orbit.
+//!
+//! Of one coordinate the determinant hardly changes, so that the change is one number, that of the trace, which passes zero at
+//! single orbits of a branch and says nothing there of the harmonics above `2 K`. The matrix `P` does not stop changing there. So
+//! the truncation is taken to leave at least what a part of the change of the matrix could do to the multipliers,
+//!
+//! ```text
+//! max( | lambda(P + dP) - lambda(P) |, max over signs | lambda(P +- b dP) - lambda(P) | ),    b = 1/2         (1)
+//! ```
+//!
+//! where `b` is the part of the change by the harmonics from `K` to `2 K` that all above have, if it falls as `K^-1.6`. A method
+//! without a matrix has only the first.
 
 use std::time::Instant;
 
+use nalgebra::DMatrix;
+
 use super::method::{Floquet, Found};
 use super::orbit::Orbit;
-use super::{Answer, Method, Stability, distance};
+use super::rest::Rest;
+use super::spectrum::spread;
+use super::{Answer, Method, Stability, distance, eigenvalues};
 use crate::balance::Balance;
-use crate::truncation::{Finer, NOTHING};
+use crate::truncation::{BEYOND, Finer, NOTHING};
 
 /// Error of the method that is aimed at by default, and when it is asked for by name.
 const TOLERANCE: f64 = 1e-6;
@@ -27,6 +42,25 @@ const FAR: f64 = 0.1;
 const MARGIN: f64 = 0.1;
 const LEAST: f64 = 1e-11;
 
+/// (1), from the multipliers and matrices of both orbits.
+fn by_truncation(plain: &Found, found: &Found) -> f64 {
+    let change = distance(&plain.multipliers, &found.multipliers);
+    let (before, after) = (&plain.matrix, &found.matrix);
+    if before.len() != after.len() || after.is_empty() || found.multipliers.is_empty() {
+        return change;
+    }
+    let part = |index: usize| (BEYOND - 1.0) * (after[index] - before[index]);
+    let order = found.multipliers.len();
+    let beyond = if order == 2 {
+        spread(&found.multipliers, after, part)
+    } else {
+        // Those that the matrix has: it may have lost small ones.
+        let multipliers = eigenvalues(&DMatrix::from_column_slice(order, order, after));
+        spread(&multipliers, after, part)
+    };
+    change.max(beyond)
+}
+
 /// Judges the orbits of one branch, one after the other.
 #[derive(Debug)]
 pub(crate) struct Judge {
@@ -36,6 +70,7 @@ pub(crate) struct Judge {
     tolerance: f64,
     /// Error of the method that sufficed for the last orbit.
     aim: f64,
+    rest: Rest,
     /// Orbits judged.
     pub(crate) computed: usize,
 }
@@ -52,6 +87,7 @@ impl Judge {
             engine: method.engine(),
             tolerance,
             aim: tolerance,
+            rest: Rest::default(),
             computed: 0,
         }
     }
@@ -76,6 +112,7 @@ impl Judge {
         let started = Instant::now();
         self.computed += 1;
         let orbit = Orbit::of(balance, &u[..u.len() - 1]);
+        let rests = self.rest.on_a_level(&orbit);
         let plain;
         let corrected = match finer {
             None => {
@@ -88,21 +125,15 @@ impl Judge {
                 Some((plain.clone(), finer.change()))
             }
             Some(finer) => {
-                plain = self.engine.multipliers(&orbit, LENIENCE * self.aim);
-                let orbit = Orbit::of(finer.balance(), finer.series());
-                let by_truncation = |found: &Found| {
-                    if finer.change() > FAR {
-                        return f64::INFINITY;
-                    }
-                    distance(&plain.multipliers, &found.multipliers)
-                };
-                let corrected = self.sharp(&orbit, by_truncation);
-                let by_truncation = by_truncation(&corrected);
-                Some((corrected, by_truncation))
+                let corrected = Orbit::of(finer.balance(), finer.series());
+                let (first, found, by_truncation) =
+                    self.both([&orbit, &corrected], finer.change() > FAR);
+                plain = first;
+                Some((found, by_truncation))
             }
         };
         let known = |found: &Found| !found.multipliers.is_empty();
-        let corrected = corrected.filter(|(found, _)| known(found) && known(&plain));
+        let corrected = corrected.filter(|(found, _)| known(found) && known(&plain) && !rests);
         let bound = corrected
             .as_ref()
             .map_or(plain.bound, |(found, _)| found.bound);
@@ -118,9 +149,11 @@ impl Judge {
             };
             (plain.error, f64::INFINITY, stability)
         };
+        let moved = finer.and_then(|finer| finer.extended().last());
         Answer {
             method: self.method,
             stability,
+            value: moved.copied().unwrap_or(u[u.len() - 1]),
             uncorrected: plain.multipliers,
             by_method,
             by_truncation,
@@ -128,6 +161,26 @@ impl Judge {
             cost: self.engine.cost(),
             elapsed: started.elapsed(),
         }
+    }
+
+    /// Multipliers of an orbit and of the corrected one, and what the truncation may leave in the latter; nothing is known of that
+    /// if they are `far` from each other.
+    fn both(&mut self, [orbit, corrected]: [&Orbit<'_>; 2], far: bool) -> (Found, Found, f64) {
+        let left = |plain: &Found, found: &Found| {
+            if far {
+                f64::INFINITY
+            } else {
+                by_truncation(plain, found)
+            }
+        };
+        let mut plain = self.engine.multipliers(orbit, LENIENCE * self.aim);
+        let found = self.sharp(corrected, |found| left(&plain, found));
+        // What sufficed for the orbit before may be too little for this one.
+        if self.engine.knows_its_error() && plain.error > LENIENCE * self.aim {
+            plain = self.engine.multipliers(orbit, self.aim);
+        }
+        let left = left(&plain, &found);
+        (plain, found, left)
     }
 
     /// Multipliers so exact that the method adds little to the error of the orbit, and does not stand between the largest of

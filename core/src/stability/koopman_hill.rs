@@ -145,11 +145,13 @@ impl Floquet for KoopmanHill {
         };
         self.cost.contacts += coefficients.contacts;
         self.cost.spectra += 1;
-        let multipliers = eigenvalues(&self.monodromy(&coefficients));
+        let matrix = self.monodromy(&coefficients);
+        let multipliers = eigenvalues(&matrix);
         Found {
             error: defect(&multipliers, coefficients.determinant()),
             multipliers,
             bound: self.bound(orbit, &coefficients),
+            matrix: matrix.as_slice().to_vec(),
         }
     }
 

@@ -116,6 +116,8 @@ pub(crate) struct Found {
     pub(crate) error: f64,
     /// A bound on the error of the monodromy matrix, where there is one.
     pub(crate) bound: Option<f64>,
+    /// The monodromy matrix, column by column; empty if the method has none.
+    pub(crate) matrix: Vec<f64>,
 }
 
 impl Found {
@@ -124,6 +126,7 @@ impl Found {
         multipliers: Vec::new(),
         error: f64::INFINITY,
         bound: None,
+        matrix: Vec::new(),
     };
 }
 

@@ -48,6 +48,13 @@ hertzian::oscillator! {
 }
 
 hertzian::oscillator! {
+    /// Damped as little as is enough not to oscillate.
+    Critical(x) {
+        ddot(x) + 2*dot(x) + x = 0;
+    }
+}
+
+hertzian::oscillator! {
     /// Two coupled linear oscillators.
     Coupled(x, y) {
         param zeta in 0.0..;
@@ -404,6 +411,20 @@ fn two_real_negative_multipliers() {
     let (found, error, _) = by(Sorting::ImaginaryPart);
     let wrong = distance(&found, &exact);
     assert!(wrong < 1e-9 || error > 0.3 * wrong, "{wrong:e} {error:e}");
+}
+
+/// Critical damping: both multipliers are `e^(-2 pi / omega)`, and rounding of the matrix moves them by its root.
+#[test]
+fn a_double_multiplier_is_known_to_the_root_of_rounding() {
+    for omega in [0.37, 1.0, 3.0] {
+        let (found, error, _) = multipliers(&Critical {}, Method::Monodromy, omega, 1);
+        let exact = [Complex::new((-TAU / omega).exp(), 0.0); 2];
+        let wrong = distance(&found, &exact);
+        assert!(
+            wrong < error && error < 1e-6 * exact[0].re,
+            "{omega}: {wrong:e} {error:e}"
+        );
+    }
 }
 
 /// `-H_21 + H_22 H_11` of the Hill matrix is `D^2 + T^ D + S^`, the Jacobian of the balance over `M Omega^2`.

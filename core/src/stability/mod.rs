@@ -5,7 +5,19 @@
 //!
 //! [`Method::Default`] is the monodromy matrix, which was the cheapest at equal error on every orbit that was tried, with as few
 //! steps as the verdict needs: to 1e-6 or a part of the error of the orbit, and more exactly where the largest multiplier is near
-//! the unit circle. No verdict is given of an orbit that its correction changes by more than a tenth of its size.
+//! the unit circle. No verdict is given of an orbit that its correction changes by more than a tenth of its size, and none of one
+//! whose gap rests on a level where the slopes of the force differ.
+//!
+//! What the error is, and is not:
+//!
+//! - It is an estimate, not a bound. Of 500 random orbits 97 % were within it, and all but three, which are beside folds, within three times.
+//! - An orbit is corrected across its branch, so that the multipliers are those of an orbit that lies a little farther along:
+//!   [`Answer::value`]. Beside a fold that matters, since multipliers change there as the root of the distance; the verdict is
+//!   about the side of the fold that the orbit is on.
+//! - Where a gap just touches a level, multipliers have a root too. An orbit that is nearer to a touch than Newton's method solves
+//!   for it may have another number of switches than the true one.
+//! - The change by the correction may be small by chance at single orbits. Methods with a monodromy matrix see that from its change;
+//!   [`Method::Hill`] has none, and does not.
 
 mod answer;
 mod exponential;
@@ -20,6 +32,7 @@ mod monodromy;
 mod orbit;
 mod path;
 mod product;
+mod rest;
 mod spectrum;
 mod triangular;
 mod two;

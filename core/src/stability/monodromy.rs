@@ -14,7 +14,8 @@
 //!
 //! and `q L` is about as large as the error of `P` (within a factor of two on the orbits that were tried). The error of the
 //! multipliers is how far they move for such an error of the matrix, whatever its signs. The number of steps follows from it,
-//! with the sixth root. Of a system of one coordinate the determinant is known by Liouville's formula,
+//! with the sixth root. How far they move for rounding errors of the matrix, near a double multiplier by the root of these, is added:
+//! no steps make it smaller. Of a system of one coordinate the determinant is known by Liouville's formula,
 //! `det P = exp(int trace A)`, and gives the smaller multiplier however small it is. Where the matrix of others has lost small
 //! multipliers, they are found from its factors: see [`product`](super::product).
 //!
@@ -87,21 +88,23 @@ impl Monodromy {
         walk.matrices()[0].to_vec()
     }
 
-    /// Multipliers with this many steps per period, and their error.
-    fn at_density(&mut self, orbit: &Orbit<'_>, density: f64) -> Found {
+    /// Multipliers with this many steps per period, and the part of their error that more steps make smaller.
+    fn at_density(&mut self, orbit: &Orbit<'_>, density: f64) -> (Found, f64) {
         let order = 2 * orbit.layout.coordinates;
         self.cost.spectra += 1;
         self.cost.order = self.cost.order.max(order);
-        let (multipliers, error) = if order == 2 {
+        let (multipliers, [by_steps, by_rounding], matrix) = if order == 2 {
             let mut walk = WalkOfTwo::new();
             self.integrate(&mut walk, orbit, density);
-            walk.multipliers()
+            let (multipliers, errors) = walk.multipliers();
+            (multipliers, errors, walk.matrices()[0].to_vec())
         } else {
             let kept = self.many.take().filter(|walk| walk.order() == order);
             let mut walk = kept.unwrap_or_else(|| WalkOfMany::new(order));
             walk.begin();
             self.integrate(&mut walk, orbit, density);
-            let (mut multipliers, error) = walk.multipliers();
+            let (mut multipliers, errors) = walk.multipliers();
+            let matrix = walk.matrices()[0].to_vec();
             let lost = walk.has_lost(&multipliers) && (self.complete || order <= SMALL);
             self.many = Some(walk);
             if lost {
@@ -112,14 +115,20 @@ impl Monodromy {
                     multipliers = found;
                 }
             }
-            (multipliers, error)
+            (multipliers, errors, matrix)
         };
         let known = !multipliers.is_empty();
-        Found {
-            error: if known { error } else { f64::INFINITY },
+        let found = Found {
+            error: if known {
+                by_steps + by_rounding
+            } else {
+                f64::INFINITY
+            },
             multipliers,
             bound: None,
-        }
+            matrix,
+        };
+        (found, by_steps)
     }
 
     fn integrate(&mut self, walk: &mut impl Walk, orbit: &Orbit<'_>, density: f64) {
@@ -203,15 +212,15 @@ impl Floquet for Monodromy {
         let waves = orbit.layout.highest_harmonic() * orbit.period;
         let mut density = self.density.max(STEPS_PER_WAVE * waves as f64);
         loop {
-            let found = self.at_density(orbit, density);
-            let factor = (found.error / (TARGET * aim)).powf(1.0 / 6.0);
+            let (found, error) = self.at_density(orbit, density);
+            let factor = (error / (TARGET * aim)).powf(1.0 / 6.0);
             // Steps that are far too long leave nothing finite: an infinite factor.
             let factor = if factor.is_nan() {
                 f64::INFINITY
             } else {
                 factor
             };
-            if density >= LARGEST_DENSITY || found.error <= aim {
+            if density >= LARGEST_DENSITY || error <= aim {
                 let next = density * factor.clamp(0.5, 1.3);
                 self.density = next.clamp(FIRST_DENSITY, LARGEST_DENSITY);
                 return found;

@@ -57,6 +57,43 @@ pub(super) fn eigenvalues_of_two(
     finite.then_some(values)
 }
 
+/// Signs of the blocks of an error of a matrix, column by column: as it is, and with those of its second half of columns and of rows
+/// changed. The changes that they make of a trace do not all vanish while the diagonal of the error does not.
+const SIGNS: [[f64; 4]; 3] = [
+    [1.0, 1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0, -1.0],
+    [1.0, -1.0, 1.0, -1.0],
+];
+
+/// How far multipliers move for an error of their matrix, whatever its signs. All are column by column; of order two, the
+/// determinant is as the multipliers have it.
+pub(super) fn spread(
+    multipliers: &[Complex<f64>],
+    matrix: &[f64],
+    error: impl Fn(usize) -> f64,
+) -> f64 {
+    let order = multipliers.len();
+    let half = order / 2;
+    let block =
+        |index: usize| 2 * usize::from(index / order >= half) + usize::from(index % order >= half);
+    let mut largest = 0.0_f64;
+    for signs in SIGNS {
+        let moved = |index: usize| matrix[index] + signs[block(index)] * error(index);
+        let apart = if let &[first, second] = multipliers {
+            let others = eigenvalues_of_two(
+                [[moved(0), moved(2)], [moved(1), moved(3)]],
+                (first * second).re,
+            );
+            others.map_or(f64::INFINITY, |others| distance(multipliers, &others))
+        } else {
+            let other = DMatrix::from_fn(order, order, |i, j| moved(j * order + i));
+            distance(multipliers, &eigenvalues(&other))
+        };
+        largest = largest.max(apart);
+    }
+    largest
+}
+
 /// Largest distance between the multipliers of two approximations, each matched with its nearest.
 pub(crate) fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
     if let ([a, c], [b, d]) = (a, b) {

@@ -2,14 +2,17 @@
 
 use nalgebra::{Complex, DMatrix};
 
+use super::eigenvalues;
 use super::magnus::Magnus;
 use super::product::eigenvalues_of_product;
-use super::spectrum::eigenvalues_of_two;
+use super::spectrum::{eigenvalues_of_two, spread};
 use super::two::{self, Square};
-use super::{distance, eigenvalues};
 
 /// The matrix `q L` of [`monodromy`](super::monodromy) is the error of `P` to about this factor.
 const SAFETY: f64 = 1.5;
+
+/// Rounding errors of a matrix, relative to its entries. A double multiplier moves by their root.
+const ROUNDED: f64 = 1e-15;
 
 /// Multipliers smaller than this part of the matrix have lost half of their digits.
 const LOST: f64 = 1e-8;
@@ -28,8 +31,8 @@ pub(super) trait Walk {
     /// The solution, and what the fourth order lacks in it, for a jump.
     fn matrices(&mut self) -> [&mut [f64]; 2];
 
-    /// Multipliers of the solution, and their error.
-    fn multipliers(&self) -> (Vec<Complex<f64>>, f64);
+    /// Multipliers of the solution, and their errors: by the steps, and by rounding.
+    fn multipliers(&self) -> (Vec<Complex<f64>>, [f64; 2]);
 }
 
 /// Traces of the exponents, and sizes of commutators.
@@ -107,37 +110,23 @@ impl Walk for WalkOfTwo {
         [&mut self.product, &mut self.lack]
     }
 
-    fn multipliers(&self) -> (Vec<Complex<f64>>, f64) {
+    fn multipliers(&self) -> (Vec<Complex<f64>>, [f64; 2]) {
         let determinant = self.sums.trace.exp();
         let of = |[a, c, b, d]: Square| eigenvalues_of_two([[a, b], [c, d]], determinant);
         let Some(multipliers) = of(self.product) else {
-            return (Vec::new(), f64::INFINITY);
+            return (Vec::new(), [f64::INFINITY; 2]);
         };
+        let spread = |error: &dyn Fn(usize) -> f64| spread(&multipliers, &self.product, error);
         let part = SAFETY * self.sums.part();
-        if part == 0.0 {
-            return (multipliers.to_vec(), 0.0);
-        }
-        let mut error = 0.0_f64;
-        for signs in SIGNS {
-            let mut other = self.product;
-            for (index, to) in other.iter_mut().enumerate() {
-                *to += part * signs[index] * self.lack[index];
-            }
-            error = match of(other) {
-                Some(others) => error.max(distance(&multipliers, &others)),
-                None => f64::INFINITY,
-            };
-        }
-        (multipliers.to_vec(), error)
+        let by_steps = if part == 0.0 {
+            0.0
+        } else {
+            spread(&|index| part * self.lack[index])
+        };
+        let by_rounding = spread(&|index| ROUNDED * self.product[index]);
+        (multipliers.to_vec(), [by_steps, by_rounding])
     }
 }
-
-/// Signs of the blocks of the error: as it is, and with those of its second half of columns and of rows changed.
-const SIGNS: [[f64; 4]; 3] = [
-    [1.0, 1.0, 1.0, 1.0],
-    [1.0, 1.0, -1.0, -1.0],
-    [1.0, -1.0, 1.0, -1.0],
-];
 
 /// Of several coordinates.
 #[derive(Debug)]
@@ -209,25 +198,23 @@ impl Walk for WalkOfMany {
         [self.product.as_mut_slice(), self.lack.as_mut_slice()]
     }
 
-    fn multipliers(&self) -> (Vec<Complex<f64>>, f64) {
+    fn multipliers(&self) -> (Vec<Complex<f64>>, [f64; 2]) {
         let multipliers = eigenvalues(&self.product);
+        if multipliers.is_empty() {
+            return (multipliers, [f64::INFINITY; 2]);
+        }
+        let product = self.product.as_slice();
+        let spread = |error: &dyn Fn(usize) -> f64| spread(&multipliers, product, error);
         let part = SAFETY * self.sums.part();
-        if part == 0.0 || multipliers.is_empty() {
-            return (multipliers, 0.0);
-        }
-        let half = self.order() / 2;
-        let mut error = 0.0_f64;
-        for signs in SIGNS {
-            let mut other = self.product.clone();
-            for j in 0..self.order() {
-                for i in 0..self.order() {
-                    let sign = signs[2 * usize::from(j >= half) + usize::from(i >= half)];
-                    other[(i, j)] += part * sign * self.lack[(i, j)];
-                }
-            }
-            error = error.max(distance(&multipliers, &eigenvalues(&other)));
-        }
-        (multipliers, error)
+        let by_steps = if part == 0.0 {
+            0.0
+        } else {
+            spread(&|index| part * self.lack[index])
+        };
+        // Eigenvalues are those of a matrix that differs by rounding errors of the largest entry.
+        let rounded = ROUNDED * self.product.amax();
+        let by_rounding = spread(&|_| rounded);
+        (multipliers, [by_steps, by_rounding])
     }
 }
 
@@ -308,8 +295,8 @@ impl Walk for WalkOfFactors {
         [self.factor.as_mut_slice(), &mut self.nothing]
     }
 
-    fn multipliers(&self) -> (Vec<Complex<f64>>, f64) {
+    fn multipliers(&self) -> (Vec<Complex<f64>>, [f64; 2]) {
         let factors = [&self.done[..], std::slice::from_ref(&self.factor)].concat();
-        (eigenvalues_of_product(&factors), 0.0)
+        (eigenvalues_of_product(&factors), [0.0; 2])
     }
 }

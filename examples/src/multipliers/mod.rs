@@ -12,7 +12,7 @@ use clap::Parser;
 
 use study::{Measured, decay, measure, oscillators};
 
-/// Measures the methods for Floquet multipliers against the multipliers of the exact orbit; Hill's with the sorting by symmetry.
+/// Measures every method for Floquet multipliers against the multipliers of the exact orbit, Hill's with all its sortings.
 ///
 /// Writes multipliers.csv, multipliers-harmonics.svg and multipliers-time.svg, and prints the orders that were observed.
 #[derive(Debug, Clone, PartialEq, Parser)]

@@ -61,10 +61,12 @@ pub struct Measured {
 }
 
 /// The methods that are compared.
-pub const METHODS: [Method; 5] = [
+pub const METHODS: [Method; 7] = [
     Method::Default,
     Method::Monodromy,
     Method::Hill(Sorting::Symmetry),
+    Method::Hill(Sorting::WeightedMean),
+    Method::Hill(Sorting::ImaginaryPart),
     Method::KoopmanHill(Projection::Direct),
     Method::KoopmanHill(Projection::Subharmonic),
 ];

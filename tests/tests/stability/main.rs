@@ -3,5 +3,6 @@
 mod draw;
 mod exact;
 mod orbits;
+mod truncation;
 mod truth;
 mod two_masses;

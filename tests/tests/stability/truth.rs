@@ -33,11 +33,15 @@ pub fn refined(system: &dyn System, point: &Point) -> Option<Cycle> {
 /// farther from the fold by twice the error stated for it.
 pub fn refined_beside(system: &dyn System, point: &Point, fold: &Event) -> Option<Cycle> {
     let away = (point.value - fold.point.value).signum();
-    let value = point.value + away * 2.0 * fold.error;
+    refined_at(system, point, point.value + away * 2.0 * fold.error)
+}
+
+/// The orbit refined by shooting at another frequency close by.
+pub fn refined_at(system: &dyn System, point: &Point, omega: f64) -> Option<Cycle> {
     let shooting = Shooting::of(system)
         .near_orbit(&point.orbit)
         .tolerance(TOLERANCE);
-    let cycle = shooting.orbit(value).ok()?;
+    let cycle = shooting.orbit(omega).ok()?;
     let apart = cycle.peak_to_peak() / point.peak_to_peak() - 1.0;
     (apart.abs() < NEAR).then_some(cycle)
 }
