@@ -177,7 +177,7 @@ pub struct Turn {
 }
 
 /// A branch of orbits in the order in which it was followed.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Branch<'a> {
     /// Name of what it varies.
     pub varied: String,
@@ -202,11 +202,14 @@ impl<'a> Branch<'a> {
         self.follower.system
     }
 
+    /// The events of one kind.
+    pub fn events(&self, kind: EventKind) -> impl Iterator<Item = &Event> {
+        self.events.iter().filter(move |event| event.kind == kind)
+    }
+
     /// The folds.
     pub fn folds(&self) -> impl Iterator<Item = &Event> {
-        self.events
-            .iter()
-            .filter(|event| event.kind == EventKind::Fold)
+        self.events(EventKind::Fold)
     }
 
     /// Every orbit of the branch at a value of what it varies, in branch order; empty where the branch does not pass.

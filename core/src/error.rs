@@ -35,10 +35,17 @@ pub enum Error {
         /// What it must be.
         must: &'static str,
     },
-    /// An end of the range has not been given, or not the frequency at which a parameter is varied.
-    MissingEnd {
-        /// `from`, `to` or `omega`.
+    /// An option that has no default has not been given: an end of the range, or the frequency at which a parameter is varied.
+    Missing {
+        /// The option.
         name: &'static str,
+    },
+    /// What was asked for cannot be varied.
+    Varied {
+        /// Its name.
+        name: String,
+        /// What it must be.
+        must: &'static str,
     },
     /// Both ends of the range are the same.
     EmptyRange {
@@ -94,7 +101,7 @@ pub enum Error {
     /// No orbit was found at the start of the range.
     NoStart {
         /// Where.
-        parameter: f64,
+        value: f64,
         /// What the last attempt said.
         reason: NewtonError,
     },
@@ -117,21 +124,21 @@ pub enum Error {
     /// There is no orbit: the branch that comes near turns back before.
     Beyond {
         /// The value asked for.
-        parameter: f64,
+        value: f64,
         /// The fold.
         fold: f64,
     },
     /// The motion from a state cannot be computed.
     Motion {
         /// Where.
-        parameter: f64,
+        value: f64,
         /// Why.
         reason: FlowError,
     },
     /// No orbit was found at the start of the range with the work that a search may take.
     SearchLimit {
         /// Where.
-        parameter: f64,
+        value: f64,
         /// Evaluations of the balance.
         evaluations: usize,
         /// The limit that was reached: multiplications, as estimated.
@@ -144,7 +151,7 @@ pub enum Error {
         /// The period asked for, in excitation periods.
         period: usize,
         /// Where.
-        parameter: f64,
+        value: f64,
         /// What the attempts to find one came to.
         attempts: Attempts,
     },
@@ -157,6 +164,15 @@ pub enum Error {
     NotFree {
         /// How far it misses its beginning, relative to its size.
         apart: f64,
+    },
+    /// The first coordinate has no load with the frequency of the excitation: there is no phase to speak of.
+    NoLoad,
+    /// No orbit in phase resonance was found.
+    NoResonance {
+        /// Value of what is varied.
+        value: f64,
+        /// The excitation frequencies between which it was looked for.
+        between: [f64; 2],
     },
     /// What motions settle to could not be looked for.
     Search {
@@ -250,6 +266,17 @@ impl Error {
                 f,
                 "the motion misses its beginning by {apart:.1e} of its size after a period: set damping and excitation to zero"
             ),
+            Self::NoLoad => write!(
+                f,
+                "no load with the frequency of the excitation acts on the first coordinate: it has no phase resonance"
+            ),
+            Self::NoResonance {
+                value,
+                between: [low, high],
+            } => write!(
+                f,
+                "no orbit in phase resonance found at {value} between the excitation frequencies {low} and {high}"
+            ),
             Self::Search { value, reason } => {
                 write!(f, "attractors at {value} could not be looked for: {reason}")
             }
@@ -275,11 +302,15 @@ impl std::fmt::Display for Error {
                 )
             }
             Self::Option { name, value, must } => write!(f, "{name} = {value}: {must}"),
-            Self::MissingEnd { name: "omega" } => write!(
+            Self::Missing { name: "omega" } => write!(
                 f,
                 "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`"
             ),
-            Self::MissingEnd { name } => write!(f, "the range has no end: call `{name}`"),
+            Self::Missing {
+                name: name @ ("from" | "to"),
+            } => write!(f, "the range has no end: call `{name}`"),
+            Self::Missing { name } => write!(f, "`{name}` has not been given"),
+            Self::Varied { name, must } => write!(f, "what is varied is {name}: it {must}"),
             Self::EmptyRange { value } => {
                 write!(f, "the range is empty: from and to are both {value}")
             }
@@ -318,38 +349,40 @@ impl std::fmt::Display for Error {
                     "the orbit at {value}, between those at {from} and {to}, could not be computed"
                 )
             }
-            Self::NoStart { parameter, reason } => {
-                write!(f, "no periodic orbit found at {parameter}: {reason}")
+            Self::NoStart { value, reason } => {
+                write!(f, "no periodic orbit found at {value}: {reason}")
             }
             Self::State { .. } | Self::Values { .. } | Self::NotAffine => self.of_motions(f),
-            Self::Beyond { parameter, fold } => write!(
+            Self::Beyond { value, fold } => write!(
                 f,
-                "no periodic orbit at {parameter} near the given one: its branch turns back at {fold:.12}, {:.1e} away",
-                (parameter - fold).abs()
+                "no periodic orbit at {value} near the given one: its branch turns back at {fold:.12}, {:.1e} away",
+                (value - fold).abs()
             ),
-            Self::Motion { parameter, reason } => {
-                write!(f, "no periodic orbit found at {parameter}: {reason}")
+            Self::Motion { value, reason } => {
+                write!(f, "no periodic orbit found at {value}: {reason}")
             }
             Self::SearchLimit {
-                parameter,
+                value,
                 evaluations,
                 multiplications,
                 reason,
             } => write!(
                 f,
-                "no periodic orbit found at {parameter} in {evaluations} evaluations of the balance, which took the {:.0e} multiplications that a search is allowed; the last attempt: {reason}",
+                "no periodic orbit found at {value} in {evaluations} evaluations of the balance, which took the {:.0e} multiplications that a search is allowed; the last attempt: {reason}",
                 *multiplications as f64
             ),
             Self::NoSuchPeriod {
                 period,
-                parameter,
+                value,
                 attempts,
             } => write!(
                 f,
-                "no orbit of period {period} found at {parameter}: {attempts}; start where there is one, and follow it from there"
+                "no orbit of period {period} found at {value}: {attempts}; start where there is one, and follow it from there"
             ),
             Self::NeverAtRest { .. }
             | Self::NotFree { .. }
+            | Self::NoLoad
+            | Self::NoResonance { .. }
             | Self::Search { .. }
             | Self::NoBranch { .. } => self.of_bifurcations(f),
             Self::File { path, reason } => write!(f, "cannot write {path}: {reason}"),

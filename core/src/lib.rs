@@ -92,7 +92,7 @@ pub use bifurcation::Bifurcations;
 pub use branch::{Branch, Event, EventKind, Orbit, Point, Turn};
 pub use continuation::follow::Stop;
 pub use error::Error;
-pub use flow::shooting::{Cycle, CycleBranch, CycleEvent, Shooting, Side};
+pub use flow::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
 pub use hertzian_macros::{law, oscillator};
 pub use nalgebra::Complex;
 pub use response::FrequencyResponse;

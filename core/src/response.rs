@@ -9,7 +9,7 @@ use crate::bifurcation::depart::depart;
 use crate::branch::{Branch, Event, EventKind, Orbit, Point};
 use crate::continuation::follow::{FollowOptions, Start};
 use crate::continuation::step::StepControl;
-use crate::error::Error;
+use crate::error::{Attempts, Error};
 use crate::flow::shooting::Side;
 use crate::follower::Follower;
 use crate::fourier::series;
@@ -32,6 +32,8 @@ const CORE_AT_START: usize = 40;
 const LEAST_BEYOND: usize = 4;
 /// More harmonics of an excitation period are never chosen, only taken when given.
 const MOST_HARMONICS: usize = 150;
+/// Part of a value to its neighbour in a range of which only the first orbit is wanted.
+const ASIDE: f64 = 1e-3;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
@@ -226,6 +228,21 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
+    /// The one orbit at a value of what is varied; the ends of a range are not needed.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, or no orbit is found.
+    pub fn orbit(&self, value: f64) -> Result<Point, Error> {
+        let request = self.clone().from(value).to(self.aside(value)?);
+        let branch = request.run_with(|_| ControlFlow::Break(()))?;
+        let first = branch.points.into_iter().next();
+        first.ok_or(Error::NoSuchPeriod {
+            period: self.period,
+            value,
+            attempts: Attempts::default(),
+        })
+    }
+
     /// Computes the branch.
     ///
     /// # Errors
@@ -266,7 +283,21 @@ impl<'a> FrequencyResponse<'a> {
     /// # Errors
     /// If a parameter or an option is not usable, no branch begins there, or its first orbit was not found.
     pub fn switch(&self, event: &Event, side: Side) -> Result<Branch<'a>, Error> {
+        self.switch_with(event, side, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`switch`](Self::switch), and calls `visit` at every point as it is found: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`switch`](Self::switch).
+    pub fn switch_with(
+        &self,
+        event: &Event,
+        side: Side,
+        mut visit: impl FnMut(&Point) -> ControlFlow<()>,
+    ) -> Result<Branch<'a>, Error> {
         let started = Instant::now();
+        self.fits(&event.point.orbit)?;
         let doubles = event.kind == EventKind::PeriodDoubling;
         let request = Self {
             period: event.point.orbit.period * if doubles { 2 } else { 1 },
@@ -278,9 +309,8 @@ impl<'a> FrequencyResponse<'a> {
         follower.asymmetric = !doubles;
         let point = depart(&follower, event, side.sign())?;
         let run = Run::new(&follower, options, &point.u);
-        let go = &mut |_: &Point| ControlFlow::Continue(());
         let start = Start::Along(Box::new(point));
-        self.followed(run, start, go, (Statistics::default(), started))
+        self.followed(run, start, &mut visit, (Statistics::default(), started))
     }
 
     /// The branch that a run gives.
@@ -322,8 +352,8 @@ impl<'a> FrequencyResponse<'a> {
         let mut parameters = vec![0.0; facts.parameters.len()];
         self.system.values(&mut parameters);
         let variable = validate::variable(facts, self.vary.as_deref())?;
-        let from = self.from.ok_or(Error::MissingEnd { name: "from" })?;
-        let to = self.to.ok_or(Error::MissingEnd { name: "to" })?;
+        let from = self.from.ok_or(Error::Missing { name: "from" })?;
+        let to = self.to.ok_or(Error::Missing { name: "to" })?;
         validate::range(facts, variable, from, to)?;
         let omega = match (variable, self.omega) {
             (Variable::Omega, None) => from,
@@ -339,10 +369,11 @@ impl<'a> FrequencyResponse<'a> {
                 parameters[index] = from;
                 validate::omega(omega)?
             }
-            (Variable::Parameter(_), None) => return Err(Error::MissingEnd { name: "omega" }),
+            (Variable::Parameter(_), None) => return Err(Error::Missing { name: "omega" }),
         };
         validate::parameters(facts, &parameters)?;
         self.check_options()?;
+        self.check_near()?;
         let mut resolution = self.resolution()?;
         let layout = Layout::of(self.system);
         let symmetric = is_odd(
@@ -378,18 +409,11 @@ impl<'a> FrequencyResponse<'a> {
             iterations: 12,
             damped: false,
         };
-        validate::option(
-            "largest_step",
-            self.largest_step,
-            1e-6..=1.0,
-            "must be from 1e-6 to 1",
-        )?;
-        let steps = StepControl::with_largest(self.largest_step);
         let options = FollowOptions {
             from,
             to,
-            points: self.max_points,
-            steps,
+            points: validate::max_points(self.max_points)?,
+            steps: validate::largest_step(self.largest_step)?,
             newton,
         };
         let system = self.system;
@@ -412,6 +436,47 @@ impl<'a> FrequencyResponse<'a> {
         ))
     }
 
+    /// Another value that what is varied may have, next to one.
+    fn aside(&self, value: f64) -> Result<f64, Error> {
+        let facts = self.system.facts();
+        let unit = if value == 0.0 { 1.0 } else { value.abs() };
+        let above = value + ASIDE * unit;
+        Ok(match validate::variable(facts, self.vary.as_deref())? {
+            Variable::Parameter(index) if !facts.parameters[index].admits(above) => {
+                value - ASIDE * unit
+            }
+            _ => above,
+        })
+    }
+
+    /// An orbit is one of a system with as many coordinates.
+    fn fits(&self, orbit: &Orbit) -> Result<(), Error> {
+        let expected = self.system.facts().coordinates.len();
+        if orbit.coordinates == expected {
+            return Ok(());
+        }
+        Err(Error::State {
+            entries: 2 * orbit.coordinates,
+            expected: 2 * expected,
+        })
+    }
+
+    /// Checks what the first orbit is to be near.
+    fn check_near(&self) -> Result<(), Error> {
+        let Some(orbit) = &self.near else {
+            return Ok(());
+        };
+        self.fits(orbit)?;
+        if orbit.period == self.period {
+            return Ok(());
+        }
+        Err(Error::Option {
+            name: "period",
+            value: self.period as f64,
+            must: "must be that of the orbit given by `near_orbit`",
+        })
+    }
+
     /// Checks the numbers among the options.
     fn check_options(&self) -> Result<(), Error> {
         validate::option(
@@ -425,14 +490,7 @@ impl<'a> FrequencyResponse<'a> {
             self.period as f64,
             1.0..=1000.0,
             "must be from 1 to 1000",
-        )?;
-        validate::option(
-            "max_points",
-            self.max_points as f64,
-            2.0..=1e9,
-            "must be 2 or more",
-        )?;
-        Ok(())
+        )
     }
 
     /// How harmonics follow the tolerance: unless they were given, or the contacts are sampled.

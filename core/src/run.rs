@@ -132,12 +132,12 @@ impl<'f, 'a> Run<'f, 'a> {
     fn lost(&self, reason: NewtonError) -> Result<Stop, Error> {
         match self.points.last() {
             None => Err(Error::NoStart {
-                parameter: self.options.from,
+                value: self.options.from,
                 reason,
             }),
             Some(point) => Ok(Stop::StepTooShort {
                 step: 0.0,
-                parameter: point.value,
+                value: point.value,
                 reason,
             }),
         }

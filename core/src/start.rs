@@ -78,7 +78,7 @@ pub(crate) fn start(
     *statistics += effort.statistics;
     longer.map_err(|attempts| Error::NoSuchPeriod {
         period,
-        parameter: request.value,
+        value: request.value,
         attempts,
     })
 }

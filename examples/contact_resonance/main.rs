@@ -125,6 +125,7 @@ fn free_oscillation(highest: f64) -> Result<Vec<[f64; 2]>, Error> {
     };
     let curve = FreeOscillation::of(&model).from(1.02).to(highest).run()?;
     let points = curve
+        .points
         .iter()
         .map(|point| [point.omega, point.peak_to_peak()]);
     Ok(points.collect())

@@ -314,7 +314,7 @@ fn a_start_that_is_not_found_says_why() {
     let reason = |system: &dyn System, from: f64| {
         let request = FrequencyResponse::of(system).from(from).to(1.5);
         match request.run() {
-            Err(Error::NoStart { parameter, reason }) if parameter == from => reason,
+            Err(Error::NoStart { value, reason }) if value == from => reason,
             Err(error) => panic!("{error}"),
             Ok(branch) => panic!("{} points", branch.points.len()),
         }
@@ -396,17 +396,50 @@ fn generated_and_interpreted_models_give_one_curve() {
     }
 }
 
+/// One orbit, without a range around it: that of the branch, and near another one if asked for.
+#[test]
+fn an_orbit_at_a_value_is_that_of_the_branch() {
+    let request = FrequencyResponse::of(&CONTACT);
+    let orbit = request.orbit(1.5).unwrap();
+    let branch = request.clone().from(1.5).to(1.6).run().unwrap();
+    let apart = (orbit.peak_to_peak() - branch.points[0].peak_to_peak()).abs();
+    assert!(apart < 1e-6 * orbit.peak_to_peak(), "{apart:.1e}");
+    let near = request.near_orbit(&orbit.orbit);
+    let again = near.orbit(1.501).unwrap();
+    assert!((again.peak_to_peak() / orbit.peak_to_peak() - 1.0).abs() < 0.05);
+    let error = near.clone().period(2).orbit(1.501).unwrap_err();
+    assert!(
+        matches!(error, Error::Option { name: "period", .. }),
+        "{error}"
+    );
+    let of_another = FrequencyResponse::of(&NEIGHBOURS).near_orbit(&orbit.orbit);
+    let expected = Error::State {
+        entries: 2,
+        expected: 4,
+    };
+    assert_eq!(of_another.orbit(1.5).unwrap_err(), expected);
+}
+
+hertzian::oscillator! {
+    Neighbours(x, y) {
+        ddot(x) + 0.1*dot(x) + 2*x - y = cos(omega*t);
+        ddot(y) + 0.1*dot(y) + 2*y - x = 0;
+    }
+}
+
+const NEIGHBOURS: Neighbours = Neighbours {};
+
 #[test]
 fn bad_requests_are_refused_before_any_work() {
     let good = || FrequencyResponse::of(&CONTACT).from(0.6).to(1.6);
     let refused = |request: FrequencyResponse<'_>| request.run().unwrap_err();
     assert_eq!(
         refused(FrequencyResponse::of(&CONTACT)),
-        Error::MissingEnd { name: "from" }
+        Error::Missing { name: "from" }
     );
     assert_eq!(
         refused(FrequencyResponse::of(&CONTACT).from(1.0)),
-        Error::MissingEnd { name: "to" }
+        Error::Missing { name: "to" }
     );
     assert_eq!(refused(good().to(0.6)), Error::EmptyRange { value: 0.6 });
     assert!(matches!(
@@ -478,7 +511,7 @@ fn bad_requests_are_refused_before_any_work() {
     ));
     assert_eq!(
         refused(good().vary("drive")),
-        Error::MissingEnd { name: "omega" }
+        Error::Missing { name: "omega" }
     );
     assert!(matches!(
         refused(good().vary("zeta").omega(1.0).from(-1.0)),

@@ -15,28 +15,22 @@
 //! (orbits that return on their way).
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
+use std::time::Instant;
 
+use super::Backbone;
+use super::oscillation::Equations;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
-use crate::continuation::problem::Problem;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
-use crate::flow::{self, Flow, FlowError, Options, Tangent};
-use crate::jacobian::Jacobian;
+use crate::flow::shooting::End;
+use crate::flow::{self, Options};
 use crate::newton::{Newton, NewtonOptions};
-use crate::system::{System, Variable};
+use crate::system::System;
 use crate::validate;
 
-/// Times in which the first moment of rest is looked for, and how many.
-const STEP: f64 = 0.02;
-const STEPS: usize = 5000;
-/// Where there is none they grow, and then shrink until the moment stays, so many times at most.
-const COARSER: f64 = 100.0;
-const FINER: f64 = 5.0;
-const SCALES: usize = 12;
-/// Part of the time that it stays to.
-const SAME: f64 = 0.01;
 /// A motion that has not come back to this part of its size is not free.
 const RETURNED: f64 = 1e-6;
 const POINTS: usize = 5000;
@@ -54,17 +48,19 @@ const POINTS: usize = 5000;
 ///
 /// let curve = FreeOscillation::of(&Hertz {}).from(0.5).to(2.0).run()?;
 /// // omega = 0.95469357 a^(1/4), by a quadrature of the period.
-/// let last = curve.last().unwrap();
+/// let last = curve.points.last().unwrap();
 /// assert!((last.omega - 0.95469356972851 * 2_f64.powf(0.25)).abs() < 1e-9);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Clone)]
 pub struct FreeOscillation<'a> {
     system: &'a dyn System,
-    from: f64,
-    to: f64,
+    from: Option<f64>,
+    to: Option<f64>,
     near: Option<(Vec<f64>, f64)>,
     tolerance: f64,
+    max_points: usize,
+    largest_step: f64,
 }
 
 impl std::fmt::Debug for FreeOscillation<'_> {
@@ -99,24 +95,26 @@ impl<'a> FreeOscillation<'a> {
     pub fn of(system: &'a dyn System) -> Self {
         Self {
             system,
-            from: 1.0,
-            to: 2.0,
+            from: None,
+            to: None,
             near: None,
             tolerance: 1e-12,
+            max_points: POINTS,
+            largest_step: StepControl::default().largest,
         }
     }
 
     /// Position of the first coordinate at rest where the curve begins.
     #[must_use]
     pub fn from(mut self, position: f64) -> Self {
-        self.from = position;
+        self.from = Some(position);
         self
     }
 
     /// The same where it ends.
     #[must_use]
     pub fn to(mut self, position: f64) -> Self {
-        self.to = position;
+        self.to = Some(position);
         self
     }
 
@@ -134,246 +132,145 @@ impl<'a> FreeOscillation<'a> {
         self
     }
 
-    /// Follows the curve from one position to the other. It ends early where it cannot be continued.
+    /// Largest step along the curve, as [`FrequencyResponse::largest_step`](crate::FrequencyResponse::largest_step) measures
+    /// it. Default: 0.1.
+    #[must_use]
+    pub fn largest_step(mut self, step: f64) -> Self {
+        self.largest_step = step;
+        self
+    }
+
+    /// Stop after this many points. Default: 5000.
+    #[must_use]
+    pub fn max_points(mut self, points: usize) -> Self {
+        self.max_points = points;
+        self
+    }
+
+    /// Follows the curve from one position to the other.
     ///
     /// # Errors
     /// If a parameter or an option is not usable, nothing oscillates at the first position, or a motion does not come back because
-    /// the system has damping or an excitation.
-    pub fn run(&self) -> Result<Vec<FreePoint>, Error> {
-        let facts = self.system.facts();
-        let n = facts.coordinates.len();
-        if n == 0 {
-            return Err(Error::NoCoordinates);
-        }
-        for (name, value) in [("from", self.from), ("to", self.to)] {
-            validate::option(name, value, -1e300..=1e300, "must be finite")?;
-        }
-        if self.from == self.to {
-            return Err(Error::EmptyRange { value: self.from });
-        }
-        let mut parameters = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut parameters);
-        validate::parameters(facts, &parameters)?;
-        let options = Options {
-            tolerance: self.tolerance,
-        };
-        let flow = flow::at(self.system, &parameters, 1.0, options)?;
-        let mut equations = Equations::new(flow, f64::from(facts.divisor));
-        let mut u = self.first(&mut equations)?;
-        u.push(self.from);
-        let options = FollowOptions {
-            from: self.from,
-            to: self.to,
-            points: POINTS,
-            steps: StepControl::default(),
-            newton: NewtonOptions {
-                tolerance: (100.0 * self.tolerance).clamp(1e-11, 1e-6),
-                iterations: 12,
-                damped: false,
-            },
-        };
+    /// the system has damping or an excitation. A curve that ends early is not an error: it comes back with what was computed and
+    /// with [`Backbone::end`].
+    pub fn run(&self) -> Result<Backbone<FreePoint>, Error> {
+        self.run_with(|_| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Self::run), and calls `visit` at every point as it is found: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with(
+        &self,
+        mut visit: impl FnMut(&FreePoint) -> ControlFlow<()>,
+    ) -> Result<Backbone<FreePoint>, Error> {
+        let started = Instant::now();
+        let options = self.options()?;
+        let mut equations = self.equations()?;
+        let mut u = self.first(&mut equations, options.from)?;
+        u.push(options.from);
         let mut newton = Newton::new(&equations);
         let mut points = Vec::new();
-        let mut apart = 0.0_f64;
+        let mut failure = None;
         let outcome = follow(
             &mut equations,
             &mut newton,
             Start::Near(u),
             options,
-            &mut |equations, _, seen| match seen {
-                Visit::Point(at) => match equations.read(&at.u) {
-                    Ok((point, returned)) => {
-                        apart = apart.max(returned);
-                        points.push(point);
-                        Continue::Continue(())
+            &mut |equations, _, seen| {
+                let Visit::Point(at) = seen else {
+                    return Continue::Continue(());
+                };
+                let point = match equations.read(&at.u) {
+                    Ok((point, apart)) if apart <= RETURNED => point,
+                    found => {
+                        failure = Some(found.map(|(_, apart)| apart));
+                        return Continue::Break(Halt::Stop);
                     }
-                    Err(_) => Continue::Break(Halt::Stop),
-                },
-                _ => Continue::Continue(()),
+                };
+                let answer = visit(&point);
+                points.push(point);
+                if answer.is_break() {
+                    Continue::Break(Halt::Stop)
+                } else {
+                    Continue::Continue(())
+                }
             },
         );
-        let parameter = self.from;
-        match outcome {
-            Err(reason) => return Err(Error::NoStart { parameter, reason }),
-            Ok(Outcome::Stopped(Stop::Interrupted) | Outcome::Halted(_)) if points.is_empty() => {
-                let reason = FlowError::NotFinite { phase: 0.0 };
-                return Err(Error::Motion { parameter, reason });
+        let value = points
+            .last()
+            .map_or(options.from, |last: &FreePoint| last.ends[0][0]);
+        let end = match (failure, outcome) {
+            (Some(Ok(apart)), _) => return Err(Error::NotFree { apart }),
+            (Some(Err(reason)), _) if points.is_empty() => {
+                return Err(Error::Motion { value, reason });
             }
-            Ok(_) => {}
+            (Some(Err(reason)), _) => End::Motion { value, reason },
+            (None, Err(reason)) => return Err(Error::NoStart { value, reason }),
+            (None, Ok(Outcome::Stopped(stop))) => End::Stopped(stop),
+            // A walk along free oscillations is never resized.
+            (None, Ok(Outcome::Halted(_))) => End::Stopped(Stop::Interrupted),
+        };
+        Ok(Backbone {
+            points,
+            end,
+            statistics: newton.statistics,
+            work: equations.flow.work(),
+            elapsed: started.elapsed(),
+        })
+    }
+
+    /// Range and accuracy, checked.
+    fn options(&self) -> Result<FollowOptions, Error> {
+        let from = self.from.ok_or(Error::Missing { name: "from" })?;
+        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        for (name, value) in [("from", from), ("to", to)] {
+            validate::option(name, value, -1e300..=1e300, "must be finite")?;
         }
-        if apart > RETURNED {
-            return Err(Error::NotFree { apart });
+        if from == to {
+            return Err(Error::EmptyRange { value: from });
         }
-        Ok(points)
+        Ok(FollowOptions {
+            from,
+            to,
+            points: validate::max_points(self.max_points)?,
+            steps: validate::largest_step(self.largest_step)?,
+            newton: NewtonOptions {
+                tolerance: (100.0 * self.tolerance).clamp(1e-11, 1e-6),
+                iterations: 12,
+                damped: false,
+            },
+        })
+    }
+
+    /// The equations of the system, checked.
+    fn equations(&self) -> Result<Equations<'a>, Error> {
+        let facts = self.system.facts();
+        if facts.coordinates.is_empty() {
+            return Err(Error::NoCoordinates);
+        }
+        let mut parameters = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut parameters);
+        let tolerance = self.tolerance;
+        let flow = flow::at(self.system, &parameters, 1.0, Options { tolerance })?;
+        Ok(Equations::new(flow, f64::from(facts.divisor)))
     }
 
     /// The unknowns of the first oscillation.
-    fn first(&self, equations: &mut Equations<'_>) -> Result<Vec<f64>, Error> {
+    fn first(&self, equations: &mut Equations<'_>, from: f64) -> Result<Vec<f64>, Error> {
         let n = equations.flow.coordinates();
-        if let Some((positions, omega)) = &self.near {
-            if positions.len() != n {
-                return Err(Error::State {
-                    entries: positions.len(),
-                    expected: n,
-                });
-            }
-            let omega = validate::omega(*omega)?;
-            return Ok(positions[1..].iter().copied().chain([omega]).collect());
-        }
-        let time = self.half_period(equations)?;
-        Ok((1..n).map(|_| 0.0).chain([PI / time]).collect())
-    }
-
-    /// The time to the first moment of rest, at any scale of time: steps grow until there is one, and shrink until it stays.
-    fn half_period(&self, equations: &mut Equations<'_>) -> Result<f64, Error> {
-        let mut step = STEP;
-        let mut found = self.first_rest(equations, step)?;
-        for _ in 0..SCALES {
-            if found.is_some() {
-                break;
-            }
-            step *= COARSER;
-            found = self.first_rest(equations, step)?;
-        }
-        let never = Error::NeverAtRest {
-            position: self.from,
+        let Some((positions, omega)) = &self.near else {
+            let time = equations.half_period(from)?;
+            return Ok((1..n).map(|_| 0.0).chain([PI / time]).collect());
         };
-        let mut time = found.ok_or(never.clone())?;
-        for _ in 0..SCALES {
-            step /= FINER;
-            let again = self.first_rest(equations, step)?.unwrap_or(time);
-            let same = (again - time).abs() <= SAME * again;
-            time = again;
-            if same && time > 10.0 * step {
-                return Ok(time);
-            }
+        if positions.len() != n {
+            return Err(Error::State {
+                entries: positions.len(),
+                expected: n,
+            });
         }
-        Err(never)
-    }
-
-    /// The same, looked for in steps of this time.
-    fn first_rest(&self, equations: &mut Equations<'_>, step: f64) -> Result<Option<f64>, Error> {
-        let n = equations.flow.coordinates();
-        let parameter = self.from;
-        let mut state = vec![0.0; 2 * n];
-        state[0] = self.from;
-        let (mut phase, mut before) = (0.0, 0.0);
-        let motion = |reason| Error::Motion { parameter, reason };
-        equations.flow.set(Variable::Omega, 1.0).map_err(motion)?;
-        for _ in 0..STEPS {
-            let next = phase + step / equations.divisor;
-            let moved = equations.flow.advance(phase, next, &mut state, None, None);
-            moved.map_err(motion)?;
-            let velocity = state[n];
-            if before * velocity < 0.0 {
-                let part = before / (before - velocity);
-                let time = (phase + part * (next - phase)) * equations.divisor;
-                return Ok(Some(time));
-            }
-            (phase, before) = (next, velocity);
-        }
-        Ok(None)
-    }
-}
-
-/// The equations (1); unknowns are the other positions and the frequency, the parameter is the first position.
-struct Equations<'a> {
-    flow: Box<dyn Flow + 'a>,
-    divisor: f64,
-    state: Vec<f64>,
-    tangent: Tangent,
-    column: Vec<f64>,
-}
-
-impl<'a> Equations<'a> {
-    fn new(flow: Box<dyn Flow + 'a>, divisor: f64) -> Self {
-        let n = flow.coordinates();
-        Self {
-            state: vec![0.0; 2 * n],
-            tangent: Tangent::of_state(n, Some(Variable::Omega)),
-            column: vec![0.0; n],
-            divisor,
-            flow,
-        }
-    }
-
-    /// Sets `state` to rest at the positions of the unknowns, and the frequency to theirs.
-    fn begin(&mut self, u: &[f64]) -> Result<(), FlowError> {
-        let n = self.column.len();
-        self.state.fill(0.0);
-        self.state[0] = u[n];
-        self.state[1..n].copy_from_slice(&u[..n - 1]);
-        self.flow.set(Variable::Omega, u[n - 1])
-    }
-
-    /// The oscillation, and how far it misses its beginning, relative to its size.
-    fn read(&mut self, u: &[f64]) -> Result<(FreePoint, f64), FlowError> {
-        let n = self.column.len();
-        let half = PI / self.divisor;
-        self.begin(u)?;
-        let first = self.state[..n].to_vec();
-        self.flow.advance(0.0, half, &mut self.state, None, None)?;
-        let other = self.state[..n].to_vec();
-        let end = 2.0 * half;
-        self.flow.advance(half, end, &mut self.state, None, None)?;
-        let largest = |a: &[f64], b: &[f64]| {
-            let pairs = a.iter().zip(b);
-            pairs.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()))
-        };
-        let size = largest(&first, &other).max(f64::MIN_POSITIVE);
-        let apart = largest(&first, &self.state[..n]) / size;
-        let point = FreePoint {
-            omega: u[n - 1],
-            ends: [first, other],
-        };
-        Ok((point, apart))
-    }
-}
-
-impl Problem for Equations<'_> {
-    fn unknowns(&self) -> usize {
-        self.column.len()
-    }
-
-    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
-        let n = self.column.len();
-        let begun = self.begin(u);
-        self.tangent.columns.fill(0.0);
-        for i in 0..2 * n {
-            self.tangent.columns[i * 2 * n + i] = 1.0;
-        }
-        let half = PI / self.divisor;
-        let tangent = jacobian.is_some().then_some(&mut self.tangent);
-        // A frequency that is not positive is none.
-        let moved =
-            begun.and_then(|()| self.flow.advance(0.0, half, &mut self.state, tangent, None));
-        if moved.is_err() {
-            residual.fill(f64::NAN);
-            return;
-        }
-        residual.copy_from_slice(&self.state[n..]);
-        let Some(jacobian) = jacobian else {
-            return;
-        };
-        let by = |column: usize, i: usize| self.tangent.columns[column * 2 * n + n + i];
-        for i in 0..n {
-            let row = jacobian.core_mut().row_mut(i);
-            for j in 1..n {
-                row[j - 1] = by(j, i);
-            }
-            row[n - 1] = by(2 * n, i);
-        }
-        for i in 0..n {
-            self.column[i] = by(0, i);
-        }
-        jacobian.set_column(&self.column);
-    }
-
-    fn weights(&self, weights: &mut [f64]) {
-        weights.fill(1.0);
-    }
-
-    fn is_mean(&self, _: usize) -> bool {
-        false
+        let omega = validate::omega(*omega)?;
+        Ok(positions[1..].iter().copied().chain([omega]).collect())
     }
 }

@@ -2,7 +2,30 @@
 //! phase resonance.
 
 mod free;
+mod oscillation;
 mod resonance;
+
+use std::time::Duration;
+
+use crate::flow::Work;
+use crate::flow::shooting::End;
+use crate::statistics::Statistics;
 
 pub use free::{FreeOscillation, FreePoint};
 pub use resonance::{PhaseResonance, ResonancePoint};
+
+/// A backbone curve, of [`FreePoint`] or of [`ResonancePoint`].
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Backbone<P> {
+    /// Its points, in the order in which it was followed.
+    pub points: Vec<P>,
+    /// Why it ended.
+    pub end: End,
+    /// What the continuation cost.
+    pub statistics: Statistics,
+    /// What the motions cost; nothing in phase resonance, which computes none.
+    pub work: Work,
+    /// Time of the computation.
+    pub elapsed: Duration,
+}

@@ -14,19 +14,28 @@
 //! J. Sound Vib. 330 (phase lag quadrature); Volvert and Kerschen (2021), Phase resonance nonlinear modes of mechanical systems,
 //! J. Sound Vib. 511.
 
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use super::Backbone;
 use crate::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::branch::Orbit;
-use crate::continuation::follow::{Continue, FollowOptions, Start, Visit, follow};
+use crate::continuation::follow::{
+    Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
+};
 use crate::continuation::problem::Problem;
 use crate::continuation::step::StepControl;
-use crate::error::{Attempts, Error};
+use crate::error::Error;
+use crate::flow::Work;
+use crate::flow::shooting::End;
 use crate::fourier::series;
 use crate::harmonics::resize;
 use crate::jacobian::Jacobian;
 use crate::newton::{Newton, NewtonOptions};
 use crate::observe::Motion;
 use crate::response::FrequencyResponse;
+use crate::statistics::Statistics;
 use crate::system::{System, Variable};
 use crate::validate;
 
@@ -37,13 +46,35 @@ const STEP: f64 = 1e-6;
 
 /// Where the first coordinate is in phase resonance with its load, as a parameter varies from the value that it has: set up step by
 /// step, then [run](PhaseResonance::run).
+///
+/// ```
+/// use hertzian::backbone::PhaseResonance;
+///
+/// hertzian::oscillator! {
+///     Linear(x) {
+///         param drive;
+///         ddot(x) + 0.1*dot(x) + x = drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Linear { drive: 0.1 };
+/// let curve = PhaseResonance::of(&model).vary("drive").to(0.2).between(0.5, 2.0).run()?;
+/// // The load balances damping alone: omega = 1, amplitude = drive / 0.1.
+/// for point in &curve.points {
+///     assert!((point.orbit.omega - 1.0).abs() < 1e-9);
+///     assert!((point.motion.peak_to_peak() - 20.0 * point.value).abs() < 1e-8);
+/// }
+/// # Ok::<(), hertzian::Error>(())
+/// ```
 #[derive(Clone)]
 pub struct PhaseResonance<'a> {
     system: &'a dyn System,
-    vary: String,
-    to: f64,
-    between: [f64; 2],
+    vary: Option<String>,
+    to: Option<f64>,
+    between: Option<[f64; 2]>,
     harmonics: usize,
+    max_points: usize,
+    largest_step: f64,
 }
 
 impl std::fmt::Debug for PhaseResonance<'_> {
@@ -51,6 +82,7 @@ impl std::fmt::Debug for PhaseResonance<'_> {
         f.debug_struct("PhaseResonance")
             .field("system", &self.system.facts().name)
             .field("vary", &self.vary)
+            .field("to", &self.to)
             .finish_non_exhaustive()
     }
 }
@@ -68,15 +100,39 @@ pub struct ResonancePoint {
 }
 
 impl<'a> PhaseResonance<'a> {
-    /// Of this system, as a parameter varies up or down to a value. The first orbit has a frequency between two others.
-    pub fn of(system: &'a dyn System, vary: &str, to: f64, between: [f64; 2]) -> Self {
+    /// Of this system, at the parameters it has when the computation starts.
+    pub fn of(system: &'a dyn System) -> Self {
         Self {
             system,
-            vary: vary.to_owned(),
-            to,
-            between,
+            vary: None,
+            to: None,
+            between: None,
             harmonics: HARMONICS,
+            max_points: POINTS,
+            largest_step: StepControl::default().largest,
         }
+    }
+
+    /// The parameter that varies, usually the amplitude of the load.
+    #[must_use]
+    pub fn vary(mut self, parameter: impl Into<String>) -> Self {
+        self.vary = Some(parameter.into());
+        self
+    }
+
+    /// Where it ends. It starts at the value that the system has.
+    #[must_use]
+    pub fn to(mut self, value: f64) -> Self {
+        self.to = Some(value);
+        self
+    }
+
+    /// The first orbit has an excitation frequency between these two: there the frequency response is computed, and searched for
+    /// phase resonance.
+    #[must_use]
+    pub fn between(mut self, low: f64, high: f64) -> Self {
+        self.between = Some([low, high]);
+        self
     }
 
     /// Number of harmonics. Default: 20.
@@ -86,26 +142,94 @@ impl<'a> PhaseResonance<'a> {
         self
     }
 
-    /// Follows the curve. It ends early where it cannot be continued.
+    /// Largest step along the curve, as [`FrequencyResponse::largest_step`] measures it. Default: 0.1.
+    #[must_use]
+    pub fn largest_step(mut self, step: f64) -> Self {
+        self.largest_step = step;
+        self
+    }
+
+    /// Stop after this many points. Default: 5000.
+    #[must_use]
+    pub fn max_points(mut self, points: usize) -> Self {
+        self.max_points = points;
+        self
+    }
+
+    /// Follows the curve.
     ///
     /// # Errors
-    /// If a parameter or an option is not usable, or no orbit in phase resonance is found at the first value.
-    pub fn run(&self) -> Result<Vec<ResonancePoint>, Error> {
+    /// If a parameter or an option is not usable, or no orbit in phase resonance is found at the first value. A curve that ends
+    /// early is not an error: it comes back with what was computed and with [`Backbone::end`].
+    pub fn run(&self) -> Result<Backbone<ResonancePoint>, Error> {
+        self.run_with(|_| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Self::run), and calls `visit` at every point as it is found: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with(
+        &self,
+        mut visit: impl FnMut(&ResonancePoint) -> ControlFlow<()>,
+    ) -> Result<Backbone<ResonancePoint>, Error> {
+        let started = Instant::now();
+        let (index, parameters, options) = self.options()?;
+        let value = options.from;
+        let (first, mut statistics) = self.first(&parameters, value)?;
+        let motion = Motion::of(first.series(0));
+        let mut u = first.series.clone();
+        u.push(first.omega);
+        let mut u = resize(&u, first.coordinates(), series::length(self.harmonics));
+        u.push(value);
+        let balance = self.balance(&parameters, first.omega);
+        let mut equations = Resonance::new(balance, index, motion.peak_to_peak());
+        let mut newton = Newton::new(&equations);
+        let mut points = Vec::new();
+        let see = &mut |equations: &mut Resonance<'_>, _: &mut Newton, seen: Visit<'_>| {
+            let Visit::Point(at) = seen else {
+                return Continue::Continue(());
+            };
+            let point = equations.read(&at.u);
+            let answer = visit(&point);
+            points.push(point);
+            if answer.is_break() {
+                Continue::Break(Halt::Stop)
+            } else {
+                Continue::Continue(())
+            }
+        };
+        let outcome = follow(&mut equations, &mut newton, Start::Near(u), options, see);
+        let stop = match outcome.map_err(|reason| Error::NoStart { value, reason })? {
+            Outcome::Stopped(stop) => stop,
+            // A walk of one number of harmonics is never resized.
+            Outcome::Halted(_) => Stop::Interrupted,
+        };
+        statistics += newton.statistics;
+        Ok(Backbone {
+            points,
+            end: End::Stopped(stop),
+            statistics,
+            work: Work::default(),
+            elapsed: started.elapsed(),
+        })
+    }
+
+    /// What varies, the parameters where it starts, and how far it goes, checked.
+    fn options(&self) -> Result<(usize, Vec<f64>, FollowOptions), Error> {
         let facts = self.system.facts();
+        let name = self.vary.as_deref();
+        let name = name.ok_or(Error::Missing { name: "vary" })?;
+        let Variable::Parameter(index) = validate::variable(facts, Some(name))? else {
+            let name = name.to_owned();
+            let must = "must be a parameter: the frequency follows from the resonance";
+            return Err(Error::Varied { name, must });
+        };
         let mut parameters = vec![0.0; facts.parameters.len()];
         self.system.values(&mut parameters);
-        let Variable::Parameter(index) = validate::variable(facts, Some(&self.vary))? else {
-            return Err(Error::UnknownParameter {
-                name: self.vary.clone(),
-                known: facts
-                    .parameters
-                    .iter()
-                    .map(|p| p.name.to_string())
-                    .collect(),
-            });
-        };
         let from = parameters[index];
-        validate::range(facts, Variable::Parameter(index), from, self.to)?;
+        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        validate::range(facts, Variable::Parameter(index), from, to)?;
         let harmonics = self.harmonics as f64;
         validate::option(
             "harmonics",
@@ -113,39 +237,18 @@ impl<'a> PhaseResonance<'a> {
             f64::from(facts.divisor)..=1000.0,
             "must be at most 1000, and at least the divisor of the declaration",
         )?;
-        let first = self.first(&parameters, from)?;
-        let motion = Motion::of(first.series(0));
-        let coordinates = first.coordinates();
-        let mut u = first.series.clone();
-        u.push(first.omega);
-        let mut u = resize(&u, coordinates, series::length(self.harmonics));
-        u.push(from);
-        let balance = self.balance(&parameters, first.omega);
-        let mut equations = Resonance::new(balance, index, motion.peak_to_peak());
-        let mut newton = Newton::new(&equations);
         let options = FollowOptions {
             from,
-            to: self.to,
-            points: POINTS,
-            steps: StepControl::default(),
+            to,
+            points: validate::max_points(self.max_points)?,
+            steps: validate::largest_step(self.largest_step)?,
             newton: NewtonOptions {
                 tolerance: 1e-10,
                 iterations: 20,
                 damped: false,
             },
         };
-        let mut points = Vec::new();
-        let visit = &mut |equations: &mut Resonance<'_>, _: &mut Newton, seen: Visit<'_>| {
-            if let Visit::Point(at) = seen {
-                points.push(equations.read(&at.u));
-            }
-            Continue::Continue(())
-        };
-        follow(&mut equations, &mut newton, Start::Near(u), options, visit).map_err(|reason| {
-            let parameter = from;
-            Error::NoStart { parameter, reason }
-        })?;
-        Ok(points)
+        Ok((index, parameters, options))
     }
 
     fn balance(&self, parameters: &[f64], omega: f64) -> Balance<'a> {
@@ -160,39 +263,31 @@ impl<'a> PhaseResonance<'a> {
         Balance::new(self.system, parameters, omega, Variable::Omega, resolution)
     }
 
-    /// The orbit of the frequency response that is next to phase resonance.
-    fn first(&self, parameters: &[f64], value: f64) -> Result<Orbit, Error> {
-        let [low, high] = self.between;
+    /// The orbit of the frequency response that is next to phase resonance, and what it cost.
+    fn first(&self, parameters: &[f64], value: f64) -> Result<(Orbit, Statistics), Error> {
+        let [low, high] = self.between.ok_or(Error::Missing { name: "between" })?;
         let response = FrequencyResponse::of(self.system).from(low).to(high);
         let response = response.harmonics(self.harmonics).stability(false);
         let branch = response.run()?;
         let mut balance = self.balance(parameters, low);
+        if load(&balance).1 == [0.0; 2] {
+            return Err(Error::NoLoad);
+        }
         let mut lag = |orbit: &Orbit| {
             balance.set(orbit.omega);
             let (place, [a, b]) = load(&balance);
             let series = orbit.series(0);
             a * series[place] + b * series[place + 1]
         };
-        if load(&self.balance(parameters, low)).1 == [0.0; 2] {
-            let must = "must act on the first coordinate, with the frequency of the excitation";
-            let name = "load";
-            return Err(Error::Option {
-                name,
-                value: 0.0,
-                must,
-            });
-        }
         let lags: Vec<f64> = branch.points.iter().map(|p| lag(&p.orbit)).collect();
         let change = (1..lags.len()).find(|&i| lags[i - 1] * lags[i] < 0.0);
         let nearest = change.map(|i| {
             let nearer = lags[i - 1].abs() < lags[i].abs();
             branch.points[i - usize::from(nearer)].orbit.clone()
         });
-        nearest.ok_or(Error::NoSuchPeriod {
-            period: 1,
-            parameter: value,
-            attempts: Attempts::default(),
-        })
+        let between = [low, high];
+        let nearest = nearest.ok_or(Error::NoResonance { value, between })?;
+        Ok((nearest, branch.statistics))
     }
 }
 

@@ -4,12 +4,14 @@
 //! ended at a bifurcation is the one that begins there, so it is not followed from the other end.
 
 use std::collections::VecDeque;
+use std::fmt;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use super::known;
 use crate::branch::EventKind;
 use crate::error::Error;
-use crate::flow::shooting::{CycleBranch, CycleEvent, End, Shooting, Side};
+use crate::flow::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -86,8 +88,23 @@ pub enum Reason {
         /// Its number in the diagram.
         branch: usize,
     },
+    /// The caller asked to stop before.
+    Interrupted,
     /// Its first orbit was not found.
     Failed(Error),
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Depth => f.write_str("deeper than asked for"),
+            Self::Budget => f.write_str("no more branches or orbits are allowed"),
+            Self::Mirrored => f.write_str("the mirror image of a branch that is followed"),
+            Self::Known { branch } => write!(f, "branch {branch} ends there"),
+            Self::Interrupted => f.write_str("interrupted"),
+            Self::Failed(error) => error.fmt(f),
+        }
+    }
 }
 
 impl Limb {
@@ -119,8 +136,31 @@ impl Diagram {
     }
 }
 
+/// Who looks at every orbit, and may ask to stop.
+pub(super) struct Watch<'v> {
+    visit: &'v mut dyn FnMut(&Cycle) -> ControlFlow<()>,
+    pub(super) interrupted: bool,
+}
+
+impl<'v> Watch<'v> {
+    pub(super) fn new(visit: &'v mut dyn FnMut(&Cycle) -> ControlFlow<()>) -> Self {
+        Self {
+            visit,
+            interrupted: false,
+        }
+    }
+
+    /// Shows an orbit.
+    pub(super) fn see(&mut self, cycle: &Cycle) -> ControlFlow<()> {
+        let answer = (self.visit)(cycle);
+        self.interrupted |= answer.is_break();
+        answer
+    }
+}
+
 /// The search, and what it has found.
-pub(super) struct Search<'a> {
+pub(super) struct Search<'a, 'v> {
+    pub(super) watch: Watch<'v>,
     shooting: Shooting<'a>,
     depth: usize,
     most_branches: usize,
@@ -130,17 +170,19 @@ pub(super) struct Search<'a> {
     pub(super) diagram: Diagram,
 }
 
-impl<'a> Search<'a> {
+impl<'a, 'v> Search<'a, 'v> {
     /// To a depth, with no more branches and orbits than this.
     pub(super) fn new(
         shooting: Shooting<'a>,
         (depth, branches, points): (usize, usize, usize),
+        watch: Watch<'v>,
     ) -> Self {
         Self {
             shooting,
             depth,
             most_branches: branches,
             points_left: points,
+            watch,
             queue: VecDeque::new(),
             diagram: Diagram::default(),
         }
@@ -188,6 +230,9 @@ impl<'a> Search<'a> {
         period: usize,
         state: &[f64],
     ) -> Result<(), Reason> {
+        if self.watch.interrupted {
+            return Err(Reason::Interrupted);
+        }
         let request = self.shooting.clone().period(period).near(state);
         let orbit = request.orbit(value).map_err(Reason::Failed)?;
         let known = |limb: &Limb| known::contains(&self.shooting, limb, &orbit);
@@ -199,7 +244,8 @@ impl<'a> Search<'a> {
         }
         // Each of two parts may have half.
         let request = request.near(orbit.state()).max_points(self.points_left / 2);
-        let branch = request.through(value).map_err(Reason::Failed)?;
+        let branch = request.through_with(value, |cycle| self.watch.see(cycle));
+        let branch = branch.map_err(Reason::Failed)?;
         self.add(Origin::Attractor { value }, 0, branch);
         Ok(())
     }
@@ -223,11 +269,15 @@ impl<'a> Search<'a> {
             return Err(Reason::Depth);
         }
         for &side in sides {
+            if self.watch.interrupted {
+                return Err(Reason::Interrupted);
+            }
             if self.diagram.branches.len() >= self.most_branches || self.points_left < 2 {
                 return Err(Reason::Budget);
             }
             let request = self.shooting.clone().max_points(self.points_left);
-            let branch = request.switch(&event, side).map_err(Reason::Failed)?;
+            let branch = request.switch_with(&event, side, |cycle| self.watch.see(cycle));
+            let branch = branch.map_err(Reason::Failed)?;
             let origin = Origin::Event {
                 branch: number,
                 event: index,

@@ -1,12 +1,13 @@
 //! A request for all branches that are connected with one, set up step by step.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
-use super::diagram::{Diagram, Origin, Reason, Search};
+use super::diagram::{Diagram, Origin, Reason, Search, Watch};
 use crate::error::Error;
 use crate::flow;
 use crate::flow::basin::{Attractor, Basin};
-use crate::flow::shooting::Shooting;
+use crate::flow::shooting::{Cycle, Shooting};
 use crate::system::{System, Variable};
 use crate::validate;
 
@@ -187,9 +188,21 @@ impl<'a> Bifurcations<'a> {
     /// # Errors
     /// If a parameter or an option is not usable, or no first orbit is found.
     pub fn run(&self) -> Result<Diagram, Error> {
+        self.run_with(|_| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Self::run), and calls `visit` at every orbit as it is found: to show progress, or to stop. What was found until
+    /// then comes back, and what was not followed has [`Reason::Interrupted`].
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with(
+        &self,
+        mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
+    ) -> Result<Diagram, Error> {
         let started = Instant::now();
-        let from = self.from.ok_or(Error::MissingEnd { name: "from" })?;
-        let to = self.to.ok_or(Error::MissingEnd { name: "to" })?;
+        let from = self.from.ok_or(Error::Missing { name: "from" })?;
+        let to = self.to.ok_or(Error::Missing { name: "to" })?;
         self.check()?;
         for &(value, _) in &self.searched {
             if value < from.min(to) || value > from.max(to) {
@@ -199,15 +212,22 @@ impl<'a> Bifurcations<'a> {
             }
         }
         let first = self.shooting.clone().from(from).to(to);
-        let branch = first.max_points(self.points.max(2)).run()?;
+        let mut watch = Watch::new(&mut visit);
+        let first = first.max_points(self.points.max(2));
+        let branch = first.run_with(|cycle| watch.see(cycle))?;
         let [low, high] = self.wider(from, to)?;
         let mut search = Search::new(
             self.shooting.clone().from(low).to(high),
             (self.depth, self.branches, self.points),
+            watch,
         );
         search.add(Origin::First, 0, branch);
         search.exhaust();
         for (value, basin) in &self.searched {
+            if search.watch.interrupted {
+                search.diagram.missed.push((*value, Reason::Interrupted));
+                continue;
+            }
             let found = self.attractors(*value, basin).unwrap_or_else(|error| {
                 search.diagram.missed.push((*value, Reason::Failed(error)));
                 Vec::new()
@@ -235,7 +255,7 @@ impl<'a> Bifurcations<'a> {
             Variable::Omega => value,
             Variable::Parameter(index) => {
                 parameters[index] = value;
-                self.omega.ok_or(Error::MissingEnd { name: "omega" })?
+                self.omega.ok_or(Error::Missing { name: "omega" })?
             }
         };
         let options = flow::Options { tolerance: SETTLED };
@@ -252,8 +272,7 @@ impl<'a> Bifurcations<'a> {
         validate::option("beyond", self.beyond, 0.0..=10.0, "must be from 0 to 10")?;
         let branches = self.branches as f64;
         validate::option("max_branches", branches, 1.0..=1e6, "must be 1 or more")?;
-        let points = self.points as f64;
-        validate::option("max_points", points, 2.0..=1e9, "must be 2 or more")
+        validate::max_points(self.points).map(|_| ())
     }
 
     /// The range with what lies beyond its ends, as far as that is admissible.

@@ -66,7 +66,7 @@ pub enum Stop {
         /// The shorter period, in excitation periods.
         period: usize,
         /// Where.
-        parameter: f64,
+        value: f64,
     },
     /// As many points as were allowed.
     PointLimit {
@@ -78,7 +78,7 @@ pub enum Stop {
         /// Length of the last step tried.
         step: f64,
         /// Where.
-        parameter: f64,
+        value: f64,
         /// What the last correction said.
         reason: NewtonError,
     },
@@ -92,19 +92,19 @@ impl std::fmt::Display for Stop {
             Self::ReachedEnd => write!(f, "reached the end of the range"),
             Self::LeftAtStart => write!(f, "turned back and left the range at its start"),
             Self::Closed => write!(f, "closed upon itself"),
-            Self::Joined { period, parameter } => write!(
+            Self::Joined { period, value } => write!(
                 f,
-                "joined a branch of orbits of period {period} at {parameter:.9}; beyond, the same orbits would follow again, shifted or mirrored"
+                "joined a branch of orbits of period {period} at {value:.9}; beyond, the same orbits would follow again, shifted or mirrored"
             ),
             Self::PointLimit { points } => write!(f, "reached the limit of {points} points"),
             Self::StepTooShort {
                 step,
-                parameter,
+                value,
                 reason,
             } => {
                 write!(
                     f,
-                    "no further solution found at {parameter} with a step of {step:.1e}: {reason}"
+                    "no further solution found at {value} with a step of {step:.1e}: {reason}"
                 )
             }
             Self::Interrupted => write!(f, "interrupted"),

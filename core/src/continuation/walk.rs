@@ -272,7 +272,7 @@ impl Walk {
             match (self.options.steps.after_failure(self.step), reason) {
                 (Some(shorter), _) => self.step = shorter,
                 (None, reason) => {
-                    let parameter = from.parameter();
+                    let value = from.parameter();
                     let reason = reason.unwrap_or(NewtonError::NotConverged {
                         iterations: 0,
                         update: self.step,
@@ -280,7 +280,7 @@ impl Walk {
                     });
                     return Err(Stop::StepTooShort {
                         step: self.step,
-                        parameter,
+                        value,
                         reason,
                     });
                 }
@@ -390,7 +390,7 @@ impl Walk {
         self.solve_at(problem, newton, limit)
             .map_err(|reason| Stop::StepTooShort {
                 step: self.step,
-                parameter: from.parameter(),
+                value: from.parameter(),
                 reason,
             })?;
         let mut point = self.point(problem, newton);

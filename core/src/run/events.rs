@@ -129,11 +129,11 @@ impl Run<'_, '_> {
         let options = self.options.newton;
         let between = (before, behind);
         let located = locate(balance, newton, between, options, JOINED, addition);
-        let parameter = located.map_or_else(
+        let value = located.map_or_else(
             || vertex(newton.norm(), before, behind),
             |located| located.point.parameter(),
         );
-        self.ended = Some(Stop::Joined { period, parameter });
+        self.ended = Some(Stop::Joined { period, value });
     }
 
     /// Locates where the harmonics that the orbits do not have become singular between two of them.

@@ -45,16 +45,16 @@ impl Effort {
     }
 
     /// Why there is no orbit, when the last attempt said this.
-    pub(super) fn error(&self, parameter: f64, reason: NewtonError) -> Error {
+    pub(super) fn error(&self, value: f64, reason: NewtonError) -> Error {
         if self.is_spent() {
             Error::SearchLimit {
-                parameter,
+                value,
                 evaluations: self.evaluations(),
                 multiplications: self.limit,
                 reason,
             }
         } else {
-            Error::NoStart { parameter, reason }
+            Error::NoStart { value, reason }
         }
     }
 }

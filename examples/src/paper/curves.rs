@@ -88,7 +88,7 @@ impl Case {
 pub struct Curves<'t> {
     task: &'t Task<'t>,
     chart: Chart,
-    curves: Vec<Curve>,
+    lines: Vec<Curve>,
     marks: Vec<(EventKind, Vec<[f64; 2]>)>,
     drawing: Drawing,
     notes: Vec<String>,
@@ -103,7 +103,7 @@ impl<'t> Curves<'t> {
             chart: Chart::new(format!("{}: {}", task.figure.name, task.figure.parameters))
                 .x("excitation frequency ω")
                 .y("peak-to-peak displacement"),
-            curves: Vec::new(),
+            lines: Vec::new(),
             marks: Vec::new(),
             drawing: Drawing {
                 data: Table {
@@ -156,8 +156,8 @@ impl<'t> Curves<'t> {
             }
             match request.clone().doublings(true).switch(event, Side::One) {
                 Ok(broken) => {
-                    if let Stop::Joined { parameter, .. } = broken.stopped {
-                        ends.push(parameter);
+                    if let Stop::Joined { value, .. } = broken.stopped {
+                        ends.push(value);
                     }
                     self.add("without symmetry", &broken);
                     let joint = |event: &&Event| event.kind != EventKind::BranchPoint;
@@ -199,9 +199,9 @@ impl<'t> Curves<'t> {
     /// Adds a branch: its curve, its data and its special orbits. Branches of one name have one place in the legend.
     pub fn add(&mut self, label: &str, branch: &Branch<'_>) {
         let facts = branch.system().facts();
-        match self.curves.iter_mut().find(|curve| curve.label == label) {
+        match self.lines.iter_mut().find(|curve| curve.label == label) {
             Some(curve) => curve.runs.extend(branch.runs()),
-            None => self.curves.push(Curve {
+            None => self.lines.push(Curve {
                 label: label.to_owned(),
                 runs: branch.runs(),
             }),
@@ -304,13 +304,13 @@ impl<'t> Curves<'t> {
     pub fn drawn(self) -> Drawing {
         let Self {
             chart,
-            curves,
+            lines,
             marks,
             mut drawing,
             notes,
             ..
         } = self;
-        let drawn = curves.into_iter().fold(chart, Chart::curve);
+        let drawn = lines.into_iter().fold(chart, Chart::curve);
         let marked = marks.into_iter().fold(drawn, |chart, (kind, points)| {
             let label = kind.to_string();
             chart.markers(Markers { label, points })

@@ -69,20 +69,20 @@ fn skeleton(alpha: f64) -> Result<Vec<[f64; 2]>, String> {
     // With an exponent above one the frequency falls to zero with the amplitude.
     let from = if alpha > 1.0 { 0.3 } else { 0.02 };
     let free = FreeOscillation::of(&spring).from(from).to(9.0);
-    let points = free
+    let curve = free
         .tolerance(1e-6)
         .run()
         .map_err(|error| error.to_string())?;
     let place = |point: &FreePoint| [point.omega, point.peak_to_peak()];
-    Ok(points.iter().map(place).collect())
+    Ok(curve.points.iter().map(place).collect())
 }
 
 /// Frequency of the free vibration of amplitude one.
 fn at_amplitude_one(alpha: f64) -> Result<f64, String> {
     let spring = spring(alpha);
     let free = FreeOscillation::of(&spring).from(1.0).to(1.01);
-    let points = free.run().map_err(|error| error.to_string())?;
-    let first = points.first().ok_or("no free vibration was found")?;
+    let curve = free.run().map_err(|error| error.to_string())?;
+    let first = curve.points.first().ok_or("no free vibration was found")?;
     Ok(first.omega)
 }
 

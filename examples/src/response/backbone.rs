@@ -1,5 +1,7 @@
 //! `--backbone`: free oscillation of the same oscillator, and its phase resonance.
 
+use std::ops::ControlFlow;
+
 use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::chart::Reference;
 use hertzian::{Branch, Error, System};
@@ -34,8 +36,16 @@ pub struct Backbone {
     pub resonance: Vec<BackbonePoint>,
 }
 
+/// Asked after every point whether to go on.
+type Go<'g> = &'g dyn Fn() -> ControlFlow<()>;
+
 /// The backbones of the oscillator over the displacements of a branch in the frequency, and why one of them is missing.
-pub fn of(options: &Options, model: &dyn System, branch: &Branch<'_>) -> (Backbone, Vec<String>) {
+pub fn of(
+    options: &Options,
+    model: &dyn System,
+    branch: &Branch<'_>,
+    go: Go<'_>,
+) -> (Backbone, Vec<String>) {
     let mut warnings = Vec::new();
     if options.model.file.is_some() || options.sweep == Sweep::Drive {
         let message = "the backbone is that of a declared oscillator, over the frequency";
@@ -48,12 +58,12 @@ pub fn of(options: &Options, model: &dyn System, branch: &Branch<'_>) -> (Backbo
             Vec::new()
         })
     };
-    let free = kept(free(options, branch));
-    let resonance = kept(resonance(options, model));
+    let free = kept(free(options, branch, go));
+    let resonance = kept(resonance(options, model, go));
     (Backbone { free, resonance }, warnings)
 }
 
-fn free(options: &Options, branch: &Branch<'_>) -> Result<Vec<BackbonePoint>, Error> {
+fn free(options: &Options, branch: &Branch<'_>, go: Go<'_>) -> Result<Vec<BackbonePoint>, Error> {
     let ModelOptions { alpha, load, .. } = options.model;
     let model = declared(&ModelOptions {
         zeta: 0.0,
@@ -64,8 +74,9 @@ fn free(options: &Options, branch: &Branch<'_>) -> Result<Vec<BackbonePoint>, Er
     let maxima = branch.points.iter().map(|point| point.motion().maximum);
     let largest = maxima.fold(rest, f64::max);
     let from = rest + SMALLEST * (largest - rest);
-    let curve = FreeOscillation::of(&*model).from(from).to(largest).run()?;
-    let points = curve.iter().map(|point| BackbonePoint {
+    let request = FreeOscillation::of(&*model).from(from).to(largest);
+    let curve = request.run_with(|_| go())?;
+    let points = curve.points.iter().map(|point| BackbonePoint {
         omega: point.omega,
         peak_to_peak: point.peak_to_peak(),
         drive: 0.0,
@@ -73,11 +84,16 @@ fn free(options: &Options, branch: &Branch<'_>) -> Result<Vec<BackbonePoint>, Er
     Ok(points.collect())
 }
 
-fn resonance(options: &Options, model: &dyn System) -> Result<Vec<BackbonePoint>, Error> {
+fn resonance(
+    options: &Options,
+    model: &dyn System,
+    go: Go<'_>,
+) -> Result<Vec<BackbonePoint>, Error> {
     let to = LEAST_DRIVE * options.model.drive;
-    let between = [options.from, options.to];
-    let curve = PhaseResonance::of(model, "drive", to, between).run()?;
-    let points = curve.iter().map(|point| BackbonePoint {
+    let request = PhaseResonance::of(model).vary("drive").to(to);
+    let request = request.between(options.from, options.to);
+    let curve = request.run_with(|_| go())?;
+    let points = curve.points.iter().map(|point| BackbonePoint {
         omega: point.orbit.omega,
         peak_to_peak: point.motion.peak_to_peak(),
         drive: point.value,

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::fmt::{self, Write};
+use std::ops::ControlFlow;
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
@@ -30,11 +31,15 @@ pub struct Found {
     pub warnings: Vec<String>,
 }
 
-/// Everything beyond the branch itself that was asked for; nothing if nothing was.
+/// Everything beyond the branch itself that was asked for; nothing if nothing was. It ends, with what was found, where `go` says so.
 ///
 /// # Errors
 /// If an option cannot be used, or there is no first orbit.
-pub fn find(options: &Options, model: &dyn System) -> Result<Option<Found>, Error> {
+pub fn find(
+    options: &Options,
+    model: &dyn System,
+    go: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Option<Found>, Error> {
     if !options.bifurcations && options.track.is_none() {
         return Ok(None);
     }
@@ -50,14 +55,19 @@ pub fn find(options: &Options, model: &dyn System) -> Result<Option<Found>, Erro
     for &value in &options.search {
         request = request.search(value, basin(options, value));
     }
-    let diagram = request.run()?;
+    let mut interrupted = false;
+    let diagram = request.run_with(|cycle| {
+        let answer = go(cycle.value);
+        interrupted |= answer.is_break();
+        answer
+    })?;
     let mut found = Found {
         diagram,
         tracks: Vec::new(),
         warnings: Vec::new(),
     };
-    if let Some(kind) = options.track {
-        found.track(options, model, kind)?;
+    if let Some(kind) = options.track.filter(|_| !interrupted) {
+        found.track(options, model, kind, go)?;
     }
     Ok(Some(found))
 }
@@ -69,6 +79,7 @@ impl Found {
         options: &Options,
         model: &dyn System,
         tracked: Tracked,
+        go: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<(), Error> {
         let kind = match tracked {
             Tracked::Fold => EventKind::Fold,
@@ -91,6 +102,9 @@ impl Found {
             .cloned()
             .collect();
         for event in events {
+            if go(event.cycle.value).is_break() {
+                break;
+            }
             let on_it = |track: &&Track| passes(track, &event, value);
             if self.tracks.iter().any(|track| on_it(&track)) {
                 continue;
@@ -219,18 +233,16 @@ impl Found {
             )?;
         }
         for omitted in &self.diagram.omitted {
-            let reason = match &omitted.reason {
-                Reason::Failed(error) => error.to_string(),
-                Reason::Budget => "no more branches or orbits are allowed".to_owned(),
-                _ => continue,
-            };
-            writeln!(text, "omitted    on branch {}: {reason}", omitted.branch)?;
+            let reason = &omitted.reason;
+            let worth_saying = matches!(
+                reason,
+                Reason::Failed(_) | Reason::Budget | Reason::Interrupted
+            );
+            if worth_saying {
+                writeln!(text, "omitted    on branch {}: {reason}", omitted.branch)?;
+            }
         }
         for (value, reason) in &self.diagram.missed {
-            let reason = match reason {
-                Reason::Failed(error) => error.to_string(),
-                _ => "no more branches or orbits are allowed".to_owned(),
-            };
             writeln!(text, "missed     an attractor at {value}: {reason}")?;
         }
         for track in &self.tracks {

@@ -89,27 +89,34 @@ pub fn run(
         Failure::Model(path, error)
     })?;
     let stop = || interrupted.load(Ordering::Relaxed);
-    let mut count = 0_usize;
-    let branch = request(options, &*model).run_with(|point| {
-        count += 1;
-        progress.update(|| format!("{count} points, {} = {:.6}", options.varied(), point.value));
+    let go = || {
         if stop() {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
         }
-    })?;
+    };
+    let mut count = 0_usize;
+    let mut see = |value: f64| {
+        count += 1;
+        progress.update(|| format!("{count} points, {} = {value:.6}", options.varied()));
+        go()
+    };
+    let branch = request(options, &*model).run_with(|point| see(point.value))?;
 
     let mut warnings = Vec::new();
     let at = solutions_at(options, &branch, &mut warnings);
     let mut record = Record::of(&branch, model.facts(), options.sweep, &at);
-    let found = bifurcations::find(options, &*model)?;
+    let found = match branch.stopped {
+        Stop::Interrupted => None,
+        _ => bifurcations::find(options, &*model, &mut see)?,
+    };
     let mut chart = match &found {
         Some(found) => found.chart(options),
         None => picture(options, &branch, stop),
     };
-    if options.backbone {
-        let (backbone, missing) = backbone::of(options, &*model, &branch);
+    if options.backbone && !stop() {
+        let (backbone, missing) = backbone::of(options, &*model, &branch, &go);
         chart = backbone.references().fold(chart, Chart::reference);
         record.backbone = backbone;
         warnings.extend(missing);
@@ -119,10 +126,13 @@ pub fn run(
         warnings.extend(found.warnings.iter().cloned());
     }
     let written = write(options, &record, &chart)?;
-    let complete = branch.stopped == Stop::ReachedEnd;
-    if !complete {
+    let reached = branch.stopped == Stop::ReachedEnd;
+    if !reached {
         warnings.push(format!("the branch ended early: {}", branch.stopped));
+    } else if stop() {
+        warnings.push("interrupted: what was found until then is kept".to_owned());
     }
+    let complete = reached && !stop();
     let further = found.map_or_else(String::new, |found| found.summary());
     Ok(Outcome {
         summary: summary::of(options, &branch, &at, &written) + &further,

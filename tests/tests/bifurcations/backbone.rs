@@ -3,8 +3,10 @@
 //! Exact values: computed independently of this project by quadrature with 30 digits (`backbone_free` and `backbone` of the
 //! reference values).
 
+use std::ops::ControlFlow;
+
 use hertzian::backbone::{FreeOscillation, FreePoint, PhaseResonance};
-use hertzian::{Error, System};
+use hertzian::{End, Error, Stop, System};
 
 hertzian::oscillator! {
     Continuous(x) {
@@ -97,9 +99,11 @@ const WITH_LOAD: [(bool, f64, [[f64; 3]; 3]); 6] = [
 
 fn curve(system: &dyn System, from: f64, to: f64) -> Vec<FreePoint> {
     let curve = FreeOscillation::of(system).from(from).to(to).run().unwrap();
-    let ends = [&curve[0], &curve[curve.len() - 1]].map(|point| point.ends[0][0]);
+    assert_eq!(curve.end, End::Stopped(Stop::ReachedEnd));
+    let points = curve.points;
+    let ends = [&points[0], &points[points.len() - 1]].map(|point| point.ends[0][0]);
     assert_eq!(ends, [from, to]);
-    curve
+    points
 }
 
 #[test]
@@ -183,9 +187,10 @@ fn phase_resonance_is_near_free_oscillation() {
             drive: 2.0 * zeta,
         };
         let to = 2.0 * model.drive;
-        let curve = PhaseResonance::of(&model, "drive", to, [0.45, 1.4])
-            .run()
-            .unwrap();
+        let request = PhaseResonance::of(&model).vary("drive").to(to);
+        let curve = request.between(0.45, 1.4).run().unwrap();
+        assert_eq!(curve.end, End::Stopped(Stop::ReachedEnd));
+        let curve = curve.points;
         assert!((curve[curve.len() - 1].value - to).abs() < 1e-12);
         for point in &curve {
             assert!(point.orbit.series(0)[1].abs() < 1e-8, "{point:?}");
@@ -201,4 +206,40 @@ fn phase_resonance_is_near_free_oscillation() {
         small < 0.01 && small < 0.6 * large,
         "{large:.1e} {small:.1e}"
     );
+}
+
+/// What is missing, cannot be varied, or is not there is said; a caller can stop.
+#[test]
+fn what_cannot_be_followed_is_said() {
+    let model = Driven {
+        zeta: 0.02,
+        drive: 0.04,
+    };
+    let request = PhaseResonance::of(&model).to(0.08).between(0.45, 1.4);
+    let vary = |name: &str| request.clone().vary(name).run().unwrap_err();
+    let missing = request.run().unwrap_err();
+    assert_eq!(missing, Error::Missing { name: "vary" });
+    assert!(matches!(vary("omega"), Error::Varied { .. }));
+    assert!(matches!(vary("force"), Error::UnknownParameter { .. }));
+    let none = request.clone().vary("drive").between(2.0, 3.0);
+    let error = none.run().unwrap_err();
+    let expected = Error::NoResonance {
+        value: 0.04,
+        between: [2.0, 3.0],
+    };
+    assert_eq!(error, expected);
+    let free = FreeOscillation::of(&model).from(0.5);
+    assert_eq!(free.run().unwrap_err(), Error::Missing { name: "to" });
+    let mut seen = 0;
+    let stopped = request.vary("drive").run_with(|_| {
+        seen += 1;
+        if seen == 3 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    let stopped = stopped.unwrap();
+    assert_eq!(stopped.points.len(), 3);
+    assert_eq!(stopped.end, End::Stopped(Stop::Interrupted));
 }

@@ -3,9 +3,10 @@
 //! Exact values: computed independently of this project from the closed-form flow between switches, in 80-bit arithmetic,
 //! confirmed with 60 digits (`amplitude_sweep` of the reference values).
 
-use hertzian::EventKind;
+use std::ops::ControlFlow;
+
 use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Reason};
-use hertzian::flow::shooting::{CycleEvent, End};
+use hertzian::{CycleEvent, End, EventKind, Stop};
 
 hertzian::oscillator! {
     pub OneSided(x) {
@@ -159,4 +160,27 @@ fn a_budget_is_kept_and_said() {
     let short = request.max_points(100).run().unwrap();
     let points = short.branches.iter().map(|limb| limb.branch.cycles.len());
     assert!(points.sum::<usize>() <= 100);
+}
+
+/// A caller that stops in the second branch gets the first one and that much of the second; the rest is named.
+#[test]
+fn an_interrupted_search_keeps_what_it_has() {
+    let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
+    let request = request.from(1.0).to(1.6).depth(2);
+    let diagram = request.run_with(|cycle| {
+        if cycle.period == 2 && cycle.value > 1.4 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    let diagram = diagram.unwrap();
+    let [one, two] = &diagram.branches[..] else {
+        panic!("{} branches", diagram.branches.len());
+    };
+    assert_eq!(one.branch.end, End::Stopped(Stop::ReachedEnd));
+    assert_eq!(two.branch.end, End::Stopped(Stop::Interrupted));
+    assert!(two.branch.cycles.last().unwrap().value > 1.4);
+    let interrupted = |reason: &Reason| *reason == Reason::Interrupted;
+    assert!(diagram.omitted.iter().all(|left| interrupted(&left.reason)));
 }

@@ -60,14 +60,10 @@ fn the_balance_switches_to_longer_periods() {
     let four = request.clone().stability(false).doublings(false);
     let four = four.switch(doublings[0], Side::One).unwrap();
     assert!(four.points.iter().all(|point| point.orbit.period == 4));
-    let Stop::Joined {
-        period: 2,
-        parameter,
-    } = four.stopped
-    else {
+    let Stop::Joined { period: 2, value } = four.stopped else {
         panic!("{}", four.stopped);
     };
-    assert!((parameter - A6.drive).abs() < 1e-3, "{parameter}");
+    assert!((value - A6.drive).abs() < 1e-3, "{value}");
 }
 
 /// Figure 2a: both asymmetric branches go from one point of broken symmetry to the other.
@@ -93,10 +89,10 @@ fn the_balance_switches_to_orbits_without_the_symmetry() {
     }
     let sides = [Side::One, Side::Other].map(|side| request.switch(breaks[0], side).unwrap());
     for side in &sides {
-        let Stop::Joined { parameter, .. } = side.stopped else {
+        let Stop::Joined { value, .. } = side.stopped else {
             panic!("{}", side.stopped);
         };
-        assert!((parameter - HARDENING[1]).abs() < 1e-4, "{parameter}");
+        assert!((value - HARDENING[1]).abs() < 1e-4, "{value}");
         let folds: Vec<_> = side.folds().collect();
         assert_eq!(folds.len(), 2);
         for (fold, (_, omega, peak_to_peak)) in folds.iter().zip(HARDENING_EVENTS) {

@@ -240,10 +240,10 @@ fn multipliers_of_table_1_and_no_solution_at_the_last() {
     }
     let request = shooting().period(8).near(&near);
     let error = request.orbit(1.77983603).unwrap_err();
-    let Error::Beyond { parameter, fold } = error else {
+    let Error::Beyond { value, fold } = error else {
         panic!("{error}");
     };
-    assert_eq!(parameter, 1.77983603);
+    assert_eq!(value, 1.77983603);
     assert!((fold - PERIOD_8_FOLD.drive).abs() < 1e-11, "{fold}");
     assert_eq!(
         error.to_string(),

@@ -85,7 +85,7 @@ impl<'a> Integrated<'a> {
         let field = Field::new(system, values, omega).map_err(|reason| match reason {
             FlowError::SingularMass { determinant } => Error::SingularMass { determinant },
             _ => Error::Motion {
-                parameter: omega,
+                value: omega,
                 reason,
             },
         })?;

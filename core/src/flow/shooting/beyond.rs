@@ -50,10 +50,7 @@ pub(super) fn search<'a>(
     let found = search.neighbour(u).and_then(|near| search.towards(near));
     match found {
         Some(Found::Orbit(u)) => Ok(u),
-        Some(Found::Fold(fold)) => Err(Error::Beyond {
-            parameter: value,
-            fold,
-        }),
+        Some(Found::Fold(fold)) => Err(Error::Beyond { value, fold }),
         None => Err(reason),
     }
 }

@@ -29,10 +29,7 @@ pub(super) fn cycle(setting: &Setting<'_>, guess: &Guess, value: f64) -> Result<
         },
     ) = run(setting, found, value, value)?;
     let read = run.read(&mut equations, &u);
-    let (cycle, _) = read.map_err(|reason| Error::Motion {
-        parameter: value,
-        reason,
-    })?;
+    let (cycle, _) = read.map_err(|reason| Error::Motion { value, reason })?;
     Ok(Cycle {
         iterations,
         ..cycle
@@ -92,7 +89,8 @@ pub(super) fn branch_through(
     };
     let forwards = (to - from).signum();
     let forth = part(forwards)?;
-    if forth.end == End::Stopped(Stop::Closed) {
+    // Once around, or interrupted: there is no other side.
+    if matches!(forth.end, End::Stopped(Stop::Closed | Stop::Interrupted)) {
         return Ok(forth);
     }
     Ok(CycleBranch::joined(part(-forwards)?, forth))

@@ -103,7 +103,7 @@ pub enum End {
     /// The motion near the last orbit, or the one that would be next, cannot be computed.
     Motion {
         /// Value at the last orbit.
-        parameter: f64,
+        value: f64,
         /// Why.
         reason: FlowError,
     },
@@ -121,8 +121,8 @@ impl fmt::Display for End {
                 period,
                 symmetric: true,
             } => write!(f, "met a branch of symmetric orbits of period {period}"),
-            Self::Motion { parameter, reason } => {
-                write!(f, "no further motion computed at {parameter}: {reason}")
+            Self::Motion { value, reason } => {
+                write!(f, "no further motion computed at {value}: {reason}")
             }
         }
     }

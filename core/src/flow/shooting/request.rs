@@ -9,7 +9,7 @@ use super::trace::{self, Track};
 use super::{compute, series};
 use crate::branch::{EventKind, Orbit, Point};
 use crate::continuation::step::StepControl;
-use crate::error::{Attempts, Error};
+use crate::error::Error;
 use crate::flow::affine::Affine;
 use crate::flow::{self, Options};
 use crate::layout::Layout;
@@ -20,8 +20,6 @@ use crate::validate;
 
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
-/// Part of a value to its neighbour in a range of which only the first orbit is wanted.
-const ASIDE: f64 = 1e-3;
 
 /// The side of an event on which a branch is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -207,7 +205,7 @@ impl<'a> Shooting<'a> {
     /// before the value.
     pub fn orbit(&self, value: f64) -> Result<Cycle, Error> {
         let setting = self.setting(value, value)?;
-        let guess = self.guess(value, self.aside(value, setting.variable))?;
+        let guess = self.guess(value)?;
         compute::cycle(&setting, &guess, value)
     }
 
@@ -229,7 +227,7 @@ impl<'a> Shooting<'a> {
         mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
     ) -> Result<CycleBranch, Error> {
         let ([from, to], setting) = self.ranged()?;
-        let guess = self.guess(from, to)?;
+        let guess = self.guess(from)?;
         compute::branch(&setting, &guess, [from, to], &mut visit)
     }
 
@@ -240,6 +238,19 @@ impl<'a> Shooting<'a> {
     /// # Errors
     /// If a parameter or an option is not usable, no branch begins there, or its first orbit was not found.
     pub fn switch(&self, event: &CycleEvent, side: Side) -> Result<CycleBranch, Error> {
+        self.switch_with(event, side, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`switch`](Self::switch), and calls `visit` at every orbit as it is found: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`switch`](Self::switch).
+    pub fn switch_with(
+        &self,
+        event: &CycleEvent,
+        side: Side,
+        mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
+    ) -> Result<CycleBranch, Error> {
         let doubles = event.kind == EventKind::PeriodDoubling;
         let request = Self {
             period: event.cycle.period * if doubles { 2 } else { 1 },
@@ -247,8 +258,7 @@ impl<'a> Shooting<'a> {
             ..self.clone()
         };
         let ([from, to], setting) = request.ranged()?;
-        let go = &mut |_: &Cycle| ControlFlow::Continue(());
-        compute::branch_at(&setting, event, side.sign(), [from, to], go)
+        compute::branch_at(&setting, event, side.sign(), [from, to], &mut visit)
     }
 
     /// The branch through the orbit at a value inside the range, both ways as far as it goes; [`CycleBranch::end`] is that of the
@@ -257,10 +267,22 @@ impl<'a> Shooting<'a> {
     /// # Errors
     /// As [`orbit`](Self::orbit).
     pub fn through(&self, value: f64) -> Result<CycleBranch, Error> {
+        self.through_with(value, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`through`](Self::through), and calls `visit` at every orbit as it is found, first on the one side of the value, then on
+    /// the other: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`orbit`](Self::orbit).
+    pub fn through_with(
+        &self,
+        value: f64,
+        mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
+    ) -> Result<CycleBranch, Error> {
         let ([from, to], setting) = self.ranged()?;
-        let guess = self.guess(value, self.aside(value, setting.variable))?;
-        let go = &mut |_: &Cycle| ControlFlow::Continue(());
-        compute::branch_through(&setting, &guess, value, [from, to], go)
+        let guess = self.guess(value)?;
+        compute::branch_through(&setting, &guess, value, [from, to], &mut visit)
     }
 
     /// An orbit as a point of a branch by harmonic balance: its Fourier series, of 20 harmonics for each period of the excitation,
@@ -300,13 +322,9 @@ impl<'a> Shooting<'a> {
         let variable = validate::variable(facts, Some(second))?;
         validate::range(facts, variable, low, high)?;
         if variable == setting.variable {
-            let must = "must be two different ones";
-            let value = low;
-            return Err(Error::Option {
-                name: "parameters of a curve",
-                value,
-                must,
-            });
+            let name = second.to_owned();
+            let must = "must be another one than what the branch varies";
+            return Err(Error::Varied { name, must });
         }
         let plane = trace::Plane {
             second: variable,
@@ -318,8 +336,8 @@ impl<'a> Shooting<'a> {
 
     /// The range, and everything else that was asked for, checked.
     fn ranged(&self) -> Result<([f64; 2], Setting<'a>), Error> {
-        let from = self.from.ok_or(Error::MissingEnd { name: "from" })?;
-        let to = self.to.ok_or(Error::MissingEnd { name: "to" })?;
+        let from = self.from.ok_or(Error::Missing { name: "from" })?;
+        let to = self.to.ok_or(Error::Missing { name: "to" })?;
         let setting = self.setting(from, to)?;
         validate::range(self.system.facts(), setting.variable, from, to)?;
         Ok(([from, to], setting))
@@ -345,7 +363,7 @@ impl<'a> Shooting<'a> {
                     must,
                 });
             }
-            (Variable::Parameter(_), None) => return Err(Error::MissingEnd { name: "omega" }),
+            (Variable::Parameter(_), None) => return Err(Error::Missing { name: "omega" }),
             (Variable::Parameter(_), Some(omega)) => Some(omega),
         };
         for value in [to, from] {
@@ -372,8 +390,8 @@ impl<'a> Shooting<'a> {
             segments: self.segments.unwrap_or(self.period),
             odd: odd && !self.period.is_multiple_of(2),
             stability: self.stability,
-            points: self.max_points,
-            steps: StepControl::with_largest(self.largest_step),
+            points: validate::max_points(self.max_points)?,
+            steps: validate::largest_step(self.largest_step)?,
         })
     }
 
@@ -393,18 +411,6 @@ impl<'a> Shooting<'a> {
                 self.tolerance,
                 1e-14..=1e-3,
                 "must be from 1e-14 to 1e-3",
-            ),
-            (
-                "max_points",
-                self.max_points as f64,
-                2.0..=1e9,
-                "must be 2 or more",
-            ),
-            (
-                "largest_step",
-                self.largest_step,
-                1e-6..=1.0,
-                "must be from 1e-6 to 1",
             ),
             (
                 "segments",
@@ -448,48 +454,17 @@ impl<'a> Shooting<'a> {
         }
     }
 
-    /// What the first orbit is near.
-    fn guess(&self, from: f64, to: f64) -> Result<Guess, Error> {
+    /// What the orbit at a value is near.
+    fn guess(&self, value: f64) -> Result<Guess, Error> {
         if let Some(guess) = &self.near {
             return Ok(guess.clone());
         }
         let mut request = FrequencyResponse::of(self.system)
-            .from(from)
-            .to(to)
             .period(self.period)
             .stability(false);
         if let (Some(name), Some(omega)) = (&self.vary, self.omega) {
             request = request.vary(name).omega(omega);
         }
-        let branch = request.run_with(|_| ControlFlow::Break(()))?;
-        let first = branch.points.into_iter().next();
-        first
-            .map(|point| Guess::Series(point.orbit))
-            .ok_or(Error::NoSuchPeriod {
-                period: self.period,
-                parameter: from,
-                attempts: Attempts::default(),
-            })
-    }
-
-    /// Another value that what is varied may have.
-    fn aside(&self, value: f64, variable: Variable) -> f64 {
-        let above = value
-            + if value == 0.0 {
-                ASIDE
-            } else {
-                ASIDE * value.abs()
-            };
-        match variable {
-            Variable::Omega => above,
-            Variable::Parameter(index) => {
-                let facts = &self.system.facts().parameters[index];
-                if facts.admits(above) {
-                    above
-                } else {
-                    2.0 * value - above
-                }
-            }
-        }
+        Ok(Guess::Series(request.orbit(value)?.orbit))
     }
 }

@@ -99,8 +99,8 @@ impl<'r, 'a> Run<'r, 'a> {
         let end = match (outcome, failure) {
             (Err(reason), failure) => return Err(no_orbit(options.from, reason, failure)),
             (Ok(Outcome::Stopped(Stop::StepTooShort { .. })), Some(reason)) => {
-                let parameter = last;
-                End::Motion { parameter, reason }
+                let value = last;
+                End::Motion { value, reason }
             }
             (Ok(Outcome::Stopped(stop)), _) => End::Stopped(stop),
             // A walk by shooting is never resized.
@@ -108,7 +108,7 @@ impl<'r, 'a> Run<'r, 'a> {
         };
         Ok(match self.failure {
             Some(reason) => End::Motion {
-                parameter: last,
+                value: last,
                 reason,
             },
             None => end,
@@ -307,14 +307,8 @@ pub(super) fn observe(
 /// Why there is no orbit.
 pub(super) fn no_orbit(value: f64, reason: NewtonError, failure: Option<FlowError>) -> Error {
     match failure {
-        Some(reason) => Error::Motion {
-            parameter: value,
-            reason,
-        },
-        None => Error::NoStart {
-            parameter: value,
-            reason,
-        },
+        Some(reason) => Error::Motion { value, reason },
+        None => Error::NoStart { value, reason },
     }
 }
 

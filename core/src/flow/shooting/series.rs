@@ -90,7 +90,7 @@ fn sampled(setting: &Setting<'_>, cycle: &Cycle, each: usize) -> Result<Vec<f64>
     let count = each * cycle.period;
     let mut flow = setting.flow(setting.source.tolerance)?;
     let motion = |reason| Error::Motion {
-        parameter: cycle.value,
+        value: cycle.value,
         reason,
     };
     flow.set(setting.variable, cycle.value).map_err(motion)?;

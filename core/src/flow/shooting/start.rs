@@ -50,10 +50,7 @@ pub(super) fn first<'a>(
         ratio: 1.0,
     };
     let mut equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
-    let motion = |reason| Error::Motion {
-        parameter: value,
-        reason,
-    };
+    let motion = |reason| Error::Motion { value, reason };
     let states = states(setting, &mut equations, guess, value).map_err(motion)?;
     let mut u = equations.unknowns_of(&states, value);
     let mut newton = Newton::new(&equations);
@@ -80,7 +77,7 @@ pub(super) fn first<'a>(
     if recurrence.period < setting.period {
         return Err(Error::NoSuchPeriod {
             period: setting.period,
-            parameter: value,
+            value,
             attempts: Attempts {
                 planned: 1,
                 made: 1,
@@ -144,10 +141,7 @@ impl First<'_> {
     /// Goes over to the equations of half a period.
     fn halve(&mut self, setting: &Setting<'_>) -> Result<(), Error> {
         let value = self.u[self.u.len() - 1];
-        let motion = |reason| Error::Motion {
-            parameter: value,
-            reason,
-        };
+        let motion = |reason| Error::Motion { value, reason };
         let mut state = self.equations.states_of(&self.u);
         state.truncate(self.equations.order());
         self.equations.frame.reference.fill(0.0);

@@ -71,7 +71,7 @@ pub(super) fn depart<'a>(
         size: 1.0,
     };
     let motion = |reason| Error::Motion {
-        parameter: event.cycle.value,
+        value: event.cycle.value,
         reason,
     };
     first.settle(setting).map_err(motion)?;

@@ -271,14 +271,10 @@ fn beyond_a_fold_there_is_no_orbit_and_the_fold_is_named() {
     let guess = Guess::State(fold.state().to_vec());
     let beyond = fold.value + 1e-7;
     let error = cycle(&setting, &guess, beyond).unwrap_err();
-    let Error::Beyond {
-        parameter,
-        fold: named,
-    } = error
-    else {
+    let Error::Beyond { value, fold: named } = error else {
         panic!("{error}");
     };
-    assert_eq!(parameter, beyond);
+    assert_eq!(value, beyond);
     assert!((named - fold.value).abs() < 1e-10, "{named} {}", fold.value);
     let text = error.to_string();
     assert!(text.contains("turns back at 1.52244802"), "{text}");
