@@ -191,15 +191,15 @@ impl<'f, 'a> Run<'f, 'a> {
                     Continue::Continue(())
                 }
             }
-            Visit::Between(before, behind) if self.joins(&behind.u) => {
-                self.join(balance, newton, (before, behind));
-                Continue::Break(Halt::Stop)
-            }
             Visit::Between(before, behind) => {
-                if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
-                    self.turn(balance, newton, (before, behind));
+                if self.joins(&behind.u) {
+                    self.join(balance, newton, (before, behind));
+                } else {
+                    if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
+                        self.turn(balance, newton, (before, behind));
+                    }
+                    self.watch(balance, newton, (before, behind));
                 }
-                self.watch(balance, newton, (before, behind));
                 if self.ended.is_some() {
                     Continue::Break(Halt::Stop)
                 } else {

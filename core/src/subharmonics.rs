@@ -7,6 +7,10 @@ use crate::fourier::series;
 /// simple orbit a little; that is not a longer period.
 const SUBHARMONIC_SHARE: f64 = 1e-4;
 
+/// The straight line between two orbits passes a more regular one if what both have in addition is this small on it, in parts of
+/// the smaller.
+const NEAR: f64 = 0.3;
+
 /// Whether no divisor of the period is a period of the orbit: for every prime divisor some harmonic is no multiple of it.
 /// The last of the extended unknowns is no harmonic; each coordinate has a series of the length.
 pub(crate) fn has_shortest_period(u: &[f64], length: usize, period: usize) -> bool {
@@ -34,21 +38,60 @@ pub(crate) struct Shorter {
 }
 
 impl Shorter {
-    /// What an orbit has beyond the shorter period, along that of another one: one for that orbit itself, zero for an orbit of
-    /// the shorter period.
-    pub(crate) fn addition(self, from: &Orbit, u: &[f64]) -> f64 {
+    /// What an orbit has beyond the shorter period, beside that of another one.
+    pub(crate) fn addition(self, from: &Orbit, u: &[f64]) -> Addition {
+        Addition::of(from, u, |harmonic| !harmonic.is_multiple_of(self.times))
+    }
+}
+
+/// What an orbit has beyond those of a more regular branch, `q`, beside that of another one, `p`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Addition {
+    /// `<p, q>`, `<p, p>` and `<q, q>`
+    product: f64,
+    square: f64,
+    other: f64,
+}
+
+impl Addition {
+    /// Of the harmonics that are chosen.
+    pub(crate) fn of(from: &Orbit, u: &[f64], chosen: impl Fn(usize) -> bool) -> Self {
         let length = (u.len() - 1) / from.coordinates();
-        let (mut product, mut square) = (0.0, 0.0);
+        let (mut product, mut square, mut other) = (0.0, 0.0, 0.0);
         for i in 0..from.coordinates() {
-            let (a, b) = (from.series(i), &u[i * length..][..length]);
-            for (index, x) in a.iter().enumerate() {
-                if !index.div_ceil(2).is_multiple_of(self.times) {
-                    product += x * b.get(index).copied().unwrap_or(0.0);
+            let next = &u[i * length..][..length];
+            for (index, x) in from.series(i).iter().enumerate() {
+                if chosen(index.div_ceil(2)) {
+                    let y = next.get(index).copied().unwrap_or(0.0);
+                    product += x * y;
                     square += x * x;
+                    other += y * y;
                 }
             }
         }
-        product / square
+        Self {
+            product,
+            square,
+            other,
+        }
+    }
+
+    /// Along that of the other orbit: one for that orbit itself, zero for a more regular one.
+    pub(crate) fn along(self) -> f64 {
+        self.product / self.square
+    }
+
+    /// Its size in that of the other orbit.
+    pub(crate) fn size(self) -> f64 {
+        (self.other / self.square).sqrt()
+    }
+
+    /// Whether it vanished in between and came back with the other sign: the straight line from one to the other passes the origin
+    /// closely. What only turns by more than a right angle does not.
+    pub(crate) fn vanished(self) -> bool {
+        let area = self.square * self.other - self.product * self.product;
+        let apart = self.square + self.other - 2.0 * self.product;
+        self.product < 0.0 && area <= NEAR * NEAR * self.square.min(self.other) * apart
     }
 }
 
@@ -60,7 +103,7 @@ pub(crate) fn passes_shorter_period(from: &Orbit, u: &[f64]) -> Option<Shorter> 
     };
     primes(from.period)
         .map(shorter)
-        .find(|shorter| shorter.addition(from, u) < 0.0)
+        .find(|shorter| shorter.addition(from, u).vanished())
 }
 
 /// Whether two orbits are the same to three digits but for a shift by whole excitation periods.
@@ -108,6 +151,16 @@ mod tests {
         let mut c = b;
         c[4] += 0.01;
         assert!(!is_shifted(&orbit(2, &a), &orbit(2, &c)));
+    }
+
+    /// A branch of period three may pass near an orbit of period one without meeting it: what it has in addition turns round.
+    #[test]
+    fn what_turns_does_not_vanish() {
+        let from = orbit(3, &[0.3, 0.1, 0.0, 0.0, 0.0, 0.5, 0.0]);
+        let next =
+            |c: f64, s: f64| passes_shorter_period(&from, &[0.3, c, s, 0.0, 0.0, 0.5, 0.0, 1.0]);
+        assert!(next(-0.02, 0.1).is_none());
+        assert!(next(-0.05, 0.01).is_some());
     }
 
     #[test]

@@ -13,26 +13,16 @@
 
 use crate::branch::Orbit;
 use crate::layout::{ContactLayout, Layout, Term};
+use crate::subharmonics::Addition;
 use crate::system::{System, Variable, Wave};
 
 /// Values of the variable, as parts of its range, at which coefficients are looked at. A coefficient that vanishes at all of
 /// them, with its derivative, is taken to vanish throughout.
 const LOOKED_AT: [f64; 4] = [0.0, 0.36, 0.73, 1.0];
 
-/// What an orbit has beyond the odd symmetry, along that of another one: one for that orbit itself, zero for a symmetric orbit.
-pub(crate) fn broken(from: &Orbit, u: &[f64]) -> f64 {
-    let length = (u.len() - 1) / from.coordinates();
-    let (mut product, mut square) = (0.0, 0.0);
-    for i in 0..from.coordinates() {
-        let other = &u[i * length..][..length];
-        for (index, x) in from.series(i).iter().enumerate() {
-            if index.div_ceil(2).is_multiple_of(2) {
-                product += x * other.get(index).copied().unwrap_or(0.0);
-                square += x * x;
-            }
-        }
-    }
-    product / square
+/// What an orbit has beyond the odd symmetry, beside that of another one.
+pub(crate) fn broken(from: &Orbit, u: &[f64]) -> Addition {
+    Addition::of(from, u, |harmonic| harmonic.is_multiple_of(2))
 }
 
 /// Whether solutions with odd harmonics only exist over a range of the variable.

@@ -37,6 +37,8 @@ pub struct Limb {
     pub depth: usize,
     /// Its orbits and events.
     pub branch: CycleBranch,
+    /// It is the mirror image of another branch.
+    pub mirrored: bool,
 }
 
 /// Where a branch comes from.
@@ -112,17 +114,6 @@ impl Limb {
     pub fn period(&self) -> usize {
         self.branch.cycles.first().map_or(0, |cycle| cycle.period)
     }
-
-    /// It is the mirror image of another branch.
-    pub fn is_mirrored(&self) -> bool {
-        matches!(
-            self.origin,
-            Origin::Event {
-                side: Side::Other,
-                ..
-            }
-        )
-    }
 }
 
 impl Diagram {
@@ -192,19 +183,34 @@ impl<'a, 'v> Search<'a, 'v> {
     pub(super) fn add(&mut self, origin: Origin, depth: usize, branch: CycleBranch) {
         self.points_left = self.points_left.saturating_sub(branch.cycles.len());
         let number = self.diagram.branches.len();
-        let events = branch.events.iter().enumerate();
-        let begins = events.filter(|(_, event)| {
-            matches!(
-                event.kind,
-                EventKind::PeriodDoubling | EventKind::SymmetryBreaking
-            )
+        let begins = (0..branch.events.len()).filter(|&index| match branch.events[index].kind {
+            EventKind::PeriodDoubling | EventKind::SymmetryBreaking => true,
+            EventKind::BranchPoint => !is_joint(&branch, index),
+            _ => false,
         });
-        self.queue.extend(begins.map(|(index, _)| (number, index)));
+        self.queue.extend(begins.map(|index| (number, index)));
+        let mirrored = self.is_mirrored(origin);
         self.diagram.branches.push(Limb {
             origin,
             depth,
             branch,
+            mirrored,
         });
+    }
+
+    /// Whether a branch is the mirror image of another one: the other side of where a symmetry breaks, and what begins on it.
+    fn is_mirrored(&self, origin: Origin) -> bool {
+        let Origin::Event {
+            branch,
+            event,
+            side,
+        } = origin
+        else {
+            return false;
+        };
+        let parent = &self.diagram.branches[branch];
+        let breaks = parent.branch.events[event].kind == EventKind::SymmetryBreaking;
+        parent.mirrored || (breaks && side == Side::Other)
     }
 
     /// Follows what is in the queue until nothing is.
@@ -252,21 +258,24 @@ impl<'a, 'v> Search<'a, 'v> {
 
     fn follow(&mut self, number: usize, index: usize) -> Result<(), Reason> {
         let limb = &self.diagram.branches[number];
-        let (depth, mirrored) = (limb.depth + 1, limb.is_mirrored());
+        let (depth, mirrored) = (limb.depth + 1, limb.mirrored);
         let event = limb.branch.events[index].clone();
         let sides = match event.kind {
-            EventKind::SymmetryBreaking => &[Side::One, Side::Other][..],
+            EventKind::SymmetryBreaking | EventKind::BranchPoint => &[Side::One, Side::Other][..],
             _ => &[Side::One],
         };
+        if let Some(branch) = self.crossing_at(number, &event) {
+            return Err(Reason::Known { branch });
+        }
         let known = self.ending_at(&event);
         if known.len() >= sides.len() {
             return Err(Reason::Known { branch: known[0] });
         }
-        if mirrored {
-            return Err(Reason::Mirrored);
-        }
         if depth > self.depth {
             return Err(Reason::Depth);
+        }
+        if mirrored {
+            return Err(Reason::Mirrored);
         }
         for &side in sides {
             if self.watch.interrupted {
@@ -288,6 +297,19 @@ impl<'a, 'v> Search<'a, 'v> {
         Ok(())
     }
 
+    /// Another branch that passes the same crossing.
+    fn crossing_at(&self, number: usize, event: &CycleEvent) -> Option<usize> {
+        let same = |other: &&CycleEvent| known::is_same_place(other, event);
+        let mut limbs = self.diagram.branches.iter().enumerate();
+        let crosses = |limb: &Limb| {
+            let mut crossings = limb.branch.events(EventKind::BranchPoint);
+            limb.period() == event.cycle.period && crossings.any(|other| same(&other))
+        };
+        let found = limbs.find(|(index, limb)| *index != number && crosses(limb));
+        let crossed = event.kind == EventKind::BranchPoint;
+        found.filter(|_| crossed).map(|(index, _)| index)
+    }
+
     /// The branches that end at an event of another one.
     fn ending_at(&self, event: &CycleEvent) -> Vec<usize> {
         let limbs = self.diagram.branches.iter().enumerate();
@@ -303,4 +325,17 @@ impl<'a, 'v> Search<'a, 'v> {
         });
         ends.map(|(number, _)| number).collect()
     }
+}
+
+/// Whether a branch ends at one of its events on a branch of more regular orbits.
+fn is_joint(branch: &CycleBranch, index: usize) -> bool {
+    let joined = |end: Option<End>| matches!(end, Some(End::Joined { .. }));
+    let points = || {
+        let events = branch.events.iter().enumerate();
+        let points = events.filter(|(_, event)| event.kind == EventKind::BranchPoint);
+        points.map(|(index, _)| index)
+    };
+    let (first, last) = (points().next(), points().next_back());
+    (joined(branch.begin) && first == Some(index))
+        || (joined(Some(branch.end)) && last == Some(index))
 }

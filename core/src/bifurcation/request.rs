@@ -23,10 +23,9 @@ const BEYOND: f64 = 0.1;
 /// All branches of periodic orbits that are connected with a first one by bifurcations, to a depth: set up step by step, then
 /// [run](Bifurcations::run).
 ///
-/// The first branch is followed by [`Shooting`] along the range. At every period doubling, and where an odd symmetry breaks, the
-/// branch that begins there is followed too, and so on. A bifurcation where a known branch ends is not followed again. What begins at
-/// these two and was not followed is in [`Diagram::omitted`], with the reason. Where branches cross without a symmetry, the other one
-/// is not followed.
+/// The first branch is followed by [`Shooting`] along the range. At every period doubling, where an odd symmetry breaks, and where
+/// branches cross, the branch that begins there is followed too, and so on. A bifurcation where a known branch ends is not followed
+/// again. What begins at these and was not followed is in [`Diagram::omitted`], with the reason.
 ///
 /// ```
 /// use hertzian::EventKind;

@@ -103,6 +103,33 @@ pub(crate) fn locate<P: Problem>(
     })
 }
 
+/// The point of the curve at a part of the way from `a` to `b`, as the arc length along the first tangent tells.
+///
+/// `None` if the correction fails.
+pub(crate) fn inside<P: Problem>(
+    problem: &mut P,
+    newton: &mut Newton,
+    (a, b): (&CurvePoint, &CurvePoint),
+    part: f64,
+    options: NewtonOptions,
+) -> Option<CurvePoint> {
+    let difference: Vec<f64> = b.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
+    let length = newton.norm().product(a.scale, &a.tangent, &difference);
+    let mut border = vec![0.0; a.u.len()];
+    newton.norm().linear_form(a.scale, &a.tangent, &mut border);
+    let [from, to] = [(0.0, a), (length, b)].map(|(s, point)| Side {
+        s,
+        value: f64::NAN,
+        point: point.clone(),
+    });
+    let trial = between((&from, &to), part * length, &border);
+    let row = Border {
+        row: &border,
+        value: crate::linear::dot(&border, &a.u) + part * length,
+    };
+    corrected(problem, newton, trial, row, a.scale, options)
+}
+
 /// A point at one side of the zero.
 struct Side {
     s: f64,

@@ -4,7 +4,7 @@ use crate::layout::{ContactLayout, Term};
 use crate::system::{Part, Wave};
 
 /// A gap at given values of the parameters and of `omega`.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Gap {
     /// Coordinate, wave and coefficient of every term of `d`.
     direction: Vec<(usize, Wave, f64)>,
@@ -16,14 +16,23 @@ pub(super) struct Gap {
 
 impl Gap {
     pub(super) fn new(contact: &ContactLayout, coefficients: &[f64], base: f64) -> Self {
+        let mut gap = Self::default();
+        gap.set(contact, coefficients, base);
+        gap
+    }
+
+    /// Goes over to other values; it takes the same room as before.
+    pub(super) fn set(&mut self, contact: &ContactLayout, coefficients: &[f64], base: f64) {
         let value = |term: &Term| coefficients[term.coefficient];
         let direction = contact.gap.iter();
+        self.direction.clear();
+        self.direction
+            .extend(direction.map(|d| (d.index, d.wave, value(d))));
         let offset = contact.offset.iter();
-        Self {
-            direction: direction.map(|d| (d.index, d.wave, value(d))).collect(),
-            offset: offset.map(|delta| (delta.wave, value(delta))).collect(),
-            base,
-        }
+        self.offset.clear();
+        self.offset
+            .extend(offset.map(|delta| (delta.wave, value(delta))));
+        self.base = base;
     }
 
     /// The gap and its rate.

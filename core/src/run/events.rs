@@ -20,6 +20,9 @@ const FOLD_TOLERANCE: f64 = 1e-10;
 /// this part of it is as good as nothing.
 const JOINED: f64 = 1e-5;
 
+/// An orbit that has more than this part of it left is not one of the more regular branch.
+const LEFT: f64 = 0.05;
+
 impl Run<'_, '_> {
     /// Locates the fold between two points, or the jump that is there instead.
     pub(super) fn turn(
@@ -76,11 +79,18 @@ impl Run<'_, '_> {
         let u = &located.point.u;
         let error = self.reader.finer.fold_error(u, newton);
         let point = self.reader.read(balance, newton, u);
+        let turns = |after: usize, value: f64| self.points[after - 1].value < value;
+        let same_way = turns(self.points.len() - 1, point.value);
         let near = |other: &&Event| {
             let apart = (other.point.value - point.value).abs();
             let errors = other.error + error;
             let range = (self.options.to - self.options.from).abs();
-            other.kind == EventKind::Fold && errors.is_finite() && apart <= errors + 1e-9 * range
+            // The two folds of a narrow hysteresis turn opposite ways.
+            let alike = turns(other.after, other.point.value) == same_way;
+            other.kind == EventKind::Fold
+                && alike
+                && errors.is_finite()
+                && apart <= errors + 1e-9 * range
         };
         let mut passed = self.events.iter().filter(near);
         if point.orbit.period > 1
@@ -104,7 +114,7 @@ impl Run<'_, '_> {
     pub(super) fn joins(&self, u: &[f64]) -> bool {
         let orbit = self.points.last().map(|point| &point.orbit);
         orbit.is_some_and(|orbit| {
-            let symmetric = self.follower.asymmetric && broken(orbit, u) < 0.0;
+            let symmetric = self.follower.asymmetric && broken(orbit, u).vanished();
             symmetric || passes_shorter_period(orbit, u).is_some()
         })
     }
@@ -128,11 +138,13 @@ impl Run<'_, '_> {
         let period = joined.map_or(last.orbit.period, |joined| joined.period);
         let options = self.options.newton;
         let between = (before, behind);
-        let located = locate(balance, newton, between, options, JOINED, addition);
-        let value = located.map_or_else(
-            || vertex(newton.norm(), before, behind),
-            |located| located.point.parameter(),
-        );
+        let along = |point: &CurvePoint| addition(point).along();
+        let value = match locate(balance, newton, between, options, JOINED, along) {
+            // It turned, and did not vanish: the branch goes on.
+            Some(located) if addition(&located.point).size() > LEFT => return,
+            Some(located) => located.point.parameter(),
+            None => vertex(newton.norm(), before, behind),
+        };
         self.ended = Some(Stop::Joined { period, value });
     }
 
@@ -178,36 +190,46 @@ impl Run<'_, '_> {
         });
     }
 
-    /// Estimated error of such a point: where the harmonics of `finer`, at the corrected orbit that it holds, would put it.
+    /// Estimated error of such a point: where the harmonics of `finer`, at the corrected orbit that it holds, would put it. What the
+    /// first half of those that were left out does and what the second half does may cancel, and are taken by their sizes.
     fn block_error(&self, point: &CurvePoint, step: f64) -> f64 {
-        let finer = self.reader.finer.extended();
         let fine = self.reader.finer.balance().resolution();
-        let Some(mut block) = self.follower.block(fine) else {
-            return f64::INFINITY;
+        let some = Resolution {
+            harmonics: fine.harmonics * 3 / 4,
+            core: fine.core.min(fine.harmonics * 3 / 4),
+            ..fine
         };
-        let coordinates = self.follower.system.facts().coordinates.len();
-        let length = series::length(fine.harmonics);
-        let mut at = |u: &[f64]| block.determinant(&resize(u, coordinates, length));
-        // The determinant along the tangent, by a central difference in the parameter.
-        let value = point.parameter();
-        let along = step / point.tangent[point.tangent.len() - 1];
-        let moved = |by: f64| -> Vec<f64> {
-            let pairs = finer
-                .iter()
-                .zip(resize(&point.tangent, coordinates, length));
-            pairs.map(|(x, t)| x + by * t).collect()
-        };
-        let (a, b, here) = (at(&moved(-along)), at(&moved(along)), at(finer));
-        let largest = a.1.max(b.1);
-        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
-        let slope = (relative(b) - relative(a)) / (2.0 * step);
-        let change = finer[finer.len() - 1] - value - relative(here) / slope;
-        let error = BEYOND * change.abs() + 1e-12 * value.abs();
+        let [all, half] = [fine, some].map(|resolution| self.block_moves(point, step, resolution));
+        let change = half.abs() + (all - half).abs();
+        let error = BEYOND * change + 1e-12 * point.parameter().abs();
         if error.is_finite() {
             error
         } else {
             f64::INFINITY
         }
+    }
+
+    /// How far the point is moved by the harmonics of a resolution.
+    fn block_moves(&self, point: &CurvePoint, step: f64, resolution: Resolution) -> f64 {
+        let Some(mut block) = self.follower.block(resolution) else {
+            return f64::INFINITY;
+        };
+        let coordinates = self.follower.system.facts().coordinates.len();
+        let length = series::length(resolution.harmonics);
+        let finer = resize(self.reader.finer.extended(), coordinates, length);
+        let mut at = |u: &[f64]| block.determinant(u);
+        // The determinant along the tangent, by a central difference in the parameter.
+        let along = step / point.tangent[point.tangent.len() - 1];
+        let moved = |by: f64| -> Vec<f64> {
+            let tangent = resize(&point.tangent, coordinates, length);
+            let pairs = finer.iter().zip(tangent);
+            pairs.map(|(x, t)| x + by * t).collect()
+        };
+        let (a, b, here) = (at(&moved(-along)), at(&moved(along)), at(&finer));
+        let largest = a.1.max(b.1);
+        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
+        let slope = (relative(b) - relative(a)) / (2.0 * step);
+        finer[finer.len() - 1] - point.parameter() - relative(here) / slope
     }
 }
 

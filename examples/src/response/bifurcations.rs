@@ -81,10 +81,11 @@ impl Found {
         tracked: Tracked,
         go: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<(), Error> {
-        let kind = match tracked {
-            Tracked::Fold => EventKind::Fold,
-            Tracked::PeriodDoubling => EventKind::PeriodDoubling,
-            Tracked::BranchPoint => EventKind::SymmetryBreaking,
+        let is_wanted = |kind: EventKind| match tracked {
+            Tracked::Fold => kind == EventKind::Fold,
+            Tracked::PeriodDoubling => kind == EventKind::PeriodDoubling,
+            Tracked::BranchPoint => kind == EventKind::SymmetryBreaking,
+            Tracked::Grazing => matches!(kind, EventKind::Grazing { .. }),
         };
         let shooting = shooting(options, model);
         let second = second(options, model)?;
@@ -97,8 +98,9 @@ impl Found {
             .diagram
             .branches
             .iter()
-            .filter(|limb| !limb.is_mirrored())
-            .flat_map(|limb| limb.branch.events(kind))
+            .filter(|limb| !limb.mirrored)
+            .flat_map(|limb| &limb.branch.events)
+            .filter(|event| is_wanted(event.kind))
             .cloned()
             .collect();
         for event in events {
@@ -182,7 +184,7 @@ impl Found {
             });
             special.extend(&track.special);
         }
-        for kind in ["cusp", "grazing", "fold-flip"] {
+        for kind in ["cusp", "grazing", "fold-flip", "double", "degenerate"] {
             let of_kind = special.iter().filter(|s| s.kind.to_string() == kind);
             let points: Vec<_> = of_kind.map(|special| special.values).collect();
             if !points.is_empty() {

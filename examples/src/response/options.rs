@@ -165,6 +165,8 @@ pub enum Tracked {
     PeriodDoubling,
     /// Where a symmetry breaks
     BranchPoint,
+    /// Where a gap touches a level
+    Grazing,
 }
 
 /// How the harmonics of the contact force are computed.

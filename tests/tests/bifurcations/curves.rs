@@ -7,7 +7,7 @@ use hertzian::{Error, EventKind, Shooting, System};
 use crate::cascade::OneSided;
 
 hertzian::oscillator! {
-    Hertz(x) {
+    pub Hertz(x) {
         param zeta >= 0;
         param load;
         param drive;
@@ -52,7 +52,7 @@ fn assert_confirmed(track: &Track, hertz: bool) {
     }
 }
 
-fn folds(hertz: bool, omega: [f64; 2]) -> Track {
+pub fn folds(hertz: bool, omega: [f64; 2]) -> Track {
     let model = model(hertz, 0.1);
     let shooting = Shooting::of(&*model).from(omega[0]).to(omega[1]);
     let branch = shooting.run().unwrap();

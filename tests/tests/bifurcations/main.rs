@@ -2,10 +2,13 @@
 
 mod backbone;
 mod cascade;
+mod codimension;
 mod coexisting;
+mod crossing;
 mod curves;
 mod doubling;
 mod grazing;
+mod hidden;
 mod symmetry;
 mod table;
 mod torus;

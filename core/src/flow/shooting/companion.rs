@@ -3,6 +3,9 @@
 //! A flow with a tolerance is compared with a finer one: the orbit is corrected for it, and what that changes is the error. What
 //! is reported then is the corrected orbit, so that the error stated is rather that of the orbit before.
 //!
+//! Where no finer flow can be asked for, the companion is a coarser one; the orbit itself is reported then, and the error is that
+//! of the coarser one.
+//!
 //! A closed form errs by rounding only. What that does is seen from equations that are
 //! [disturbed](super::equations::Equations::disturbance) by much more. Besides, rounding moves the entries of `M` by `eps |M|`,
 //! and the orbit by `eps |M| / min |1 - mu|` relative to its size, which changes `M` by about `|M|` times as much.
@@ -36,8 +39,8 @@ pub(super) struct Companion<'a> {
     pub(super) options: NewtonOptions,
     /// Errors of events are this part of what differs here.
     pub(super) part: f64,
-    /// The flow is in closed form.
-    pub(super) exact: bool,
+    /// These equations are finer: what is reported are their orbits.
+    pub(super) finer: bool,
     /// Errors that the flow leaves, in units of the oscillation.
     pub(super) noise: f64,
 }
@@ -58,21 +61,26 @@ impl<'a> Companion<'a> {
         size: f64,
     ) -> Result<Self, Error> {
         let exact = setting.source.exact;
-        let tolerance = (FINER * setting.source.tolerance).max(FINEST);
+        let finer = !exact && FINER * setting.source.tolerance >= FINEST;
+        let ratio = if finer || exact { FINER } else { 1.0 / FINER };
+        let tolerance = (ratio * setting.source.tolerance).max(FINEST);
         let rounding = ROUNDING * frame.ratio;
         let mut equations = Equations::new(setting, tolerance, span, frame)?;
         let (part, noise) = if exact {
             equations.disturbance = DISTURBANCE * size;
             ((SAFETY * rounding / DISTURBANCE).min(1.0), rounding)
         } else {
-            (1.0, rounding + SAFETY * tolerance)
+            (
+                1.0,
+                rounding + SAFETY * tolerance.min(setting.source.tolerance),
+            )
         };
         Ok(Self {
             newton: Newton::new(&equations),
             options: setting.newton(tolerance, equations.frame.ratio),
             equations,
             part,
-            exact,
+            finer,
             noise,
         })
     }
@@ -92,9 +100,9 @@ impl<'a> Companion<'a> {
         })
     }
 
-    /// The multipliers that those of an orbit are compared with: before the correction, or after the disturbance.
+    /// The multipliers that those of an orbit are compared with: before the correction, or of the other orbit.
     pub(super) fn multipliers_beside(&mut self, corrected: &Corrected) -> Vec<Complex<f64>> {
-        if !self.exact {
+        if self.finer {
             return corrected.multipliers.clone();
         }
         let map = self.equations.map(&corrected.u, &mut |_| {});

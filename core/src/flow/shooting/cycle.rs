@@ -51,6 +51,13 @@ impl Cycle {
         self.states.chunks_exact(2 * self.extremes.len())
     }
 
+    /// Half of the largest peak-to-peak of a coordinate; one at rest.
+    pub(super) fn size(&self) -> f64 {
+        let largest = |m: f64, extremes: &Extremes| m.max(0.5 * extremes.peak_to_peak());
+        let size = self.extremes.iter().fold(0.0, largest);
+        if size > 0.0 { size } else { 1.0 }
+    }
+
     /// Largest less smallest value of the first coordinate.
     pub fn peak_to_peak(&self) -> f64 {
         self.extremes[0].peak_to_peak()
@@ -71,6 +78,8 @@ pub struct CycleEvent {
     pub test: f64,
     /// Number of orbits of the branch before it.
     pub after: usize,
+    /// Direction of the branch there, in states at the beginnings of the segments and the parameter.
+    pub(super) direction: Vec<f64>,
 }
 
 impl fmt::Display for CycleEvent {

@@ -89,7 +89,7 @@ pub(super) struct Equations<'a> {
     /// Why the last evaluation has no value.
     pub(super) failure: Option<FlowError>,
     /// Tolerance of the flow.
-    tolerance: f64,
+    pub(super) tolerance: f64,
     tangent: Tangent,
     state: Vec<f64>,
     /// Derivatives of the residual by the parameter.
@@ -198,12 +198,9 @@ impl<'a> Equations<'a> {
 
     /// The largest difference between the states of two orbits, of velocities in units of the frequency.
     pub(super) fn apart(&self, a: &[f64], b: &[f64]) -> f64 {
-        let order = self.order();
         let pairs = a[..a.len() - 1].iter().zip(b).enumerate();
         pairs.fold(0.0, |m: f64, (i, (x, y))| {
-            let velocity = i % order >= order / 2;
-            let unit = if velocity { self.frame.omega } else { 1.0 };
-            m.max((x - y).abs() / unit)
+            m.max((x - y).abs() / self.unit(i))
         })
     }
 
@@ -238,15 +235,10 @@ impl<'a> Equations<'a> {
         let last = segment + 1 == self.span.segments;
         let next = if last { 0 } else { segment + 1 };
         let sign = if last { self.span.sign() } else { 1.0 };
-        let coordinates = self.frame.reference.len();
         for i in 0..order {
             let reference = self.frame.reference.get(i).copied().unwrap_or(0.0);
             let target = sign * (u[next * order + i] + reference);
-            let unit = if i < coordinates {
-                1.0
-            } else {
-                self.frame.omega
-            };
+            let unit = self.unit(i);
             let alternating = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             residual[segment * order + i] =
                 self.state[i] - target + alternating * unit * self.disturbance;
@@ -270,7 +262,8 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// `M` at the orbit `u`, which is shown to `see` stretch by stretch.
+    /// `M` at the orbit `u`, which is shown to `see` stretch by stretch; velocities count by the frequency, so that its entries do
+    /// not depend on the unit of time.
     ///
     /// # Errors
     /// If the motion cannot be continued.
@@ -285,10 +278,26 @@ impl<'a> Equations<'a> {
             self.advance(segment, true, Some(see))?;
             self.multiply(segment);
         }
-        Ok(self.product.clone())
+        Ok(self.in_units(&self.product))
     }
 
-    /// The derivatives of the flow over every segment of the orbit `u`.
+    /// A map of states as one of states whose velocities are divided by the frequency: `D^-1 M D` with `D = diag(1, omega)`.
+    fn in_units(&self, map: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(map.nrows(), map.ncols(), |i, j| {
+            map[(i, j)] * self.unit(j) / self.unit(i)
+        })
+    }
+
+    /// What counts as one in an entry of a state.
+    pub(super) fn unit(&self, entry: usize) -> f64 {
+        if entry % self.order() < self.order() / 2 {
+            1.0
+        } else {
+            self.frame.omega
+        }
+    }
+
+    /// The derivatives of the flow over every segment of the orbit `u`, in the same units.
     ///
     /// # Errors
     /// If the motion cannot be continued.
@@ -300,7 +309,8 @@ impl<'a> Equations<'a> {
             self.begin(u, segment);
             self.advance(segment, true, None)?;
             let columns = &self.tangent.columns[..order * order];
-            maps.push(DMatrix::from_column_slice(order, order, columns));
+            let map = DMatrix::from_column_slice(order, order, columns);
+            maps.push(self.in_units(&map));
         }
         Ok(maps)
     }
@@ -374,11 +384,7 @@ impl Problem for Equations<'_> {
         let coordinates = order / 2;
         let states = (coordinates * self.span.segments) as f64;
         for (i, weight) in weights.iter_mut().enumerate() {
-            let unit = if i % order < coordinates {
-                1.0
-            } else {
-                self.frame.omega
-            };
+            let unit = self.unit(i);
             // A harmonic oscillation has half the square of its amplitude as its mean square.
             *weight = 0.5 / (states * unit * unit);
         }

@@ -4,14 +4,18 @@
 //! rounding. So shooting refines what a balance has found, and follows branches of orbits with their folds and period doublings
 //! by the same continuation.
 
+mod bend;
+mod between;
 mod beyond;
 mod companion;
 mod compute;
+mod crossed;
 mod crossing;
 mod cycle;
 mod equations;
 mod events;
 mod extremes;
+mod grazing;
 mod recurrence;
 mod request;
 mod run;
@@ -20,10 +24,13 @@ mod setting;
 mod solve;
 mod start;
 mod switch;
+mod tested;
 #[cfg(test)]
 mod tests;
+mod touch;
 mod trace;
 mod track;
+mod watch;
 
 pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
 pub use extremes::Extremes;

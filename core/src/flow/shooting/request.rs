@@ -232,8 +232,9 @@ impl<'a> Shooting<'a> {
     }
 
     /// The branch that begins at an event of another one, within the range from [`from`](Self::from) to [`to`](Self::to): of
-    /// twice the period at a period doubling, of orbits without the symmetry where an odd symmetry breaks. There the two sides are
-    /// mirror images; at a period doubling both are one branch, on which orbits are looked at a period later.
+    /// twice the period at a period doubling, of orbits without the symmetry where an odd symmetry breaks, and the other branch where
+    /// two cross. Where a symmetry breaks the two sides are mirror images; at a period doubling both are one branch, on which
+    /// orbits are looked at a period later; where branches cross they are the two directions of the other branch.
     ///
     /// # Errors
     /// If a parameter or an option is not usable, no branch begins there, or its first orbit was not found.
@@ -301,7 +302,7 @@ impl<'a> Shooting<'a> {
     }
 
     /// The curve of bifurcations through an event of a branch, as a second parameter (or `"omega"`) varies between two values: of
-    /// folds, period doublings, or points where an odd symmetry breaks. What is varied here stays in the range from
+    /// folds, period doublings, points where an odd symmetry breaks, or grazing. What is varied here stays in the range from
     /// [`from`](Self::from) to [`to`](Self::to).
     ///
     /// # Errors
@@ -327,6 +328,7 @@ impl<'a> Shooting<'a> {
             return Err(Error::Varied { name, must });
         }
         let plane = trace::Plane {
+            system: self.system,
             second: variable,
             name: second.to_owned(),
             ranges: [[from, to], [low, high]],

@@ -4,13 +4,14 @@ use std::ops::ControlFlow;
 
 use nalgebra::DMatrix;
 
+use super::between::{Earlier, Seen, distance as along};
 use super::companion::{Companion, multipliers};
 use super::cycle::{Cycle, CycleEvent, End};
 use super::equations::Equations;
-use super::events::{Change, Tests};
 use super::extremes::{self, Extremes};
 use super::recurrence::{Recurrence, step_on_other_branch};
 use super::setting::Setting;
+use super::tested::{Change, Tests};
 use crate::branch::{EventKind, Turn};
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
@@ -29,6 +30,8 @@ pub(super) struct Run<'r, 'a> {
     size: f64,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
+    /// Test functions at the last orbits, the newest last.
+    pub(super) earlier: Option<Earlier>,
     before: Option<Tests>,
     last: Option<Tests>,
     pub(super) cycles: Vec<Cycle>,
@@ -54,6 +57,7 @@ impl<'r, 'a> Run<'r, 'a> {
             companion,
             size,
             joined: None,
+            earlier: None,
             before: None,
             last: None,
             cycles: Vec::new(),
@@ -176,14 +180,26 @@ impl<'r, 'a> Run<'r, 'a> {
             return Continue::Break(Halt::Stop);
         }
         if let (Some(a), Some(b)) = (self.before, self.last) {
-            for change in Tests::changes(a, b, equations.span.half) {
-                let known = self.events.len();
-                self.event(equations, newton, (before, behind), change);
-                if change.kind == EventKind::BranchPoint
-                    && self.events.len() > known
-                    && self.meets(equations)
-                {
-                    return Continue::Break(Halt::Stop);
+            let ends = [(before, a), (behind, b)].map(|(point, tests)| Seen {
+                point: point.clone(),
+                tests,
+            });
+            let parts = self.parts(equations, newton, ends);
+            self.earlier = Some(Earlier {
+                distance: along(newton, before, behind),
+                tests: a,
+            });
+            for pair in parts.windows(2) {
+                let step = (&pair[0].point, &pair[1].point);
+                for change in Tests::changes(pair[0].tests, pair[1].tests, equations.span.half) {
+                    let known = self.events.len();
+                    self.event(equations, newton, step, change);
+                    if change.kind == EventKind::BranchPoint
+                        && self.events.len() > known
+                        && self.meets(equations)
+                    {
+                        return Continue::Break(Halt::Stop);
+                    }
                 }
             }
         }
@@ -191,7 +207,7 @@ impl<'r, 'a> Run<'r, 'a> {
             && let [.., a, b] = &self.cycles[..]
             && a.switches != b.switches
         {
-            self.grazing(equations, newton, (before, behind));
+            self.grazings(equations, newton, (before, behind));
         }
         Continue::Continue(())
     }
@@ -235,7 +251,7 @@ impl<'r, 'a> Run<'r, 'a> {
         }
         self.statistics.monodromies += 1;
         let corrected = companion.correct(u);
-        let finer = corrected.as_ref().filter(|_| !companion.exact);
+        let finer = corrected.as_ref().filter(|_| companion.finer);
         let (at, known) = match finer {
             Some(finer) => (&mut companion.equations, &finer.u[..]),
             None => (equations, u),

@@ -1,4 +1,5 @@
-//! From an event of one branch onto the branch that begins there.
+//! From an event of one branch onto the branch that begins there. Where branches cross without a symmetry, see
+//! [`crossed`](super::crossed).
 //!
 //! Let `P` be the derivative of the flow over the part of the orbit that is followed, and `S` as in
 //! [`equations`](super::equations). At a period doubling, and where an odd symmetry breaks, `M = S P` has the eigenvalue minus
@@ -31,7 +32,10 @@ use crate::newton::{Border, Newton};
 
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.
-const DEPARTURES: [f64; 5] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1];
+pub(super) const DEPARTURES: [f64; 5] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1];
+
+/// An orbit farther away than so many times its component in the direction is one of another branch.
+pub(super) const FARTHEST: f64 = 10.0;
 
 /// An orbit with the direction in which a branch is followed from it.
 pub(super) struct Begun<'a> {
@@ -54,6 +58,9 @@ pub(super) fn depart<'a>(
         kind: event.kind,
         value: event.cycle.value,
     };
+    if event.kind == EventKind::BranchPoint {
+        return super::crossed::depart(setting, event, side, range);
+    }
     if !matches!(
         event.kind,
         EventKind::PeriodDoubling | EventKind::SymmetryBreaking
@@ -79,9 +86,9 @@ pub(super) fn depart<'a>(
         let step = (side * departure, range);
         if let Some(found) = first_orbit(setting, &mut first, &direction, step) {
             let (u, point) = found;
-            let recurrence = Recurrence::of(&mut first.equations, &u, first.size, setting.odd)
-                .map_err(motion)?;
-            if recurrence.period == setting.period && !recurrence.odd {
+            let recurrence = Recurrence::of(&mut first.equations, &u, first.size, setting.odd);
+            let is_new = |found: Recurrence| found.period == setting.period && !found.odd;
+            if recurrence.is_ok_and(is_new) {
                 first.u = u;
                 return Ok(Begun { first, point });
             }
@@ -144,7 +151,11 @@ fn twice<'a>(setting: &Setting<'a>, cycle: &Cycle) -> Result<(Equations<'a>, Vec
 }
 
 /// The direction of the new branch in extended unknowns, from (1); its entry for the parameter is zero.
-fn direction(equations: &mut Equations<'_>, u: &[f64], symmetric: bool) -> Option<Vec<f64>> {
+pub(super) fn direction(
+    equations: &mut Equations<'_>,
+    u: &[f64],
+    symmetric: bool,
+) -> Option<Vec<f64>> {
     let order = equations.order();
     let maps = equations.segment_maps(u).ok()?;
     let part = &maps[..maps.len() / 2];
@@ -156,7 +167,7 @@ fn direction(equations: &mut Equations<'_>, u: &[f64], symmetric: bool) -> Optio
     let mut v = svd.v_t?.row(smallest).transpose();
     let mut direction = Vec::with_capacity(u.len());
     for map in &maps {
-        direction.extend(v.iter());
+        direction.extend(v.iter().enumerate().map(|(i, x)| x * equations.unit(i)));
         v = map * v;
     }
     direction.push(0.0);
@@ -191,6 +202,10 @@ fn first_orbit(
     newton
         .correct(equations, &mut u, border, scale, options)
         .ok()?;
+    let moved: Vec<f64> = u.iter().zip(&first.u).map(|(x, y)| x - y).collect();
+    if newton.norm().length(scale, &moved) > FARTHEST * step.abs() {
+        return None;
+    }
     let mut tangent = vec![0.0; u.len()];
     newton.tangent(equations, &u, &mut tangent, true);
     let outwards = step * crate::linear::dot(&row, &tangent);

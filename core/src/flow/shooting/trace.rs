@@ -1,12 +1,6 @@
-//! Following a curve of bifurcations in two parameters, both ways from one of them, and what is special on it.
+//! Following a curve of bifurcations in two parameters, both ways from one of them.
 //!
-//! | special point | what happens |
-//! |---|---|
-//! | cusp | two folds meet: both parameters turn back at once along the curve |
-//! | grazing | a gap touches a level: the map loses a derivative, and the curve its smoothness |
-//! | fold and flip | one multiplier is one, another minus one |
-//!
-//! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
+//! What is special is looked for by [`watch`](super::watch).
 
 use nalgebra::Complex;
 
@@ -15,17 +9,15 @@ use super::equations::{Equations, Frame, Span};
 use super::run::no_orbit;
 use super::setting::Setting;
 use super::solve;
-use super::track::{Curve, determinant};
+use super::touch::Touch;
+use super::track::{Condition, Curve};
+use super::watch::Watch;
 use crate::branch::EventKind;
-use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
-};
-use crate::continuation::locate::locate;
+use crate::continuation::follow::{CurvePoint, FollowOptions, Outcome, Start, Stop, follow};
 use crate::continuation::step::StepControl;
 use crate::error::Error;
-use crate::newton::{Newton, NewtonOptions};
-use crate::stability::eigenvalues;
-use crate::system::Variable;
+use crate::newton::Newton;
+use crate::system::{System, Variable};
 
 /// A curve of bifurcations in the plane of two parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +59,8 @@ pub struct Special {
     pub kind: SpecialKind,
     /// Values of the two parameters.
     pub values: [f64; 2],
-    /// Estimated error of them, from where it was looked for.
+    /// Estimated error of them: what a flow of another accuracy makes of the place. Where the place was not located, half of the
+    /// step that passed it.
     pub error: f64,
     /// Number of points of the curve before it.
     pub after: usize,
@@ -83,6 +76,12 @@ pub enum SpecialKind {
     Grazing,
     /// A multiplier is one and another minus one.
     FoldFlip,
+    /// Two multipliers are one on a curve of folds, or minus one on one of period doublings or of broken symmetry (strong resonance
+    /// 1:1 or 1:2): a curve of Neimark-Sacker bifurcations may end there.
+    Double,
+    /// The branch that begins at a period doubling, or where a symmetry breaks, bends neither way: on one side of this point it
+    /// begins towards larger values, on the other towards smaller ones. A curve of its folds ends there.
+    Degenerate,
 }
 
 /// Why a curve ended on one side.
@@ -113,13 +112,15 @@ impl std::fmt::Display for SpecialKind {
             Self::Cusp => "cusp",
             Self::Grazing => "grazing",
             Self::FoldFlip => "fold-flip",
+            Self::Double => "double",
+            Self::Degenerate => "degenerate",
         })
     }
 }
 
 /// Ranges of the two parameters: the first is what the setting varies.
-#[derive(Debug, Clone)]
-pub(super) struct Plane {
+pub(super) struct Plane<'a> {
+    pub(super) system: &'a dyn System,
     pub(super) second: Variable,
     pub(super) name: String,
     pub(super) ranges: [[f64; 2]; 2],
@@ -129,10 +130,6 @@ pub(super) struct Plane {
 const POINTS: usize = 600;
 /// Shorter steps lead nowhere: where orbits graze, a determinant has the root of the distance in it, and no tangent.
 const SHORTEST: f64 = 1e-5;
-/// A slope of the second parameter counts as none below this, and that of the first, where the second has none, below the other.
-const VANISHED: f64 = 1e-9;
-const FLAT: f64 = 1e-3;
-
 /// Half of a curve, as it is followed.
 struct Half {
     points: Vec<TrackPoint>,
@@ -144,19 +141,11 @@ struct Half {
 ///
 /// # Errors
 /// If events of that kind are on no such curve, or the event does not solve its equations.
-pub(super) fn track(
-    setting: &Setting<'_>,
+pub(super) fn track<'a>(
+    setting: &Setting<'a>,
     event: &CycleEvent,
-    plane: &Plane,
+    plane: &Plane<'a>,
 ) -> Result<Track, Error> {
-    let shift = match event.kind {
-        EventKind::Fold => -1.0,
-        EventKind::PeriodDoubling | EventKind::SymmetryBreaking => 1.0,
-        kind => {
-            let value = event.cycle.value;
-            return Err(Error::NoBranch { kind, value });
-        }
-    };
     let at = [event.cycle.value, second_of(event, plane.second)];
     for ((value, range), name) in at.into_iter().zip(plane.ranges).zip(["from", "within"]) {
         if value < range[0].min(range[1]) || value > range[0].max(range[1]) {
@@ -164,7 +153,7 @@ pub(super) fn track(
             return Err(Error::Option { name, value, must });
         }
     }
-    let [mut back, forth] = [-1.0, 1.0].map(|side| half(setting, event, plane, shift, side));
+    let [mut back, forth] = [-1.0, 1.0].map(|side| half(setting, event, plane, side));
     let (back, mut forth) = (back.as_mut().map_err(|e| e.clone())?, forth?);
     let count = back.points.len();
     back.points.reverse();
@@ -191,14 +180,13 @@ pub(super) fn track(
 }
 
 /// From the event towards larger values of the second parameter, or smaller ones.
-fn half(
-    setting: &Setting<'_>,
+fn half<'a>(
+    setting: &Setting<'a>,
     event: &CycleEvent,
-    plane: &Plane,
-    shift: f64,
+    plane: &Plane<'a>,
     side: f64,
 ) -> Result<Half, Error> {
-    let (mut curve, mut u) = curve(setting, event, plane, shift)?;
+    let (mut curve, mut u) = curve(setting, event, plane)?;
     let mut newton = Newton::new(&curve);
     let options = setting.newton(setting.source.tolerance, 1.0);
     solve::at_value(&mut curve, &mut newton, &mut u, options)
@@ -224,16 +212,13 @@ fn half(
         },
         newton: options,
     };
-    let mut watch = Watch {
+    let mut watch = Watch::new(
         setting,
         plane,
-        options: options.newton,
-        symmetric: event.cycle.symmetric,
-        shift,
-        points: Vec::new(),
-        special: Vec::new(),
-        left: false,
-    };
+        options.newton,
+        &curve,
+        event.cycle.symmetric,
+    );
     let outcome = follow(
         &mut curve,
         &mut newton,
@@ -271,8 +256,7 @@ fn second_of(event: &CycleEvent, second: Variable) -> f64 {
 fn curve<'a>(
     setting: &Setting<'a>,
     event: &CycleEvent,
-    plane: &Plane,
-    shift: f64,
+    plane: &Plane<'a>,
 ) -> Result<(Curve<'a>, Vec<f64>), Error> {
     let cycle = &event.cycle;
     let order = 2 * cycle.extremes.len();
@@ -287,161 +271,24 @@ fn curve<'a>(
         omega: cycle.omega,
         ratio: 1.0,
     };
-    let equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
+    let mut equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
     let mut u = equations.unknowns_of(&cycle.states, cycle.value);
+    let nothing = Error::NoBranch {
+        kind: event.kind,
+        value: cycle.value,
+    };
+    let condition = match event.kind {
+        EventKind::Fold => Condition::Multiplier(-1.0),
+        EventKind::PeriodDoubling | EventKind::SymmetryBreaking => Condition::Multiplier(1.0),
+        EventKind::Grazing { .. } => {
+            let touch = Touch::of(plane.system, setting, &mut equations, &u).ok_or(nothing)?;
+            Condition::Touch(Box::new(touch), setting.omega)
+        }
+        _ => return Err(nothing),
+    };
     u.push(second_of(event, plane.second));
-    let size = 0.5
-        * cycle
-            .extremes
-            .iter()
-            .fold(0.0, |m: f64, e| m.max(e.peak_to_peak()));
-    let size = if size > 0.0 { size } else { 1.0 };
+    let size = cycle.size();
     let [first, second] = plane.ranges.map(|range| (range[1] - range[0]).abs());
-    let curve = Curve::new(equations, plane.second, shift, [size, first, second]);
+    let curve = Curve::new(equations, plane.second, condition, [size, first, second]);
     Ok((curve, u))
-}
-
-/// What is looked at along a curve.
-struct Watch<'p, 'a> {
-    setting: &'p Setting<'a>,
-    plane: &'p Plane,
-    options: NewtonOptions,
-    symmetric: bool,
-    shift: f64,
-    points: Vec<TrackPoint>,
-    special: Vec<Special>,
-    left: bool,
-}
-
-impl<'a> Watch<'_, 'a> {
-    fn visit(&mut self, curve: &mut Curve<'a>, newton: &mut Newton, seen: &Visit<'_>) -> Continue {
-        match seen {
-            Visit::Again(_) => {}
-            Visit::Point(at) => {
-                let last = at.u.len() - 1;
-                let value = at.u[last - 1];
-                let [low, high] = self.plane.ranges[0];
-                if value < low.min(high) || value > low.max(high) {
-                    self.left = true;
-                    return Continue::Break(Halt::Stop);
-                }
-                let Some((point, _)) = self.point(curve, &at.u) else {
-                    return Continue::Break(Halt::Stop);
-                };
-                self.points.push(point);
-            }
-            Visit::Between(before, behind) => self.between(curve, newton, (before, behind)),
-        }
-        Continue::Continue(())
-    }
-
-    /// A point with what is read off it, and the test function of a fold that is a flip as well.
-    fn point(&self, curve: &mut Curve<'_>, u: &[f64]) -> Option<(TrackPoint, f64)> {
-        let before = curve.equations.flow.work().switches;
-        let map = curve.map(u)?;
-        let switches = curve.equations.flow.work().switches - before;
-        let mut multipliers = eigenvalues(&map);
-        if self.symmetric {
-            for m in &mut multipliers {
-                *m *= *m;
-            }
-        }
-        let last = u.len() - 1;
-        let states = curve.equations.states_of(&u[..last]);
-        let point = TrackPoint {
-            values: [u[last - 1], u[last]],
-            state: states[..curve.equations.order()].to_vec(),
-            multipliers,
-            switches: switches * if self.symmetric { 2 } else { 1 },
-        };
-        Some((point, determinant(&map, -self.shift)))
-    }
-
-    /// What is special between two points.
-    fn between(
-        &mut self,
-        curve: &mut Curve<'a>,
-        newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
-    ) {
-        let (before, behind) = between;
-        let last = before.u.len() - 1;
-        let changed = |entry: usize| before.tangent[entry] * behind.tangent[entry] < 0.0;
-        if changed(last) && changed(last - 1) {
-            let slope = CurvePoint::parameter_slope;
-            let found = locate(curve, newton, between, self.options, VANISHED, slope);
-            // Where the slopes jump, as at a touch, nothing is born.
-            if let Some(found) = found.filter(|found| found.vanishes) {
-                let other = found.point.tangent[last - 1] / curve.units[1];
-                if other.abs() < FLAT {
-                    self.keep(SpecialKind::Cusp, Some(found.point), between);
-                }
-            }
-        }
-        let [Some(a), Some(b)] = [before, behind].map(|at| self.point(curve, &at.u)) else {
-            return;
-        };
-        if a.0.switches != b.0.switches {
-            let found = self.grazing(curve, newton, between, a.0.switches);
-            self.keep(SpecialKind::Grazing, found, between);
-        }
-        if a.1 * b.1 < 0.0 && self.shift < 0.0 {
-            self.keep(SpecialKind::FoldFlip, None, between);
-        }
-    }
-
-    /// The place where a gap touches a level, by halving: behind it levels are not crossed `switches` times.
-    fn grazing(
-        &self,
-        curve: &mut Curve<'a>,
-        newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
-        switches: usize,
-    ) -> Option<CurvePoint> {
-        let other = curve.again(self.setting).ok()?;
-        let other = std::cell::RefCell::new(other);
-        let side = |at: &CurvePoint| {
-            let point = self.point(&mut other.borrow_mut(), &at.u);
-            let before = point.is_some_and(|(point, _)| point.switches == switches);
-            if before { 1.0 } else { -1.0 }
-        };
-        let found = locate(curve, newton, between, self.options, 0.0, side);
-        found.map(|found| found.point)
-    }
-
-    /// Keeps a special point, in the middle of the step if it was not located.
-    fn keep(
-        &mut self,
-        kind: SpecialKind,
-        located: Option<CurvePoint>,
-        (before, behind): (&CurvePoint, &CurvePoint),
-    ) {
-        let last = before.u.len() - 1;
-        let ends = [last - 1, last].map(|entry| [before.u[entry], behind.u[entry]]);
-        let (values, error) = match located {
-            Some(point) => {
-                // A slope that counts as none, over a step of the length that counts as one.
-                let [first, second] = self.plane.ranges.map(|r| (r[1] - r[0]).abs());
-                let flow = if self.setting.source.exact {
-                    0.0
-                } else {
-                    self.setting.source.tolerance
-                };
-                let error = (VANISHED + 10.0 * flow) * first.max(second);
-                ([point.u[last - 1], point.u[last]], error)
-            }
-            None => (
-                ends.map(|[a, b]| 0.5 * (a + b)),
-                ends.iter()
-                    .fold(0.0, |m: f64, [a, b]| m.max(0.5 * (a - b).abs())),
-            ),
-        };
-        self.special.push(Special {
-            kind,
-            values,
-            error,
-            // The point behind it has been stored already.
-            after: self.points.len().saturating_sub(1),
-        });
-    }
 }

@@ -7,7 +7,7 @@
 //! F(s, lambda; mu) = 0,     g(s, lambda; mu) = det(M -+ I) = 0                                               (1)
 //! ```
 //!
-//! with a minus for folds and a plus for period doublings and broken symmetry. `M` has the order of a state, so its determinant
+//! with a minus for folds and a plus for period doublings and broken symmetry; for grazing `g` is that of [`touch`](super::touch). `M` has the order of a state, so its determinant
 //! is as good as the scalar of a bordered system, and is never undefined. Derivatives of `F` by `s` and `lambda` are those of the
 //! flow; those by `mu`, and all of `g`, are central differences of `F` and `M`, which are exact themselves: the law's second
 //! derivatives are not needed, and need not exist.
@@ -19,6 +19,7 @@ use nalgebra::DMatrix;
 
 use super::equations::Equations;
 use super::setting::Setting;
+use super::touch::Touch;
 use crate::continuation::problem::Problem;
 use crate::error::Error;
 use crate::jacobian::{Jacobian, Partition};
@@ -27,12 +28,20 @@ use crate::system::Variable;
 /// Steps of differences, relative to what counts as one.
 const STEP: f64 = 1e-5;
 
+/// What is zero along the curve.
+#[derive(Clone)]
+pub(super) enum Condition<'a> {
+    /// `det(M + shift I)`, with a shift of `-1` or `1`.
+    Multiplier(f64),
+    /// The distance of a gap from a level, at this frequency unless it is varied.
+    Touch(Box<Touch<'a>>, f64),
+}
+
 /// The equations (1). The last of the extended unknowns is `mu`, the one before `lambda`.
 pub(super) struct Curve<'a> {
     pub(super) equations: Equations<'a>,
     pub(super) second: Variable,
-    /// `-1` or `1`, added to the diagonal of `M`.
-    pub(super) shift: f64,
+    pub(super) condition: Condition<'a>,
     /// What counts as one: of the orbit, of `lambda`, of `mu`.
     pub(super) units: [f64; 3],
     inner: Jacobian,
@@ -47,7 +56,7 @@ impl<'a> Curve<'a> {
     pub(super) fn new(
         equations: Equations<'a>,
         second: Variable,
-        shift: f64,
+        condition: Condition<'a>,
         units: [f64; 3],
     ) -> Self {
         let n = equations.unknowns();
@@ -60,7 +69,7 @@ impl<'a> Curve<'a> {
             column: vec![0.0; n + 1],
             equations,
             second,
-            shift,
+            condition,
             units,
         }
     }
@@ -71,7 +80,19 @@ impl<'a> Curve<'a> {
     /// If there is no flow.
     pub(super) fn again(&self, setting: &Setting<'a>) -> Result<Self, Error> {
         let equations = self.equations.again(setting)?;
-        Ok(Self::new(equations, self.second, self.shift, self.units))
+        Ok(self.with(equations))
+    }
+
+    /// The same curve by other equations.
+    pub(super) fn with(&self, equations: Equations<'a>) -> Self {
+        Self::new(equations, self.second, self.condition.clone(), self.units)
+    }
+
+    /// Remembers where a gap has the extreme that touches, for what follows.
+    pub(super) fn follow(&mut self, u: &[f64]) {
+        if let Condition::Touch(touch, omega) = &mut self.condition {
+            touch.follow(&mut self.equations, u, *omega, self.second);
+        }
     }
 
     /// `F` at extended unknowns into `room`, with `M` and the derivatives of `F`; returns `g`.
@@ -92,7 +113,12 @@ impl<'a> Curve<'a> {
         if self.equations.failure.is_some() {
             return f64::NAN;
         }
-        determinant(&self.equations.product, self.shift)
+        match &mut self.condition {
+            Condition::Multiplier(shift) => determinant(&self.equations.product, *shift),
+            Condition::Touch(touch, omega) => {
+                touch.distance(&mut self.equations, u, *omega, self.second)
+            }
+        }
     }
 
     /// `M` at a solution.

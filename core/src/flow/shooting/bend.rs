@@ -1,0 +1,121 @@
+//! Which way the branch bends that begins at a period doubling, or where an odd symmetry breaks.
+//!
+//! At a distance `e` along the critical direction, the orbit of the new branch is at
+//!
+//! ```text
+//! lambda(e) = lambda(0) + k e^2 + O(e^4)                                                                      (1)
+//! ```
+//!
+//! `k` is the cubic coefficient of the normal form but for a positive or negative factor that does not vanish. It is taken from
+//! two orbits of the new branch, at `e` and `e / 2`, so that the term of the next order cancels; the third derivatives of the map
+//! are not needed, and need not exist.
+//!
+//! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, sections 4.5 and 9.3 (the generalised flip).
+
+use super::equations::{Equations, Span};
+use super::setting::Setting;
+use super::switch::direction;
+use super::track::Curve;
+use crate::continuation::problem::Scale;
+use crate::error::Error;
+use crate::newton::{Border, Newton};
+use crate::system::Variable;
+
+/// `e`, in units of the orbit's size, and that of what it is compared with.
+pub(super) const DISTANCE: f64 = 1e-2;
+pub(super) const FARTHER: f64 = 2e-2;
+
+/// Orbits of the new branch, beside those of a curve.
+pub(super) struct Bend<'a> {
+    equations: Equations<'a>,
+    newton: Newton,
+    second: Variable,
+    symmetric: bool,
+    scale: Scale,
+    /// `e`
+    distance: f64,
+}
+
+impl<'a> Bend<'a> {
+    /// Of a curve, at this distance.
+    ///
+    /// # Errors
+    /// If there is no flow.
+    pub(super) fn new(
+        setting: &Setting<'a>,
+        curve: &Curve<'a>,
+        symmetric: bool,
+        distance: f64,
+    ) -> Result<Self, Error> {
+        let Span {
+            period, segments, ..
+        } = curve.equations.span;
+        let span = Span {
+            period: if symmetric { period } else { 2 * period },
+            half: false,
+            segments: 2 * segments,
+        };
+        let frame = curve.equations.frame.clone();
+        let equations = Equations::new(setting, curve.equations.tolerance, span, frame)?;
+        Ok(Self {
+            newton: Newton::new(&equations),
+            equations,
+            second: curve.second,
+            symmetric,
+            distance,
+            scale: Scale {
+                parameter: curve.units[1],
+                oscillation: curve.units[0],
+                mean: curve.units[0],
+            },
+        })
+    }
+
+    /// `k` at a point of the curve, whose unknowns end with both parameters.
+    pub(super) fn at(
+        &mut self,
+        setting: &Setting<'a>,
+        curve: &Curve<'a>,
+        u: &[f64],
+    ) -> Option<f64> {
+        let last = u.len() - 1;
+        self.equations.flow.set(self.second, u[last]).ok()?;
+        let mut states = curve.equations.states_of(&u[..last]);
+        let sign = if self.symmetric { -1.0 } else { 1.0 };
+        for i in 0..states.len() {
+            states.push(sign * states[i]);
+        }
+        let u = self.equations.unknowns_of(&states, u[last - 1]);
+        let direction = direction(&mut self.equations, &u, self.symmetric)?;
+        let [far, near] = [self.distance, 0.5 * self.distance]
+            .map(|e| self.coefficient(setting, &u, &direction, e));
+        Some((4.0 * near? - far?) / 3.0)
+    }
+
+    /// `(lambda(e) - lambda(0)) / e^2`
+    fn coefficient(
+        &mut self,
+        setting: &Setting<'a>,
+        u: &[f64],
+        direction: &[f64],
+        e: f64,
+    ) -> Option<f64> {
+        let (norm, scale) = (self.newton.norm(), self.scale);
+        let length = norm.length(scale, direction);
+        let unit: Vec<f64> = direction.iter().map(|x| x / length).collect();
+        let mut row = vec![0.0; unit.len()];
+        norm.linear_form(scale, &unit, &mut row);
+        let mut beside: Vec<f64> = u.iter().zip(&unit).map(|(x, d)| x + e * d).collect();
+        let border = Border {
+            row: &row,
+            value: crate::linear::dot(&row, &beside),
+        };
+        let options = setting.newton(self.equations.tolerance, self.equations.frame.ratio);
+        let corrected =
+            self.newton
+                .correct(&mut self.equations, &mut beside, border, scale, options);
+        corrected.ok()?;
+        let last = u.len() - 1;
+        Some((beside[last] - u[last]) / (e * e))
+    }
+}

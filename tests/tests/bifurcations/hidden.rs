@@ -1,0 +1,129 @@
+//! Bifurcations that the signs of test functions at the ends of a step do not show, or show as something else.
+
+use hertzian::flow::shooting::{CycleBranch, CycleEvent};
+use hertzian::{EventKind, Shooting};
+
+use crate::cascade::A1;
+
+hertzian::oscillator! {
+    /// The oscillator of figure 8, beside a mass on a hilltop: a multiplier of `exp(6 pi)`.
+    BesideHilltop(x, y) {
+        param drive;
+        law contact(gap) { gap > 0 => 0.064*dot(gap) + gap, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + 1;
+        ddot(y) - 9*y = 0;
+    }
+}
+
+/// The determinant that vanishes is multiplied by 1.5e8, and so is its rounding.
+#[test]
+fn a_large_multiplier_hides_no_doubling() {
+    let model = BesideHilltop { drive: 1.0 };
+    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let branch = shooting.from(1.0).to(1.4).run().unwrap();
+    let doublings: Vec<_> = branch.events(EventKind::PeriodDoubling).collect();
+    let [doubling] = doublings[..] else {
+        panic!("{:?} {:?}", branch.events, branch.turns);
+    };
+    let error = (doubling.cycle.value - A1.drive).abs();
+    assert!(
+        error < 1e-7 && error <= doubling.error,
+        "{doubling} {error:.1e}"
+    );
+}
+
+hertzian::oscillator! {
+    /// A driven oscillator, beside one whose stiffness varies: its rest loses stability in a tongue of the stiffness.
+    Tongue(x, y) {
+        param k;
+        ddot(x) + 0.1*dot(x) + x = 0.1*cos(omega*t);
+        ddot(y) + 0.02*dot(y) + (k + 0.05*cos(omega*t))*y = 0;
+    }
+}
+
+fn values(branch: &CycleBranch, kind: EventKind) -> Vec<f64> {
+    branch.events(kind).map(|event| event.cycle.value).collect()
+}
+
+/// The tongue is much shorter than a step. To first order its ends are `k = 1/4 +- (p^2/4 - c^2/4)^(1/2)` with `p = 0.05`, `c = 0.02`.
+#[test]
+fn two_doublings_within_a_step() {
+    let model = Tongue { k: 0.2 };
+    let shooting = Shooting::of(&model).vary("k").omega(1.0).from(0.12).to(0.9);
+    let long = values(&shooting.run().unwrap(), EventKind::PeriodDoubling);
+    let short = shooting.largest_step(1e-3).run().unwrap();
+    let short = values(&short, EventKind::PeriodDoubling);
+    assert_eq!([long.len(), short.len()], [2, 2], "{long:?} {short:?}");
+    let half = 0.5 * (0.05_f64.powi(2) - 0.02_f64.powi(2)).sqrt();
+    for ((long, short), sign) in long.into_iter().zip(short).zip([-1.0, 1.0]) {
+        assert!((long - short).abs() < 1e-9, "{long} {short}");
+        assert!((long - 0.25 - sign * half).abs() < 2e-3, "{long}");
+    }
+}
+
+hertzian::oscillator! {
+    /// The oscillator of figure 5a, beside one whose stiffness vanishes at a frequency: there another branch crosses.
+    BesidePitchfork(x, y) {
+        param at;
+        law contact(gap) { gap > 0 => 0.064*dot(gap) + gap, else => 0 }
+        ddot(x) + contact(x) = 0.1*cos(omega*t) + 1;
+        ddot(y) + 0.5*dot(y) + (omega - at)*y + y^3 = 0;
+    }
+}
+
+/// The fold of figure 5a, by the closed-form flow in 80-bit arithmetic (`frequency_response` of the reference values). Beside it
+/// the frequency of the crossing is passed twice, before the fold and behind it, and once more below.
+#[test]
+fn a_fold_beside_crossings() {
+    let fold = 0.715_119_549_676;
+    for beside in [1e-2, 1e-3, 1e-4, 1e-5] {
+        let at = fold + beside;
+        let model = BesidePitchfork { at };
+        let shooting = Shooting::of(&model).from(1.2).to(0.5);
+        let branch = shooting.run().unwrap();
+        let crossings: Vec<&CycleEvent> = branch.events(EventKind::BranchPoint).collect();
+        let near = |event: &&CycleEvent| (event.cycle.value - fold).abs() < 1e-9;
+        assert_eq!(
+            branch.folds().filter(near).count(),
+            1,
+            "{beside}: {:?}",
+            branch.events
+        );
+        for event in &crossings {
+            let error = (event.cycle.value - at).abs();
+            assert!(
+                error < 1e-9 && error <= event.error + 1e-15,
+                "{event} {error:.1e}"
+            );
+        }
+        assert!(
+            crossings.len() >= 2,
+            "{beside}: {:?} {:?}",
+            branch.events,
+            branch.turns
+        );
+    }
+}
+
+hertzian::oscillator! {
+    /// Two oscillators of figure 8 that lose contact one after the other, at a drive of 0.064 times the load.
+    Two(x, y) {
+        param drive;
+        law contact(gap) { gap > 0 => 0.064*dot(gap) + gap, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + 1;
+        ddot(y) + contact(y) = drive*cos(omega*t) + 1.02;
+    }
+}
+
+#[test]
+fn two_levels_touched_within_a_step() {
+    let model = Two { drive: 0.1 };
+    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let branch = shooting.from(0.05).to(0.2).run().unwrap();
+    let touched: Vec<&CycleEvent> = branch.events(EventKind::Grazing { turns: false }).collect();
+    assert_eq!(touched.len(), 2, "{:?}", branch.events);
+    for (event, load) in touched.into_iter().zip([1.0, 1.02]) {
+        let error = (event.cycle.value - 0.064 * load).abs();
+        assert!(error < 1e-9 && error <= event.error, "{event} {error:.1e}");
+    }
+}
