@@ -226,12 +226,6 @@ impl<'a> Branch<'a> {
     /// If the file cannot be written.
     #[cfg(feature = "plot")]
     pub fn plot(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
-        let written = self.chart().write(path);
-        written.map_err(
-            |crate::chart::ChartError::Write { path, source }| Error::File {
-                path: path.display().to_string(),
-                reason: source.to_string(),
-            },
-        )
+        Ok(self.chart().write(path)?)
     }
 }

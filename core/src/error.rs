@@ -1,7 +1,17 @@
 //! What can be wrong with a request, and why a computation has no answer.
 
+mod display;
+
+use std::io::ErrorKind;
+use std::path::PathBuf;
+
 use crate::branch::EventKind;
+#[cfg(feature = "plot")]
+use crate::chart::ChartError;
 use crate::flow::FlowError;
+#[cfg(feature = "text")]
+use crate::generic::DeclarationError;
+use crate::structure::StructureError;
 
 pub use crate::linear::Singular;
 pub use crate::newton::NewtonError;
@@ -148,7 +158,7 @@ pub enum Error {
     },
     /// Orbits were found, but none whose shortest period is the one asked for.
     NoSuchPeriod {
-        /// The period asked for, in excitation periods.
+        /// The period asked for, in periods of the declaration.
         period: usize,
         /// Where.
         value: f64,
@@ -191,10 +201,44 @@ pub enum Error {
     /// A file could not be written.
     File {
         /// Its path.
-        path: String,
+        path: PathBuf,
         /// What the system said.
-        reason: String,
+        kind: ErrorKind,
     },
+    /// A motion cannot be continued.
+    Flow(FlowError),
+    /// A structure cannot be built.
+    Structure(StructureError),
+    /// A declaration cannot be read.
+    #[cfg(feature = "text")]
+    Declaration(DeclarationError),
+}
+
+impl From<FlowError> for Error {
+    fn from(error: FlowError) -> Self {
+        Self::Flow(error)
+    }
+}
+
+impl From<StructureError> for Error {
+    fn from(error: StructureError) -> Self {
+        Self::Structure(error)
+    }
+}
+
+#[cfg(feature = "text")]
+impl From<DeclarationError> for Error {
+    fn from(error: DeclarationError) -> Self {
+        Self::Declaration(error)
+    }
+}
+
+#[cfg(feature = "plot")]
+impl From<ChartError> for Error {
+    fn from(ChartError::Write { path, source }: ChartError) -> Self {
+        let kind = source.kind();
+        Self::File { path, kind }
+    }
 }
 
 /// What attempts to find an orbit of a longer period came to.
@@ -231,162 +275,6 @@ impl std::fmt::Display for Attempts {
             f,
             " led to an orbit of a shorter period, the others to none"
         )
-    }
-}
-
-impl Error {
-    /// What is written of flows and states.
-    fn of_motions(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::State { entries, expected } => write!(
-                f,
-                "the state has {entries} entries instead of {expected}: all positions, then all velocities"
-            ),
-            Self::Values { values, expected } => {
-                write!(f, "{values} values were given for {expected} parameters")
-            }
-            Self::NotAffine => write!(
-                f,
-                "the motion has no closed form: a force is not affine on one of its pieces, or a stiffness or a direction varies in time"
-            ),
-            _ => Ok(()),
-        }
-    }
-
-    /// What is written of backbones and of what begins at bifurcations.
-    fn of_bifurcations(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::NeverAtRest { position } => {
-                write!(
-                    f,
-                    "the motion from rest at {position} does not come to rest again"
-                )
-            }
-            Self::NotFree { apart } => write!(
-                f,
-                "the motion misses its beginning by {apart:.1e} of its size after a period: set damping and excitation to zero"
-            ),
-            Self::NoLoad => write!(
-                f,
-                "no load with the frequency of the excitation acts on the first coordinate: it has no phase resonance"
-            ),
-            Self::NoResonance {
-                value,
-                between: [low, high],
-            } => write!(
-                f,
-                "no orbit in phase resonance found at {value} between the excitation frequencies {low} and {high}"
-            ),
-            Self::Search { value, reason } => {
-                write!(f, "attractors at {value} could not be looked for: {reason}")
-            }
-            Self::NoBranch { kind, value } => {
-                write!(f, "no further branch was found at the {kind} at {value:.9}")
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-impl std::fmt::Display for Error {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Parameter { name, value, range } => {
-                write!(f, "parameter {name} = {value} is outside its range {range}")
-            }
-            Self::UnknownParameter { name, known } => {
-                write!(
-                    f,
-                    "there is no parameter {name}; there are {}",
-                    known.join(", ")
-                )
-            }
-            Self::Option { name, value, must } => write!(f, "{name} = {value}: {must}"),
-            Self::Missing { name: "omega" } => write!(
-                f,
-                "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`"
-            ),
-            Self::Missing {
-                name: name @ ("from" | "to"),
-            } => write!(f, "the range has no end: call `{name}`"),
-            Self::Missing { name } => write!(f, "`{name}` has not been given"),
-            Self::Varied { name, must } => write!(f, "what is varied is {name}: it {must}"),
-            Self::EmptyRange { value } => {
-                write!(f, "the range is empty: from and to are both {value}")
-            }
-            Self::Samples {
-                samples,
-                least,
-                harmonics,
-            } => write!(
-                f,
-                "{samples} samples are too few for {harmonics} harmonics: take {least} or more"
-            ),
-            Self::Unknowns { unknowns, most } => write!(
-                f,
-                "{unknowns} unknowns are too many, at most {most}: take fewer harmonics or a shorter period"
-            ),
-            Self::Levels { law, levels } => {
-                write!(
-                    f,
-                    "the levels of law {law} are not in increasing order: {levels:?}"
-                )
-            }
-            Self::Harmonics { harmonics, highest } => write!(
-                f,
-                "the declaration has harmonic {highest} of the orbit, and the balance only {harmonics}: take more harmonics"
-            ),
-            Self::NoCoordinates => write!(f, "the system has no coordinates"),
-            Self::SingularMass { determinant } => {
-                write!(
-                    f,
-                    "the mass matrix is singular: its determinant is {determinant:e}"
-                )
-            }
-            Self::Lost { value, from, to } => {
-                write!(
-                    f,
-                    "the orbit at {value}, between those at {from} and {to}, could not be computed"
-                )
-            }
-            Self::NoStart { value, reason } => {
-                write!(f, "no periodic orbit found at {value}: {reason}")
-            }
-            Self::State { .. } | Self::Values { .. } | Self::NotAffine => self.of_motions(f),
-            Self::Beyond { value, fold } => write!(
-                f,
-                "no periodic orbit at {value} near the given one: its branch turns back at {fold:.12}, {:.1e} away",
-                (value - fold).abs()
-            ),
-            Self::Motion { value, reason } => {
-                write!(f, "no periodic orbit found at {value}: {reason}")
-            }
-            Self::SearchLimit {
-                value,
-                evaluations,
-                multiplications,
-                reason,
-            } => write!(
-                f,
-                "no periodic orbit found at {value} in {evaluations} evaluations of the balance, which took the {:.0e} multiplications that a search is allowed; the last attempt: {reason}",
-                *multiplications as f64
-            ),
-            Self::NoSuchPeriod {
-                period,
-                value,
-                attempts,
-            } => write!(
-                f,
-                "no orbit of period {period} found at {value}: {attempts}; start where there is one, and follow it from there"
-            ),
-            Self::NeverAtRest { .. }
-            | Self::NotFree { .. }
-            | Self::NoLoad
-            | Self::NoResonance { .. }
-            | Self::Search { .. }
-            | Self::NoBranch { .. } => self.of_bifurcations(f),
-            Self::File { path, reason } => write!(f, "cannot write {path}: {reason}"),
-        }
     }
 }
 

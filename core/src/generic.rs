@@ -17,7 +17,7 @@ use crate::system::{System, SystemFacts, Variable};
 
 pub use law::InterpretedLaw;
 #[cfg(feature = "text")]
-pub use text::{Declaration, DeclarationError, Fault, UnknownParameter};
+pub use text::{Declaration, DeclarationError, Fault};
 
 /// A system whose laws are interpreted; everything else is the system's own, and so is a law that has no
 /// [data](Law::data).

@@ -23,11 +23,40 @@
 //! # Ok::<(), hertzian::Error>(())
 //! ```
 //!
+//! # Where things are
+//!
+//! | What is wanted | Where it is |
+//! |---|---|
+//! | curves of periodic orbits, by harmonic balance | [`FrequencyResponse`], which gives a [`Branch`]: module [`branch`] |
+//! | the same in the time domain, without truncation | [`Shooting`], which gives a [`CycleBranch`]: module [`flow::shooting`] |
+//! | what an orbit is like: amplitudes, phases, contact, power | [`observe`] |
+//! | multipliers by other methods, and what they cost | [`stability`] |
+//! | all branches connected by bifurcations | [`Bifurcations`], which gives a [`Diagram`](bifurcation::Diagram) |
+//! | curves of bifurcations in two parameters | [`Shooting::track`] |
+//! | free oscillation, phase resonance | [`backbone`] |
+//! | motions in time, and what they settle to | [`flow`]: histories, sections, sweeps, Lyapunov exponents, basins |
+//! | a structure given as matrices, with contacts | [`structure`], whose laws [`law!`] declares |
+//! | pictures and tables | `chart` (feature `plot`), [`export`] |
+//! | what can go wrong | [`error`] |
+//! | the contract of generated code, for systems and laws by hand | [`system`], [`law`](mod@law), [`fourier::series`] |
+//! | the same declarations interpreted, or read from text | [`generic`] |
+//! | how powers are computed, and how to pin that | [`power`] |
+//!
+//! # Features
+//!
+//! All of them only add something.
+//!
+//! - `parallel` (default): basins of attraction on several threads.
+//! - `plot` (default): draws branches as SVG.
+//! - `text`: reads declarations from text at run time; brings the compiler in.
+//!
+//! The matrices and complex numbers of [`nalgebra`] are part of this interface.
+//!
+//! # Conventions
+//!
 //! Time has the unit that the equation has it in; frequencies are angles per time. Orbits are Fourier series, laid out as
 //! [`fourier::series`] says. Nothing panics on the values of parameters or options: what is wrong comes back as an
 //! [`Error`] before any work, and a branch that ends early comes back with what was computed and with the reason.
-//!
-//! [`Shooting`] finds the same orbits in the time domain, without any truncation, and refines what the balance has found.
 //!
 //! The modules [`system`] and [`law`](mod@law) are the contract between generated code and the runtime; a system written by hand
 //! against them is as good as a declared one. [`generic`] interprets the same declarations.
@@ -93,12 +122,58 @@ pub use branch::{Branch, Event, EventKind, Orbit, Point, Turn};
 pub use continuation::follow::Stop;
 pub use error::Error;
 pub use flow::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
-pub use hertzian_macros::{law, oscillator};
 pub use nalgebra::Complex;
 pub use response::FrequencyResponse;
 pub use stability::{Method, Stability, Verdict};
 pub use statistics::Statistics;
 pub use system::System;
+
+/// ```
+/// hertzian::oscillator! {
+///     /// One-sided contact spring with damping, loaded and shaken.
+///     pub OneSided(x) {
+///         /// damping ratio
+///         param zeta in 0.0..;
+///         /// normal load
+///         param load;
+///         /// excitation amplitude
+///         param drive;
+///
+///         law contact(gap) {
+///             gap > 0 => 2*zeta*dot(gap) + gap^1.5,
+///             else    => 0,
+///         }
+///
+///         ddot(x) + contact(x) = drive*cos(omega*t) + load;
+///     }
+/// }
+///
+/// let model = OneSided { zeta: 0.032, load: 1.0, drive: 0.1 };
+/// let orbit = hertzian::FrequencyResponse::of(&model).orbit(0.5)?;
+/// // Far below the resonance the contact stays closed.
+/// assert!(orbit.motion().minimum > 0.0);
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+pub use hertzian_macros::oscillator;
+
+/// ```
+/// use hertzian::law::{Law, On};
+///
+/// hertzian::law! {
+///     /// Contact whose damping grows with the force, Hunt and Crossley (1975).
+///     pub HuntCrossley(gap, k, c, n >= 1) {
+///         gap > 0 => k*gap^n*(1 + c*dot(gap)),
+///         else    => 0,
+///     }
+/// }
+///
+/// let (arguments, gap, rate) = ([2.0, 0.5, 1.5], [4.0, -1.0], [1.0, 1.0]);
+/// let mut force = [0.0; 2];
+/// HuntCrossley.force(On::AllPieces, &arguments, &gap, &rate, &mut force);
+/// assert!((force[0] - 24.0).abs() < 1e-12);
+/// assert_eq!(force[1], 0.0);
+/// ```
+pub use hertzian_macros::law;
 
 // The twenty lines of the README are run as a test.
 #[cfg(all(doctest, feature = "plot"))]

@@ -140,7 +140,8 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
-    /// Period of the orbit in excitation periods. Default: 1.
+    /// Period of the orbit in periods of the declaration, `2 pi divisor / omega`: those of the excitation, unless the declaration
+    /// has fractions of `omega`. Default: 1.
     #[must_use]
     pub fn period(mut self, period: usize) -> Self {
         self.period = period;
@@ -173,7 +174,7 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
-    /// Samples per excitation period, for the methods that sample. Default: at least 200 per harmonic, a power of two. The
+    /// Samples per period of the declaration, for the methods that sample. Default: at least 200 per harmonic, a power of two. The
     /// derivative of a force like `g^1.5` has a kink where contact begins; folds feel it as the power -1.5 of the samples.
     #[must_use]
     pub fn samples(mut self, samples: usize) -> Self {
@@ -279,6 +280,30 @@ impl<'a> FrequencyResponse<'a> {
     /// The branch that begins at an event of another one, as [`run`](Self::run) would follow it: of twice the period at a doubling
     /// ([`doublings`](Self::doublings)), of orbits without the symmetry where an odd symmetry breaks. There the two sides are mirror
     /// images; at a doubling both are one branch.
+    ///
+    /// ```
+    /// use hertzian::{EventKind, FrequencyResponse, Side};
+    ///
+    /// hertzian::oscillator! {
+    ///     OneSided(x) {
+    ///         param load;
+    ///         param drive;
+    ///         law contact(gap) { gap > 0 => 0.064*dot(gap) + gap, else => 0 }
+    ///         ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    ///     }
+    /// }
+    ///
+    /// let model = OneSided { load: 1.0, drive: 1.0 };
+    /// let request = FrequencyResponse::of(&model).vary("drive").omega(1.0).from(1.0).to(1.4);
+    /// let request = request.harmonics(20).doublings(true).stability(false);
+    /// let branch = request.run()?;
+    /// // A1 of Wang et al. (2021), figure 8, to what 20 harmonics give.
+    /// let doubling = branch.events(EventKind::PeriodDoubling).next().unwrap();
+    /// assert!((doubling.point.value - 1.2825842).abs() < 1e-4);
+    /// let longer = request.doublings(false).switch(doubling, Side::One)?;
+    /// assert!(longer.points.iter().all(|point| point.orbit.period == 2));
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
     ///
     /// # Errors
     /// If a parameter or an option is not usable, no branch begins there, or its first orbit was not found.

@@ -13,8 +13,10 @@ pub use self::builder::Builder;
 pub use self::contact::Contact;
 pub use self::error::StructureError;
 
+use crate::error::Error;
 use crate::law::Law;
 use crate::system::{System, SystemFacts, Variable};
+use crate::validate;
 
 /// A linear structure with contacts, built at run time: equation (1) with constant `M`, `C`, `K` and directions.
 ///
@@ -110,12 +112,10 @@ impl Structure {
     ///
     /// # Errors
     /// If there is no parameter of that name.
-    pub fn set(&mut self, name: &str, value: f64) -> Result<(), StructureError> {
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), Error> {
         let mut parameters = self.facts.parameters.iter();
         let position = parameters.position(|parameter| parameter.name == name);
-        let index = position.ok_or_else(|| StructureError::UnknownParameter {
-            name: name.to_owned(),
-        })?;
+        let index = position.ok_or_else(|| validate::unknown(&self.facts, name))?;
         self.values[index] = value;
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! The contract of a system: equations (1) to (3) of `DESIGN.md`.
+//! The contract of a system: its equations of motion.
 //!
 //! For coordinates `q`, the phase `tau = omega t / divisor` and parameters `p`:
 //!

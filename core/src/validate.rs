@@ -20,14 +20,18 @@ pub(crate) fn variable(facts: &SystemFacts, name: Option<&str>) -> Result<Variab
         .position(|parameter| parameter.name == name);
     found
         .map(Variable::Parameter)
-        .ok_or_else(|| Error::UnknownParameter {
-            name: name.to_owned(),
-            known: facts
-                .parameters
-                .iter()
-                .map(|parameter| parameter.name.to_string())
-                .collect(),
-        })
+        .ok_or_else(|| unknown(facts, name))
+}
+
+/// There is no parameter of this name.
+pub(crate) fn unknown(facts: &SystemFacts, name: &str) -> Error {
+    let parameters = facts.parameters.iter();
+    Error::UnknownParameter {
+        name: name.to_owned(),
+        known: parameters
+            .map(|parameter| parameter.name.to_string())
+            .collect(),
+    }
 }
 
 /// Both ends of a range are usable and differ.

@@ -157,6 +157,6 @@ fn parameters_are_set_by_name() {
     let error = model.set("K", 1.0).expect_err("no such parameter");
     assert_eq!(
         error.to_string(),
-        "no parameter `K`: the declaration has `k`, `play`"
+        "there is no parameter K; there are k, play"
     );
 }

@@ -7,29 +7,6 @@ use proc_macro::TokenStream;
 /// Declares a system of oscillators: a type with one public `f64` field per parameter, which implements
 /// `hertzian::system::System`.
 ///
-/// ```text
-/// hertzian::oscillator! {
-///     /// One-sided contact spring with damping, loaded and shaken.
-///     pub OneSided(x) {
-///         /// damping ratio
-///         param zeta in 0.0..;
-///         /// normal load
-///         param load;
-///         /// excitation amplitude
-///         param drive;
-///
-///         law contact(gap) {
-///             gap > 0 => 2*zeta*dot(gap) + gap^1.5,
-///             else    => 0,
-///         }
-///
-///         ddot(x) + contact(x) = drive*cos(omega*t) + load;
-///     }
-/// }
-///
-/// let model = OneSided { zeta: 0.032, load: 1.0, drive: 0.1 };
-/// ```
-///
 /// # Grammar
 ///
 /// ```text
@@ -59,7 +36,7 @@ use proc_macro::TokenStream;
 ///             | "(" expression ")" | "|" expression "|" | "for" head "{" { let } expression "}"
 /// ```
 ///
-/// The guide "Declaring contacts", `docs/book/src/declaring-contacts.md`, has an example of each production.
+/// The chapter "Declaring contacts" of the book has an example of each production.
 ///
 /// A power binds tighter than a sign in front of it and to the right: `-x^2` is `-(x^2)`, `2^3^2` is `2^9`. Products need
 /// their star: `2*zeta`. Numbers are exact: `1.5` is three halves.
@@ -138,16 +115,6 @@ pub fn oscillator(declaration: TokenStream) -> TokenStream {
 /// Declares a law without a model: a type without fields that implements `hertzian::law::Law`, to be attached to the
 /// matrices of a `hertzian::structure::Structure` while the program runs.
 ///
-/// ```text
-/// hertzian::law! {
-///     /// Contact whose damping grows with the force, Hunt and Crossley (1975).
-///     pub HuntCrossley(gap, k, c, n >= 1) {
-///         gap > 0 => k*gap^n*(1 + c*dot(gap)),
-///         else    => 0,
-///     }
-/// }
-/// ```
-///
 /// # Grammar
 ///
 /// ```text
@@ -160,8 +127,6 @@ pub fn oscillator(declaration: TokenStream) -> TokenStream {
 /// of the arguments say so, where a law in a model goes by the ranges of the parameters. A structure refuses values
 /// outside of them; `hertzian::law::LawFacts` holds them. An argument has neither default nor unit. A law that is linear in gap and
 /// rate everywhere is refused: it belongs into the matrices.
-///
-/// The guide "Declaring contacts", `docs/book/src/declaring-contacts.md`, has an example that is compiled.
 #[proc_macro]
 pub fn law(declaration: TokenStream) -> TokenStream {
     hertzian_compiler::law(declaration.into()).into()

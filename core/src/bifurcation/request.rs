@@ -123,7 +123,7 @@ impl<'a> Bifurcations<'a> {
         self
     }
 
-    /// Period of the orbits of the first branch, in periods of the excitation. Default: 1.
+    /// Period of the orbits of the first branch, in periods of the declaration; see [`Shooting::period`]. Default: 1.
     #[must_use]
     pub fn period(mut self, period: usize) -> Self {
         self.shooting = self.shooting.period(period);

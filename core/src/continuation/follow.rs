@@ -58,12 +58,12 @@ pub enum Stop {
     ReachedEnd,
     /// The branch turned back and left the range where it had passed.
     LeftAtStart,
-    /// The branch closed upon itself, be it one or several excitation periods later.
+    /// The branch closed upon itself, be it one or several periods of the declaration later.
     Closed,
-    /// A branch of orbits of several excitation periods met one of a shorter period, or one of orbits without a symmetry met one of
+    /// A branch of orbits of several periods of the declaration met one of a shorter period, or one of orbits without a symmetry met one of
     /// orbits with it. It would go on through the same orbits, shifted in time or mirrored.
     Joined {
-        /// The shorter period, in excitation periods.
+        /// The shorter period, in periods of the declaration.
         period: usize,
         /// Where.
         value: f64,

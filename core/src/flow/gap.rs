@@ -1,4 +1,4 @@
-//! The gap of one contact and its rate, equations (2) and (3) of `DESIGN.md`, at one instant.
+//! The gap of one contact and its rate, equations (2) and (3) of [`system`](crate::system), at one instant.
 
 use crate::layout::{ContactLayout, Term};
 use crate::system::{Part, Wave};

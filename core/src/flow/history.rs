@@ -8,6 +8,24 @@ use crate::flow::stroboscope::Stroboscope;
 /// Shows a motion to `see`, at its start and then `samples` times in each of some periods. Times are counted in periods of the
 /// declaration from the start.
 ///
+/// ```
+/// use hertzian::flow::{history, stroboscope::Stroboscope};
+///
+/// hertzian::oscillator! {
+///     Linear(x) {
+///         param drive;
+///         ddot(x) + 0.2*dot(x) + 4*x = drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Linear { drive: 3.0 };
+/// let mut map = Stroboscope::of(&model, 1.0)?;
+/// let (mut state, mut positions) = ([0.0, 0.0], Vec::new());
+/// history::record(&mut map, &mut state, (2, 50), &mut |_, state| positions.push(state[0]))?;
+/// assert_eq!(positions.len(), 101);
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+///
 /// # Errors
 /// If the motion cannot be continued. What came before has been shown.
 pub fn record(

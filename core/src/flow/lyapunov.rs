@@ -23,6 +23,29 @@ use super::{FlowError, Stretch, Tangent};
 const RESOLVED: f64 = 1e-10;
 
 /// A motion that carries its frame.
+///
+/// ```
+/// use hertzian::flow::{lyapunov::Lyapunov, stroboscope::Stroboscope};
+/// use std::f64::consts::TAU;
+///
+/// hertzian::oscillator! {
+///     Linear(x) {
+///         param drive;
+///         ddot(x) + 0.2*dot(x) + 4*x = drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Linear { drive: 3.0 };
+/// let mut map = Stroboscope::of(&model, 1.0)?;
+/// let mut motion = Lyapunov::new(&mut map, &[0.0, 0.0]);
+/// motion.settle(10)?;
+/// for _ in 0..4 {
+///     motion.batch(10)?;
+/// }
+/// // Areas shrink by the damping: per period of 2 pi, -0.2 times 2 pi.
+/// assert!((motion.exponents().sum.value + 0.2 * TAU).abs() < 1e-9);
+/// # Ok::<(), hertzian::Error>(())
+/// ```
 pub struct Lyapunov<'s, 'a> {
     map: &'s mut Stroboscope<'a>,
     divergence: Option<Divergence<'a>>,
@@ -115,7 +138,7 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
             }
             orthonormalise(&mut self.tangent.columns, &mut self.sums);
         }
-        let count = (periods * self.map.folded()) as f64;
+        let count = (periods * self.map.stride()) as f64;
         let batch = Batch {
             exponents: self.sums.iter().map(|sum| sum / count).collect(),
             divergence: self.divergence.as_ref().map(|_| integral / count),

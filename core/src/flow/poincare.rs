@@ -38,6 +38,29 @@ pub enum Direction {
 type Function<'a> = dyn Fn(f64, &[f64]) -> f64 + Send + Sync + 'a;
 
 /// A surface in the space of phase and state.
+///
+/// ```
+/// use hertzian::flow::poincare::{Direction, Section};
+/// use hertzian::flow::stroboscope::Stroboscope;
+///
+/// hertzian::oscillator! {
+///     Linear(x) {
+///         param drive;
+///         ddot(x) + 0.2*dot(x) + 4*x = drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Linear { drive: 3.0 };
+/// let mut map = Stroboscope::of(&model, 1.0)?;
+/// let mut state = [0.0, 0.0];
+/// let mut crossings = 0;
+/// // Once it has settled, the motion passes zero upwards once in each period.
+/// (0..20).try_for_each(|_| map.map(&mut state))?;
+/// let section = Section::entry(0, 0.0, Direction::Rising);
+/// section.follow(&mut map, &mut state, 5, &mut |_| crossings += 1)?;
+/// assert_eq!(crossings, 5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Section<'a> {
     function: Box<Function<'a>>,
     direction: Direction,

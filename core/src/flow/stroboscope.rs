@@ -2,15 +2,16 @@
 
 use std::f64::consts::TAU;
 
-use super::{Flow, FlowError, See, Tangent};
-use crate::system::Variable;
+use super::{Flow, FlowError, Options, See, Tangent};
+use crate::error::Error;
+use crate::flow;
+use crate::system::{System, Variable};
 
 /// The map from a state at one phase to the state a whole number of periods later.
 ///
 /// A period is that of the declaration, `2 pi divisor / omega`.
 ///
 /// ```
-/// use hertzian::flow::affine::Affine;
 /// use hertzian::flow::stroboscope::Stroboscope;
 ///
 /// hertzian::oscillator! {
@@ -21,20 +22,19 @@ use crate::system::Variable;
 /// }
 ///
 /// let model = Linear { drive: 3.0 };
-/// let flow = Affine::new(&model, &[3.0], 1.0)?;
-/// let mut map = Stroboscope::new(Box::new(flow));
+/// let mut map = Stroboscope::of(&model, 1.0)?;
 /// let mut state = [0.0, 0.0];
 /// for _ in 0..100 {
 ///     map.map(&mut state)?;
 /// }
 /// // The amplitude of the cosine: 3 (4 - 1) / ((4 - 1)^2 + 0.2^2)
 /// assert!((state[0] - 9.0 / 9.04).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), hertzian::Error>(())
 /// ```
 pub struct Stroboscope<'a> {
     flow: Box<dyn Flow + 'a>,
     phase: f64,
-    fold: usize,
+    every: usize,
     periods: u64,
 }
 
@@ -42,19 +42,27 @@ impl std::fmt::Debug for Stroboscope<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Stroboscope")
             .field("phase", &self.phase)
-            .field("fold", &self.fold)
+            .field("every", &self.every)
             .field("periods", &self.periods)
             .finish_non_exhaustive()
     }
 }
 
 impl<'a> Stroboscope<'a> {
-    /// The map over one period, from phase zero.
+    /// The map of a system at a frequency, at the values that its parameters have, over one period, from phase zero.
+    ///
+    /// # Errors
+    /// As [`flow::of`], whose default tolerance it has.
+    pub fn of(system: &'a dyn System, omega: f64) -> Result<Self, Error> {
+        Ok(Self::new(flow::of(system, omega, Options::default())?))
+    }
+
+    /// The map of a flow over one period, from phase zero.
     pub fn new(flow: Box<dyn Flow + 'a>) -> Self {
         Self {
             flow,
             phase: 0.0,
-            fold: 1,
+            every: 1,
             periods: 0,
         }
     }
@@ -68,14 +76,14 @@ impl<'a> Stroboscope<'a> {
 
     /// Looks every so many periods.
     #[must_use]
-    pub fn fold(mut self, fold: usize) -> Self {
-        self.fold = fold.max(1);
+    pub fn every(mut self, periods: usize) -> Self {
+        self.every = periods.max(1);
         self
     }
 
     /// Periods of one application.
-    pub(super) fn folded(&self) -> usize {
-        self.fold
+    pub(super) fn stride(&self) -> usize {
+        self.every
     }
 
     /// Entries of a state.
@@ -128,7 +136,7 @@ impl<'a> Stroboscope<'a> {
         tangent: Option<&mut Tangent>,
         see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
-        self.pass(self.fold, state, tangent, see)
+        self.pass(self.every, state, tangent, see)
     }
 
     /// Moves a state over one period and shows it, however many the map is over.
@@ -183,7 +191,7 @@ mod tests {
         let (mut one, mut three) = ([-2.0, 0.0], [-2.0, 0.0]);
         let mut by_one = map();
         (0..3).for_each(|_| by_one.map(&mut one).expect("a motion"));
-        map().fold(3).map(&mut three).expect("a motion");
+        map().every(3).map(&mut three).expect("a motion");
         assert!((one[0] - three[0]).hypot(one[1] - three[1]) < 1e-12);
         assert_eq!(by_one.periods(), 3);
     }

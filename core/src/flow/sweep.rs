@@ -10,6 +10,37 @@ use super::stroboscope::Stroboscope;
 use crate::system::Variable;
 
 /// What is swept and what is kept.
+///
+/// ```
+/// use hertzian::flow::{stroboscope::Stroboscope, sweep::Sweep};
+/// use hertzian::system::Variable;
+///
+/// hertzian::oscillator! {
+///     Linear(x) {
+///         param drive;
+///         ddot(x) + 0.2*dot(x) + 4*x = drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Linear { drive: 3.0 };
+/// let sweep = Sweep {
+///     variable: Variable::Omega,
+///     values: Sweep::spread(0.5, 1.5, 5),
+///     start: vec![0.0, 0.0],
+///     transient: 100,
+///     periods: 1,
+///     escape: 1e6,
+/// };
+/// let mut map = Stroboscope::of(&model, 0.5)?;
+/// let rows = sweep.run(&mut map, None, None, &mut |_| true)?;
+/// for row in &rows {
+///     // The amplitude of the cosine: 3 k / (k^2 + (0.2 omega)^2), k = 4 - omega^2
+///     let k = 4.0 - row.value * row.value;
+///     let expected = 3.0 * k / (k * k + (0.2 * row.value).powi(2));
+///     assert!((row.points[0] - expected).abs() < 1e-9);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
     /// What changes.
@@ -134,7 +165,7 @@ impl Sweep {
         for _ in 0..self.periods {
             if let Some(section) = section {
                 let mut see = |crossing: Crossing<'_>| points.extend_from_slice(crossing.state);
-                section.follow(map, state, map.folded(), &mut see)?;
+                section.follow(map, state, map.stride(), &mut see)?;
             } else {
                 map.map(state)?;
                 points.extend_from_slice(state);

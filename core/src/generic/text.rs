@@ -13,8 +13,10 @@ pub use hertzian_compiler::text::Fault;
 use super::InterpretedLaw;
 use super::law::{constant, evaluate_constant};
 use super::program::Program;
+use crate::error::Error;
 use crate::law::Law;
 use crate::system::{System, SystemFacts, Variable};
+use crate::validate;
 
 /// A system declared by text: the same language as [`oscillator!`](crate::oscillator), read at run time and interpreted.
 ///
@@ -50,16 +52,6 @@ pub struct Declaration {
 pub struct DeclarationError {
     /// What is wrong, and where.
     pub faults: Vec<Fault>,
-}
-
-/// A parameter was to be set that the declaration does not have.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct UnknownParameter {
-    /// The name asked for.
-    pub name: String,
-    /// The names there are.
-    pub known: Vec<String>,
 }
 
 thread_local! {
@@ -99,20 +91,14 @@ impl Declaration {
     ///
     /// # Errors
     /// If there is no parameter of that name.
-    pub fn set(&mut self, name: &str, value: f64) -> Result<(), UnknownParameter> {
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), Error> {
         let parameters = self.facts.parameters.iter();
         let mut names = parameters.map(|parameter| parameter.name.as_ref());
         if let Some(index) = names.position(|known| known == name) {
             self.values[index] = value;
             return Ok(());
         }
-        let parameters = self.facts.parameters.iter();
-        Err(UnknownParameter {
-            name: name.to_owned(),
-            known: parameters
-                .map(|parameter| parameter.name.to_string())
-                .collect(),
-        })
+        Err(validate::unknown(&self.facts, name))
     }
 
     /// Names and values of all parameters, in order of declaration.
@@ -175,19 +161,3 @@ impl fmt::Display for DeclarationError {
 }
 
 impl std::error::Error for DeclarationError {}
-
-impl fmt::Display for UnknownParameter {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, known } = self;
-        if known.is_empty() {
-            return write!(formatter, "no parameter `{name}`: there are none");
-        }
-        let known = known.join("`, `");
-        write!(
-            formatter,
-            "no parameter `{name}`: the declaration has `{known}`"
-        )
-    }
-}
-
-impl std::error::Error for UnknownParameter {}

@@ -20,7 +20,7 @@
 //!
 //! For a base `x` and an exponent `a`, errors relative to the power, in units of `2^-52`:
 //!
-//! | | error of `x^a` | time, see docs/performance.md |
+//! | | error of `x^a` | relative time |
 //! |---|---|---|
 //! | full | `1.5 + 1.2 |a|`, and less near `x = 1`: `1.5 + 3.2 |a ln x|` | 1 |
 //! | fast | `2 + 4 |a ln x|` | 0.9 |

@@ -74,11 +74,6 @@ pub enum StructureError {
         /// Another.
         second: f64,
     },
-    /// A parameter was to be set that the structure does not have.
-    UnknownParameter {
-        /// The name asked for.
-        name: String,
-    },
 }
 
 impl fmt::Display for StructureError {
@@ -138,9 +133,6 @@ impl fmt::Display for StructureError {
                 formatter,
                 "parameter `{parameter}` is {first} in one place and {second} in another"
             ),
-            Self::UnknownParameter { name } => {
-                write!(formatter, "the structure has no parameter `{name}`")
-            }
         }
     }
 }

@@ -28,6 +28,27 @@ use super::Flow;
 use super::log::{Log, LogError};
 
 /// Which basins to compute.
+///
+/// ```
+/// use hertzian::flow::basin::{Axis, Basin, Grid};
+/// use hertzian::flow::{self, Options};
+///
+/// hertzian::oscillator! {
+///     TwoWells(x) {
+///         param drive;
+///         ddot(x) + 0.5*dot(x) - x + x^3 = drive*cos(omega*t);
+///     }
+/// }
+///
+/// let axis = |entry| Axis { entry, from: -1.6, to: 1.6, count: 8 };
+/// let grid = Grid { start: vec![0.0, 0.0], columns: axis(0), rows: axis(1) };
+/// let model = TwoWells { drive: 0.05 };
+/// let flow = flow::of(&model, 1.0, Options::default())?;
+/// let basins = Basin { longest: 2, ..Basin::new(grid) }.compute(vec![flow], None, &|_| true)?;
+/// // One motion in each well.
+/// assert_eq!(basins.attractors.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Basin {
     /// The initial states.

@@ -154,14 +154,15 @@ impl<'a> Shooting<'a> {
         self
     }
 
-    /// Period of the orbit in excitation periods. Default: 1.
+    /// Period of the orbit in periods of the declaration, `2 pi divisor / omega`: those of the excitation, unless the declaration
+    /// has fractions of `omega`. Default: 1.
     #[must_use]
     pub fn period(mut self, period: usize) -> Self {
         self.period = period;
         self
     }
 
-    /// Segments that the orbit is divided into: multiple shooting. Default: one for each excitation period. More of them help
+    /// Segments that the orbit is divided into: multiple shooting. Default: one for each period of the declaration. More of them help
     /// where neighbouring motions part fast.
     #[must_use]
     pub fn segments(mut self, segments: usize) -> Self {

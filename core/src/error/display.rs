@@ -1,0 +1,177 @@
+//! What is written of an error.
+
+use std::fmt;
+
+use super::Error;
+
+impl Error {
+    /// What is written of names, options and ranges.
+    fn of_requests(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownParameter { name, known } => {
+                let known = match &known[..] {
+                    [] => "none".to_owned(),
+                    known => known.join(", "),
+                };
+                write!(f, "there is no parameter {name}; there are {known}")
+            }
+            Self::Option { name, value, must } => write!(f, "{name} = {value}: {must}"),
+            Self::Missing { name: "omega" } => write!(
+                f,
+                "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`"
+            ),
+            Self::Missing {
+                name: name @ ("from" | "to"),
+            } => write!(f, "the range has no end: call `{name}`"),
+            Self::Missing { name } => write!(f, "`{name}` has not been given"),
+            Self::Varied { name, must } => write!(f, "what is varied is {name}: it {must}"),
+            Self::EmptyRange { value } => {
+                write!(f, "the range is empty: from and to are both {value}")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What is written of flows and states.
+    fn of_motions(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::State { entries, expected } => write!(
+                f,
+                "the state has {entries} entries instead of {expected}: all positions, then all velocities"
+            ),
+            Self::Values { values, expected } => {
+                write!(f, "{values} values were given for {expected} parameters")
+            }
+            Self::NotAffine => write!(
+                f,
+                "the motion has no closed form: a force is not affine on one of its pieces, or a stiffness or a direction varies in time"
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    /// What is written of backbones and of what begins at bifurcations.
+    fn of_bifurcations(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NeverAtRest { position } => {
+                write!(
+                    f,
+                    "the motion from rest at {position} does not come to rest again"
+                )
+            }
+            Self::NotFree { apart } => write!(
+                f,
+                "the motion misses its beginning by {apart:.1e} of its size after a period: set damping and excitation to zero"
+            ),
+            Self::NoLoad => write!(
+                f,
+                "no load with the frequency of the excitation acts on the first coordinate: it has no phase resonance"
+            ),
+            Self::NoResonance {
+                value,
+                between: [low, high],
+            } => write!(
+                f,
+                "no orbit in phase resonance found at {value} between the excitation frequencies {low} and {high}"
+            ),
+            Self::Search { value, reason } => {
+                write!(f, "attractors at {value} could not be looked for: {reason}")
+            }
+            Self::NoBranch { kind, value } => {
+                write!(f, "no further branch was found at the {kind} at {value:.9}")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter { name, value, range } => {
+                write!(f, "parameter {name} = {value} is outside its range {range}")
+            }
+            Self::UnknownParameter { .. }
+            | Self::Option { .. }
+            | Self::Missing { .. }
+            | Self::Varied { .. }
+            | Self::EmptyRange { .. } => self.of_requests(f),
+            Self::Samples {
+                samples,
+                least,
+                harmonics,
+            } => write!(
+                f,
+                "{samples} samples are too few for {harmonics} harmonics: take {least} or more"
+            ),
+            Self::Unknowns { unknowns, most } => write!(
+                f,
+                "{unknowns} unknowns are too many, at most {most}: take fewer harmonics or a shorter period"
+            ),
+            Self::Levels { law, levels } => {
+                write!(
+                    f,
+                    "the levels of law {law} are not in increasing order: {levels:?}"
+                )
+            }
+            Self::Harmonics { harmonics, highest } => write!(
+                f,
+                "the declaration has harmonic {highest} of the orbit, and the balance only {harmonics}: take more harmonics"
+            ),
+            Self::NoCoordinates => write!(f, "the system has no coordinates"),
+            Self::SingularMass { determinant } => {
+                write!(
+                    f,
+                    "the mass matrix is singular: its determinant is {determinant:e}"
+                )
+            }
+            Self::Lost { value, from, to } => {
+                write!(
+                    f,
+                    "the orbit at {value}, between those at {from} and {to}, could not be computed"
+                )
+            }
+            Self::NoStart { value, reason } => {
+                write!(f, "no periodic orbit found at {value}: {reason}")
+            }
+            Self::State { .. } | Self::Values { .. } | Self::NotAffine => self.of_motions(f),
+            Self::Beyond { value, fold } => write!(
+                f,
+                "no periodic orbit at {value} near the given one: its branch turns back at {fold:.12}, {:.1e} away",
+                (value - fold).abs()
+            ),
+            Self::Motion { value, reason } => {
+                write!(f, "no periodic orbit found at {value}: {reason}")
+            }
+            Self::SearchLimit {
+                value,
+                evaluations,
+                multiplications,
+                reason,
+            } => write!(
+                f,
+                "no periodic orbit found at {value} in {evaluations} evaluations of the balance, which took the {:.0e} multiplications that a search is allowed; the last attempt: {reason}",
+                *multiplications as f64
+            ),
+            Self::NoSuchPeriod {
+                period,
+                value,
+                attempts,
+            } => write!(
+                f,
+                "no orbit of period {period} found at {value}: {attempts}; start where there is one, and follow it from there"
+            ),
+            Self::NeverAtRest { .. }
+            | Self::NotFree { .. }
+            | Self::NoLoad
+            | Self::NoResonance { .. }
+            | Self::Search { .. }
+            | Self::NoBranch { .. } => self.of_bifurcations(f),
+            Self::File { path, kind } => write!(f, "cannot write {}: {kind}", path.display()),
+            Self::Flow(error) => error.fmt(f),
+            Self::Structure(error) => error.fmt(f),
+            #[cfg(feature = "text")]
+            Self::Declaration(error) => error.fmt(f),
+        }
+    }
+}
