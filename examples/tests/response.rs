@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use clap::Parser;
 use hertzian_examples::response::boundary::loss_of_contact;
 use hertzian_examples::response::files::COLUMNS;
-use hertzian_examples::response::options::{Multipliers, Options, Sweep};
+use hertzian_examples::response::options::{Multipliers, Options};
 use hertzian_examples::response::progress::Progress;
 use hertzian_examples::response::run::{Failure, Outcome, run};
 use serde_json::Value;
@@ -72,7 +72,7 @@ fn without_arguments_it_is_figure_5b() {
         options.to,
     ];
     assert_eq!(values, [1.5, 0.032, 1.0, 0.1, 0.6, 1.6]);
-    assert_eq!(options.sweep, Sweep::Omega);
+    assert!(options.over_frequency());
     assert_eq!(options.svg, Path::new("response.svg"));
     assert_eq!((options.csv, options.json), (None, None));
 }
@@ -100,7 +100,6 @@ fn bad_usage_is_refused_by_the_parser() {
         &["--alpha"][..],
         &["--alpha", "soft"],
         &["--harmonics", "-3"],
-        &["--sweep", "zeta"],
         &["--aft", "exact"],
         &["--multipliers", "guess"],
         &["--one-sided", "--continuous"],
@@ -321,7 +320,7 @@ fn a_summary_says_what_matters() {
         "omega from 0.600000 to 1.700000",
         "reached the end of the range",
         "fold       omega 1.",
-        "stable until omega",
+        "stable before the fold at omega",
         "response.svg",
     ] {
         assert!(summary.contains(part), "{part} in\n{summary}");
@@ -404,6 +403,49 @@ fn what_is_wrong_with_a_file_is_said_with_its_place() {
     std::fs::remove_file(&model).expect("removed");
     let failure = coarse(&folder, &["--model", &model]).expect_err("a failure");
     assert!(failure.to_string().starts_with("cannot read"));
+}
+
+#[test]
+fn any_parameter_varies_and_the_record_says_of_what() {
+    let folder = Folder::new("parameter");
+    let (model, json, svg) = (
+        folder.file("a.txt"),
+        folder.file("a.json"),
+        folder.file("a.svg"),
+    );
+    let text = "Stop(x) { param k >= 0; param zeta >= 0; law stop(g) { g > 0 => k*g, else => 0 }
+                ddot(x) + zeta*dot(x) + x + stop(x - 1) = 0.2*cos(omega*t); }";
+    std::fs::write(&model, text).expect("written");
+    let command = format!(
+        "--model {model} --set zeta=0.1 --sweep k --omega 1.2 --from 0.5 --to 1 --json {json} --bifurcations"
+    );
+    let arguments: Vec<_> = command.split_whitespace().collect();
+    let outcome = coarse(&folder, &[&arguments[..], &["--svg", &svg]].concat());
+    assert!(outcome.expect("a branch").complete);
+    let all = all(&json);
+    assert_eq!(
+        (&all["model"], &all["varied"]),
+        (&"Stop".into(), &"k".into())
+    );
+    assert_eq!(all["parameters"]["zeta"], 0.1);
+    let points = all["points"].as_array().expect("points");
+    assert_eq!(points[0]["value"], 0.5);
+    assert_eq!(points.last().expect("points")["value"], 1.0);
+    let picture = std::fs::read_to_string(&svg).expect("a picture");
+    assert!(
+        picture.contains("Stop: zeta = 0.1, omega = 1.2"),
+        "{picture}"
+    );
+    let alone = coarse(
+        &folder,
+        &["--sweep", "alpha", "--from", "1.4", "--to", "1.6"],
+    );
+    assert!(alone.expect("a branch").complete);
+    let failure = coarse(
+        &folder,
+        &["--model", &model, "--set", "zeta=0.1", "--backbone"],
+    );
+    assert_eq!(failure.expect_err("a failure").exit_code(), 2);
 }
 
 fn all(json: &str) -> Value {

@@ -8,7 +8,7 @@ use hertzian::{Branch, Error, System};
 use serde::Serialize;
 
 use super::models::declared;
-use super::options::{Options, Sweep};
+use super::options::Options;
 use crate::model::ModelOptions;
 
 /// Smallest displacement from the state at rest, as a part of the largest of the branch.
@@ -47,11 +47,6 @@ pub fn of(
     go: Go<'_>,
 ) -> (Backbone, Vec<String>) {
     let mut warnings = Vec::new();
-    if options.model.file.is_some() || options.sweep == Sweep::Drive {
-        let message = "the backbone is that of a declared oscillator, over the frequency";
-        warnings.push(message.to_owned());
-        return (Backbone::default(), warnings);
-    }
     let mut kept = |found: Result<Vec<BackbonePoint>, Error>| {
         found.unwrap_or_else(|error| {
             warnings.push(format!("backbone: {error}"));

@@ -10,7 +10,7 @@ use hertzian::flow::basin::{Axis, Basin, Grid};
 use hertzian::flow::shooting::{CycleEvent, Track};
 use hertzian::{Error, EventKind, Shooting, System};
 
-use super::options::{Options, Sweep, Tracked};
+use super::options::{Options, Tracked};
 use super::records::{EventRecord, PointRecord, Record, TrackRecord};
 
 /// Longest period of an orbit that is looked for, and cells along each side of a grid of initial states.
@@ -49,8 +49,8 @@ pub fn find(
         .period(options.period)
         .max_points(options.max_points)
         .depth(options.follow.unwrap_or(0));
-    if options.sweep == Sweep::Drive {
-        request = request.vary("drive").omega(options.model.omega);
+    if !options.over_frequency() {
+        request = request.vary(options.varied()).omega(options.model.omega);
     }
     for &value in &options.search {
         request = request.search(value, basin(options, value));
@@ -155,12 +155,12 @@ impl Found {
     }
 
     /// The picture: of the curves in two parameters if there are any, of the branches otherwise.
-    pub fn chart(&self, options: &Options) -> Chart {
-        let title = super::summary::title(options);
+    pub fn chart(&self, options: &Options, title: String) -> Chart {
         let Some(track) = self.tracks.first() else {
-            let varied = match options.sweep {
-                Sweep::Omega => "excitation frequency ω",
-                Sweep::Drive => "drive",
+            let varied = if options.over_frequency() {
+                "excitation frequency ω"
+            } else {
+                options.varied()
             };
             return self
                 .diagram
@@ -291,9 +291,10 @@ fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
 /// Initial states to which orbits of up to five periods in free flight under the load come near: one flight of `T` rises
 /// `W T^2 / 8` and falls back with the speed `W T / 2`.
 fn basin(options: &Options, value: f64) -> Basin {
-    let omega = match options.sweep {
-        Sweep::Omega => value,
-        Sweep::Drive => options.model.omega,
+    let omega = if options.over_frequency() {
+        value
+    } else {
+        options.model.omega
     };
     let time = LONGEST as f64 * TAU / omega;
     let load = options.model.load.abs().max(options.model.drive);
@@ -329,9 +330,10 @@ fn shooting<'a>(options: &Options, model: &'a dyn System) -> Shooting<'a> {
     let request = Shooting::of(model)
         .from(above(options.from - margin))
         .to(above(options.to + margin));
-    match options.sweep {
-        Sweep::Omega => request,
-        Sweep::Drive => request.vary("drive").omega(options.model.omega),
+    if options.over_frequency() {
+        request
+    } else {
+        request.vary(options.varied()).omega(options.model.omega)
     }
 }
 
@@ -349,10 +351,11 @@ fn second<'o>(options: &'o Options, model: &dyn System) -> Result<&'o str, Error
     let is_known = |name: &&String| has_first && known.contains(name);
     match second.filter(is_known) {
         Some(name) => Ok(name),
-        None => Err(Error::UnknownParameter {
-            name: names.join(","),
-            known,
-        }),
+        None => {
+            let unknown = names.iter().find(|name| !known.contains(name));
+            let name = unknown.cloned().unwrap_or_else(|| names.join(","));
+            Err(Error::UnknownParameter { name, known })
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::records::{PointRecord, Record};
 
 /// Columns of the CSV file; each multiplier has two.
-pub const COLUMNS: [&str; 20] = [
+pub const COLUMNS: [&str; 21] = [
     "omega",
     "drive",
     "peak_to_peak",
@@ -28,6 +28,7 @@ pub const COLUMNS: [&str; 20] = [
     "error",
     "branch",
     "period",
+    "value",
 ];
 
 /// Whether a file can be written there, as far as can be told without touching it.
@@ -103,5 +104,6 @@ pub fn row(point: &PointRecord) -> Vec<String> {
         point.error.map_or(String::new(), number),
         point.branch.to_string(),
         point.period.to_string(),
+        number(point.value),
     ]
 }

@@ -122,6 +122,7 @@ hertzian::oscillator! {
 pub fn model(options: &ModelOptions, varied: (&str, f64)) -> Result<Box<dyn System>, ModelError> {
     match &options.file {
         Some(path) => Ok(Box::new(model_file::read(path, &options.set, varied)?)),
+        None if varied.0 == "alpha" => Ok(of_any_exponent(options)),
         None => Ok(declared(options)),
     }
 }
@@ -138,19 +139,34 @@ pub fn declared(options: &ModelOptions) -> Box<dyn System> {
     match (options.loses_contact(), alpha) {
         (true, 1.0) => Box::new(OneSidedLinear { zeta, load, drive }),
         (true, 1.5) => Box::new(OneSidedHertz { zeta, load, drive }),
-        (true, _) => Box::new(OneSidedPower {
-            alpha,
-            zeta,
-            load,
-            drive,
-        }),
         (false, 1.0) => Box::new(ContinuousLinear { zeta, load, drive }),
         (false, 1.5) => Box::new(ContinuousHertz { zeta, load, drive }),
-        (false, _) => Box::new(ContinuousPower {
+        _ => of_any_exponent(options),
+    }
+}
+
+/// The declared oscillator whose exponent is a parameter.
+fn of_any_exponent(options: &ModelOptions) -> Box<dyn System> {
+    let &ModelOptions {
+        alpha,
+        zeta,
+        load,
+        drive,
+        ..
+    } = options;
+    if options.loses_contact() {
+        Box::new(OneSidedPower {
             alpha,
             zeta,
             load,
             drive,
-        }),
+        })
+    } else {
+        Box::new(ContinuousPower {
+            alpha,
+            zeta,
+            load,
+            drive,
+        })
     }
 }

@@ -25,9 +25,9 @@ pub struct Options {
     #[command(flatten)]
     pub model: ModelOptions,
 
-    /// What varies along the branch
-    #[arg(long, value_enum, default_value_t = Sweep::Omega)]
-    pub sweep: Sweep,
+    /// What varies along the branch: `omega`, the frequency of the excitation, or any parameter of the oscillator
+    #[arg(long, value_name = "NAME", default_value = "omega")]
+    pub sweep: String,
 
     /// Where the branch starts
     #[arg(
@@ -80,7 +80,7 @@ pub struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 20_000)]
     pub max_points: usize,
 
-    /// Also compute every solution at exactly these values of what varies
+    /// Also compute every orbit of the branch at exactly these values of what varies
     #[arg(long, value_name = "VALUE", num_args = 1..)]
     pub at: Vec<f64>,
 
@@ -145,15 +145,6 @@ pub struct Options {
     /// Say nothing but errors
     #[arg(long)]
     pub quiet: bool,
-}
-
-/// What varies along a branch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Sweep {
-    /// The frequency of the excitation
-    Omega,
-    /// The amplitude of the excitation
-    Drive,
 }
 
 /// What is tracked in two parameters.
@@ -225,10 +216,12 @@ impl From<Multipliers> for Method {
 
 impl Options {
     /// Name of what varies, as the models call it.
-    pub fn varied(&self) -> &'static str {
-        match self.sweep {
-            Sweep::Omega => "omega",
-            Sweep::Drive => "drive",
-        }
+    pub fn varied(&self) -> &str {
+        &self.sweep
+    }
+
+    /// Whether that is the frequency.
+    pub fn over_frequency(&self) -> bool {
+        self.sweep == "omega"
     }
 }

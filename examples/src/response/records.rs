@@ -1,5 +1,7 @@
 //! What is written to JSON and CSV: plain numbers with stable names.
 
+use std::collections::BTreeMap;
+
 use hertzian::flow::shooting::{CycleEvent, Track};
 use hertzian::observe::{amplitudes, phases};
 use hertzian::system::SystemFacts;
@@ -7,11 +9,19 @@ use hertzian::{Branch, Event, Point, Statistics};
 use serde::Serialize;
 
 use super::backbone::Backbone;
-use super::options::Sweep;
+use super::options::Options;
 
 /// Everything about a branch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Record {
+    /// Name of the oscillator.
+    pub model: String,
+    /// Its equations.
+    pub equation: String,
+    /// Its parameters where the branch begins.
+    pub parameters: BTreeMap<String, f64>,
+    /// Name of what varies.
+    pub varied: String,
     /// The points in branch order.
     pub points: Vec<PointRecord>,
     /// Special orbits.
@@ -39,6 +49,8 @@ pub struct PointRecord {
     pub branch: usize,
     /// Period of the orbit, in periods of the excitation.
     pub period: usize,
+    /// What varies along the branch.
+    pub value: f64,
     /// Frequency of the excitation.
     pub omega: f64,
     /// Amplitude of the excitation.
@@ -84,6 +96,8 @@ pub struct EventRecord {
     pub period: usize,
     /// What happens there.
     pub kind: String,
+    /// What varies along the branch.
+    pub value: f64,
     /// Frequency of the excitation.
     pub omega: f64,
     /// Amplitude of the excitation.
@@ -97,6 +111,8 @@ pub struct EventRecord {
 /// A place where the branch turned, but not through a fold.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TurnRecord {
+    /// What varies along the branch.
+    pub value: f64,
     /// Frequency of the excitation.
     pub omega: f64,
     /// Amplitude of the excitation.
@@ -173,7 +189,8 @@ pub struct StatisticsRecord {
 
 impl Record {
     /// Of a branch, and of solutions at values that were asked for.
-    pub fn of(branch: &Branch<'_>, facts: &SystemFacts, sweep: Sweep, at: &[Point]) -> Self {
+    pub fn of(branch: &Branch<'_>, options: &Options, at: &[Point]) -> Self {
+        let facts = branch.system().facts();
         let point = |point: &Point| PointRecord::of(point, facts);
         // A turn has no orbit of its own; what the branch does not vary is the same at every point.
         let fixed = branch.points.first().map(point);
@@ -181,17 +198,28 @@ impl Record {
             let (omega, drive) = fixed
                 .as_ref()
                 .map_or((f64::NAN, f64::NAN), |p| (p.omega, p.drive));
-            let (omega, drive) = match sweep {
-                Sweep::Omega => (turn.value, drive),
-                Sweep::Drive => (omega, turn.value),
+            let (omega, drive) = match options.varied() {
+                "omega" => (turn.value, drive),
+                "drive" => (omega, turn.value),
+                _ => (omega, drive),
             };
             TurnRecord {
+                value: turn.value,
                 omega,
                 drive,
                 after: turn.after,
             }
         };
+        let mut values = vec![0.0; facts.parameters.len()];
+        branch.system().values(&mut values);
+        let first = branch.points.first();
+        let values = first.map_or(values, |point| point.parameters.clone());
+        let names = facts.parameters.iter().map(|p| p.name.to_string());
         Self {
+            model: facts.name.to_string(),
+            equation: facts.equation.to_string(),
+            parameters: names.zip(values).collect(),
+            varied: options.varied().to_owned(),
             points: branch.points.iter().map(point).collect(),
             events: branch
                 .events
@@ -217,6 +245,7 @@ impl EventRecord {
             branch,
             period: cycle.period,
             kind: event.kind.to_string(),
+            value: cycle.value,
             omega: cycle.omega,
             drive: drive(&cycle.parameters, facts),
             peak_to_peak: cycle.peak_to_peak(),
@@ -237,6 +266,7 @@ impl PointRecord {
         Self {
             branch: 0,
             period: point.orbit.period,
+            value: point.value,
             omega: point.omega(),
             drive: drive(point.parameters.as_slice(), facts),
             peak_to_peak: motion.peak_to_peak(),
@@ -264,6 +294,7 @@ impl EventRecord {
             branch: 0,
             period: event.point.orbit.period,
             kind: event.kind.to_string(),
+            value: event.point.value,
             omega: event.point.omega(),
             drive: drive(&event.point.parameters, facts),
             peak_to_peak: event.point.peak_to_peak(),

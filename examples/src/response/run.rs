@@ -14,7 +14,7 @@ use super::boundary::loss_of_contact;
 use super::files;
 use super::model_file::ModelError;
 use super::models::model;
-use super::options::{Options, Sweep};
+use super::options::Options;
 use super::progress::Progress;
 use super::records::Record;
 use super::summary;
@@ -38,6 +38,8 @@ pub enum Failure {
     Library(Error),
     /// A value of `--at` is not a number that could be reached.
     At(f64),
+    /// The backbone was asked for of an oscillator from a file, or over a parameter.
+    Backbone,
     /// The file of the oscillator is at fault.
     Model(PathBuf, ModelError),
     /// A file cannot be written.
@@ -60,6 +62,9 @@ impl std::fmt::Display for Failure {
             Self::Library(error) => error.fmt(f),
             Self::Model(path, error) => f.write_str(&error.describe(path)),
             Self::At(value) => write!(f, "at = {value}: must be finite"),
+            Self::Backbone => f.write_str(
+                "--backbone is over the frequency, and not for --model: which of its parameters are damping and drive is not known",
+            ),
             Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
         }
     }
@@ -106,13 +111,13 @@ pub fn run(
 
     let mut warnings = Vec::new();
     let at = solutions_at(options, &branch, &mut warnings);
-    let mut record = Record::of(&branch, model.facts(), options.sweep, &at);
+    let mut record = Record::of(&branch, options, &at);
     let found = match branch.stopped {
         Stop::Interrupted => None,
         _ => bifurcations::find(options, &*model, &mut see)?,
     };
     let mut chart = match &found {
-        Some(found) => found.chart(options),
+        Some(found) => found.chart(options, summary::title(options, &*model)),
         None => picture(options, &branch, stop),
     };
     if options.backbone && !stop() {
@@ -146,6 +151,9 @@ fn check(options: &Options) -> Result<(), Failure> {
     if let Some(&value) = options.at.iter().find(|value| !value.is_finite()) {
         return Err(Failure::At(value));
     }
+    if options.backbone && (options.model.file.is_some() || !options.over_frequency()) {
+        return Err(Failure::Backbone);
+    }
     for path in paths(options) {
         files::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
     }
@@ -169,8 +177,8 @@ fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a
         .aft(options.aft.into())
         .multipliers(options.multipliers.into())
         .max_points(options.max_points);
-    if options.sweep == Sweep::Drive {
-        request = request.vary("drive").omega(options.model.omega);
+    if !options.over_frequency() {
+        request = request.vary(options.varied()).omega(options.model.omega);
     }
     if let Some(harmonics) = options.harmonics {
         request = request.harmonics(harmonics);
@@ -181,7 +189,7 @@ fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a
     request
 }
 
-/// Every solution at each value that was asked for.
+/// Every orbit of the branch at each value that was asked for.
 fn solutions_at(options: &Options, branch: &Branch<'_>, warnings: &mut Vec<String>) -> Vec<Point> {
     let name = options.varied();
     let mut solutions = Vec::new();
@@ -202,8 +210,10 @@ fn picture(options: &Options, branch: &Branch<'_>, stop: impl Fn() -> bool) -> C
     if options.model.file.is_some() {
         return branch.chart();
     }
-    let chart = branch.chart().title(summary::title(options));
-    if options.sweep == Sweep::Drive {
+    let chart = branch
+        .chart()
+        .title(summary::title(options, branch.system()));
+    if !options.over_frequency() {
         return chart;
     }
     let values = branch.points.iter().map(|point| point.value);

@@ -3,33 +3,54 @@
 use std::fmt::{self, Write};
 use std::path::Path;
 
-use hertzian::{Branch, EventKind, Point, Verdict};
+use hertzian::{Branch, Event, EventKind, Point, System, Verdict};
 
-use super::options::{Aft, Options, Sweep};
+use super::options::{Aft, Options};
 use crate::model::ModelOptions;
 
 /// As many folds, turns and changes of stability are listed one by one; more of them are counted.
 const LISTED: usize = 6;
 
-/// Title of the picture.
-pub fn title(options: &Options) -> String {
+/// Title of the picture: the oscillator, and what is the same everywhere.
+pub fn title(options: &Options, model: &dyn System) -> String {
+    let period = match options.period {
+        1 => String::new(),
+        n => format!(", period {n}"),
+    };
+    let omega = (!options.over_frequency()).then_some(("ω", "omega", options.model.omega));
+    let fixed = |name: &str| name != options.varied();
+    if options.model.file.is_some() {
+        let facts = model.facts();
+        let mut values = vec![0.0; facts.parameters.len()];
+        model.values(&mut values);
+        let parameters = facts.parameters.iter().zip(values);
+        let shown = parameters.filter(|(parameter, _)| fixed(&parameter.name));
+        let shown = shown.map(|(parameter, value)| format!("{} = {value}", parameter.name));
+        let omega = omega.map(|(name, _, value)| format!("{name} = {value}"));
+        let shown: Vec<_> = shown.chain(omega).collect();
+        return format!("{}: {}{period}", facts.name, shown.join(", "));
+    }
     let kind = if options.model.loses_contact() {
         "One-sided"
     } else {
         "Continuous"
     };
-    let ModelOptions {
-        alpha, zeta, load, ..
-    } = options.model;
-    let fixed = match options.sweep {
-        Sweep::Omega => format!("A = {}", options.model.drive),
-        Sweep::Drive => format!("ω = {}", options.model.omega),
-    };
-    let period = match options.period {
-        1 => String::new(),
-        n => format!(", period {n}"),
-    };
-    format!("{kind}, α = {alpha}, ζ = {zeta}, W = {load}, {fixed}{period}")
+    let values = parameters(&options.model).into_iter().chain(omega);
+    let shown = values.filter(|(_, name, _)| fixed(name));
+    let shown: Vec<_> = shown
+        .map(|(sign, _, value)| format!("{sign} = {value}"))
+        .collect();
+    format!("{kind}, {}{period}", shown.join(", "))
+}
+
+/// Signs, names and values of the parameters of a declared oscillator.
+fn parameters(options: &ModelOptions) -> [(&'static str, &'static str, f64); 4] {
+    [
+        ("α", "alpha", options.alpha),
+        ("ζ", "zeta", options.zeta),
+        ("W", "load", options.load),
+        ("A", "drive", options.drive),
+    ]
 }
 
 /// The summary of a run.
@@ -98,7 +119,7 @@ fn from_file(
     let fixed = parameters
         .filter(|(parameter, _)| parameter.name != branch.varied)
         .map(|(parameter, value)| format!("{} = {value}", parameter.name));
-    let omega = (options.sweep == Sweep::Drive).then(|| format!("omega = {}", options.model.omega));
+    let omega = (!options.over_frequency()).then(|| format!("omega = {}", options.model.omega));
     writeln!(
         text,
         "{}\n",
@@ -107,9 +128,6 @@ fn from_file(
 }
 
 fn equation(text: &mut String, options: &Options) -> fmt::Result {
-    let ModelOptions {
-        alpha, zeta, load, ..
-    } = options.model;
     let (force, remark) = if options.model.loses_contact() {
         (
             "2 zeta H(x) x' + H(x) x^alpha",
@@ -119,12 +137,13 @@ fn equation(text: &mut String, options: &Options) -> fmt::Result {
         ("2 zeta x' + sgn(x) |x|^alpha", "  continuous")
     };
     writeln!(text, "x'' + {force} = drive cos(omega t) + load{remark}")?;
-    write!(text, "alpha = {alpha}, zeta = {zeta}, load = {load}")?;
-    match options.sweep {
-        Sweep::Omega => writeln!(text, ", drive = {}", options.model.drive)?,
-        Sweep::Drive => writeln!(text, ", omega = {}", options.model.omega)?,
-    }
-    writeln!(text)
+    let omega = ("ω", "omega", options.model.omega);
+    let values = parameters(&options.model).into_iter().chain([omega]);
+    let fixed = values.filter(|(_, name, _)| *name != options.varied());
+    let fixed: Vec<_> = fixed
+        .map(|(_, name, value)| format!("{name} = {value}"))
+        .collect();
+    writeln!(text, "{}\n", fixed.join(", "))
 }
 
 fn range(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
@@ -192,14 +211,17 @@ fn stability(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
         .filter(|pair| pair[0].stability.verdict != pair[1].stability.verdict)
         .map(|pair| {
             let [before, behind] = [pair[0], pair[1]];
-            format!(
-                "{} until {} {:.6}, {} from {:.6}",
-                before.stability.verdict,
-                branch.varied,
-                before.value,
-                behind.stability.verdict,
-                behind.value
-            )
+            let (from, to) = (before.stability.verdict, behind.stability.verdict);
+            match between(branch, before, behind) {
+                Some(event) => format!(
+                    "{from} before the {} at {} {:.6}, {to} after it",
+                    event.kind, branch.varied, event.point.value
+                ),
+                None => format!(
+                    "{from} until {} {:.6}, {to} from {:.6}",
+                    branch.varied, before.value, behind.value
+                ),
+            }
         })
         .collect();
     if let (true, Some(point)) = (changes.is_empty(), decided.first()) {
@@ -214,6 +236,18 @@ fn stability(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
         )?;
     }
     Ok(())
+}
+
+/// The event between two points of a branch, if there is one alone.
+fn between<'b>(branch: &'b Branch<'_>, before: &Point, behind: &Point) -> Option<&'b Event> {
+    let place = |point: &Point| branch.points.iter().position(|p| std::ptr::eq(p, point));
+    let (first, last) = (place(before)?, place(behind)?);
+    let mut events = branch.events.iter();
+    let mut found = events
+        .by_ref()
+        .filter(|event| first < event.after && event.after <= last);
+    let event = found.next()?;
+    found.next().is_none().then_some(event)
 }
 
 /// A line each, and a count of what would be too much.

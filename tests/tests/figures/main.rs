@@ -6,4 +6,5 @@ mod folds;
 mod methods;
 mod models;
 mod orbits;
+mod readme;
 mod stated;
