@@ -25,6 +25,7 @@
 mod axis;
 mod cloud;
 mod drawing;
+mod glyphs;
 mod legend;
 mod page;
 mod polyline;

@@ -411,7 +411,7 @@ fn any_parameter_varies_and_the_record_says_of_what() {
     let (model, json, svg) = (
         folder.file("a.txt"),
         folder.file("a.json"),
-        folder.file("a.svg"),
+        folder.file("response.svg"),
     );
     let text = "Stop(x) { param k >= 0; param zeta >= 0; law stop(g) { g > 0 => k*g, else => 0 }
                 ddot(x) + zeta*dot(x) + x + stop(x - 1) = 0.2*cos(omega*t); }";
@@ -420,7 +420,7 @@ fn any_parameter_varies_and_the_record_says_of_what() {
         "--model {model} --set zeta=0.1 --sweep k --omega 1.2 --from 0.5 --to 1 --json {json} --bifurcations"
     );
     let arguments: Vec<_> = command.split_whitespace().collect();
-    let outcome = coarse(&folder, &[&arguments[..], &["--svg", &svg]].concat());
+    let outcome = coarse(&folder, &arguments);
     assert!(outcome.expect("a branch").complete);
     let all = all(&json);
     assert_eq!(
@@ -433,7 +433,7 @@ fn any_parameter_varies_and_the_record_says_of_what() {
     assert_eq!(points.last().expect("points")["value"], 1.0);
     let picture = std::fs::read_to_string(&svg).expect("a picture");
     assert!(
-        picture.contains("Stop: zeta = 0.1, omega = 1.2"),
+        picture.contains("Stop: zeta = 0.1, ω = 1.2"),
         "{picture}"
     );
     let alone = coarse(

@@ -2,13 +2,13 @@
 
 use std::fmt::{self, Display, Write};
 
+use super::glyphs;
+
 /// A point in pixels, y downwards.
 pub(super) type Pixel = [f64; 2];
 
 /// Colours of axes and text.
 pub(super) const INK: &str = "#222222";
-
-const FAMILY: &str = "Helvetica, Arial, 'DejaVu Sans', 'Liberation Sans', sans-serif";
 
 /// A document that grows.
 pub(super) struct Svg {
@@ -84,7 +84,7 @@ impl Svg {
         };
         svg.push(format_args!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" role=\"img\" font-family=\"{FAMILY}\">\n<title>{}</title>\n\
+             viewBox=\"0 0 {width} {height}\" role=\"img\">\n<title>{}</title>\n\
              <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>",
             Escaped(title)
         ));
@@ -162,16 +162,20 @@ impl Svg {
         if text.is_empty() {
             return;
         }
-        let (x, y, size) = (Number(x), Number(y), Number(size));
-        let text = Escaped(text);
-        let anchor = match anchor {
-            Anchor::Start => "start\"".to_string(),
-            Anchor::Middle => "middle\"".to_string(),
-            Anchor::End => "end\"".to_string(),
-            Anchor::Upwards => format!("middle\" transform=\"rotate(-90 {x} {y})\""),
+        let width = glyphs::width(text);
+        let (begin, turned) = match anchor {
+            Anchor::Start => (0.0, ""),
+            Anchor::Middle => (-0.5 * width, ""),
+            Anchor::End => (-width, ""),
+            Anchor::Upwards => (-0.5 * width, " rotate(-90)"),
         };
+        let path = glyphs::path(text, begin);
+        let (x, y, text) = (Number(x), Number(y), Escaped(text));
+        let scale = size / glyphs::EM;
+        // What is read aloud and searched for is the label.
         self.push(format_args!(
-            "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{INK}\" text-anchor=\"{anchor}>{text}</text>"
+            "<path transform=\"translate({x} {y}){turned} scale({scale:.6} -{scale:.6})\" fill=\"{INK}\" \
+             role=\"img\" aria-label=\"{text}\" d=\"{path}\"/>"
         ));
     }
 
@@ -181,20 +185,9 @@ impl Svg {
     }
 }
 
-/// An estimate of the width of a text, on the safe side: readers have different fonts.
+/// Width of a text in pixels.
 pub(super) fn width_of(text: &str, size: f64) -> f64 {
-    let em = |c: char| match c {
-        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.33,
-        ' ' | 'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '/' | '-' | '²' | '³' | '¹' | '⁰'..='₎' => {
-            0.42
-        }
-        'm' | 'w' | 'M' | 'W' | '@' | '%' => 0.98,
-        '−' | '+' | '=' | '<' | '>' | '×' | '≤' | '≥' | 'ω' => 0.84,
-        'A'..='Z' => 0.74,
-        '\u{0000}'..='\u{10ff}' => 0.63,
-        _ => 1.0,
-    };
-    size * text.chars().map(em).sum::<f64>()
+    size * glyphs::width(text) / glyphs::EM
 }
 
 /// The size at which a text is at most `width` wide, at most `size`.
