@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Instructions of generated laws, counted by callgrind: benches/instructions/run.sh [--accept]
 #
-# Fails if a count is 5 % above `baseline.tsv`, or is not in it; `--accept` writes a new baseline. A count depends on the
+# Fails if a count is 5 % above `baseline.tsv`, or is not in it; `--accept` writes a new baseline, if nothing is changed that is not
+# committed. A count depends on the
 # instruction set asked for and on the compiler, not on the processor and what else it does. Valgrind knows no AVX-512.
 # Where there is no valgrind and it cannot be installed, nothing is counted.
 set -euo pipefail
@@ -12,6 +13,17 @@ allowed=5
 if [[ $(uname -m) != x86_64 ]]; then
     echo "no counts: the baseline is of x86-64, this is $(uname -m)"
     exit 0
+fi
+
+# A baseline has to be that of a commit.
+if [[ ${1:-} == --accept ]]; then
+    changed=$(git -C "$here" status --porcelain --untracked-files=normal "$(git -C "$here" rev-parse --show-toplevel)")
+    changed=$(grep -v ' benches/instructions/\(baseline.tsv\|Cargo.lock\)$' <<<"$changed" || true)
+    if [[ -n $changed ]]; then
+        echo "no baseline is written: commit or put aside what is changed first" >&2
+        echo "$changed" >&2
+        exit 1
+    fi
 fi
 
 if ! command -v valgrind >/dev/null && command -v apt-get >/dev/null; then

@@ -5,7 +5,8 @@
 //! derivatives that the compiler found symbolically; and dual numbers (num-dual), which differentiate the data of the
 //! *force* alone and so check the compiler's differentiation too. Gaps lie at distances from 1e-300 to 1e6 on both
 //! sides of every level, and at the level itself and its neighbours among floating-point numbers. How far two results
-//! may differ is computed along with them, see [`bound`]. Batches run on the instruction sets of the processor in turns.
+//! may differ is computed along with them, see [`bound`]. Batches run on the instruction sets of the processor in
+//! turns, and with both accuracies of powers.
 
 mod bound;
 mod dual;
@@ -16,7 +17,7 @@ mod tree;
 use bound::Bound;
 use hertzian::generic::{Interpreted, LawData, PieceData};
 use hertzian::law::{Derivatives, Law, On, Parts};
-use hertzian::power::Instructions;
+use hertzian::power::{Accuracy, Instructions};
 use hertzian::system::{Place, System};
 use models::MODELS;
 use random::Random;
@@ -32,8 +33,10 @@ fn generated_interpreted_and_dual_numbers_agree() {
     for (name, model) in MODELS {
         let mut random = Random::new(20_210_603);
         for batch in 0..batches {
-            // On those that the processor has, in turns.
-            Instructions::ALL[batch % Instructions::ALL.len()].pin();
+            // On those that the processor has, in turns, with both accuracies: the bound holds for either.
+            let sets = Instructions::ALL;
+            sets[batch % sets.len()].pin();
+            [Accuracy::Full, Accuracy::Fast][batch / sets.len() % 2].choose();
             let system = model(&mut random);
             let interpreted = Interpreted::of(system.as_ref());
             assert!(!system.facts().contacts.is_empty(), "{name}: no contacts");

@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::powers::{Root, root_of, varies};
-use crate::dag::{Dag, Function, Id, Node, Variable};
+use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
 
 /// The values of pieces, as they are computed together.
 pub struct Shared {
@@ -96,13 +96,34 @@ fn common(dag: &mut Dag, of: &BTreeMap<usize, Id>, position: usize) -> Option<Id
 fn rebuild(dag: &mut Dag, values: &[Id], replaced: &dyn Fn(Id) -> Option<Id>) -> Vec<Id> {
     let mut new: HashMap<Id, Id> = HashMap::new();
     for id in dag.reachable(values) {
-        let common = root_of(dag, id).and_then(|(base, _)| replaced(base));
+        let root = root_of(dag, id);
+        let common = root.and_then(|(base, root)| Some((replaced(base)?, root)));
         let rebuilt = match (common, dag.node(id).clone()) {
-            (Some(common), Node::Power(_, exponent)) => dag.power(common, exponent),
-            (Some(common), Node::PowerLog(_, exponent)) => dag.power_log(common, exponent),
+            (Some((common, Root::Logarithm)), Node::Power(_, exponent)) => {
+                dag.power(common, exponent)
+            }
+            (Some((common, _)), Node::Power(base, exponent)) => {
+                root_of_common(dag, base, common, exponent)
+            }
+            (Some((common, _)), Node::PowerLog(_, exponent)) => dag.power_log(common, exponent),
             _ => dag.rebuild_node(id, &new),
         };
         new.insert(id, rebuilt);
     }
     values.iter().map(|value| new[value]).collect()
+}
+
+/// A power that is made of roots, of a common base. If that is the size of the base, `b^(n + f) = b^n |b|^f` for whole `n` and a
+/// fraction `f`: pieces whose forces differ in sign then often have one expression, `g |g|^f`.
+fn root_of_common(dag: &mut Dag, base: Id, common: Id, exponent: Id) -> Id {
+    let known = dag.as_number(exponent);
+    let fraction = known.filter(|known| !known.is_integer() && !known.is_negative());
+    let size = matches!(dag.node(common), Node::Call(Function::Absolute, _));
+    let Some(exact) = fraction.filter(|_| size) else {
+        return dag.power(common, exponent);
+    };
+    let whole = dag.number(Rational::integer(exact.numerator() / exact.denominator()));
+    let fraction = dag.difference(exponent, whole);
+    let (whole, fraction) = (dag.power(base, whole), dag.power(common, fraction));
+    dag.product(&[whole, fraction])
 }

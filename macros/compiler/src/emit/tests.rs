@@ -25,7 +25,7 @@ fn run(tape: &Tape, planned: [&[f64]; 2], at: [f64; 3]) -> Vec<f64> {
             Operation::Power(..) | Operation::PowerLog(..) => 0.0,
             Operation::Logarithm(position) => {
                 let base = planned[0][position];
-                if base > 0.0 { base.ln() } else { 0.0 }
+                if base <= 0.0 { 0.0 } else { base.ln() }
             }
             Operation::Planned(position) => planned[1][position],
             Operation::Root(a) => v(a).max(0.0).sqrt(),
@@ -48,25 +48,36 @@ fn run(tape: &Tape, planned: [&[f64]; 2], at: [f64; 3]) -> Vec<f64> {
     tape.roots.iter().map(|&root| values[root]).collect()
 }
 
-/// Lowers expressions and runs them at a gap, a rate and one argument.
+/// Lowers expressions and runs them at a gap, a rate and one argument. What is planned is planned for all of them; each is run
+/// alone, with nothing but what it is said to use.
 fn lower_and_run(dag: &mut Dag, roots: &[Id], style: Style, at: [f64; 3]) -> Vec<f64> {
     let plan = match style {
         Style::Code => Plan::of(dag, roots),
         Style::Data => Plan::default(),
     };
-    let tape = Tape::with(dag, roots, style, &plan);
-    let value = |id: Id| dag.evaluate(id, &|variable| valued(variable, at));
-    let bases: Vec<f64> = plan.bases.iter().map(|&base| value(base)).collect();
-    let mut powers = vec![f64::NAN; plan.exponents.len()];
-    for group in &plan.groups {
-        for power in group.first..group.first + group.count {
-            let (base, exponent) = (bases[group.base], value(plan.exponents[power]));
-            let steps = exponent - value(plan.exponents[group.first]);
-            assert_eq!(steps, (power - group.first) as f64, "exponents count up");
-            powers[power] = if base > 0.0 { base.powf(exponent) } else { 0.0 };
+    let alone = |&root: &Id| {
+        let tape = Tape::with(dag, &[root], style, &plan);
+        let value = |id: Id| dag.evaluate(id, &|variable| valued(variable, at));
+        let [logarithms, used] = plan.uses(dag, &[root]);
+        let mut bases = vec![f64::NAN; plan.bases.len()];
+        for base in logarithms {
+            bases[base] = value(plan.bases[base]);
         }
-    }
-    run(&tape, [&bases, &powers], at)
+        let mut powers = vec![f64::NAN; plan.exponents.len()];
+        for group in &plan.groups {
+            for power in group.first..group.first + group.count {
+                let (base, exponent) =
+                    (value(plan.bases[group.base]), value(plan.exponents[power]));
+                let steps = exponent - value(plan.exponents[group.first]);
+                assert_eq!(steps, (power - group.first) as f64, "exponents count up");
+                if used.contains(&power) {
+                    powers[power] = if base > 0.0 { base.powf(exponent) } else { 0.0 };
+                }
+            }
+        }
+        run(&tape, [&bases, &powers], at)[0]
+    };
+    roots.iter().map(alone).collect()
 }
 
 fn valued(variable: Variable, at: [f64; 3]) -> f64 {
@@ -113,6 +124,7 @@ fn powers_of_every_kind_are_lowered_to_their_value() {
         for (numerator, denominator) in [(1, 3), (2, 3), (5, 3), (-4, 3)] {
             let exponent = dag.number(Rational::new(numerator, denominator).expect("not zero"));
             roots.push(dag.power(base, exponent));
+            roots.push(dag.power_log(base, exponent));
         }
     }
     for offset in [-2, -1, 0, 1] {
