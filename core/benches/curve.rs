@@ -7,7 +7,7 @@
 
 use std::time::Instant;
 
-use hertzian::{Aft, Branch, FrequencyResponse, oscillator};
+use hertzian::{Aft, Branch, EventKind, FrequencyResponse, oscillator};
 
 oscillator! {
     /// One-sided contact with a linear spring.
@@ -64,7 +64,9 @@ fn median(request: &FrequencyResponse<'static>) -> f64 {
 /// not its test function could be driven to zero: sampled methods hardly ever can.
 fn upper_fold(branch: &Branch<'_>) -> Option<f64> {
     let folds = branch.folds().map(|fold| fold.point.value);
-    let turns = branch.turns.iter().map(|turn| turn.value);
+    let turns = branch.turns.iter();
+    let turns = turns.filter(|turn| turn.kind == EventKind::Fold);
+    let turns = turns.map(|turn| turn.value);
     let mut all: Vec<f64> = folds.chain(turns).collect();
     all.sort_by(f64::total_cmp);
     (all.len() == 2).then(|| all[0])

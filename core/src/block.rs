@@ -5,6 +5,9 @@
 //! orbits have, and that of the others. Where the determinant of the other block changes its sign, a branch of orbits
 //! crosses that do have them: the symmetry breaks, or the period doubles.
 //!
+//! Where the branch crosses another one of orbits with the same harmonics, all of the matrix is singular that Newton's method has on
+//! it, `[R_u R_l; t^T]` with the tangent `t` (Keller's test function): its determinant changes its sign there, and not at a fold.
+//!
 //! This finds the bifurcations of the discrete balance, to rounding, and the branch that begins there is one of the same
 //! balance. Floquet multipliers of its orbits, which are integrated, would put them elsewhere by what the harmonics leave out.
 //!
@@ -19,7 +22,7 @@ use crate::fourier::series;
 use crate::jacobian::Jacobian;
 use crate::system::{System, Variable};
 
-/// The block of one balance.
+/// The block of one balance, or all of its Jacobian.
 #[derive(Debug)]
 pub(crate) struct Block<'a> {
     /// What happens where it is singular.
@@ -37,9 +40,10 @@ pub(crate) struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// For orbits of a balance of this resolution: of the even harmonics if it has the odd ones only, and otherwise of the odd
-    /// harmonics of twice the period.
+    /// For orbits of a balance of this resolution: of the even harmonics where a symmetry breaks, of the odd harmonics of twice
+    /// the period where that doubles, and otherwise of all that the orbits have.
     pub(crate) fn new(
+        kind: EventKind,
         system: &'a dyn System,
         parameters: &[f64],
         omega: f64,
@@ -47,23 +51,24 @@ impl<'a> Block<'a> {
         resolution: Resolution,
     ) -> Self {
         // Nothing is left out of the block: its determinant is what counts.
-        let (kind, resolution) = if resolution.parity == Parity::Odd {
-            let even = Resolution {
+        let resolution = match kind {
+            EventKind::SymmetryBreaking => Resolution {
                 parity: Parity::Even,
                 core: resolution.harmonics,
                 ..resolution
-            };
-            (EventKind::SymmetryBreaking, even)
-        } else {
-            let odd = Resolution {
+            },
+            EventKind::PeriodDoubling => Resolution {
                 parity: Parity::Odd,
                 harmonics: 2 * resolution.harmonics,
                 core: 2 * resolution.harmonics,
                 samples: 2 * resolution.samples,
                 period: 2 * resolution.period,
                 ..resolution
-            };
-            (EventKind::PeriodDoubling, odd)
+            },
+            _ => Resolution {
+                core: resolution.harmonics,
+                ..resolution
+            },
         };
         let balance = Balance::new(system, parameters, omega, variable, resolution);
         let n = balance.unknowns();
@@ -80,6 +85,14 @@ impl<'a> Block<'a> {
             known: (0.0, 0.0),
             computed: 0,
         }
+    }
+
+    /// The same at an orbit whose branch has a direction, which matters where all harmonics are in the block.
+    pub(crate) fn determinant_along(&mut self, u: &[f64], tangent: &[f64]) -> (f64, f64) {
+        if self.kind == EventKind::BranchPoint {
+            self.border.copy_from_slice(tangent);
+        }
+        self.determinant(u)
     }
 
     /// The determinant of the block at an orbit: its sign, and the logarithm of its size. The sign is zero if the block is

@@ -162,15 +162,18 @@ impl fmt::Display for Event {
     }
 }
 
-/// A place where the branch turned back, but not through a fold: the test function jumped.
+/// A place where a test function changed its sign without an event that could be located: it jumped there, or corrections failed.
 ///
-/// A sampled balance of a force that jumps does this, and so does an orbit that grazes a level.
+/// Of kind [`EventKind::Fold`] it is a place where the branch turned back, but not through a fold. A sampled balance of a force
+/// that jumps does this, and so does an orbit that grazes a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Turn {
+    /// What would have happened where the test function vanishes.
+    pub kind: EventKind,
     /// What the branch varies, where the jump is.
     pub value: f64,
-    /// Value of the test function beside the jump.
+    /// Value of the test function beside the jump; not a number where it is unknown.
     pub test: f64,
     /// Number of points of the branch before it.
     pub after: usize,
@@ -185,7 +188,7 @@ pub struct Branch<'a> {
     pub points: Vec<Point>,
     /// Special orbits.
     pub events: Vec<Event>,
-    /// Turns that are not folds.
+    /// Turns that are not folds, and other events that could not be located.
     pub turns: Vec<Turn>,
     /// Why it ended.
     pub stopped: Stop,

@@ -39,6 +39,8 @@ pub(crate) struct Follower<'a> {
     pub(crate) asymmetric: bool,
     /// Doublings of the period are looked for.
     pub(crate) doublings: bool,
+    /// So are crossings of branches, tori, and touches of levels.
+    pub(crate) bifurcations: bool,
     /// How multipliers are computed, where they are.
     pub(crate) stability: Option<Method>,
     /// How harmonics follow the tolerance, where they do.
@@ -79,18 +81,31 @@ impl<'a> Follower<'a> {
         Reader::new(finer, self.stability, self.chooser.is_some())
     }
 
-    /// The harmonics that orbits of that resolution do not have: where they have odd ones only, or where doublings of the period
-    /// are looked for.
-    pub(crate) fn block(&self, resolution: Resolution) -> Option<Block<'a>> {
-        (resolution.parity == Parity::Odd || self.doublings).then(|| {
-            Block::new(
-                self.system,
-                &self.parameters,
-                self.omega,
-                self.variable,
-                resolution,
-            )
-        })
+    /// What becomes singular at bifurcations of orbits of that resolution: the even harmonics where they have odd ones only, those
+    /// of twice the period, and all, where that is looked for.
+    pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<Block<'a>> {
+        let odd = resolution.parity == Parity::Odd;
+        let wanted = [
+            (odd, EventKind::SymmetryBreaking),
+            (!odd && self.doublings, EventKind::PeriodDoubling),
+            (self.bifurcations, EventKind::BranchPoint),
+        ];
+        let wanted = wanted.into_iter().filter(|(wanted, _)| *wanted);
+        wanted
+            .map(|(_, kind)| self.block(kind, resolution))
+            .collect()
+    }
+
+    /// What becomes singular at bifurcations of one kind.
+    pub(crate) fn block(&self, kind: EventKind, resolution: Resolution) -> Block<'a> {
+        Block::new(
+            kind,
+            self.system,
+            &self.parameters,
+            self.omega,
+            self.variable,
+            resolution,
+        )
     }
 
     /// The same resolution with another number of harmonics, and with a core if that pays.

@@ -18,9 +18,9 @@ use crate::layout::{ContactLayout, Layout};
 use crate::newton::NewtonOptions;
 use crate::run::Run;
 use crate::stability::Method;
-use crate::start::start;
+use crate::start::{start, without_symmetry};
 use crate::statistics::Statistics;
-use crate::symmetry::is_odd;
+use crate::symmetry::{is_broken, is_odd};
 use crate::system::{System, Variable};
 use crate::validate;
 
@@ -76,6 +76,8 @@ pub struct FrequencyResponse<'a> {
     method: Method,
     near: Option<Orbit>,
     doublings: bool,
+    bifurcations: bool,
+    symmetric: bool,
 }
 
 impl std::fmt::Debug for FrequencyResponse<'_> {
@@ -108,6 +110,8 @@ impl<'a> FrequencyResponse<'a> {
             stability: true,
             near: None,
             doublings: false,
+            bifurcations: false,
+            symmetric: true,
             method: Method::default(),
         }
     }
@@ -214,6 +218,26 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
+    /// Whether all bifurcations are located and not folds alone: doublings of the period, crossings with other branches,
+    /// Neimark-Sacker bifurcations, and where a gap touches a level. Default: no. Neimark-Sacker bifurcations are seen by the
+    /// multipliers, so they need [`stability`](Self::stability).
+    #[must_use]
+    pub fn bifurcations(mut self, wanted: bool) -> Self {
+        self.doublings = wanted;
+        self.bifurcations = wanted;
+        self
+    }
+
+    /// Whether orbits of period one have the odd symmetry, `x(t + T/2) = -x(t)`, where the system has it. Default: yes; they have
+    /// odd harmonics only then, and where the symmetry breaks is located. Otherwise a first orbit without the symmetry is looked
+    /// for, as in one of two wells, and one with it taken if none is found; the branch may pass from one to the other. An orbit
+    /// without the symmetry that is [given](Self::near_orbit) does not need this.
+    #[must_use]
+    pub fn symmetric(mut self, wanted: bool) -> Self {
+        self.symmetric = wanted;
+        self
+    }
+
     /// The first orbit is near this one, and has its period.
     #[must_use]
     pub fn near_orbit(mut self, orbit: &Orbit) -> Self {
@@ -265,7 +289,13 @@ impl<'a> FrequencyResponse<'a> {
         let (follower, options) = self.check()?;
         let mut statistics = Statistics::default();
         let first = match &self.near {
-            None => start(follower.start_request(options), &mut statistics)?,
+            None => {
+                let request = follower.start_request(options);
+                let found = start(request, &mut statistics)?;
+                let broken = follower.asymmetric;
+                let broken = broken.then(|| without_symmetry(request, &found, &mut statistics));
+                broken.flatten().unwrap_or(found)
+            }
             Some(orbit) => {
                 let mut u = orbit.series.clone();
                 u.push(options.from);
@@ -409,7 +439,9 @@ impl<'a> FrequencyResponse<'a> {
             variable,
             [from, to],
         );
-        if symmetric && self.period == 1 {
+        let given = self.near.as_ref();
+        let kept = self.symmetric && !given.is_some_and(|orbit| lacks_symmetry(orbit));
+        if symmetric && self.period == 1 && kept {
             resolution.parity = Parity::Odd;
             if self.harmonics.is_none() {
                 // An even number is as good as the one below it.
@@ -451,7 +483,8 @@ impl<'a> FrequencyResponse<'a> {
                 resolution,
                 newton,
                 doublings: self.doublings,
-                asymmetric: false,
+                bifurcations: self.bifurcations,
+                asymmetric: symmetric && self.period == 1 && !kept,
                 stability: self.stability.then_some(self.method),
                 chooser: self.chooser(resolution),
                 from,
@@ -602,4 +635,8 @@ impl<'a> FrequencyResponse<'a> {
             period: self.period,
         })
     }
+}
+
+fn lacks_symmetry(orbit: &Orbit) -> bool {
+    is_broken(&orbit.series, orbit.series(0).len())
 }

@@ -2,11 +2,12 @@
 //! tolerance asks for it.
 
 mod events;
+mod touch;
+mod watch;
 
 use std::ops::ControlFlow;
 
 use crate::balance::{Balance, Resolution};
-use crate::block::Block;
 use crate::branch::{Event, Point, Turn};
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, follow,
@@ -18,6 +19,7 @@ use crate::harmonics::{Chooser, resize};
 use crate::newton::{Newton, NewtonError};
 use crate::reader::Reader;
 use crate::statistics::Statistics;
+use watch::Watch;
 
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;
@@ -32,8 +34,8 @@ pub(crate) struct Run<'f, 'a> {
     core: usize,
     core_before: usize,
     reader: Reader<'a>,
-    /// The harmonics that the orbits do not have.
-    block: Option<Block<'a>>,
+    /// What is looked for besides folds.
+    watch: Watch<'a>,
     chooser: Option<Chooser>,
     /// The resolution asked for when the walk was halted.
     wanted: Resolution,
@@ -59,7 +61,7 @@ impl<'f, 'a> Run<'f, 'a> {
             core,
             core_before: core,
             reader: follower.reader(resolution),
-            block: follower.block(resolution),
+            watch: Watch::new(follower, resolution),
             chooser: follower.chooser.clone(),
             wanted: resolution,
             refused: false,
@@ -113,7 +115,7 @@ impl<'f, 'a> Run<'f, 'a> {
                 }
             }
             self.reader = self.follower.reader(self.resolution);
-            self.block = self.follower.block(self.resolution);
+            self.watch = Watch::new(self.follower, self.resolution);
         }
     }
 
@@ -156,8 +158,8 @@ impl<'f, 'a> Run<'f, 'a> {
     /// Adds the work that Newton's method does not count.
     fn count_others(&mut self) {
         let judged = self.reader.judge.as_ref().map_or(0, |judge| judge.computed);
-        let determinants = self.block.as_ref().map_or(0, |block| block.computed);
-        self.statistics.monodromies += judged;
+        let (determinants, monodromies) = self.watch.computed();
+        self.statistics.monodromies += judged + monodromies;
         self.statistics.jacobians += determinants;
         self.statistics.factorisations += determinants;
     }
@@ -195,10 +197,12 @@ impl<'f, 'a> Run<'f, 'a> {
                 if self.joins(&behind.u) {
                     self.join(balance, newton, (before, behind));
                 } else {
+                    let known = self.turns.len();
                     if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
                         self.turn(balance, newton, (before, behind));
                     }
-                    self.watch(balance, newton, (before, behind));
+                    let turned = self.turns.get(known).map(|turn| turn.value);
+                    self.look_between(balance, newton, (before, behind), turned);
                 }
                 if self.ended.is_some() {
                     Continue::Break(Halt::Stop)

@@ -9,8 +9,11 @@
 //!
 //! An orbit of period `n` is found from the one of period one, disturbed in its lowest subharmonic ([`longer`]).
 //!
+//! One without the odd symmetry of its system from the one that has it, disturbed in what that does not have ([`broken`]).
+//!
 //! No search takes more work than [`effort`] allows.
 
+mod broken;
 mod effort;
 mod equivalent;
 mod fixed;
@@ -81,6 +84,18 @@ pub(crate) fn start(
         value: request.value,
         attempts,
     })
+}
+
+/// Extended unknowns of an orbit of period one without the odd symmetry, if one is found near the symmetric one.
+pub(crate) fn without_symmetry(
+    request: StartRequest<'_>,
+    symmetric: &[f64],
+    statistics: &mut Statistics,
+) -> Option<Vec<f64>> {
+    let mut effort = Effort::of(effort::LIMIT);
+    let found = broken::orbit(request, symmetric, &mut effort);
+    *statistics += effort.statistics;
+    found
 }
 
 /// An orbit of period one, by whatever finds it.

@@ -25,6 +25,24 @@ pub(crate) fn broken(from: &Orbit, u: &[f64]) -> Addition {
     Addition::of(from, u, |harmonic| harmonic.is_multiple_of(2))
 }
 
+/// Least share of the mean square that the mean and the even harmonics of an orbit without the symmetry have: the rest is what
+/// Newton's method leaves.
+const BROKEN_SHARE: f64 = 1e-8;
+
+/// Whether an orbit, of series of a length each, lacks the odd symmetry. What comes behind the last whole series does not count.
+pub(crate) fn is_broken(u: &[f64], length: usize) -> bool {
+    let (mut even, mut all) = (0.0, 0.0);
+    for series in u.chunks_exact(length) {
+        for (index, x) in series.iter().enumerate() {
+            all += x * x;
+            if index.div_ceil(2).is_multiple_of(2) {
+                even += x * x;
+            }
+        }
+    }
+    even > BROKEN_SHARE * all
+}
+
 /// Whether solutions with odd harmonics only exist over a range of the variable.
 pub(crate) fn is_odd(
     system: &dyn System,

@@ -48,6 +48,7 @@ pub(crate) fn depart(
     let mut old = follower.with_harmonics(orbit.harmonics(), orbit.harmonics());
     (old.parity, old.period) = (parity, orbit.period);
     let mut block = Block::new(
+        event.kind,
         follower.system,
         &follower.parameters,
         follower.omega,

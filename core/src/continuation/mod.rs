@@ -1,5 +1,6 @@
 //! Following a curve of solutions as one parameter varies. Knows problems, not balances.
 
+pub(crate) mod crossing;
 pub(crate) mod follow;
 pub(crate) mod locate;
 pub mod problem;

@@ -1,5 +1,4 @@
-//! What is located between two points of a branch: folds, the loss of a symmetry, doublings of the period, and the end of a branch of
-//! longer orbits.
+//! Folds between two points of a branch, and the end of a branch of longer orbits.
 
 use super::Run;
 use crate::balance::{Balance, Resolution};
@@ -7,15 +6,12 @@ use crate::branch::{Event, EventKind, Turn};
 use crate::continuation::follow::{CurvePoint, Stop};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::problem::Norm;
-use crate::fourier::series;
-use crate::harmonics::resize;
 use crate::newton::Newton;
 use crate::subharmonics::{is_shifted, passes_shorter_period};
-use crate::symmetry::broken;
-use crate::truncation::BEYOND;
+use crate::symmetry::{broken, is_broken};
 
 /// The test function of a fold is driven below this.
-const FOLD_TOLERANCE: f64 = 1e-10;
+pub(super) const FOLD_TOLERANCE: f64 = 1e-10;
 /// What the orbits of a longer period have in addition vanishes as the square root of the distance in the parameter, so that
 /// this part of it is as good as nothing.
 const JOINED: f64 = 1e-5;
@@ -67,6 +63,7 @@ impl Run<'_, '_> {
             |jump| (jump.point.parameter(), jump.test),
         );
         self.turns.push(Turn {
+            kind: EventKind::Fold,
             value,
             test,
             after: self.points.len() - 1,
@@ -114,7 +111,10 @@ impl Run<'_, '_> {
     pub(super) fn joins(&self, u: &[f64]) -> bool {
         let orbit = self.points.last().map(|point| &point.orbit);
         orbit.is_some_and(|orbit| {
-            let symmetric = self.follower.asymmetric && broken(orbit, u).vanished();
+            let length = orbit.series(0).len();
+            let symmetric = self.follower.asymmetric
+                && is_broken(&orbit.series, length)
+                && broken(orbit, u).vanished();
             symmetric || passes_shorter_period(orbit, u).is_some()
         })
     }
@@ -146,90 +146,6 @@ impl Run<'_, '_> {
             None => vertex(newton.norm(), before, behind),
         };
         self.ended = Some(Stop::Joined { period, value });
-    }
-
-    /// Locates where the harmonics that the orbits do not have become singular between two of them.
-    pub(super) fn watch(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        (before, behind): (&CurvePoint, &CurvePoint),
-    ) {
-        let Some(block) = &mut self.block else {
-            return;
-        };
-        let kind = block.kind;
-        let (a, b) = (block.determinant(&before.u), block.determinant(&behind.u));
-        if a.0 * b.0 >= 0.0 {
-            return;
-        }
-        let largest = a.1.max(b.1);
-        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
-        let block = std::cell::RefCell::new(block);
-        let test = |point: &CurvePoint| relative(block.borrow_mut().determinant(&point.u));
-        let between = (before, behind);
-        let options = self.options.newton;
-        let located = locate(balance, newton, between, options, FOLD_TOLERANCE, test);
-        let Some(located) = located.filter(|located| located.vanishes) else {
-            return;
-        };
-        let u = &located.point.u;
-        let error = if self.reader.finer.correct(u, newton) {
-            let range = behind.parameter() - before.parameter();
-            self.block_error(&located.point, 1e-4 * range)
-        } else {
-            f64::INFINITY
-        };
-        let point = self.reader.read(balance, newton, u);
-        self.events.push(Event {
-            kind,
-            point,
-            error,
-            test: located.test,
-            after: self.points.len() - 1,
-        });
-    }
-
-    /// Estimated error of such a point: where the harmonics of `finer`, at the corrected orbit that it holds, would put it. What the
-    /// first half of those that were left out does and what the second half does may cancel, and are taken by their sizes.
-    fn block_error(&self, point: &CurvePoint, step: f64) -> f64 {
-        let fine = self.reader.finer.balance().resolution();
-        let some = Resolution {
-            harmonics: fine.harmonics * 3 / 4,
-            core: fine.core.min(fine.harmonics * 3 / 4),
-            ..fine
-        };
-        let [all, half] = [fine, some].map(|resolution| self.block_moves(point, step, resolution));
-        let change = half.abs() + (all - half).abs();
-        let error = BEYOND * change + 1e-12 * point.parameter().abs();
-        if error.is_finite() {
-            error
-        } else {
-            f64::INFINITY
-        }
-    }
-
-    /// How far the point is moved by the harmonics of a resolution.
-    fn block_moves(&self, point: &CurvePoint, step: f64, resolution: Resolution) -> f64 {
-        let Some(mut block) = self.follower.block(resolution) else {
-            return f64::INFINITY;
-        };
-        let coordinates = self.follower.system.facts().coordinates.len();
-        let length = series::length(resolution.harmonics);
-        let finer = resize(self.reader.finer.extended(), coordinates, length);
-        let mut at = |u: &[f64]| block.determinant(u);
-        // The determinant along the tangent, by a central difference in the parameter.
-        let along = step / point.tangent[point.tangent.len() - 1];
-        let moved = |by: f64| -> Vec<f64> {
-            let tangent = resize(&point.tangent, coordinates, length);
-            let pairs = finer.iter().zip(tangent);
-            pairs.map(|(x, t)| x + by * t).collect()
-        };
-        let (a, b, here) = (at(&moved(-along)), at(&moved(along)), at(&finer));
-        let largest = a.1.max(b.1);
-        let relative = |(sign, size): (f64, f64)| sign * (size - largest).exp();
-        let slope = (relative(b) - relative(a)) / (2.0 * step);
-        finer[finer.len() - 1] - point.parameter() - relative(here) / slope
     }
 }
 

@@ -30,6 +30,7 @@ mod magnus;
 mod method;
 mod monodromy;
 mod orbit;
+pub(crate) mod pairs;
 mod path;
 mod product;
 mod rest;
@@ -42,6 +43,7 @@ use nalgebra::Complex;
 
 pub use answer::Answer;
 pub use method::{Cost, Method, Projection, Sorting};
+pub(crate) use pairs::product_of_pairs;
 pub(crate) use spectrum::{distance, eigenvalues};
 
 /// What is known of the stability of an orbit.

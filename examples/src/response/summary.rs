@@ -179,10 +179,13 @@ fn folds(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
     });
     list(text, "fold", folds)?;
     let turns = branch.turns.iter().map(|turn| {
-        format!(
-            "{} {:.6}, not confirmed as a fold: the slope jumps",
-            branch.varied, turn.value
-        )
+        let (varied, value) = (&branch.varied, turn.value);
+        match turn.kind {
+            EventKind::Fold => {
+                format!("{varied} {value:.6}, not confirmed as a fold: the slope jumps")
+            }
+            kind => format!("{varied} {value:.6}, not confirmed as a {kind}"),
+        }
     });
     list(text, "turn", turns)?;
     let broken = branch

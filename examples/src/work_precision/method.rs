@@ -178,7 +178,9 @@ fn shoot(problem: &Problem, setting: Setting, patience: f64) -> Result<Run, hert
     let branch = request.run_with(|_| within(started, patience))?;
     let seconds = started.elapsed().as_secs_f64();
     let folds = branch.folds().map(|fold| fold.cycle.value);
-    let others = branch.turns.iter().map(|turn| turn.value);
+    let turns = branch.turns.iter();
+    let others = turns.filter(|turn| turn.kind == EventKind::Fold);
+    let others = others.map(|turn| turn.value);
     let reached = branch
         .cycles
         .last()
@@ -206,9 +208,11 @@ fn turns(branch: &Branch<'_>) -> Vec<f64> {
         .iter()
         .filter(|event| event.kind == EventKind::Fold);
     let folds = folds.map(|fold| fold.point.value);
-    folds
-        .chain(branch.turns.iter().map(|turn| turn.value))
-        .collect()
+    let turns = branch
+        .turns
+        .iter()
+        .filter(|turn| turn.kind == EventKind::Fold);
+    folds.chain(turns.map(|turn| turn.value)).collect()
 }
 
 fn largest(branch: &Branch<'_>, at: f64) -> Option<f64> {

@@ -1,6 +1,7 @@
 //! Branches that begin at bifurcations, against exact values.
 
 mod backbone;
+mod balance;
 mod cascade;
 mod codimension;
 mod coexisting;

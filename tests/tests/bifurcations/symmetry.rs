@@ -17,7 +17,7 @@ hertzian::oscillator! {
 }
 
 hertzian::oscillator! {
-    Softening(x) {
+    pub Softening(x) {
         param zeta >= 0;
         param drive;
         ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^0.6 = drive*cos(omega*t);
@@ -45,7 +45,7 @@ const SOFTENING_EVENTS: Events<'static> = &[
     ),
 ];
 pub const HARDENING: [f64; 2] = [0.402_310_407_656_194, 0.353_730_954_670_214];
-const SOFTENING: [f64; 2] = [0.973_916_250_536_018, 0.868_864_958_044_575];
+pub const SOFTENING: [f64; 2] = [0.973_916_250_536_018, 0.868_864_958_044_575];
 
 fn assert_symmetry_breaks(
     system: &dyn System,

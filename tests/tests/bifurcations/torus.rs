@@ -6,7 +6,7 @@ use hertzian::{EventKind, Shooting};
 
 hertzian::oscillator! {
     /// Two oscillators under a circulatory force, as of a shaft with internal friction.
-    Circulatory(x, y) {
+    pub Circulatory(x, y) {
         param c > 0;
         param k > 0;
         param p;
@@ -19,7 +19,7 @@ hertzian::oscillator! {
 hertzian::oscillator! {
     /// Two masses in a row, the second held to the ground, the first with an elastic stop at distance one.
     /// Stiffness and clearance as in example 03 of NLvib (Krack and Gross 2019); damping is 0.03 of the stiffness matrix.
-    TwoMasses(x1, x2) {
+    pub TwoMasses(x1, x2) {
         param stop > 0;
         param drive;
         law stop_spring(gap) { gap > 1 => stop*(gap - 1), else => 0 }

@@ -6,13 +6,13 @@
 use std::cell::RefCell;
 
 use super::companion::{self, Companion, multipliers};
-use super::crossing::locate_crossing;
 use super::cycle::{Cycle, CycleEvent};
 use super::equations::Equations;
 use super::run::{Run, add, observe};
 use super::setting::Setting;
 use super::tested::{Change, Test, Tests};
 use crate::branch::{EventKind, Turn};
+use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::newton::{Newton, NewtonOptions};
@@ -67,8 +67,13 @@ impl<'a> Run<'_, 'a> {
         let place = self.place(equations, newton, between, options, change, VANISHED);
         let Some(place) = place else {
             let value = 0.5 * (between.0.parameter() + between.1.parameter());
-            let test = f64::NAN;
-            self.turns.push(Turn { value, test, after });
+            let (kind, test) = (change.kind, f64::NAN);
+            self.turns.push(Turn {
+                kind,
+                value,
+                test,
+                after,
+            });
             return;
         };
         // A pair of real multipliers whose product is one is nothing special.
@@ -89,7 +94,12 @@ impl<'a> Run<'_, 'a> {
         let event = vanishes.then(|| self.event_at(equations, between, change, &place));
         match event.flatten() {
             Some(event) => self.events.push(CycleEvent { after, ..event }),
-            None => self.turns.push(Turn { value, test, after }),
+            None => self.turns.push(Turn {
+                kind: change.kind,
+                value,
+                test,
+                after,
+            }),
         }
     }
 

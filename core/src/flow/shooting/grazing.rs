@@ -97,7 +97,12 @@ impl<'a> Run<'_, 'a> {
         let after = self.cycles.len() - 1;
         let Ok((cycle, _)) = observe(self.setting, equations, &before.u) else {
             let (value, test) = (before.parameter(), f64::NAN);
-            self.turns.push(Turn { value, test, after });
+            self.turns.push(Turn {
+                kind: EventKind::Grazing { turns: false },
+                value,
+                test,
+                after,
+            });
             return;
         };
         // The orbits have the error of the flow: it is taken from states to the parameter by what both change in the step.

@@ -10,7 +10,6 @@ mod beyond;
 mod companion;
 mod compute;
 mod crossed;
-mod crossing;
 mod cycle;
 mod equations;
 mod events;

@@ -16,10 +16,10 @@
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions);
 //! Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems, for the determinant.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
 use crate::branch::EventKind;
-use crate::stability::eigenvalues;
+use crate::stability::{eigenvalues, product_of_pairs};
 
 /// The test functions at one orbit.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +72,8 @@ impl Tests {
                 shifted.determinant()
             })
         };
-        let (pairs, complex) = map.map_or((f64::NAN, false), product_of_pairs);
+        let (pairs, complex) =
+            map.map_or((f64::NAN, false), |map| product_of_pairs(&eigenvalues(map)));
         Self {
             slope,
             minus: determinant(-1.0),
@@ -124,21 +125,4 @@ impl Tests {
         }
         changes
     }
-}
-
-/// The product of `mu_i mu_j - 1` over all pairs, and whether the pair whose product is nearest to one is complex.
-fn product_of_pairs(map: &DMatrix<f64>) -> (f64, bool) {
-    let values = eigenvalues(map);
-    let mut product = Complex::new(1.0, 0.0);
-    let mut nearest = (f64::INFINITY, false);
-    for (i, a) in values.iter().enumerate() {
-        for b in &values[i + 1..] {
-            let factor = a * b - 1.0;
-            product *= factor;
-            if factor.norm() < nearest.0 {
-                nearest = (factor.norm(), a.im != 0.0 && b.im != 0.0);
-            }
-        }
-    }
-    (product.re, nearest.1)
 }

@@ -5,12 +5,12 @@
 //! [`SIDE`] times a width, and interpolated; then once more about the zero, over a smaller width. The orbit itself is
 //! interpolated too, and is as good as any if it solves the equations.
 //!
-//! The curve is parametrised by its arc length along the first tangent, as in [`locate`](crate::continuation::locate).
+//! The curve is parametrised by its arc length along the first tangent, as in [`locate`](super::locate).
 //!
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, SIAM Review 46, equation (4.2).
 
-use crate::continuation::follow::CurvePoint;
-use crate::continuation::problem::Problem;
+use super::follow::CurvePoint;
+use super::problem::Problem;
 use crate::newton::{Border, Newton, NewtonOptions};
 
 /// Orbits on each side.
@@ -32,16 +32,16 @@ struct Node {
 }
 
 /// Where branches cross.
-pub(super) struct Crossing {
-    pub(super) point: CurvePoint,
+pub(crate) struct Crossing {
+    pub(crate) point: CurvePoint,
     /// Value of the test function there.
-    pub(super) test: f64,
+    pub(crate) test: f64,
     /// What the interpolation leaves in the parameter.
-    pub(super) error: f64,
+    pub(crate) error: f64,
 }
 
 /// Where a test function vanishes between two points although the bordered matrix is singular there.
-pub(super) fn locate_crossing<P: Problem>(
+pub(crate) fn locate_crossing<P: Problem>(
     problem: &mut P,
     newton: &mut Newton,
     (a, b): (&CurvePoint, &CurvePoint),

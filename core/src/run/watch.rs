@@ -1,0 +1,499 @@
+//! Events besides folds, and where they are between two points of a branch.
+//!
+//! | event | test function |
+//! |---|---|
+//! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`block`](crate::block)) |
+//! | branch point | the determinant of the Jacobian with the tangent as its border |
+//! | Neimark-Sacker | the product over pairs of multipliers ([`pairs`](crate::stability::pairs)), and a pair is complex |
+//! | grazing | an extreme of a gap less the level ([`touch`](super::touch)) |
+//!
+//! All are functions of the discrete orbit, and driven to zero on the branch. The same functions of the orbit that is corrected for
+//! the harmonics left out say where the event would be then: with `s` along the unit tangent `t`, and `du` the correction,
+//!
+//! ```text
+//! ds = - T(u + du) / (dT/ds),      d lambda = du_l + ds t_l                                                    (1)
+//! ```
+//!
+//! What changes its sign and leads to no zero is recorded as a [`Turn`] of its kind.
+
+use std::cell::RefCell;
+
+use super::Run;
+use super::events::FOLD_TOLERANCE;
+use super::touch::{Extreme, Touches, crossings, passed};
+use crate::balance::{Balance, Resolution};
+use crate::block::Block;
+use crate::branch::{Event, EventKind, Point, Turn};
+use crate::continuation::crossing::locate_crossing;
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::locate::{Located, locate};
+use crate::follower::Follower;
+use crate::fourier::series;
+use crate::harmonics::resize;
+use crate::newton::{Border, Newton};
+use crate::stability::pairs::Pairs;
+use crate::truncation::BEYOND;
+
+/// Derivatives along the branch are differences over this part of the step.
+const DIFFERENCE: f64 = 1e-4;
+/// The same beside a branch point, where the matrix of a step is singular.
+const BESIDE: f64 = 0.1;
+/// What interpolation leaves of a determinant at a branch point, as a part of what it is at the ends of the step.
+const CROSSED: f64 = 1e-6;
+/// Relative error that rounding leaves in the value of an event.
+const ROUNDING: f64 = 1e-12;
+/// Values that differ by this part of the range are one.
+const SAME: f64 = 1e-9;
+/// Multipliers whose product is farther than this from one are not looked at more closely.
+const NEAR_CIRCLE: f64 = 0.5;
+
+/// A function of orbits that vanishes at an event.
+enum Test<'t, 'a> {
+    /// In units of a size, given as its logarithm: that of the first if it is not given.
+    Block(&'t mut Block<'a>, Option<f64>),
+    Pairs(&'t mut Pairs<'a>),
+    /// Of one extreme, wherever it moves.
+    Touch(&'t mut Touches<'a>, Extreme),
+}
+
+impl Test<'_, '_> {
+    fn at(&mut self, u: &[f64], tangent: &[f64]) -> f64 {
+        match self {
+            Self::Block(block, largest) => {
+                let (sign, size) = block.determinant_along(u, tangent);
+                sign * (size - *largest.get_or_insert(size)).exp()
+            }
+            Self::Pairs(pairs) => pairs.product(u).0,
+            Self::Touch(touches, extreme) => {
+                let mut extremes = Vec::new();
+                touches.read(u, &mut extremes);
+                extreme.nearest(&extremes).map_or(f64::NAN, |found| {
+                    // The next one is looked for where this one was.
+                    *extreme = *found;
+                    found.above
+                })
+            }
+        }
+    }
+}
+
+/// What is watched along a branch, at one resolution.
+#[derive(Debug, Default)]
+pub(super) struct Watch<'a> {
+    blocks: Vec<Block<'a>>,
+    pairs: Option<Pairs<'a>>,
+    touches: Option<Touches<'a>>,
+    /// Extremes at the ends of the step looked at.
+    extremes: [Vec<Extreme>; 2],
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(follower: &Follower<'a>, resolution: Resolution) -> Self {
+        let coordinates = follower.system.facts().coordinates.len();
+        let all = follower.bifurcations;
+        // Two multipliers on the unit circle, of one coordinate, are there with no damping only.
+        let pairs = all && follower.stability.is_some() && coordinates > 1;
+        Self {
+            blocks: follower.blocks(resolution),
+            pairs: pairs.then(|| Pairs::new(follower.balance(resolution))),
+            touches: all.then(|| Touches::new(follower.balance(resolution))),
+            extremes: Default::default(),
+        }
+    }
+
+    /// Determinants, each a Jacobian and a factorisation, and monodromy matrices that were computed.
+    pub(super) fn computed(&self) -> (usize, usize) {
+        let determinants = self.blocks.iter().map(|block| block.computed).sum();
+        (
+            determinants,
+            self.pairs.as_ref().map_or(0, |pairs| pairs.computed),
+        )
+    }
+}
+
+/// Two successive points.
+type Between<'b> = (&'b CurvePoint, &'b CurvePoint);
+
+impl<'a> Run<'_, 'a> {
+    /// Locates everything but folds between two points, and where the branch `turned` back without one.
+    pub(super) fn look_between(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        turned: Option<f64>,
+    ) {
+        let mut watch = std::mem::take(&mut self.watch);
+        for block in &mut watch.blocks {
+            self.determinant(balance, newton, between, block);
+        }
+        if let Some(pairs) = &mut watch.pairs {
+            self.torus(balance, newton, between, pairs);
+        }
+        if let Some(touches) = &mut watch.touches {
+            self.grazing(
+                balance,
+                newton,
+                between,
+                (touches, &mut watch.extremes),
+                turned,
+            );
+        }
+        self.watch = watch;
+    }
+
+    /// Where the determinant of a block changes its sign.
+    fn determinant(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        block: &mut Block<'a>,
+    ) {
+        let kind = block.kind;
+        let mut at = |point: &CurvePoint| block.determinant_along(&point.u, &point.tangent);
+        let (a, b) = (at(between.0), at(between.1));
+        // A block that is singular at a point counts for one side, so that its event belongs to one step.
+        if (a.0 < 0.0) == (b.0 < 0.0) || a.0.is_nan() || b.0.is_nan() {
+            return;
+        }
+        let mut test = Test::Block(block, Some(a.1.max(b.1)));
+        if kind == EventKind::BranchPoint {
+            self.branch_point(balance, newton, between, &mut test);
+        } else {
+            self.event(balance, newton, between, kind, &mut test);
+        }
+    }
+
+    /// Where a pair of complex multipliers crosses the unit circle.
+    fn torus(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        pairs: &mut Pairs<'a>,
+    ) {
+        let count = self.points.len();
+        let near = |point: &Point| {
+            let multipliers = &point.stability.multipliers;
+            let complex = multipliers.iter().filter(|m| m.im > 0.0);
+            let mut distances = complex.map(|m| (m.norm_sqr() - 1.0).abs());
+            distances.any(|distance| distance < NEAR_CIRCLE)
+        };
+        // The points of the step are the last two.
+        if !self.points[count.saturating_sub(2)..].iter().any(near) {
+            return;
+        }
+        let (a, b) = (pairs.product(&between.0.u), pairs.product(&between.1.u));
+        if a.0 * b.0 < 0.0 && a.1 && b.1 {
+            let mut test = Test::Pairs(pairs);
+            self.event(
+                balance,
+                newton,
+                between,
+                EventKind::NeimarkSacker,
+                &mut test,
+            );
+        }
+    }
+
+    /// Where an extreme of a gap reaches a level.
+    fn grazing(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        (touches, [before, behind]): (&mut Touches<'a>, &mut [Vec<Extreme>; 2]),
+        turned: Option<f64>,
+    ) {
+        touches.read(&between.0.u, before);
+        touches.read(&between.1.u, behind);
+        let kind = EventKind::Grazing { turns: false };
+        let range = (self.options.to - self.options.from).abs();
+        let (first, after) = (self.events.len(), self.points.len() - 1);
+        let found = passed(before, behind);
+        for extreme in &found {
+            let known = self.events.len();
+            let mut test = Test::Touch(touches, *extreme);
+            self.event(balance, newton, between, kind, &mut test);
+            // Orbits with a symmetry touch in several places at once, which is one event.
+            let again = self.events.get(known).is_some_and(|new| {
+                let apart = |other: &Event| (other.point.value - new.point.value).abs();
+                let mut others = self.events[first..known].iter();
+                others.any(|other| apart(other) <= SAME * range)
+            });
+            if again {
+                self.events.truncate(known);
+            }
+        }
+        if found.is_empty() && crossings(before) != crossings(behind) {
+            self.omit(kind, between, f64::NAN);
+        }
+        // What was located nowhere may be where the branch turned.
+        let omitted = self.turns.iter_mut().filter(|turn| turn.after == after);
+        for turn in omitted.filter(|turn| turn.kind == kind) {
+            turn.kind = EventKind::Grazing {
+                turns: turned.is_some(),
+            };
+        }
+        let Some(turned) = turned else {
+            return;
+        };
+        let mut events = self.events[first..].iter_mut();
+        let there = events.find(|event| (event.point.value - turned).abs() <= SAME * range);
+        if let Some(event) = there {
+            // That is where the branch turned, and why.
+            event.kind = EventKind::Grazing { turns: true };
+            self.turns.retain(|turn| turn.value != turned);
+        }
+    }
+
+    /// Records what could not be located.
+    fn omit(&mut self, kind: EventKind, (a, b): Between<'_>, test: f64) {
+        self.turns.push(Turn {
+            kind,
+            value: 0.5 * (a.parameter() + b.parameter()),
+            test,
+            after: self.points.len() - 1,
+        });
+    }
+
+    /// Locates the zero of a test function, with core and tail, or else with the whole system.
+    fn event(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        kind: EventKind,
+        test: &mut Test<'_, 'a>,
+    ) {
+        let options = self.options.newton;
+        let ends = [between.0, between.1].map(|end| test.at(&end.u, &end.tangent));
+        let cell = RefCell::new(test);
+        let value = |point: &CurvePoint| cell.borrow_mut().at(&point.u, &point.tangent);
+        let zero = |located: &Located| located.vanishes;
+        let found = locate(balance, newton, between, options, FOLD_TOLERANCE, value).filter(zero);
+        if let Some(found) = &found {
+            let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
+            return self.located(balance, newton, between, kind, (test, found));
+        }
+        if self.resolution.core < self.resolution.harmonics {
+            let mut whole = self.follower.balance(Resolution {
+                core: self.resolution.harmonics,
+                ..self.resolution
+            });
+            let mut newton = Newton::new(&whole);
+            let found = locate(
+                &mut whole,
+                &mut newton,
+                between,
+                options,
+                FOLD_TOLERANCE,
+                value,
+            );
+            let found = found.filter(zero);
+            if let Some(found) = &found {
+                let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
+                self.located(&mut whole, &mut newton, between, kind, (test, found));
+            }
+            self.statistics += newton.statistics;
+            if found.is_some() {
+                return;
+            }
+        }
+        self.omit(kind, between, ends[0]);
+    }
+
+    /// Reads the orbit at an event, whose factors Newton's method holds.
+    fn located(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): Between<'_>,
+        kind: EventKind,
+        (test, located): (&mut Test<'_, 'a>, &Located),
+    ) {
+        let u = &located.point.u;
+        let error = if self.reader.finer.correct(u, newton) {
+            let pairs = behind.u.iter().zip(&before.u);
+            let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+            let length = newton.norm().length(before.scale, &step);
+            self.event_error(&located.point, DIFFERENCE * length, kind, test)
+        } else {
+            f64::INFINITY
+        };
+        let point = self.reader.read(balance, newton, u);
+        self.events.push(Event {
+            kind,
+            point,
+            error,
+            test: located.test,
+            after: self.points.len() - 1,
+        });
+    }
+
+    /// Estimated error of an event, from the corrected orbit that is held. What the first half of the harmonics that were left out
+    /// does and what the second half does may cancel, and are taken by their sizes.
+    fn event_error(
+        &self,
+        point: &CurvePoint,
+        step: f64,
+        kind: EventKind,
+        test: &Test<'_, 'a>,
+    ) -> f64 {
+        let fine = self.reader.finer.balance().resolution();
+        let some = Resolution {
+            harmonics: fine.harmonics * 3 / 4,
+            core: fine.core.min(fine.harmonics * 3 / 4),
+            ..fine
+        };
+        let [all, half] = [fine, some].map(|of| self.moved(point, step, (kind, of), test));
+        let change = half.abs() + (all - half).abs();
+        known(BEYOND * change + ROUNDING * point.parameter().abs())
+    }
+
+    /// (1) with the harmonics of a resolution, and the derivative from differences over `step`.
+    fn moved(
+        &self,
+        point: &CurvePoint,
+        step: f64,
+        (kind, resolution): (EventKind, Resolution),
+        test: &Test<'_, 'a>,
+    ) -> f64 {
+        let mut watch = self.watch_at(kind, resolution);
+        let Some(mut test) = watch.test(test) else {
+            return f64::INFINITY;
+        };
+        let finer = self.with_harmonics_of(self.reader.finer.extended(), resolution);
+        let tangent = self.with_harmonics_of(&point.tangent, resolution);
+        let mut at = |by: f64| {
+            let pairs = finer.iter().zip(&tangent);
+            let u: Vec<f64> = pairs.map(|(x, t)| x + by * t).collect();
+            test.at(&u, &tangent)
+        };
+        let (a, here, b) = (at(-step), at(0.0), at(step));
+        let along = -here / ((b - a) / (2.0 * step));
+        let last = finer.len() - 1;
+        finer[last] - point.parameter() + along * tangent[last]
+    }
+
+    /// Locates where another branch crosses, by interpolation: close by, the matrix of a step is singular.
+    fn branch_point(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        test: &mut Test<'_, 'a>,
+    ) {
+        let kind = EventKind::BranchPoint;
+        let options = self.options.newton;
+        let value = |point: &CurvePoint| test.at(&point.u, &point.tangent);
+        let found = locate_crossing(balance, newton, between, options, value);
+        let Some(found) = found.filter(|found| found.test.abs() <= CROSSED) else {
+            return self.omit(kind, between, f64::NAN);
+        };
+        let shift = self.crossing_shift(balance, newton, between, &found.point, test);
+        let error = BEYOND * shift + found.error + ROUNDING * found.point.parameter().abs();
+        let point = self.reader.read(balance, newton, &found.point.u);
+        self.events.push(Event {
+            kind,
+            point,
+            error: known(error),
+            test: found.test,
+            after: self.points.len() - 1,
+        });
+    }
+
+    /// How far corrected orbits put a branch point from where it is: the zeros of straight lines through the test function
+    /// on both sides of it, before and after the correction.
+    fn crossing_shift(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): Between<'_>,
+        at: &CurvePoint,
+        test: &mut Test<'_, 'a>,
+    ) -> f64 {
+        let mut row = vec![0.0; at.u.len()];
+        newton
+            .norm()
+            .linear_form(before.scale, &at.tangent, &mut row);
+        let pairs = behind.u.iter().zip(&before.u);
+        let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+        let width = BESIDE * newton.norm().length(before.scale, &step);
+        let fine_resolution = self.reader.finer.balance().resolution();
+        let mut watch = self.watch_at(EventKind::BranchPoint, fine_resolution);
+        let Some(mut fine) = watch.test(test) else {
+            return f64::INFINITY;
+        };
+        let tangent = self.with_harmonics_of(&at.tangent, fine_resolution);
+        let mut coarse = [[0.0; 2]; 2];
+        let mut finer = [[0.0; 2]; 2];
+        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            let pairs = at.u.iter().zip(&at.tangent);
+            let mut u: Vec<f64> = pairs.map(|(x, t)| x + sign * width * t).collect();
+            let border = Border {
+                row: &row,
+                value: crate::linear::dot(&row, &u),
+            };
+            let options = self.options.newton;
+            let corrected = newton.correct(balance, &mut u, border, before.scale, options);
+            if corrected.is_err() || !self.reader.finer.correct(&u, newton) {
+                return f64::INFINITY;
+            }
+            coarse[side] = [u[u.len() - 1], test.at(&u, &at.tangent)];
+            let u = self.reader.finer.extended();
+            finer[side] = [u[u.len() - 1], fine.at(u, &tangent)];
+        }
+        let zero = |[[p, a], [q, b]]: [[f64; 2]; 2]| p + (q - p) * a / (a - b);
+        (zero(finer) - zero(coarse)).abs()
+    }
+
+    /// What is watched for one kind of event, in some resolution.
+    fn watch_at(&self, kind: EventKind, resolution: Resolution) -> Watch<'a> {
+        let follower = self.follower;
+        let mut watch = Watch::default();
+        match kind {
+            EventKind::Grazing { .. } => {
+                watch.touches = Some(Touches::new(follower.balance(resolution)));
+            }
+            EventKind::NeimarkSacker => {
+                watch.pairs = Some(Pairs::new(follower.balance(resolution)));
+            }
+            _ => watch.blocks.push(follower.block(kind, resolution)),
+        }
+        watch
+    }
+
+    /// A vector of the branch in another resolution.
+    fn with_harmonics_of(&self, v: &[f64], resolution: Resolution) -> Vec<f64> {
+        let coordinates = self.follower.system.facts().coordinates.len();
+        resize(v, coordinates, series::length(resolution.harmonics))
+    }
+}
+
+impl<'a> Watch<'a> {
+    /// The same test function of other orbits, in units of its own.
+    fn test(&mut self, like: &Test<'_, 'a>) -> Option<Test<'_, 'a>> {
+        match like {
+            Test::Block(..) => self
+                .blocks
+                .first_mut()
+                .map(|block| Test::Block(block, None)),
+            Test::Pairs(_) => self.pairs.as_mut().map(Test::Pairs),
+            Test::Touch(_, extreme) => {
+                let touches = self.touches.as_mut();
+                touches.map(|touches| Test::Touch(touches, *extreme))
+            }
+        }
+    }
+}
+
+/// An error, or infinity where nothing is known of it.
+fn known(error: f64) -> f64 {
+    if error.is_finite() {
+        error
+    } else {
+        f64::INFINITY
+    }
+}

@@ -1,0 +1,246 @@
+//! Bifurcations located by the harmonic balance: branch points, tori, touches of levels, and orbits without the symmetry of their
+//! system. Doublings of the period are in `doubling`.
+
+use hertzian::{Branch, Event, EventKind, FrequencyResponse, Shooting, Stop, System, Verdict};
+
+use crate::cascade::MODEL;
+use crate::symmetry::{HARDENING, Hardening, SOFTENING, Softening};
+use crate::torus::{Circulatory, TwoMasses};
+
+hertzian::oscillator! {
+    /// Wang et al. (2021), Fig. 5a.
+    OneSided(x) {
+        param zeta in 0.0..;
+        param load;
+        param drive;
+        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// Two wells, at minus one and one.
+    Wells(x) {
+        param drive;
+        ddot(x) + 0.1*dot(x) - x + x^3 = drive*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// A spring, and a stop whose force begins with a jump.
+    Preloaded(x) {
+        param preload >= 0;
+        param drive;
+        law stop(gap) { gap >= 1 => preload + 5*(gap - 1), else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x) = drive*cos(omega*t);
+    }
+}
+
+fn of_kind<'b>(branch: &'b Branch<'_>, kind: EventKind) -> Vec<&'b Event> {
+    branch
+        .events
+        .iter()
+        .filter(|event| event.kind == kind)
+        .collect()
+}
+
+fn grazings<'b>(branch: &'b Branch<'_>) -> Vec<&'b Event> {
+    let grazing = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
+    branch.events.iter().filter(grazing).collect()
+}
+
+/// `s^2 + c s + k + i p = 0` has the root `s = -i sqrt(k)` at `p = c sqrt(k)`: flutter. The balance of a linear system is exact.
+#[test]
+fn flutter_begins_where_the_characteristic_equation_says() {
+    let (c, k) = (0.1_f64, 1.44_f64);
+    let model = Circulatory {
+        c,
+        k,
+        p: 0.05,
+        drive: 0.3,
+    };
+    let request = FrequencyResponse::of(&model)
+        .vary("p")
+        .omega(0.7)
+        .bifurcations(true);
+    let branch = request.from(0.05).to(0.2).run().unwrap();
+    let [event] = &branch.events[..] else {
+        panic!("{:?} {:?}", branch.events, branch.turns);
+    };
+    assert_eq!(event.kind, EventKind::NeimarkSacker);
+    let error = (event.point.value - c * k.sqrt()).abs();
+    assert!(error < 1e-9 && error <= event.error, "{event} {error:.1e}");
+}
+
+/// At omega 0.61861 a torus is born, by an independent computation with five digits.
+#[test]
+fn a_torus_is_born_of_two_masses_with_a_stop() {
+    let model = TwoMasses {
+        stop: 100.0,
+        drive: 0.1,
+    };
+    let request = FrequencyResponse::of(&model)
+        .harmonics(60)
+        .bifurcations(true);
+    let branch = request.from(0.616).to(0.621).run().unwrap();
+    let [event] = of_kind(&branch, EventKind::NeimarkSacker)[..] else {
+        panic!("{:?} {:?}", branch.events, branch.turns);
+    };
+    let error = (event.point.value - 0.61861).abs();
+    assert!(event.test.abs() < 1e-10 && event.error < 1e-4, "{event}");
+    assert!(error < 5e-6 + 3.0 * event.error, "{event} {error:.1e}");
+    let largest = event.point.stability.multipliers[0];
+    assert!(
+        largest.im != 0.0 && (largest.norm() - 1.0).abs() < 1e-3,
+        "{largest}"
+    );
+}
+
+/// As long as contact lasts, the motion is that of a linear oscillator at resonance, of amplitude `A / (2 zeta)`: it touches zero
+/// at `A = 2 zeta W`.
+#[test]
+fn contact_is_lost_where_the_linear_motion_reaches_zero() {
+    let request = FrequencyResponse::of(&MODEL)
+        .vary("drive")
+        .omega(1.0)
+        .bifurcations(true);
+    let branch = request.from(0.02).to(0.2).run().unwrap();
+    let [event] = &branch.events[..] else {
+        panic!("{:?} {:?}", branch.events, branch.turns);
+    };
+    let error = (event.point.value - 2.0 * 0.032).abs();
+    assert!(error < 1e-10 && error <= event.error, "{event} {error:.1e}");
+    assert_eq!(event.kind, EventKind::Grazing { turns: false });
+    let (before, behind) = branch.points.split_at(event.after);
+    assert!(
+        before
+            .iter()
+            .all(|point| point.observed.contacts[0].fraction == 1.0)
+    );
+    assert!(
+        behind
+            .iter()
+            .all(|point| point.observed.contacts[0].fraction < 1.0)
+    );
+}
+
+/// Figure 5a: contact is lost where the linear motion reaches zero, `A = | 1 - w^2 + 2 i zeta w |` at `W = 1`; the spring with a stop
+/// meets it where its linear motion has an amplitude of one. Shooting has the first at the same place.
+#[test]
+fn levels_are_touched_where_the_linear_motion_reaches_them() {
+    let contact = OneSided {
+        zeta: 0.032,
+        load: 1.0,
+        drive: 0.1,
+    };
+    let branch = FrequencyResponse::of(&contact).from(0.8).to(1.3);
+    let branch = branch.bifurcations(true).run().unwrap();
+    let [event] = grazings(&branch)[..] else {
+        panic!("{:?} {:?}", branch.events, branch.turns);
+    };
+    let omega = event.point.value;
+    let amplitude = 0.1 / (1.0 - omega * omega).hypot(2.0 * 0.032 * omega);
+    assert!((amplitude - 1.0).abs() < 1e-10, "{event}");
+    assert_eq!(event.kind, EventKind::Grazing { turns: false });
+    let shooting = Shooting::of(&contact).from(0.8).to(1.3).run().unwrap();
+    let mut touches = shooting.events(EventKind::Grazing { turns: false });
+    assert!((touches.next().unwrap().cycle.value - omega).abs() < 1e-10);
+    let preloaded = Preloaded {
+        preload: 0.05,
+        drive: 0.15,
+    };
+    let branch = FrequencyResponse::of(&preloaded).from(0.6).to(1.6);
+    let branch = branch.bifurcations(true).run().unwrap();
+    let first = grazings(&branch)[0];
+    let omega = first.point.value;
+    let amplitude = 0.15 / (1.0 - omega * omega).hypot(0.1 * omega);
+    assert!((amplitude - 1.0).abs() < 1e-10, "{first}");
+    // Back from contact the force jumps, and the branch turns there.
+    let turns = EventKind::Grazing { turns: true };
+    let located = branch.events.iter().map(|event| event.kind);
+    let mut all = located.chain(branch.turns.iter().map(|turn| turn.kind));
+    assert!(
+        all.any(|kind| kind == turns),
+        "{:?} {:?}",
+        branch.events,
+        branch.turns
+    );
+}
+
+/// Figure 2: with all harmonics the branch of symmetric orbits is crossed where the symmetry breaks.
+#[test]
+fn broken_symmetry_is_a_branch_point_of_all_harmonics() {
+    let (zeta, drive) = (0.01, 0.1);
+    let systems: [(&dyn System, [f64; 2], [f64; 2]); 2] = [
+        (&Hardening { zeta, drive }, [0.41, 0.34], HARDENING),
+        (&Softening { zeta, drive }, [0.98, 0.86], SOFTENING),
+    ];
+    for (system, [from, to], exact) in systems {
+        let request = FrequencyResponse::of(system).symmetric(false);
+        let branch = request.bifurcations(true).from(from).to(to).run().unwrap();
+        assert_eq!(branch.stopped, Stop::ReachedEnd);
+        let found = of_kind(&branch, EventKind::BranchPoint);
+        assert_eq!(found.len(), 2, "{:?} {:?}", branch.events, branch.turns);
+        for (event, exact) in found.iter().zip(exact) {
+            let error = (event.point.value - exact).abs();
+            assert!(
+                error < 1e-6 && error <= 3.0 * event.error,
+                "{event} {error:.1e}"
+            );
+        }
+    }
+}
+
+/// The branch without the symmetry is found from the middle of its range, and ends where it meets the symmetric one.
+#[test]
+fn orbits_without_the_symmetry_are_found() {
+    let systems: [(&dyn System, [f64; 2], f64); 2] = [
+        (
+            &Hardening {
+                zeta: 0.01,
+                drive: 0.1,
+            },
+            [0.39, 0.45],
+            HARDENING[0],
+        ),
+        (
+            &Softening {
+                zeta: 0.01,
+                drive: 0.1,
+            },
+            [0.92, 1.0],
+            SOFTENING[0],
+        ),
+    ];
+    for (system, [from, to], exact) in systems {
+        let request = FrequencyResponse::of(system)
+            .symmetric(false)
+            .stability(false);
+        let branch = request.from(from).to(to).run().unwrap();
+        let Stop::Joined { parameter, .. } = branch.stopped else {
+            panic!("{}", branch.stopped);
+        };
+        assert!((parameter - exact).abs() < 1e-4, "{parameter}");
+    }
+}
+
+/// In a well `x = 1 + y` with `y'' + 0.1 y' + 2 y = 0.02 cos(omega t)` to first order; on the hill between the wells the orbit is
+/// unstable.
+#[test]
+fn the_orbit_in_a_well_is_found() {
+    let model = Wells { drive: 0.02 };
+    let request = FrequencyResponse::of(&model).from(0.8).to(0.9);
+    let hill = request.run().unwrap();
+    assert_eq!(hill.points[0].stability.verdict, Verdict::Unstable);
+    let well = request.symmetric(false).run().unwrap();
+    let first = &well.points[0];
+    assert_eq!(first.stability.verdict, Verdict::Stable);
+    assert!((first.motion().mean.abs() - 1.0).abs() < 1e-3);
+    let linear = 0.02 / (2.0 - 0.64_f64).hypot(0.08);
+    assert!((0.5 * first.peak_to_peak() / linear - 1.0).abs() < 1e-2);
+    assert_eq!(well.stopped, Stop::ReachedEnd);
+    // One that is given need not be asked for.
+    let again = FrequencyResponse::of(&model).near_orbit(&first.orbit);
+    let again = again.from(0.8).to(0.81).run().unwrap();
+    assert!((again.points[0].motion().mean - first.motion().mean).abs() < 1e-9);
+}
