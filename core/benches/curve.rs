@@ -79,10 +79,8 @@ fn is_right(branch: &Branch<'_>) -> bool {
 fn main() {
     let only: Option<usize> = std::env::args().nth(1).and_then(|k| k.parse().ok());
     let mut switched = f64::NAN;
-    for harmonics in [5, 10, 20, 40, 80] {
-        if only.is_some_and(|only| only != harmonics) {
-            continue;
-        }
+    let all = vec![5, 9, 10, 20, 40, 80];
+    for harmonics in only.map_or(all, |only| vec![only]) {
         let request = request(harmonics);
         let time = median(&request);
         if let Some((_, branch)) = timed(&request) {
@@ -110,7 +108,7 @@ fn main() {
 fn cheapest(method: Aft, switched: f64) {
     let (mut right, mut tried) = (0, 0);
     let mut best: Option<(f64, usize, usize)> = None;
-    for harmonics in [5, 10, 20, 40] {
+    for harmonics in [5, 9, 10, 20, 40] {
         for power in 6..=14 {
             let samples = 1_usize << power;
             if samples < 4 * harmonics + 2 {

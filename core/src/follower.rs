@@ -26,6 +26,16 @@ const WORTHWHILE: f64 = 1.5;
 /// A value asked for is met to this part of the range.
 const VALUE_TOLERANCE: f64 = 1e-13;
 
+/// Events that a run looks for. Where a symmetry breaks is located always.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sought {
+    Folds,
+    /// And doublings of the period.
+    Doublings,
+    /// And crossings of branches, tori, and touches of levels.
+    All,
+}
+
 /// What it takes to compute further orbits of a branch.
 #[derive(Clone)]
 pub(crate) struct Follower<'a> {
@@ -37,10 +47,8 @@ pub(crate) struct Follower<'a> {
     pub(crate) newton: NewtonOptions,
     /// The orbits lack the odd symmetry that others of the system have.
     pub(crate) asymmetric: bool,
-    /// Doublings of the period are looked for.
-    pub(crate) doublings: bool,
-    /// So are crossings of branches, tori, and touches of levels.
-    pub(crate) bifurcations: bool,
+    /// Which events are looked for.
+    pub(crate) sought: Sought,
     /// How multipliers are computed, where they are.
     pub(crate) stability: Option<Method>,
     /// How harmonics follow the tolerance, where they do.
@@ -87,8 +95,11 @@ impl<'a> Follower<'a> {
         let odd = resolution.parity == Parity::Odd;
         let wanted = [
             (odd, EventKind::SymmetryBreaking),
-            (!odd && self.doublings, EventKind::PeriodDoubling),
-            (self.bifurcations, EventKind::BranchPoint),
+            (
+                !odd && self.sought != Sought::Folds,
+                EventKind::PeriodDoubling,
+            ),
+            (self.sought == Sought::All, EventKind::BranchPoint),
         ];
         let wanted = wanted.into_iter().filter(|(wanted, _)| *wanted);
         wanted

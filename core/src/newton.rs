@@ -11,14 +11,17 @@
 //! unit vector of the parameter to solve at a fixed parameter, and a tangent for a step of pseudo-arclength.
 
 mod broyden;
+mod error;
+mod tangent;
 #[cfg(test)]
 mod tests;
 
 use broyden::Broyden;
+pub use error::NewtonError;
 
 use crate::continuation::problem::{Norm, Problem, Scale};
 use crate::jacobian::Jacobian;
-use crate::linear::{Singular, dot};
+use crate::linear::dot;
 use crate::statistics::Statistics;
 
 /// When to stop, and how carefully to go.
@@ -43,61 +46,6 @@ pub struct Converged {
     pub update: f64,
 }
 
-/// Why an iteration ended without a solution.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum NewtonError {
-    /// The updates did not become small.
-    NotConverged {
-        /// Number of updates.
-        iterations: usize,
-        /// Length of the last update.
-        update: f64,
-        /// Largest residual.
-        residual: f64,
-    },
-    /// The bordered matrix is singular.
-    Singular {
-        /// After this many updates.
-        iterations: usize,
-        /// Where elimination stopped.
-        at: Singular,
-    },
-    /// The residual is not a number.
-    NotFinite {
-        /// After this many updates.
-        iterations: usize,
-    },
-}
-
-impl std::fmt::Display for NewtonError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::NotConverged {
-                iterations,
-                update,
-                residual,
-            } => write!(
-                f,
-                "Newton's method did not converge in {iterations} iterations: last update {update:.1e}, residual {residual:.1e}"
-            ),
-            Self::Singular { iterations, at } => write!(
-                f,
-                "the Jacobian is singular after {iterations} iterations: pivot {:.1e} in column {}",
-                at.pivot, at.column
-            ),
-            Self::NotFinite { iterations } => {
-                write!(
-                    f,
-                    "the residual is not finite after {iterations} iterations"
-                )
-            }
-        }
-    }
-}
-
-impl std::error::Error for NewtonError {}
-
 /// Room for one problem; no method allocates.
 #[derive(Debug)]
 pub struct Newton {
@@ -117,6 +65,8 @@ pub struct Newton {
     drift: f64,
     /// Largest ratio of successive updates in the last correction, where the Jacobian leaves something out.
     contraction: f64,
+    /// What the last correction left, estimated, in units of the scale.
+    left: f64,
     /// Work done so far.
     pub statistics: Statistics,
     /// The same in multiplications, estimated.
@@ -131,25 +81,10 @@ const CHORD: f64 = 0.2;
 const CHORD_START: f64 = 0.05;
 /// Further updates that a chord iteration is allowed for each that Newton's method is.
 const CHORD_PATIENCE: usize = 2;
-/// A tangent whose component along the parameter is smaller than this is computed exactly: it may be near a fold.
-const NEAR_FOLD: f64 = 0.1;
-/// Corrections of an exact tangent, at most.
-const REFINEMENTS: usize = 60;
-/// Relative size of the last of them, where it decides on an event.
-const REFINED: f64 = 1e-13;
-/// The same where only the side of a fold matters.
-const ROUGHLY: f64 = 1e-4;
-/// Where rounding keeps corrections from shrinking, this many times that is good enough.
-const ROUNDING: f64 = 100.0;
 /// So much of a contraction is remembered after a correction that was too short to show it.
 const LASTING: f64 = 0.5;
 /// Updates that shrink by less than this do not shrink: that is rounding.
 const STAGNANT: f64 = 0.9;
-/// Drift that does not change a tangent noticeably.
-const SMALL_DRIFT: f64 = 1e-8;
-/// Drift that is made up for along with what the Jacobian leaves out.
-const DRIFT_TO_REFINE: f64 = 1e-2;
-
 /// The last row of (1).
 #[derive(Debug, Clone, Copy)]
 pub struct Border<'a> {
@@ -175,6 +110,7 @@ impl Newton {
             scale: Scale::UNIT,
             drift: f64::INFINITY,
             contraction: 0.0,
+            left: 0.0,
             statistics: Statistics::default(),
             operations: 0,
         }
@@ -248,6 +184,7 @@ impl Newton {
                 self.contraction = self.contraction.max(usual * LASTING);
                 subtract(u, &self.update, 1.0);
                 self.drift += size;
+                self.left = left(size, previous);
                 return Ok(Converged {
                     iterations: iteration + 1,
                     first: first.unwrap_or(size),
@@ -284,6 +221,7 @@ impl Newton {
         }
         if size <= options.tolerance {
             // They shrink slowly, but what was asked for is reached.
+            self.left = left(size, before);
             return Ok(Converged {
                 iterations: updates,
                 first: first.unwrap_or(size),
@@ -336,97 +274,14 @@ impl Newton {
         self.contraction
     }
 
-    /// The direction of the solution curve at a solution that was corrected last, not yet normalised: it solves (1) with a
-    /// right-hand side that is one in the border and zero elsewhere. Near a fold, or where `exact` is set, nothing is left out
-    /// of the Jacobian. Returns whether that could be made up for; if not, the direction is the one of what the Jacobian has,
-    /// and [`Newton::contraction`] says that there is none.
-    pub fn tangent(
-        &mut self,
-        problem: &mut impl Problem,
-        u: &[f64],
-        tangent: &mut [f64],
-        exact: bool,
-    ) -> bool {
-        self.unit_of_border(tangent);
-        let n = self.norm.unknowns();
-        let slope = tangent[n] / self.scale.parameter;
-        let steep = slope.abs() >= NEAR_FOLD * self.norm.length(self.scale, tangent);
-        if steep && !exact {
-            return true;
-        }
-        let allowed = match (self.jacobian.is_exact(), exact) {
-            (true, true) => REFINED,
-            (true, false) => SMALL_DRIFT,
-            // It is refined anyway.
-            (false, _) => DRIFT_TO_REFINE,
-        };
-        if self.drift > allowed {
-            self.trial.copy_from_slice(&self.border);
-            let border = std::mem::take(&mut self.trial);
-            let row = Border {
-                row: &border,
-                value: dot(&border, u),
-            };
-            let renewed = self.linearise(problem, u, row);
-            self.trial = border;
-            if renewed.is_err() {
-                return false;
-            }
-            self.unit_of_border(tangent);
-        }
-        if self.jacobian.is_exact() {
-            return true;
-        }
-        let wanted = if exact { REFINED } else { ROUGHLY };
-        let refined = self.refine(problem, u, tangent, wanted);
-        if !refined {
-            self.contraction = self.contraction.max(1.0);
-            self.unit_of_border(tangent);
-        }
-        refined
+    /// How far from the solution the last correction ended, estimated, in units of the scale.
+    pub fn left(&self) -> f64 {
+        self.left
     }
 
-    /// Writes the solution of (1) for a right-hand side that is one in the border and zero elsewhere.
-    fn unit_of_border(&mut self, tangent: &mut [f64]) {
-        let n = self.norm.unknowns();
-        tangent.fill(0.0);
-        tangent[n] = 1.0;
-        self.solve(tangent);
-    }
-
-    /// Makes up for what the Jacobian leaves out: `t += B^-1 ([0; 1] - J t)`, repeated. Returns whether the last correction
-    /// was as small as wanted, or as rounding allows.
-    fn refine(
-        &mut self,
-        problem: &mut impl Problem,
-        u: &[f64],
-        tangent: &mut [f64],
-        wanted: f64,
-    ) -> bool {
-        let n = self.norm.unknowns();
-        self.memory.clear();
-        let wanted = wanted * self.norm.length(self.scale, tangent);
-        let (mut before, mut previous) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..REFINEMENTS {
-            problem.apply(u, tangent, &mut self.residual[..n]);
-            self.statistics.derivatives += 1;
-            self.residual[n] = dot(&self.border, tangent) - 1.0;
-            self.next_update(false);
-            let change = self.norm.length(self.scale, &self.update);
-            // They need not shrink in every norm at once.
-            let largest = before.max(previous);
-            if change.is_nan() || change >= 4.0 * largest {
-                break;
-            }
-            subtract(tangent, &self.update, 1.0);
-            self.memory.remember(&self.norm, self.scale, &self.update);
-            let rounding = change <= ROUNDING * wanted && change > 0.5 * largest;
-            if change <= wanted || rounding {
-                return true;
-            }
-            (before, previous) = (previous, change);
-        }
-        false
+    /// The same as a change of the parameter.
+    pub fn left_in_parameter(&self) -> f64 {
+        self.left * self.scale.parameter
     }
 
     /// Solves with the matrix of the last [`Newton::correct`], in place.
@@ -514,13 +369,14 @@ impl Newton {
     }
 }
 
-impl NewtonError {
-    fn after(self, iterations: usize) -> Self {
-        match self {
-            Self::Singular { at, .. } => Self::Singular { iterations, at },
-            Self::NotFinite { .. } => Self::NotFinite { iterations },
-            other @ Self::NotConverged { .. } => other,
-        }
+/// What is left behind an update, if those to come go on shrinking at the same rate: `q / (1 - q)` times its size. The first and only
+/// one was small enough for all of it, and updates that do not shrink are rounding, of their own size.
+fn left(size: f64, previous: f64) -> f64 {
+    let ratio = size / previous;
+    if ratio < STAGNANT {
+        size * ratio / (1.0 - ratio)
+    } else {
+        size
     }
 }
 

@@ -9,7 +9,7 @@ use crate::stability::judge::Judge;
 use crate::stability::{Method, Stability};
 use crate::truncation::{BEYOND, Finer};
 
-/// Relative error of peak-to-peak that rounding and the last update leave.
+/// Relative error of peak-to-peak that rounding leaves.
 const ROUNDING: f64 = 1e-14;
 
 /// Reads orbits of one resolution.
@@ -59,7 +59,7 @@ impl<'a> Reader<'a> {
         let observed = self.observer.observe(balance, u);
         let error = wanted.then(|| {
             if corrected {
-                self.error(&observed, u)
+                self.error(&observed, u) + newton.left()
             } else {
                 f64::INFINITY
             }

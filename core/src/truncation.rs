@@ -8,8 +8,8 @@
 //! v_k = -( K_0 + i k Omega C - (k Omega)^2 M )^-1 R_k(u, 0),  K < k <= 2 K;      du = -B^-1 [ R_1..K(u, v) ; 0 ]    (1)
 //! ```
 //!
-//! with complex amplitudes, and `K_0` the part of the linear stiffness that is constant. A linear mode that a harmonic above `2 K`
-//! meets is not seen.
+//! with complex amplitudes, and `K_0` the part of the linear stiffness that is constant. What harmonics above `2 K` do that meet a
+//! linear mode is bounded by extrapolation ([`modes`]), and added to the change of the orbit; its part in the error of an event is not.
 //!
 //! Where contact forces are integrated exactly, the orbit leaves no residual in the first `K` harmonics, `R_1..K(u, 0) = 0`. Then
 //! only what depends on the tail is evaluated: the contacts, and the stiffness that varies.
@@ -28,7 +28,11 @@
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
 
+mod modes;
+
 use nalgebra::{DMatrix, DVector};
+
+use modes::Modes;
 
 use crate::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
@@ -43,7 +47,7 @@ pub(crate) const BEYOND: f64 = 1.5;
 pub(crate) const NOTHING: f64 = 1e-13;
 /// An oscillation smaller than this part of the mean is one of rounding.
 const STILL: f64 = 1e-12;
-/// Relative error of an event that rounding and the last updates leave.
+/// Relative error of an event that rounding leaves.
 const ROUNDING: f64 = 1e-12;
 
 /// A finer balance of the same system, and room for its vectors.
@@ -58,6 +62,9 @@ pub(crate) struct Finer<'a> {
     core: Vec<f64>,
     /// Mass, damping and constant stiffness, each row by row.
     linear: [Vec<f64>; 3],
+    /// Linear modes, and bounds on the amplitudes of the harmonics above the tail that meet one, for each coordinate.
+    modes: Modes,
+    beyond: Vec<f64>,
     /// The coarse balance, where contact forces are exact.
     plain: Option<Balance<'a>>,
     /// Series of a contact force; so much of it reaches the coarse harmonics.
@@ -93,6 +100,8 @@ impl<'a> Finer<'a> {
             residual: vec![0.0; unknowns],
             core: vec![0.0; coordinates * series::length(coarse.harmonics) + 1],
             linear: Default::default(),
+            modes: Modes::default(),
+            beyond: vec![0.0; coordinates],
             force: vec![0.0; series::length(balance.force_harmonics())],
             short: series::length(plain.force_harmonics()),
             plain: (coarse.aft == Aft::Switched).then_some(plain),
@@ -218,6 +227,13 @@ impl<'a> Finer<'a> {
         self.write_linear();
         let n = self.balance.layout().coordinates;
         let base = self.balance.base();
+        self.beyond.fill(0.0);
+        self.modes.add_bounds(
+            &self.balance,
+            &self.linear,
+            &self.residual,
+            &mut self.beyond,
+        );
         let [mass, damping, stiffness] = &self.linear;
         for k in self.coarse.harmonics + 1..=self.balance.resolution().harmonics {
             let frequency = base * k as f64;
@@ -297,10 +313,12 @@ impl<'a> Finer<'a> {
     fn measure(&mut self, u: &[f64]) {
         let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
         let mut largest = (0.0_f64, 0.0_f64);
-        for (corrected, plain) in self.orbit.chunks_exact(fine).zip(u.chunks_exact(coarse)) {
+        let series = self.orbit.chunks_exact(fine).zip(u.chunks_exact(coarse));
+        for ((corrected, plain), beyond) in series.zip(&self.beyond) {
             let (same, tail) = corrected.split_at(coarse);
             let core = same.iter().zip(plain).map(|(a, b)| (a - b).abs());
             let change: f64 = core.chain(tail.iter().map(|x| x.abs())).sum();
+            let change = change + beyond;
             let oscillation: f64 = plain[1..].iter().map(|x| x.abs()).sum();
             let size = oscillation.max(STILL * plain[0].abs());
             largest = (largest.0.max(change), largest.1.max(size));
@@ -352,7 +370,8 @@ impl<'a> Finer<'a> {
         }
         // The extremes do not move by more than all changes together.
         let moved = f64::min(moved, most);
-        parts.iter().map(|part| part.abs()).sum::<f64>() + moved
+        let beyond = 2.0 * self.beyond[coordinate];
+        parts.iter().map(|part| part.abs()).sum::<f64>() + moved + beyond
     }
 
     /// Estimated error of the parameter at a fold, whose factors Newton's method holds.
@@ -361,9 +380,10 @@ impl<'a> Finer<'a> {
         newton.left_null_vector(&mut psi);
         let n = u.len() - 1;
         let value = u[n].abs();
+        let left = newton.left_in_parameter();
         self.add_tail(u, newton).map_or(f64::INFINITY, |core| {
             let change = crate::linear::dot(&psi[..n], &core[..n]).abs();
-            BEYOND * change + ROUNDING * value
+            BEYOND * change + ROUNDING * value + left
         })
     }
 }

@@ -432,10 +432,7 @@ fn any_parameter_varies_and_the_record_says_of_what() {
     assert_eq!(points[0]["value"], 0.5);
     assert_eq!(points.last().expect("points")["value"], 1.0);
     let picture = std::fs::read_to_string(&svg).expect("a picture");
-    assert!(
-        picture.contains("Stop: zeta = 0.1, ω = 1.2"),
-        "{picture}"
-    );
+    assert!(picture.contains("Stop: zeta = 0.1, ω = 1.2"), "{picture}");
     let alone = coarse(
         &folder,
         &["--sweep", "alpha", "--from", "1.4", "--to", "1.6"],

@@ -28,6 +28,8 @@ mod blocks;
 mod contacts;
 mod harmonics;
 mod linear;
+#[cfg(test)]
+mod switched_tests;
 mod terms;
 #[cfg(test)]
 mod tests;

@@ -43,9 +43,9 @@ impl StepControl {
         }
     }
 
-    /// A step that looks wrong is tried again, unless it is already short: a kink keeps its angle at any length.
-    pub(crate) fn is_long(step: f64) -> bool {
-        step > 1e-4
+    /// The step after one that looks wrong; `None` if it is short already: a kink keeps its angle at any length.
+    pub(crate) fn after_doubt(&self, step: f64) -> Option<f64> {
+        self.after_failure(step).filter(|_| step > 1e-4)
     }
 
     /// A step that turned by this angle is tried again.

@@ -4,7 +4,6 @@
 
 use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
 use super::problem::{Norm, Problem, Scale};
-use super::step::StepControl;
 use crate::newton::{Border, Newton, NewtonError};
 
 /// A walk that has its first point.
@@ -241,50 +240,38 @@ impl Walk {
     ) -> Result<CurvePoint, Stop> {
         self.bend_at(newton, from);
         loop {
-            let result = self.corrected(problem, newton, from, self.step);
-            let reason = match result {
+            let steps = self.options.steps;
+            let shorter = match self.corrected(problem, newton, from, self.step) {
                 Ok((point, distance)) => {
-                    let cosine = newton
-                        .norm()
-                        .product(from.scale, &from.tangent, &point.tangent)
-                        / newton.norm().length(from.scale, &point.tangent);
+                    let norm = newton.norm();
+                    let cosine = norm.product(from.scale, &from.tangent, &point.tangent)
+                        / norm.length(from.scale, &point.tangent);
                     let angle = cosine.clamp(-1.0, 1.0).acos();
-                    let steps = &self.options.steps;
                     let looks_wrong = steps.turns_too_far(angle)
                         || steps.is_too_far(distance)
-                        || passes_folds(newton.norm(), from, &point);
-                    if !(looks_wrong && StepControl::is_long(self.step)) {
+                        || passes_folds(norm, from, &point);
+                    let shorter = steps.after_doubt(self.step).filter(|_| looks_wrong);
+                    let Some(shorter) = shorter else {
                         newton.statistics.accepted_steps += 1;
                         self.remember(from, angle);
                         let slope = point.parameter_slope();
-                        self.step = self
-                            .options
-                            .steps
-                            .after_success(self.step, angle, distance, slope);
+                        self.step = steps.after_success(self.step, angle, distance, slope);
                         return Ok(point);
-                    }
-                    None
+                    };
+                    newton.statistics.rejected_steps += 1;
+                    shorter
                 }
-                Err(reason) => Some(reason),
-            };
-            newton.statistics.rejected_steps += 1;
-            self.bend.fill(0.0);
-            match (self.options.steps.after_failure(self.step), reason) {
-                (Some(shorter), _) => self.step = shorter,
-                (None, reason) => {
-                    let value = from.parameter();
-                    let reason = reason.unwrap_or(NewtonError::NotConverged {
-                        iterations: 0,
-                        update: self.step,
-                        residual: 0.0,
-                    });
-                    return Err(Stop::StepTooShort {
+                Err(reason) => {
+                    newton.statistics.rejected_steps += 1;
+                    steps.after_failure(self.step).ok_or(Stop::StepTooShort {
                         step: self.step,
-                        value,
+                        value: from.parameter(),
                         reason,
-                    });
+                    })?
                 }
-            }
+            };
+            self.bend.fill(0.0);
+            self.step = shorter;
         }
     }
 

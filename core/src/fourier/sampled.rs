@@ -71,8 +71,8 @@ impl SampledTransform {
         );
     }
 
-    /// Whether the upper eighth of the spectrum of these samples is below a part of its largest coefficient.
-    pub(crate) fn is_resolved(&mut self, samples: &[f64], part: f64) -> bool {
+    /// Whether so many coefficients at the upper end of the spectrum of these samples are below a part of its largest.
+    pub(crate) fn is_resolved(&mut self, samples: &[f64], part: f64, window: usize) -> bool {
         self.input.copy_from_slice(samples);
         let done = self.forward.process_with_scratch(
             &mut self.input,
@@ -81,7 +81,7 @@ impl SampledTransform {
         );
         debug_assert!(done.is_ok(), "lengths fit: {done:?}");
         let largest = |bins: &[Complex64]| bins.iter().fold(0.0_f64, |m, b| m.max(b.norm_sqr()));
-        let upper = self.spectrum.len() - self.spectrum.len() / 8 - 1;
+        let upper = self.spectrum.len().saturating_sub(window);
         let (all, end) = (largest(&self.spectrum), largest(&self.spectrum[upper..]));
         end <= part * part * all
     }

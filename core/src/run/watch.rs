@@ -27,7 +27,7 @@ use crate::branch::{Event, EventKind, Point, Turn};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::{Located, locate};
-use crate::follower::Follower;
+use crate::follower::{Follower, Sought};
 use crate::fourier::series;
 use crate::harmonics::resize;
 use crate::newton::{Border, Newton};
@@ -90,7 +90,7 @@ pub(super) struct Watch<'a> {
 impl<'a> Watch<'a> {
     pub(super) fn new(follower: &Follower<'a>, resolution: Resolution) -> Self {
         let coordinates = follower.system.facts().coordinates.len();
-        let all = follower.bifurcations;
+        let all = follower.sought == Sought::All;
         // Two multipliers on the unit circle, of one coordinate, are there with no damping only.
         let pairs = all && follower.stability.is_some() && coordinates > 1;
         Self {
@@ -314,11 +314,12 @@ impl<'a> Run<'_, 'a> {
         (test, located): (&mut Test<'_, 'a>, &Located),
     ) {
         let u = &located.point.u;
+        let left = newton.left_in_parameter();
         let error = if self.reader.finer.correct(u, newton) {
             let pairs = behind.u.iter().zip(&before.u);
             let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
             let length = newton.norm().length(before.scale, &step);
-            self.event_error(&located.point, DIFFERENCE * length, kind, test)
+            left + self.event_error(&located.point, DIFFERENCE * length, kind, test)
         } else {
             f64::INFINITY
         };

@@ -11,21 +11,20 @@
 //!
 //! What is constant in (2) is put together once for an orbit, and each contact adds a product of a column and a row.
 
+mod nodes;
+mod pair;
+
 use nalgebra::DMatrix;
 
-use super::magnus;
-use super::orbit::Orbit;
-use super::path::{Contact, Cut, Event, Path};
-use crate::fourier::grading::Grading;
-use crate::fourier::kernels::{evaluate, padded};
-use crate::fourier::phases::sines_and_cosines;
-use crate::fourier::series;
-use crate::law::{Derivatives, On, Variation};
-use crate::layout::{ContactLayout, Entry, Term};
-use crate::system::{Part, Wave};
+use nodes::Nodes;
+use pair::{Pair, wave_at};
 
-/// Within this phase of the highest harmonic, four terms of Taylor's series give the gap to rounding.
-const NEAR: f64 = 1e-3;
+use super::orbit::Orbit;
+use super::path::{Cut, Event, Path};
+use crate::fourier::grading::Grading;
+use crate::fourier::series;
+use crate::law::{On, Variation};
+use crate::layout::Entry;
 
 /// The matrix of (1) along one orbit; written column by column.
 #[derive(Debug, Default)]
@@ -49,48 +48,6 @@ pub(super) struct Linearised {
 
 /// Phases no farther from each other than this are the same but for rounding.
 const SAME: f64 = 1e-12;
-
-/// The column `M^-1 e` and the row `d` of a contact, with its slopes at the nodes.
-#[derive(Debug, Default)]
-struct Pair {
-    /// Neither direction varies.
-    fixed: bool,
-    push: Vec<f64>,
-    pull: Vec<f64>,
-    /// `dd/dtau`
-    turn: Vec<f64>,
-    by_gap: Vec<f64>,
-    by_rate: Vec<f64>,
-    /// The slopes are not all zero on this panel.
-    present: bool,
-}
-
-/// The nodes of one panel: three for each step.
-#[derive(Debug, Default)]
-struct Nodes {
-    rules: Vec<Rule>,
-    cosines: Vec<f64>,
-    sines: Vec<f64>,
-    taus: Vec<f64>,
-    /// Phases from the start of the panel, or from its end and negative.
-    offsets: Vec<f64>,
-    /// Width of a step times the slope of the grading.
-    weights: Vec<f64>,
-    gap: Vec<f64>,
-    rate: Vec<f64>,
-    force: Vec<f64>,
-}
-
-/// Graded nodes on `[0, 1]`, kept for the next panel that wants them.
-#[derive(Debug)]
-struct Rule {
-    grading: Grading,
-    steps: usize,
-    /// Distance from the start, or from the end and negative.
-    distances: Vec<f64>,
-    /// Slope of the map over the number of steps.
-    slopes: Vec<f64>,
-}
 
 /// A panel, and how it is to be integrated.
 #[derive(Debug, Clone, Copy)]
@@ -371,223 +328,4 @@ impl Linearised {
             }
         }
     }
-}
-
-impl Pair {
-    /// The directions at a phase.
-    fn turn_to(
-        &mut self,
-        layout: &ContactLayout,
-        orbit: &Orbit<'_>,
-        period: usize,
-        inverse_mass: &[f64],
-        tau: f64,
-    ) {
-        let n = orbit.layout.coordinates;
-        for vector in [&mut self.push, &mut self.pull, &mut self.turn] {
-            vector.clear();
-            vector.resize(n, 0.0);
-        }
-        let value = |term: &Term| orbit.coefficients[term.coefficient];
-        for term in &layout.force {
-            let value = value(term) * wave_at(term.wave, period, tau);
-            for (i, push) in self.push.iter_mut().enumerate() {
-                *push += inverse_mass[i * n + term.index] * value;
-            }
-        }
-        for term in &layout.gap {
-            self.pull[term.index] += value(term) * wave_at(term.wave, period, tau);
-            self.turn[term.index] += value(term) * slope_at(term.wave, period, tau);
-        }
-    }
-
-    /// The slopes of a piece on which they are constant, at any gap of it. Returns whether that took an evaluation.
-    fn evaluate_once(
-        &mut self,
-        orbit: &Orbit<'_>,
-        contact: &Contact,
-        layout: &ContactLayout,
-    ) -> bool {
-        let law = orbit.system.law(layout.law);
-        let facts = &law.facts().pieces[contact.piece];
-        for slopes in [&mut self.by_gap, &mut self.by_rate] {
-            slopes.clear();
-            slopes.push(0.0);
-        }
-        self.present = [facts.by_gap, facts.by_rate] != [Variation::Zero; 2];
-        if !self.present {
-            return false;
-        }
-        let below = contact
-            .piece
-            .checked_sub(1)
-            .map(|index| contact.levels[index]);
-        let above = contact.levels.get(contact.piece).copied();
-        let gap = match (below, above) {
-            (Some(a), Some(b)) => 0.5 * (a + b),
-            (Some(a), None) => a + a.abs().max(1.0),
-            (None, Some(b)) => b - b.abs().max(1.0),
-            (None, None) => 0.0,
-        };
-        let mut force = [0.0];
-        let out = Derivatives {
-            force: &mut force,
-            by_gap: &mut self.by_gap,
-            by_rate: &mut self.by_rate,
-        };
-        let on = On::Piece(contact.piece);
-        law.derivatives(on, &contact.arguments, &[gap], &[0.0], out);
-        true
-    }
-
-    /// The slopes at the nodes.
-    fn evaluate(
-        &mut self,
-        orbit: &Orbit<'_>,
-        contact: &Contact,
-        layout: &ContactLayout,
-        nodes: &mut Nodes,
-    ) {
-        self.present = true;
-        self.by_gap.resize(nodes.gap.len(), 0.0);
-        self.by_rate.resize(nodes.gap.len(), 0.0);
-        let out = Derivatives {
-            force: &mut nodes.force,
-            by_gap: &mut self.by_gap,
-            by_rate: &mut self.by_rate,
-        };
-        let law = orbit.system.law(layout.law);
-        let on = On::Piece(contact.piece);
-        law.derivatives(on, &contact.arguments, &nodes.gap, &nodes.rate, out);
-    }
-}
-
-impl Nodes {
-    /// Puts three nodes into every step of a panel.
-    fn place(&mut self, panel: &Panel) {
-        let rule = self.rule(panel);
-        let rule = &self.rules[rule];
-        let count = rule.distances.len();
-        let filled = padded(count);
-        for room in [
-            &mut self.cosines,
-            &mut self.sines,
-            &mut self.gap,
-            &mut self.rate,
-            &mut self.force,
-        ] {
-            room.resize(filled, 0.0);
-        }
-        let width = panel.end - panel.start;
-        self.taus.clear();
-        self.offsets.clear();
-        self.weights.clear();
-        self.offsets
-            .extend(rule.distances.iter().map(|distance| width * distance));
-        self.weights
-            .extend(rule.slopes.iter().map(|slope| width * slope));
-        self.taus.extend(self.offsets.iter().map(|&offset| {
-            let from_end = offset.is_sign_negative();
-            offset + if from_end { panel.end } else { panel.start }
-        }));
-        // Nodes that only fill the last group stand where the last one stands.
-        self.taus.resize(filled, self.taus[count - 1]);
-        sines_and_cosines(&self.taus, &mut self.sines, &mut self.cosines);
-        self.taus.truncate(count);
-    }
-
-    fn rule(&mut self, panel: &Panel) -> usize {
-        let Panel { grading, steps, .. } = *panel;
-        let known = self
-            .rules
-            .iter()
-            .position(|rule| rule.grading == grading && rule.steps == steps);
-        known.unwrap_or_else(|| {
-            let h = 1.0 / steps as f64;
-            let mut rule = Rule {
-                grading,
-                steps,
-                distances: Vec::with_capacity(3 * steps),
-                slopes: Vec::with_capacity(3 * steps),
-            };
-            for step in 0..steps {
-                for node in magnus::NODES {
-                    let (distance, slope, from_start) = grading.distance((step as f64 + node) * h);
-                    rule.distances
-                        .push(if from_start { distance } else { -distance });
-                    rule.slopes.push(slope * h);
-                }
-            }
-            self.rules.push(rule);
-            self.rules.len() - 1
-        })
-    }
-
-    /// Gap and rate of a contact at the nodes. Close to an end where the gap is on a level and the slopes are singular, the gap
-    /// is taken from its Taylor polynomial there: a small distance from the level keeps all its digits then.
-    fn motion(&mut self, contact: &Contact, panel: &Panel, ends: [Option<Cut>; 2]) {
-        evaluate(
-            [&contact.gap, &contact.rate],
-            &self.cosines,
-            &self.sines,
-            &mut self.gap,
-            &mut self.rate,
-        );
-        let near = NEAR / series::harmonics(&contact.gap).max(1) as f64;
-        let powers = [panel.grading.start, panel.grading.end];
-        let phases = [panel.start, panel.end];
-        for end in 0..2 {
-            let Some(cut) = ends[end].filter(|cut| cut.event != Event::Near && powers[end] > 1)
-            else {
-                continue;
-            };
-            let taylor = taylor(&contact.gap, phases[end]);
-            let level = contact.levels[cut.level];
-            for (&distance, gap) in self.offsets.iter().zip(&mut self.gap) {
-                let of_this_end = distance.is_sign_negative() == (end == 1);
-                if of_this_end && distance.abs() < near {
-                    let [a, b, c, d] = taylor;
-                    *gap = level + distance * (a + distance * (b + distance * (c + distance * d)));
-                }
-            }
-        }
-    }
-}
-
-/// Derivatives of a series at a phase, from the first to the fourth, each divided by its factorial.
-fn taylor(series: &[f64], tau: f64) -> [f64; 4] {
-    let (sine, cosine) = tau.sin_cos();
-    let (mut c, mut s) = (1.0, 0.0);
-    let mut sums = [0.0; 4];
-    for (index, pair) in series[1..].chunks_exact(2).enumerate() {
-        let k = (index + 1) as f64;
-        (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
-        let (even, odd) = (pair[0] * c + pair[1] * s, pair[1] * c - pair[0] * s);
-        sums[0] += k * odd;
-        sums[1] -= k * k * even;
-        sums[2] -= k * k * k * odd;
-        sums[3] += k * k * k * k * even;
-    }
-    [sums[0], sums[1] / 2.0, sums[2] / 6.0, sums[3] / 24.0]
-}
-
-/// Value of a wave at a phase of the orbit.
-fn wave_at(wave: Wave, period: usize, tau: f64) -> f64 {
-    if wave.harmonic == 0 {
-        return 1.0;
-    }
-    let angle = f64::from(wave.harmonic) * period as f64 * tau;
-    match wave.part {
-        Part::Cosine => angle.cos(),
-        Part::Sine => angle.sin(),
-    }
-}
-
-/// Its phase derivative.
-fn slope_at(wave: Wave, period: usize, tau: f64) -> f64 {
-    if wave.harmonic == 0 {
-        return 0.0;
-    }
-    let (slope, sign) = wave.derivative();
-    sign * f64::from(wave.harmonic) * period as f64 * wave_at(slope, period, tau)
 }

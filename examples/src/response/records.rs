@@ -113,6 +113,8 @@ pub struct EventRecord {
 pub struct TurnRecord {
     /// What varies along the branch.
     pub value: f64,
+    /// What would have happened where the test function vanishes.
+    pub kind: String,
     /// Frequency of the excitation.
     pub omega: f64,
     /// Amplitude of the excitation.
@@ -205,6 +207,7 @@ impl Record {
             };
             TurnRecord {
                 value: turn.value,
+                kind: turn.kind.to_string(),
                 omega,
                 drive,
                 after: turn.after,

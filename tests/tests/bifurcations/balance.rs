@@ -217,10 +217,10 @@ fn orbits_without_the_symmetry_are_found() {
             .symmetric(false)
             .stability(false);
         let branch = request.from(from).to(to).run().unwrap();
-        let Stop::Joined { parameter, .. } = branch.stopped else {
+        let Stop::Joined { value, .. } = branch.stopped else {
             panic!("{}", branch.stopped);
         };
-        assert!((parameter - exact).abs() < 1e-4, "{parameter}");
+        assert!((value - exact).abs() < 1e-4, "{value}");
     }
 }
 

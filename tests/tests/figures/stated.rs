@@ -261,14 +261,18 @@ fn a_linear_mode_among_the_harmonics_left_out_is_in_the_stated_error() {
         assert_eq!(orbits.len(), 1);
         orbits.remove(0)
     };
-    let (few, many) = (orbit(5), orbit(40));
-    let error = (few.peak_to_peak() / many.peak_to_peak() - 1.0).abs();
-    let stated = few.error.unwrap();
-    assert!(error > 1e-3, "{error:e}");
-    assert!(
-        error < MARGIN * stated && stated < 10.0 * error,
-        "{error:e} {stated:e}"
-    );
+    let many = orbit(40);
+    // With three and four harmonics the tenth is beyond those of the correction, and is bounded by extrapolation.
+    for (harmonics, most) in [(5, 10.0), (4, 100.0), (3, 100.0)] {
+        let few = orbit(harmonics);
+        let error = (few.peak_to_peak() / many.peak_to_peak() - 1.0).abs();
+        let stated = few.error.unwrap();
+        assert!(error > 1e-3, "{harmonics}: {error:e}");
+        assert!(
+            error < MARGIN * stated && stated < most * error,
+            "{harmonics}: {error:e} {stated:e}"
+        );
+    }
 }
 
 /// A pair of folds of Fig. 2b, 0.0007 apart, that the exact values do not list: found, and confirmed by direct

@@ -259,11 +259,23 @@ pub(crate) fn model(random: &mut Random) -> (Box<dyn System + Send>, f64) {
     (model, natural)
 }
 
+/// The name and the value of some parameter that is not zero.
+fn any_parameter(random: &mut Random, system: &dyn System) -> (String, f64) {
+    let parameters = &system.facts().parameters;
+    let mut values = vec![0.0; parameters.len()];
+    system.values(&mut values);
+    let named = parameters.iter().zip(&values);
+    let usable: Vec<_> = named.filter(|(_, value)| **value != 0.0).collect();
+    let chosen = usize::try_from(random.below(usable.len() as u64)).unwrap();
+    let (parameter, value) = usable[chosen];
+    (parameter.name.to_string(), *value)
+}
+
 /// What is asked of a model.
 #[derive(Debug)]
 pub(crate) struct Request {
-    /// The drive at both ends and the frequency, or the frequency at both ends.
-    drive_at: Option<f64>,
+    /// The parameter that is varied, and the frequency then; or the frequency is.
+    parameter: Option<(String, f64)>,
     from: f64,
     to: f64,
     harmonics: Option<usize>,
@@ -274,29 +286,33 @@ pub(crate) struct Request {
 }
 
 impl Request {
-    pub(crate) fn draw(random: &mut Random, natural: f64) -> Self {
+    pub(crate) fn draw(random: &mut Random, system: &dyn System, natural: f64) -> Self {
         let centre = if random.once_in(4) {
             random.decades()
         } else {
             natural
         };
-        let drive_at = random.once_in(6).then(|| centre * random.between(0.3, 2.0));
-        let (mut from, mut to) = match drive_at {
-            Some(_) => (random.decades(), random.decades()),
+        let parameter = random.once_in(4).then(|| any_parameter(random, system));
+        let (mut from, mut to) = match &parameter {
+            Some((_, value)) => (
+                value * random.between(0.3, 1.0),
+                value * random.between(1.0, 2.0),
+            ),
             None if random.once_in(2) => (centre, centre * random.between(1.001, 1.1)),
             None => (
                 centre * random.between(0.2, 1.0),
                 centre * random.between(1.0, 3.0),
             ),
         };
+        let parameter = parameter.map(|(name, _)| (name, centre * random.between(0.3, 2.0)));
         if random.once_in(2) {
             std::mem::swap(&mut from, &mut to);
         }
-        // A range takes some 70 points or more, so that few come to its end.
-        let most = if random.once_in(20) { 150 } else { 10 };
+        // A range takes some 70 points or more, so that few come to its end; most cases are about the start.
+        let most = if random.once_in(8) { 400 } else { 10 };
         let points = 3 + usize::try_from(random.below(most)).unwrap();
         Self {
-            drive_at,
+            parameter,
             from,
             to,
             harmonics: random
@@ -321,8 +337,8 @@ impl Request {
             .period(self.period)
             .stability(self.stability)
             .max_points(self.points);
-        if let Some(omega) = self.drive_at {
-            response = response.vary("drive").omega(omega);
+        if let Some((name, omega)) = &self.parameter {
+            response = response.vary(name.as_str()).omega(*omega);
         }
         match self.harmonics {
             Some(harmonics) => response.harmonics(harmonics),

@@ -37,7 +37,7 @@ impl Case {
     fn draw(index: u64) -> Self {
         let random = &mut Random::of(index);
         let (system, natural) = model(random);
-        let request = Request::draw(random, natural);
+        let request = Request::draw(random, system.as_ref(), natural);
         Self {
             index,
             system,

@@ -413,3 +413,32 @@ fn short_contacts_have_their_closed_form() {
         assert!(error < allowed, "{half} {error:e}");
     }
 }
+
+/// An odd orbit of period one in a balance of period 35 has its harmonics at 35 and 105, and its cube at 35, 105, ..., 315: with 256
+/// samples 175, 245 and 315 come down to 81, 11 and 59, and nothing is left at the upper end.
+#[test]
+fn samples_suffice_for_a_spectrum_with_holes() {
+    let mut gap = vec![0.0; series::length(105)];
+    (gap[69], gap[70], gap[209]) = (0.8, 0.3, 0.1);
+    let mut simple = vec![0.0; series::length(3)];
+    (simple[1], simple[2], simple[5]) = (0.8, 0.3, 0.1);
+    let (long, short) = (Case::new(false, 3.0, gap), Case::new(false, 3.0, simple));
+    let mut aft = SwitchedAft::default();
+    // Away from the level there is one piece.
+    let away = |case: &Case| {
+        let mut gap = case.gap.clone();
+        gap[0] = 3.0;
+        gap
+    };
+    let force = long.force(&mut aft, &away(&long), &[0.0, 3.0]);
+    let expected = short.force(&mut aft, &away(&short), &[0.0, 3.0]);
+    for k in 1..=105 {
+        let found = force[2 * k - 1].hypot(force[2 * k]);
+        let wanted = if k.is_multiple_of(35) {
+            expected[2 * (k / 35) - 1].hypot(expected[2 * (k / 35)])
+        } else {
+            0.0
+        };
+        assert!((found - wanted).abs() < 1e-11, "{k}: {found} {wanted}");
+    }
+}

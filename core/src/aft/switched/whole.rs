@@ -10,8 +10,9 @@ use crate::fourier::sampled::SampledTransform;
 use crate::fourier::series;
 use crate::law::{Derivatives, On, Variation};
 
-/// The upper eighth of the spectrum, relative to the largest coefficient, at which samples suffice: aliases of the harmonics
-/// asked for lie as far above Nyquist as those lie below, and are smaller still.
+/// The upper end of the spectrum, relative to the largest coefficient, at which samples suffice: aliases of the harmonics
+/// asked for lie as far above Nyquist as those lie below, and are smaller still. It is the upper eighth, or twice the spacing of the gap's
+/// harmonics where that is more: an orbit of a shorter period than the balance's has a spectrum with holes.
 const RESOLVED: f64 = 1e-10;
 /// More samples are never taken.
 const MOST: usize = 1 << 15;
@@ -35,6 +36,8 @@ struct Grid {
     by_argument: Vec<f64>,
     by_parameter: Vec<f64>,
     series: Vec<f64>,
+    /// So much of the upper end of the spectrum must be empty.
+    window: usize,
 }
 
 impl Whole {
@@ -43,10 +46,12 @@ impl Whole {
         let slopes = sums.slopes.as_ref().map_or(0, |s| s.by_gap.len() / 2);
         let top = (sums.force.len() / 2).max(slopes);
         let least = (top + series::harmonics(input.gap) + 8).next_power_of_two();
+        let spacing = spacing(input.gap);
         let mut samples = least;
         loop {
             let index = self.grid(samples);
             let grid = &mut self.grids[index];
+            grid.window = (samples / 16 + 1).max(2 * spacing);
             self.operations += PER_SAMPLE * samples as u64;
             if grid.evaluate(input, piece, Wanted::of(sums)) || samples >= MOST.max(least) {
                 grid.add(sums);
@@ -81,6 +86,7 @@ impl Grid {
             by_argument: room(),
             by_parameter: room(),
             series: vec![0.0; series::length((samples - 1) / 2)],
+            window: samples / 16 + 1,
         }
     }
 
@@ -94,7 +100,9 @@ impl Grid {
                 input
                     .law
                     .force(on, input.arguments, gap, rate, &mut self.force);
-                return self.transform.is_resolved(&self.force, RESOLVED);
+                return self
+                    .transform
+                    .is_resolved(&self.force, RESOLVED, self.window);
             }
             Wanted::Slopes => None,
             Wanted::Changes(changing) => Some(changing),
@@ -108,10 +116,19 @@ impl Grid {
         let facts = &input.law.facts().pieces[piece];
         let varying = |variation| variation == Variation::Varying;
         self.by_parameter(input, piece, changing);
-        self.transform.is_resolved(&self.force, RESOLVED)
-            && (!varying(facts.by_gap) || self.transform.is_resolved(&self.by_gap, RESOLVED))
-            && (!varying(facts.by_rate) || self.transform.is_resolved(&self.by_rate, RESOLVED))
-            && self.transform.is_resolved(&self.by_parameter, RESOLVED)
+        self.transform
+            .is_resolved(&self.force, RESOLVED, self.window)
+            && (!varying(facts.by_gap)
+                || self
+                    .transform
+                    .is_resolved(&self.by_gap, RESOLVED, self.window))
+            && (!varying(facts.by_rate)
+                || self
+                    .transform
+                    .is_resolved(&self.by_rate, RESOLVED, self.window))
+            && self
+                .transform
+                .is_resolved(&self.by_parameter, RESOLVED, self.window)
     }
 
     /// `phi_g dg + phi_r dr + phi_a da`
@@ -172,4 +189,19 @@ fn add(transform: &mut SampledTransform, samples: &[f64], room: &mut [f64], sum:
     for (to, from) in sum.iter_mut().zip(room) {
         *to += *from;
     }
+}
+
+/// The greatest common divisor of the harmonics that a series has, but for rounding; one if it has none.
+fn spacing(series: &[f64]) -> usize {
+    let size = |pair: &[f64]| pair[0].abs().max(pair[1].abs());
+    let pairs = || series[1..].chunks_exact(2);
+    let nothing = RESOLVED * pairs().map(size).fold(0.0, f64::max);
+    let present = pairs().enumerate().filter(|(_, pair)| size(pair) > nothing);
+    let common = present.fold(0, |common, (index, _)| divisor(common, index + 1));
+    common.max(1)
+}
+
+/// The greatest common divisor (Euclid).
+fn divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { divisor(b, a % b) }
 }

@@ -17,6 +17,12 @@ const FIRST: f64 = 0.6;
 const GRADED: f64 = 0.3;
 /// Attempts at one step.
 const MOST_ATTEMPTS: usize = 200;
+/// A step to a level may be so many times as wide as the widest that is known to be accurate: the step before it would be next to
+/// nothing otherwise.
+const WIDER: f64 = 1.1;
+/// Attempts at landing on a level in one step. Where a gap nearly touches it, a landing may find the second of two crossings
+/// again and again.
+const MOST_LANDINGS: usize = 6;
 /// The factor of a step that could not be solved.
 const SHORTEN: f64 = 0.4;
 /// A step is not tried if it is shorter than this, in parts of the phase and in radians.
@@ -156,11 +162,19 @@ impl<const S: usize> Engine<'_, S> {
         let left = span - self.here.passed;
         self.accelerate_here();
         let mut plan = self.first_plan(left);
-        let mut turned = 0;
+        let (mut turned, mut landings) = (0, 0);
         for _ in 0..MOST_ATTEMPTS {
             let tried = match plan {
                 Plan::Span(width) => self.try_span(width, left, &mut turned)?,
-                Plan::Land(aim) => self.try_landing(aim, left),
+                Plan::Land(aim) if landings < MOST_LANDINGS => {
+                    landings += 1;
+                    self.try_landing(aim, left)
+                }
+                // From halfway the two are farther apart, in parts of the step.
+                Plan::Land(aim) => {
+                    landings = 0;
+                    Tried::Instead(Plan::Span(0.5 * aim.distance))
+                }
             };
             plan = match tried {
                 Tried::Instead(plan) => plan,
@@ -170,7 +184,7 @@ impl<const S: usize> Engine<'_, S> {
                 },
             };
         }
-        Err(self.too_short())
+        Err(self.too_short(self.trial.width))
     }
 
     /// To the level that is about to be reached, or as far as steps went before.
@@ -190,17 +204,17 @@ impl<const S: usize> Engine<'_, S> {
         }
     }
 
-    fn too_short(&self) -> FlowError {
+    fn too_short(&self, step: f64) -> FlowError {
         FlowError::StepTooShort {
             phase: self.phase(),
-            step: self.trial.width,
+            step,
         }
     }
 
     /// Tries a step of a width.
     fn try_span(&mut self, width: f64, left: f64, turned: &mut usize) -> Result<Tried, FlowError> {
         if width.abs() <= SHORTEST * self.phase().abs().max(1.0) && width != left {
-            return Err(self.too_short());
+            return Err(self.too_short(width));
         }
         let table = self.table(Map::FromStart(self.start_power()));
         let mut solved = self.solve(width, table, true);
@@ -252,7 +266,7 @@ impl<const S: usize> Engine<'_, S> {
         } else {
             self.widths[2]
         };
-        if distance.abs() <= last {
+        if distance.abs() <= WIDER * last {
             return Plan::Land(aim);
         }
         let distance = last.max(0.1 * distance.abs()).copysign(distance);

@@ -9,7 +9,6 @@ use crate::allocations::count;
 use crate::fourier::series;
 
 mod companion;
-mod timing;
 
 fn all(series: &[f64], level: f64) -> Vec<Crossing> {
     let mut found = Vec::new();

@@ -134,3 +134,38 @@ fn areas_shrink_by_the_integrated_divergence() {
         assert!(error.abs() < 1e-10, "{one_sided} {alpha}: {error:e}");
     }
 }
+
+/// Orbits beside the fold of Fig. 2b at 0.40135, which nearly touch the level twice in a period: a landing may find the second of
+/// two crossings, and the step to where it is accurate may be next to nothing. No motion ends there.
+#[test]
+fn motions_that_nearly_touch_go_on() {
+    let model = PowerForm::new(false, 0.6, 0.01, 0.0, 0.1);
+    for (omega, state, tolerance) in [
+        (
+            0.40192352328795483,
+            [0.03540260218608747, 0.009134849727514386],
+            1e-8,
+        ),
+        (
+            0.4014360493074945,
+            [0.036330588881425936, 0.008463754940308672],
+            1e-12,
+        ),
+        (
+            0.40107806034202886,
+            [0.0374480818727266, 0.007775472569354696],
+            1e-8,
+        ),
+    ] {
+        let mut flow = Integrated::new(&model, &model.values, omega, tolerance).unwrap();
+        let mut finest = Integrated::new(&model, &model.values, omega, 1e-14).unwrap();
+        for part in 0..100 {
+            let mut state = [state[0] * (1.0 + 1e-7 * f64::from(part)), state[1]];
+            let mut exact = state;
+            flow.advance(0.0, TAU, &mut state, None, None).unwrap();
+            finest.advance(0.0, TAU, &mut exact, None, None).unwrap();
+            let apart = (state[0] - exact[0]).hypot(state[1] - exact[1]);
+            assert!(apart < 1e3 * tolerance * 0.05, "{omega} {part} {apart:e}");
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Scalar products, summed in lanes.
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
+
+use multiversion::multiversion;
+
+use super::{Group, LANES};
+
+/// Scalar product, summed in lanes.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks(), b.as_chunks());
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
+    total(&add_products([0.0; LANES], a, b)) + rest
+}
+
+/// Scalar product of three lists, as long as the shortest, summed in lanes.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+pub fn weighted_dot(weights: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let n = weights.len().min(a.len()).min(b.len());
+    let ((w, w_rest), (a, a_rest), (b, b_rest)) = (
+        weights[..n].as_chunks::<LANES>(),
+        a[..n].as_chunks::<LANES>(),
+        b[..n].as_chunks::<LANES>(),
+    );
+    let rest = w_rest.iter().zip(a_rest).zip(b_rest);
+    let rest: f64 = rest.map(|((w, x), y)| w * x * y).sum();
+    let mut sum = [0.0; LANES];
+    for ((w, x), y) in w.iter().zip(a).zip(b) {
+        for l in 0..LANES {
+            sum[l] += w[l] * x[l] * y[l];
+        }
+    }
+    total(&sum) + rest
+}
+
+/// Adds the products of two lists of groups, lane by lane; the longer one is cut.
+#[inline(always)]
+pub(super) fn add_products(mut sum: Group, a: &[Group], b: &[Group]) -> Group {
+    for (x, y) in a.iter().zip(b) {
+        for l in 0..LANES {
+            sum[l] += x[l] * y[l];
+        }
+    }
+    sum
+}
+
+#[inline(always)]
+pub(super) fn total(lanes: &Group) -> f64 {
+    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6]))
+        + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
+}

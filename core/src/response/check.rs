@@ -1,0 +1,272 @@
+//! Whether a request can be followed, and with what resolution.
+
+use super::FrequencyResponse;
+use crate::aft::Aft;
+use crate::balance::{Parity, Resolution};
+use crate::branch::Orbit;
+use crate::continuation::follow::FollowOptions;
+use crate::error::Error;
+use crate::follower::Follower;
+use crate::fourier::series;
+use crate::harmonics::Chooser;
+use crate::layout::{ContactLayout, Layout};
+use crate::newton::NewtonOptions;
+use crate::symmetry::{is_broken, is_odd};
+use crate::system::Variable;
+use crate::validate;
+
+/// More samples of an orbit would take more than a gigabyte.
+const MOST_SAMPLES: usize = 10_000_000;
+/// Harmonics that are coupled densely in the search for a first orbit.
+const CORE_AT_START: usize = 40;
+/// Harmonics beyond those of the declaration that are always taken: the estimate of the error takes higher ones for free masses.
+const LEAST_BEYOND: usize = 4;
+/// More harmonics of an excitation period are never chosen, only taken when given.
+const MOST_HARMONICS: usize = 150;
+/// Part of a value to its neighbour in a range of which only the first orbit is wanted.
+const ASIDE: f64 = 1e-3;
+/// The dense matrix of more unknowns would take more than 300 megabytes.
+const MOST_UNKNOWNS: usize = 6000;
+
+impl<'a> FrequencyResponse<'a> {
+    /// Checks everything that was asked for.
+    pub(super) fn check(&self) -> Result<(Follower<'a>, FollowOptions), Error> {
+        let facts = self.system.facts();
+        if facts.coordinates.is_empty() {
+            return Err(Error::NoCoordinates);
+        }
+        let mut parameters = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut parameters);
+        let variable = validate::variable(facts, self.vary.as_deref())?;
+        let from = self.from.ok_or(Error::Missing { name: "from" })?;
+        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        validate::range(facts, variable, from, to)?;
+        let omega = match (variable, self.omega) {
+            (Variable::Omega, None) => from,
+            (Variable::Omega, Some(value)) => {
+                let must = "is what is varied: give it by from and to";
+                return Err(Error::Option {
+                    name: "omega",
+                    value,
+                    must,
+                });
+            }
+            (Variable::Parameter(index), Some(omega)) => {
+                parameters[index] = from;
+                validate::omega(omega)?
+            }
+            (Variable::Parameter(_), None) => return Err(Error::Missing { name: "omega" }),
+        };
+        validate::parameters(facts, &parameters)?;
+        self.check_options()?;
+        self.check_near()?;
+        let mut resolution = self.resolution()?;
+        let layout = Layout::of(self.system);
+        let symmetric = is_odd(
+            self.system,
+            &layout,
+            &parameters,
+            omega,
+            variable,
+            [from, to],
+        );
+        let given = self.near.as_ref();
+        let kept = self.symmetric && !given.is_some_and(lacks_symmetry);
+        if symmetric && self.period == 1 && kept {
+            resolution.parity = Parity::Odd;
+            if self.harmonics.is_none() {
+                // An even number is as good as the one below it.
+                resolution.harmonics |= 1;
+            }
+        }
+        // Levels are affine in the parameters, so if they are in order at both ends, they are in between.
+        let at_end = match variable {
+            Variable::Omega => (parameters.clone(), to),
+            Variable::Parameter(index) => {
+                let mut parameters = parameters.clone();
+                parameters[index] = to;
+                (parameters, omega)
+            }
+        };
+        for (parameters, omega) in [(&parameters, omega), (&at_end.0, at_end.1)] {
+            validate::levels(self.system, parameters, omega)?;
+            validate::mass(self.system, parameters, omega)?;
+        }
+        let newton = NewtonOptions {
+            tolerance: (1e-3 * self.tolerance).clamp(1e-11, 1e-6),
+            iterations: 12,
+            damped: false,
+        };
+        let options = FollowOptions {
+            from,
+            to,
+            points: validate::max_points(self.max_points)?,
+            steps: validate::largest_step(self.largest_step)?,
+            newton,
+        };
+        let system = self.system;
+        Ok((
+            Follower {
+                system,
+                parameters,
+                omega,
+                variable,
+                resolution,
+                newton,
+                sought: self.sought,
+                asymmetric: symmetric && self.period == 1 && !kept,
+                stability: self.stability.then_some(self.method),
+                chooser: self.chooser(resolution),
+                from,
+                to,
+            },
+            options,
+        ))
+    }
+
+    /// Another value that what is varied may have, next to one.
+    pub(super) fn aside(&self, value: f64) -> Result<f64, Error> {
+        let facts = self.system.facts();
+        let unit = if value == 0.0 { 1.0 } else { value.abs() };
+        let above = value + ASIDE * unit;
+        Ok(match validate::variable(facts, self.vary.as_deref())? {
+            Variable::Parameter(index) if !facts.parameters[index].admits(above) => {
+                value - ASIDE * unit
+            }
+            _ => above,
+        })
+    }
+
+    /// An orbit is one of a system with as many coordinates.
+    pub(super) fn fits(&self, orbit: &Orbit) -> Result<(), Error> {
+        let expected = self.system.facts().coordinates.len();
+        if orbit.coordinates == expected {
+            return Ok(());
+        }
+        Err(Error::State {
+            entries: 2 * orbit.coordinates,
+            expected: 2 * expected,
+        })
+    }
+
+    /// Checks what the first orbit is to be near.
+    fn check_near(&self) -> Result<(), Error> {
+        let Some(orbit) = &self.near else {
+            return Ok(());
+        };
+        self.fits(orbit)?;
+        if orbit.period == self.period {
+            return Ok(());
+        }
+        Err(Error::Option {
+            name: "period",
+            value: self.period as f64,
+            must: "must be that of the orbit given by `near_orbit`",
+        })
+    }
+
+    /// Checks the numbers among the options.
+    fn check_options(&self) -> Result<(), Error> {
+        validate::option(
+            "tolerance",
+            self.tolerance,
+            1e-12..=1e-1,
+            "must be from 1e-12 to 0.1",
+        )?;
+        validate::option(
+            "period",
+            self.period as f64,
+            1.0..=1000.0,
+            "must be from 1 to 1000",
+        )
+    }
+
+    /// How harmonics follow the tolerance: unless they were given, or the contacts are sampled.
+    fn chooser(&self, resolution: Resolution) -> Option<Chooser> {
+        let free = self.harmonics.is_none() && self.aft == Aft::Switched;
+        let layout = Layout::of(self.system);
+        let least = (layout.highest_harmonic() + LEAST_BEYOND) * self.period;
+        let unknowns_allow = MOST_UNKNOWNS / (2 * layout.coordinates) - 1;
+        let most = MOST_HARMONICS * self.period * self.system.facts().divisor as usize;
+        free.then(|| {
+            Chooser::new(
+                self.tolerance,
+                least.min(resolution.harmonics),
+                most.min(unknowns_allow),
+                resolution.parity == Parity::Odd,
+            )
+        })
+    }
+
+    fn resolution(&self) -> Result<Resolution, Error> {
+        let digits = -self.tolerance.log10();
+        let by_tolerance = (20.0 * ((digits - 6.0) / 2.0).exp2())
+            .round()
+            .clamp(5.0, 100.0) as usize;
+        let divisor = self.system.facts().divisor as usize;
+        let per_period = self.harmonics.unwrap_or(by_tolerance * divisor);
+        validate::option(
+            "harmonics",
+            per_period as f64,
+            1.0..=1e4,
+            "must be from 1 to 10000",
+        )?;
+        let harmonics = per_period * self.period;
+        let layout = Layout::of(self.system);
+        let unknowns = layout.coordinates * series::length(harmonics);
+        if unknowns > MOST_UNKNOWNS {
+            return Err(Error::Unknowns {
+                unknowns,
+                most: MOST_UNKNOWNS,
+            });
+        }
+        let highest = layout.highest_harmonic() * self.period;
+        if highest > harmonics {
+            return Err(Error::Harmonics { harmonics, highest });
+        }
+        let samples_per_period = self
+            .samples
+            .unwrap_or_else(|| (200 * per_period).next_power_of_two());
+        validate::option(
+            "samples",
+            samples_per_period as f64,
+            1.0..=1e7,
+            "must be from 1 to 1e7",
+        )?;
+        let samples = samples_per_period * self.period;
+        if samples > MOST_SAMPLES {
+            let must = "times the period must be at most 1e7";
+            return Err(Error::Option {
+                name: "samples",
+                value: samples as f64,
+                must,
+            });
+        }
+        // The derivatives are needed up to twice the harmonics of the balance, and the waves of directions and offsets on top.
+        let contacts = layout.contacts.iter();
+        let wave = |contact: &ContactLayout| {
+            contact.offset_harmonic() + contact.force_harmonic() + contact.gap_harmonic()
+        };
+        let waves = contacts.map(wave).max().unwrap_or(0) * self.period;
+        let least = 2 * (2 * harmonics + waves) + 2;
+        if samples < least {
+            return Err(Error::Samples {
+                samples,
+                least,
+                harmonics,
+            });
+        }
+        Ok(Resolution {
+            harmonics,
+            core: CORE_AT_START * self.period,
+            parity: Parity::All,
+            samples,
+            aft: self.aft,
+            period: self.period,
+        })
+    }
+}
+
+fn lacks_symmetry(orbit: &Orbit) -> bool {
+    is_broken(&orbit.series, orbit.series(0).len())
+}

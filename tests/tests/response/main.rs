@@ -1,0 +1,70 @@
+//! The public interface of the runtime: closed forms, edges, errors, and what comes back.
+
+mod closed_forms;
+mod requests;
+mod start;
+mod values;
+
+hertzian::oscillator! {
+    /// Nothing but linear terms.
+    pub Linear(x) {
+        param zeta >= 0;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + x = drive*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// The paper's Eq. (1).
+    pub OneSided(x) {
+        param zeta in 0.0..;
+        param alpha > 0;
+        param load;
+        param drive;
+        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^alpha, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    pub Continuous(x) {
+        param zeta in 0.0..;
+        param alpha > 0;
+        param load;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^alpha = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    pub Duffing(x) {
+        param zeta in 0.0..;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + x + x^3 = drive*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// Force at twice a third of the frequency: the orbit needs three excitation periods.
+    pub Fractional(x) {
+        ddot(x) + 0.2*dot(x) + x = cos(2/3*omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// A pair of linear oscillators, with a stiffness that pulses at a multiple of the excitation.
+    pub Pair(x, y) {
+        param mass;
+        param pulse;
+        mass*ddot(x) + 0.1*dot(x) + (1 + pulse*cos(7*omega*t))*x + 0.2*(x - y) = cos(omega*t);
+        ddot(y) + 0.1*dot(y) + y + 0.2*(y - x) = 0;
+    }
+}
+
+/// A contact under its load, weakly driven.
+pub const CONTACT: OneSided = OneSided {
+    zeta: 0.032,
+    alpha: 1.5,
+    load: 1.0,
+    drive: 0.1,
+};
