@@ -1,6 +1,6 @@
 //! Letters as outlines, so that a chart looks the same everywhere and needs no font of its reader.
 //!
-//! The outlines are those of DejaVu Sans (licence in `glyphs.license`), as `docs/glyphs.py` writes them: in units of
+//! The outlines are those of `DejaVu` Sans (licence in `glyphs.license`), as `docs/glyphs.py` writes them: in units of
 //! `1/1024` of the size, y upwards, every command relative to where the pen stands.
 
 use std::collections::HashMap;

@@ -349,14 +349,12 @@ fn second<'o>(options: &'o Options, model: &dyn System) -> Result<&'o str, Error
         .chain(["omega".to_owned()])
         .collect();
     let is_known = |name: &&String| has_first && known.contains(name);
-    match second.filter(is_known) {
-        Some(name) => Ok(name),
-        None => {
-            let unknown = names.iter().find(|name| !known.contains(name));
-            let name = unknown.cloned().unwrap_or_else(|| names.join(","));
-            Err(Error::UnknownParameter { name, known })
-        }
+    if let Some(name) = second.filter(is_known) {
+        return Ok(name);
     }
+    let unknown = names.iter().find(|name| !known.contains(name));
+    let name = unknown.cloned().unwrap_or_else(|| names.join(","));
+    Err(Error::UnknownParameter { name, known })
 }
 
 fn value_of(options: &Options, model: &dyn System, name: &str) -> f64 {
