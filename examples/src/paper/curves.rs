@@ -100,7 +100,7 @@ impl<'t> Curves<'t> {
         let names = std::iter::once("curve").chain(files::COLUMNS);
         Self {
             task,
-            chart: Chart::new(format!("{}: {}", task.figure.name, task.figure.parameters))
+            chart: Chart::new(task.figure.title())
                 .x("excitation frequency ω")
                 .y("peak-to-peak displacement"),
             lines: Vec::new(),

@@ -113,8 +113,9 @@ impl<'t> Cycles<'t> {
     }
 
     fn drawn(mut self, x: &str, y: [f64; 2]) -> Drawing {
-        let title = format!("{}: {}", self.task.figure.name, self.task.figure.parameters);
-        let mut chart = Chart::new(title).x(x).y("peak-to-peak displacement");
+        let mut chart = Chart::new(self.task.figure.title())
+            .x(x)
+            .y("peak-to-peak displacement");
         chart = chart.scales(Scale::Linear, self.scale);
         let ends = self.curves.iter().flat_map(|curve| &curve.runs);
         let values = ends.flat_map(|run| &run.points).map(|point| point[0]);
@@ -297,8 +298,7 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
         }
     }
     let mut drawing = figure.drawing;
-    let title = format!("{}: {}", task.figure.name, task.figure.parameters);
-    drawing.svg = Chart::new(title)
+    drawing.svg = Chart::new(task.figure.title())
         .x("excitation amplitude A")
         .y("leading multiplier of period 8")
         .curve(Curve {

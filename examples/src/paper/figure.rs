@@ -18,6 +18,14 @@ pub struct Figure {
     pub draw: fn(&Task<'_>) -> Result<Drawing, String>,
 }
 
+impl Figure {
+    /// Title of its picture: what is said of the parameters stays on the page.
+    pub fn title(&self) -> String {
+        let parameters = self.parameters.split(';').next().unwrap_or_default();
+        format!("{}: {parameters}", self.name)
+    }
+}
+
 /// What a figure is computed with.
 pub struct Task<'t> {
     /// The figure.
