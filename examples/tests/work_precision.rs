@@ -26,7 +26,7 @@ fn every_method_is_measured_against_what_is_known() {
     problems.truncate(1);
     let quiet = &mut Progress::new(false);
     let sections = run(&options, problems, &AtomicBool::new(false), quiet).unwrap();
-    let (_, measured) = &sections[0];
+    let measured = &sections[0].measured;
     for family in Family::ALL {
         assert!(
             measured.iter().any(|one| one.family == family),
@@ -58,7 +58,12 @@ fn every_method_is_measured_against_what_is_known() {
         }
     }
     assert!(error(Family::Shooting, Setting::Tolerance(1e-10)) < 1e-13);
-    for file in ["index.html", "work_precision.csv", "one-sided-1.svg"] {
+    for file in [
+        "index.html",
+        "work_precision.csv",
+        "multipliers.csv",
+        "one-sided-1.svg",
+    ] {
         assert!(folder.join(file).exists(), "{file}");
     }
     fs::remove_dir_all(&folder).unwrap();

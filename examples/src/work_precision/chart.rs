@@ -4,7 +4,8 @@ use hertzian::chart::{Chart, Markers, Scale, Trace};
 
 use super::measure::Measured;
 use super::method::Family;
-use super::problem::Problem;
+use super::multipliers::{Answer, NAMES};
+use super::problem::{POINTS, Problem};
 
 /// Errors below this are drawn as this: closed forms reach rounding.
 const FLOOR: f64 = 1e-16;
@@ -44,4 +45,42 @@ pub fn chart(
         label: "any, with folds that are not there, or incomplete".to_owned(),
         points: failed.filter_map(place).collect(),
     })
+}
+
+/// The same with the points of other programs, failures as well.
+pub fn with_peers(chart: Chart, problem: &Problem) -> Chart {
+    problem.peers.iter().fold(chart, |chart, peer| {
+        let [least, most] = peer.milliseconds;
+        let failed = if peer.failed { ", failed" } else { "" };
+        chart.markers(Markers {
+            label: format!("{}{failed}", peer.name),
+            points: vec![[POINTS * (least * most).sqrt(), peer.error]],
+        })
+    })
+}
+
+/// Errors of multipliers over the time that they take.
+pub fn multipliers(problem: &Problem, answers: &[Answer]) -> Chart {
+    let mut chart = Chart::new(problem.title)
+        .x("time of one orbit's multipliers, milliseconds")
+        .y("largest error of a multiplier")
+        .scales(Scale::Logarithmic, Scale::Logarithmic);
+    for (method, name) in NAMES.into_iter().enumerate() {
+        let right = answers
+            .iter()
+            .filter(|one| one.method == method && one.failure.is_none());
+        let points: Vec<[f64; 2]> = right
+            .map(|one| [1e3 * one.seconds, one.error.max(FLOOR)])
+            .collect();
+        chart = chart
+            .trace(Trace {
+                label: String::new(),
+                points: points.clone(),
+            })
+            .markers(Markers {
+                label: name.to_owned(),
+                points,
+            });
+    }
+    chart
 }

@@ -1,6 +1,6 @@
 //! Runs in turns, medians, errors and failures.
 
-use super::method::{self, Family, Run, Setting};
+use super::method::{self, Family, Reference, Run, Setting};
 use super::problem::Problem;
 
 /// A run that takes longer than this is not repeated.
@@ -43,15 +43,18 @@ impl Measured {
     }
 
     /// Takes a run in.
-    fn add(&mut self, problem: &Problem, reference: f64, run: &Run) {
+    fn add(&mut self, reference: &Reference, run: &Run) {
         self.seconds.push(run.seconds);
         self.seconds.sort_by(f64::total_cmp);
-        let errors = run.folds.iter().map(|fold| (fold - problem.fold).abs());
-        let nearest = errors.min_by(f64::total_cmp);
-        self.fold = nearest.filter(|&error| error < SAME_FOLD);
-        self.peak_to_peak = run.peak_to_peak.map(|size| (size / reference - 1.0).abs());
+        self.fold = reference.folds.first().and_then(|exact| {
+            let errors = run.folds.iter().map(|fold| (fold - exact).abs());
+            let nearest = errors.min_by(f64::total_cmp);
+            nearest.filter(|&error| error < SAME_FOLD)
+        });
+        let size = run.peak_to_peak;
+        self.peak_to_peak = size.map(|size| (size / reference.peak_to_peak - 1.0).abs());
         self.failure = run.fault.clone().or_else(|| {
-            let (found, there) = (run.folds.len(), problem.folds.len());
+            let (found, there) = (run.folds.len(), reference.folds.len());
             (found != there).then(|| format!("{found} folds, where there are {there}"))
         });
     }
@@ -60,7 +63,7 @@ impl Measured {
 /// Measures every method on a problem: all once, then all again, so that what else the machine does falls on all alike.
 pub fn measure(
     problem: &Problem,
-    reference: f64,
+    reference: &Reference,
     (repeats, patience): (usize, f64),
     visit: &mut dyn FnMut(usize, usize) -> bool,
 ) -> Vec<Measured> {
@@ -87,7 +90,7 @@ pub fn measure(
                 continue;
             }
             match method::run(problem, measured.family, measured.setting, patience) {
-                Ok(run) => measured.add(problem, reference, &run),
+                Ok(run) => measured.add(reference, &run),
                 Err(error) => measured.failure = Some(error.to_string()),
             }
         }

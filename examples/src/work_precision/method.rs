@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use hertzian::flow::shooting::CycleBranch;
-use hertzian::{Aft, Branch, EventKind, FrequencyResponse, Shooting};
+use hertzian::{Aft, Branch, Complex, EventKind, FrequencyResponse, Shooting};
 
 use super::problem::Problem;
 
@@ -234,11 +234,24 @@ fn largest_cycle(shooting: &Shooting<'_>, branch: &CycleBranch, at: f64) -> Opti
     Some(cycle.peak_to_peak())
 }
 
-/// The largest orbit at the frequency of comparison, to all digits.
+/// What runs are compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// All folds, that of largest amplitude first.
+    pub folds: Vec<f64>,
+    /// Peak-to-peak of the largest orbit at the frequency of comparison.
+    pub peak_to_peak: f64,
+    /// Its state at phase zero.
+    pub state: Vec<f64>,
+    /// Its multipliers.
+    pub multipliers: Vec<Complex<f64>>,
+}
+
+/// The largest orbit at the frequency of comparison, to all digits, and the folds.
 ///
 /// # Errors
 /// If there is none.
-pub fn reference(problem: &Problem) -> Result<f64, hertzian::Error> {
+pub fn reference(problem: &Problem) -> Result<Option<Reference>, hertzian::Error> {
     let [from, to] = problem.range;
     let branch = FrequencyResponse::of(&*problem.compiled)
         .from(from)
@@ -250,9 +263,25 @@ pub fn reference(problem: &Problem) -> Result<f64, hertzian::Error> {
         .iter()
         .max_by(|a, b| a.peak_to_peak().total_cmp(&b.peak_to_peak()));
     let Some(largest) = largest else {
-        return Ok(f64::NAN);
+        return Ok(None);
     };
     let shooting = Shooting::of(&*problem.compiled).tolerance(1e-13);
+    let folds = match problem.folds {
+        Some(folds) => folds.to_vec(),
+        None => folds(&shooting.clone().stability(false).from(from).to(to).run()?),
+    };
     let cycle = shooting.near_orbit(&largest.orbit).orbit(problem.at)?;
-    Ok(cycle.peak_to_peak())
+    Ok(Some(Reference {
+        folds,
+        peak_to_peak: cycle.peak_to_peak(),
+        state: cycle.state().to_vec(),
+        multipliers: cycle.stability.multipliers,
+    }))
+}
+
+/// The folds of a branch, those of large amplitude first.
+fn folds(branch: &CycleBranch) -> Vec<f64> {
+    let mut folds: Vec<_> = branch.folds().map(|fold| &fold.cycle).collect();
+    folds.sort_by(|a, b| b.peak_to_peak().total_cmp(&a.peak_to_peak()));
+    folds.iter().map(|cycle| cycle.value).collect()
 }

@@ -6,6 +6,7 @@
 mod chart;
 pub mod measure;
 pub mod method;
+pub mod multipliers;
 pub mod options;
 mod page;
 pub mod problem;
@@ -22,14 +23,30 @@ use hertzian::chart::Page;
 
 use crate::response::progress::Progress;
 use measure::{Measured, measure};
+use method::Reference;
+use multipliers::{Answer, NAMES};
 use options::Options;
-use problem::Problem;
+use problem::{POINTS, Problem};
+
+/// A problem, and what became of it.
+pub struct Section {
+    /// The problem.
+    pub problem: Problem,
+    /// What runs were compared with.
+    pub reference: Reference,
+    /// Curves.
+    pub measured: Vec<Measured>,
+    /// Multipliers of the orbit of comparison.
+    pub answers: Vec<Answer>,
+}
 
 /// Why nothing came of it.
 #[derive(Debug)]
 pub enum Failure {
     /// A reference could not be computed.
     Reference(hertzian::Error),
+    /// The curve of a problem does not pass its frequency of comparison.
+    NoOrbit(&'static str),
     /// A file could not be written.
     File(PathBuf, io::Error),
 }
@@ -38,6 +55,7 @@ impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Reference(error) => error.fmt(f),
+            Self::NoOrbit(problem) => write!(f, "{problem}: no orbit to compare with"),
             Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
         }
     }
@@ -88,7 +106,7 @@ pub fn run(
     problems: Vec<Problem>,
     interrupted: &AtomicBool,
     progress: &mut Progress,
-) -> Result<Vec<(Problem, Vec<Measured>)>, Failure> {
+) -> Result<Vec<Section>, Failure> {
     let failed = |path: &Path| {
         let path = path.to_path_buf();
         move |error| Failure::File(path, error)
@@ -100,8 +118,9 @@ pub fn run(
             break;
         }
         let reference = method::reference(&problem).map_err(Failure::Reference)?;
+        let reference = reference.ok_or(Failure::NoOrbit(problem.id))?;
         let how = (options.repeats.get(), options.patience);
-        let measured = measure(&problem, reference, how, &mut |done, all| {
+        let measured = measure(&problem, &reference, how, &mut |done, all| {
             progress.update(|| format!("{}: {done} of {all} runs", problem.title));
             !interrupted.load(Ordering::Relaxed)
         });
@@ -121,18 +140,32 @@ pub fn run(
             .out
             .join(problem.id.replace('.', "_"))
             .with_extension("svg");
-        let page = Page::new(2).chart(fold).chart(size);
+        let answers = multipliers::measure(&problem, &reference);
+        let mut page = Page::new(1);
+        if !reference.folds.is_empty() {
+            page = page.chart(chart::with_peers(fold, &problem));
+        }
+        let page = page
+            .chart(size)
+            .chart(chart::multipliers(&problem, &answers));
         fs::write(&svg, page.to_svg()).map_err(failed(&svg))?;
-        sections.push((problem, measured));
+        sections.push(Section {
+            problem,
+            reference,
+            measured,
+            answers,
+        });
         let csv = options.out.join("work_precision.csv");
         write_csv(&csv, &sections).map_err(failed(&csv))?;
+        let csv = options.out.join("multipliers.csv");
+        write_multipliers(&csv, &sections).map_err(failed(&csv))?;
         let html = options.out.join("index.html");
         fs::write(&html, page::html(&sections, &machine())).map_err(failed(&html))?;
     }
     Ok(sections)
 }
 
-fn write_csv(path: &Path, sections: &[(Problem, Vec<Measured>)]) -> io::Result<()> {
+fn write_csv(path: &Path, sections: &[Section]) -> io::Result<()> {
     let mut writer = csv::Writer::from_path(path)?;
     writer.write_record([
         "problem",
@@ -144,12 +177,13 @@ fn write_csv(path: &Path, sections: &[(Problem, Vec<Measured>)]) -> io::Result<(
         "error_fold",
         "error_peak_to_peak",
         "failure",
+        "machine",
     ])?;
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:?}"));
-    for (problem, measured) in sections {
-        for one in measured {
+    for section in sections {
+        for one in &section.measured {
             writer.write_record([
-                problem.id.to_owned(),
+                section.problem.id.to_owned(),
                 one.family.name().to_owned(),
                 one.setting.to_string(),
                 number(one.median()),
@@ -157,6 +191,51 @@ fn write_csv(path: &Path, sections: &[(Problem, Vec<Measured>)]) -> io::Result<(
                 number(one.seconds.last().copied()),
                 number(one.fold),
                 number(one.peak_to_peak),
+                one.failure.clone().unwrap_or_default(),
+                machine(),
+            ])?;
+        }
+        for peer in section.problem.peers {
+            let time = |index: usize| number(Some(1e-3 * POINTS * peer.milliseconds[index]));
+            let failure = if peer.failed { peer.note } else { "" };
+            writer.write_record([
+                section.problem.id.to_owned(),
+                peer.name.to_owned(),
+                format!("time of a point, for {POINTS} of them"),
+                String::new(),
+                time(0),
+                time(1),
+                number(Some(peer.error)),
+                String::new(),
+                failure.to_owned(),
+                "as stated in 2026".to_owned(),
+            ])?;
+        }
+    }
+    writer.flush()
+}
+
+fn write_multipliers(path: &Path, sections: &[Section]) -> io::Result<()> {
+    let mut writer = csv::Writer::from_path(path)?;
+    writer.write_record([
+        "problem",
+        "method",
+        "setting",
+        "seconds_median",
+        "error",
+        "failure",
+    ])?;
+    for Section {
+        problem, answers, ..
+    } in sections
+    {
+        for one in answers {
+            writer.write_record([
+                problem.id.to_owned(),
+                NAMES[one.method].to_owned(),
+                one.setting.clone(),
+                format!("{:?}", one.seconds),
+                format!("{:?}", one.error),
                 one.failure.clone().unwrap_or_default(),
             ])?;
         }
@@ -171,13 +250,17 @@ fn machine() -> String {
         .lines()
         .find_map(|line| line.strip_prefix("model name")?.split_once(": "));
     let name = name.map_or(std::env::consts::ARCH, |(_, name)| name);
-    format!("{name}, one thread, hertzian {}", env!("CARGO_PKG_VERSION"))
+    let set = hertzian::power::Instructions::in_use().name();
+    format!(
+        "{name}, {set}, one thread, hertzian {}",
+        env!("CARGO_PKG_VERSION")
+    )
 }
 
-fn summary(options: &Options, sections: &[(Problem, Vec<Measured>)]) -> String {
+fn summary(options: &Options, sections: &[Section]) -> String {
     let lines = sections
         .iter()
-        .map(|(problem, measured)| format!("{}. {}\n", problem.title, page::verdict(measured)));
+        .map(|section| format!("{}. {}\n", section.problem.title, page::verdict(section)));
     let written = options.out.join("index.html");
     lines.collect::<String>() + &format!("written  {}\n", written.display())
 }

@@ -2,9 +2,11 @@
 
 use std::fmt::Write;
 
+use super::Section;
 use super::measure::Measured;
 use super::method::Family;
-use super::problem::Problem;
+use super::multipliers::NAMES;
+use super::problem::{POINTS, Problem};
 
 const STYLE: &str = "\
 :root { color-scheme: light dark; --text: #1a1a1a; --ground: #ffffff; --line: #c8c8c8; }
@@ -15,62 +17,98 @@ img { display: block; width: 100%; height: auto; margin: 0.75rem 0; background: 
 th, td { padding: 0.15rem 0.9rem 0.15rem 0; text-align: left; border-bottom: 1px solid var(--line); white-space: nowrap; }";
 
 /// The page.
-pub fn html(sections: &[(Problem, Vec<Measured>)], machine: &str) -> String {
+pub fn html(sections: &[Section], machine: &str) -> String {
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>Error against time</title>\n<style>\n{STYLE}\n</style>\n</head>\n<body>\n<h1>Error against time</h1>\n\
-         <p>{machine}. Every method traces the same curve, without multipliers. Errors are those of the fold of largest amplitude, and of \
+         <p>{machine}. Every method traces the same curve, without multipliers, which have a chart of their own. Errors are those of the fold of largest amplitude, and of \
          peak-to-peak of one orbit on the branch to it, against exact values. Times are medians. A method that finds other folds than there are \
          has failed, whatever the error of one of them.</p>\n"
     );
-    for (problem, measured) in sections {
+    for section in sections {
+        let problem = &section.problem;
         // Writing to a string does not fail.
         let _ = write!(
             text,
-            "<h2>{}</h2>\n<img alt=\"Error of the fold and of peak-to-peak over time\" src=\"{}.svg\">\n<p>{}</p>\n",
+            "<h2>{}</h2>\n<img alt=\"Errors of the fold, of peak-to-peak and of multipliers over time\" src=\"{}.svg\">\n<p>{}</p>\n",
             problem.title,
             problem.id.replace('.', "_"),
-            verdict(measured)
+            verdict(section)
         );
-        table(&mut text, measured);
+        peers(&mut text, problem);
+        table(&mut text, &section.measured);
     }
     text.push_str("</body>\n</html>\n");
     text
 }
 
 /// What to use when, as the figures have it.
-pub fn verdict(measured: &[Measured]) -> String {
+pub fn verdict(section: &Section) -> String {
+    let Section {
+        reference,
+        measured,
+        answers,
+        ..
+    } = section;
+    let fold = !reference.folds.is_empty();
+    let what = if fold { "a fold" } else { "peak-to-peak" };
     let mut sentences = Vec::new();
     for asked in [1e-3, 1e-6, 1e-9] {
-        let right = measured.iter().filter(|one| one.failure.is_none());
-        let enough = right.filter(|one| one.fold.is_some_and(|error| error <= asked));
-        let fastest = enough.min_by(|a, b| {
-            a.median()
-                .unwrap_or(f64::MAX)
-                .total_cmp(&b.median().unwrap_or(f64::MAX))
+        let fastest = |families: &[Family]| {
+            let right = measured
+                .iter()
+                .filter(|one| one.failure.is_none() && families.contains(&one.family));
+            let error = |one: &&Measured| if fold { one.fold } else { one.peak_to_peak };
+            let enough = right.filter(|one| error(one).is_some_and(|error| error <= asked));
+            let times = enough.filter_map(|one| Some((1e3 * one.median()?, one)));
+            times.min_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let groups = [
+            ("switched", fastest(&[Family::Switched, Family::Adaptive])),
+            ("sampled", fastest(&[Family::Classical, Family::Primitive])),
+            ("shooting", fastest(&[Family::Shooting])),
+        ];
+        let parts = groups.map(|(name, found)| match found {
+            Some((time, one)) => format!("{name} {time:.2} ms ({})", one.setting),
+            None => format!("{name} never"),
         });
-        sentences.push(match fastest {
-            Some(one) => format!(
-                "For a fold to {asked:.0e}: {} with {}, {:.3} ms.",
-                one.family.name(),
-                one.setting,
-                1e3 * one.median().unwrap_or(f64::NAN)
-            ),
-            None => format!("A fold to {asked:.0e} was not reached."),
-        });
+        sentences.push(format!("For {what} to {asked:.0e}: {}.", parts.join(", ")));
     }
+    let times = |family| {
+        let of = measured.iter().filter(move |one| one.family == family);
+        of.filter_map(Measured::median).sum::<f64>()
+    };
+    sentences.push(format!(
+        "Interpreted laws take {:.2} times as long as generated ones.",
+        times(Family::Interpreted) / times(Family::Switched)
+    ));
     let sampled = |one: &&Measured| matches!(one.family, Family::Classical | Family::Primitive);
-    let (failed, all) = (
-        measured
-            .iter()
-            .filter(sampled)
-            .filter(|one| one.failure.is_some())
-            .count(),
-        measured.iter().filter(sampled).count(),
-    );
+    let all = measured.iter().filter(sampled).count();
+    let failed = measured.iter().filter(sampled);
+    let failed = failed.filter(|one| one.failure.is_some()).count();
     sentences.push(format!("Of the {all} sampled settings {failed} failed."));
+    let right = answers.iter().filter(|one| one.error <= 1e-4);
+    if let Some(best) = right.min_by(|a, b| a.seconds.total_cmp(&b.seconds)) {
+        sentences.push(format!(
+            "Multipliers to 1e-4 come soonest by {} with {}, in {:.3} ms.",
+            NAMES[best.method],
+            best.setting,
+            1e3 * best.seconds
+        ));
+    }
     sentences.join(" ")
+}
+
+fn peers(text: &mut String, problem: &Problem) {
+    for peer in problem.peers {
+        let [least, most] = peer.milliseconds;
+        let _ = writeln!(
+            text,
+            "<p>{}, measured in 2026: {least} to {most} ms a point, drawn for {POINTS} points; {}.</p>",
+            peer.name, peer.note
+        );
+    }
 }
 
 fn table(text: &mut String, measured: &[Measured]) {

@@ -1,4 +1,4 @@
-//! The problems: curves with a fold that is known.
+//! The problems: curves of which folds and an orbit are known.
 
 use hertzian::generic::Declaration;
 use hertzian::system::System;
@@ -18,12 +18,86 @@ pub struct Problem {
     pub interpreted: Box<dyn System>,
     /// Frequencies at which the curve begins and ends.
     pub range: [f64; 2],
-    /// All folds in the range.
-    pub folds: &'static [f64],
-    /// That of largest amplitude.
-    pub fold: f64,
+    /// All folds in the range, that of largest amplitude first; `None` where shooting with closed forms tells.
+    pub folds: Option<&'static [f64]>,
     /// Frequency at which the largest orbit is compared.
     pub at: f64,
+    /// What other programs were measured to do.
+    pub peers: &'static [Peer],
+}
+
+/// A point of another program: measured by the authors on the machine of `docs/performance.md` in 2026, before this chart.
+pub struct Peer {
+    /// The program.
+    pub name: &'static str,
+    /// Time of a point of the curve, from least to most.
+    pub milliseconds: [f64; 2],
+    /// Error of its fold that comes nearest to the true one.
+    pub error: f64,
+    /// What it did.
+    pub note: &'static str,
+    /// Whether that is a failure.
+    pub failed: bool,
+}
+
+/// Points of a curve for which the time of a peer counts: as many as ours has.
+pub const POINTS: f64 = 125.0;
+
+/// What others made of the first problem.
+const PEERS: [Peer; 3] = [
+    Peer {
+        name: "AUTO-07p, smoothed",
+        milliseconds: [0.4, 1.0],
+        error: 6.4e-6,
+        note: "with tanh(x/0.01) instead of the switch; time with multipliers, of a smooth system; with the switch: false folds, or no convergence",
+        failed: false,
+    },
+    Peer {
+        name: "NLvib",
+        milliseconds: [37.0, 37.0],
+        error: 1.9e-3,
+        note: "stops at 0.81, or goes to and fro between 0.717 and 0.724",
+        failed: true,
+    },
+    Peer {
+        name: "SKHiPPR",
+        milliseconds: [2.0, 20.0],
+        error: 2.1e-3,
+        note: "two to six false folds, 0.713 to 0.728; time with multipliers",
+        failed: true,
+    },
+];
+
+hertzian::oscillator! {
+    /// Two masses, the first with an elastic stop a hundred times as stiff as the springs. Stiffness and clearance as in example 03 of
+    /// NLvib (Krack and Gross 2019), damping 0.03 of the stiffness.
+    StiffStop(x1, x2) {
+        param drive;
+        law stop(gap) { gap > 1 => 100*(gap - 1), else => 0 }
+        ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop(x1) = 0;
+        ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t);
+    }
+}
+
+const STIFF_STOP: &str = "StiffStop(x1, x2) { param drive = 0.1; law stop(gap) { gap > 1 => 100*(gap - 1), else => 0 } \
+    ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop(x1) = 0; \
+    ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t); }";
+
+fn stiff_stop() -> Problem {
+    let compiled = || Box::new(StiffStop { drive: 0.1 });
+    Problem {
+        id: "stiff-stop",
+        title: "two masses, a stop 100 times as stiff",
+        compiled: compiled(),
+        interpreted: match Declaration::parse(STIFF_STOP) {
+            Ok(model) => Box::new(model),
+            Err(_) => compiled(),
+        },
+        range: [0.5, 1.0],
+        folds: None,
+        at: 0.7,
+        peers: &[],
+    }
 }
 
 /// Folds are from an independent computation: exponent one from the closed-form flow, the others by event-located integration, in
@@ -34,21 +108,13 @@ pub fn all() -> Vec<Problem> {
             ("one-sided-1", "one-sided, α = 1 (Fig. 5a)"),
             (1.0, true, 0.032, 1.0),
             [0.6, 1.4],
-            (
-                &[0.715_119_549_676_419, 0.960_163_671_878_57],
-                0.715_119_549_676_419,
-                0.8,
-            ),
+            (&[0.715_119_549_676_419, 0.960_163_671_878_57], 0.8),
         ),
         problem(
             ("one-sided-1.5", "one-sided, α = 1.5 (Fig. 5b)"),
             (1.5, true, 0.032, 1.0),
             [0.6, 1.6],
-            (
-                &[0.685_842_253_572_486, 1.144_516_913_788_162],
-                0.685_842_253_572_486,
-                0.8,
-            ),
+            (&[0.685_842_253_572_486, 1.144_516_913_788_162], 0.8),
         ),
         problem(
             ("one-sided-0.6", "one-sided, α = 0.6 (Fig. 5c)"),
@@ -56,12 +122,11 @@ pub fn all() -> Vec<Problem> {
             [0.5, 1.2],
             (
                 &[
+                    0.631_308_249_440_869,
                     0.845_526_217_725_541,
                     0.849_176_252_131_873,
-                    0.631_308_249_440_869,
                     0.765_568_492_941_199,
                 ],
-                0.631_308_249_440_869,
                 0.7,
             ),
         ),
@@ -69,12 +134,9 @@ pub fn all() -> Vec<Problem> {
             ("continuous-1.5", "continuous, α = 1.5 (Fig. 2a)"),
             (1.5, false, 0.01, 0.0),
             [0.5, 1.7],
-            (
-                &[0.909_513_715_044_238, 1.332_696_002_393_464],
-                1.332_696_002_393_464,
-                1.2,
-            ),
+            (&[1.332_696_002_393_464, 0.909_513_715_044_238], 1.2),
         ),
+        stiff_stop(),
     ]
 }
 
@@ -82,7 +144,7 @@ fn problem(
     (id, title): (&'static str, &'static str),
     (alpha, one_sided, zeta, load): (f64, bool, f64, f64),
     range: [f64; 2],
-    (folds, fold, at): (&'static [f64], f64, f64),
+    (folds, at): (&'static [f64], f64),
 ) -> Problem {
     let options = ModelOptions {
         alpha,
@@ -101,9 +163,9 @@ fn problem(
         compiled: declared(&options),
         interpreted: interpreted(&options),
         range,
-        folds,
-        fold,
+        folds: Some(folds),
         at,
+        peers: if id == "one-sided-1" { &PEERS } else { &[] },
     }
 }
 
