@@ -285,6 +285,13 @@ fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
     for event in &limb.branch.events {
         writeln!(text, "  {event}")?;
     }
+    for turn in &limb.branch.turns {
+        writeln!(
+            text,
+            "  unlocated at {:.6}: a test function changes its sign, and was not driven to zero",
+            turn.value
+        )?;
+    }
     Ok(())
 }
 

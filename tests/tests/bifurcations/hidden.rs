@@ -127,3 +127,35 @@ fn two_levels_touched_within_a_step() {
         assert!(error < 1e-9 && error <= event.error, "{event} {error:.1e}");
     }
 }
+
+hertzian::oscillator! {
+    /// A cubic spring with a Hertzian stop on one side.
+    Stopped(x) {
+        param drive;
+        law stop(gap) { gap > 0 => 10*gap^1.5, else => 0 }
+        ddot(x) + 0.06*dot(x) + x + 0.3*x^3 + stop(x - 0.5) = drive*cos(omega*t);
+    }
+}
+
+/// Wherever a branch begins, it doubles at the same places, and every change of the verdict has an event.
+#[test]
+fn doublings_do_not_depend_on_where_a_branch_begins() {
+    let model = Stopped { drive: 1.0 };
+    for from in [0.3, 0.5, 0.8] {
+        let branch = Shooting::of(&model).from(from).to(1.3).run().unwrap();
+        let found: Vec<f64> = values(&branch, EventKind::PeriodDoubling)
+            .into_iter()
+            .filter(|value| (1.0..1.12).contains(value))
+            .collect();
+        let [low, high] = found[..] else {
+            panic!(
+                "{from} {found:?} {:?} {:?} {}",
+                branch.events, branch.turns, branch.end
+            );
+        };
+        assert!(
+            (low - 1.053_610).abs() < 2e-6 && (high - 1.079_517).abs() < 2e-6,
+            "{low} {high}"
+        );
+    }
+}
