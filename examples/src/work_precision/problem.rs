@@ -56,7 +56,7 @@ const PEERS: [Peer; 3] = [
         name: "NLvib",
         milliseconds: [37.0, 37.0],
         error: 1.9e-3,
-        note: "stops at 0.81, or goes to and fro between 0.717 and 0.724",
+        note: "stops at 0.81, or goes back and forth between 0.717 and 0.724",
         failed: true,
     },
     Peer {
