@@ -3,7 +3,7 @@
 
     docs/python_blocks.py FOLDER
 
-FOLDER holds branch.csv, as the program `response` writes it, and attractors.npy, as `attractors` does. Needs numpy.
+FOLDER holds branch.csv and branch.json, as the program `response` writes them, and attractors.npy, as `attractors` does. Needs numpy.
 """
 
 import os

@@ -14,6 +14,7 @@ use crate::system::System;
 
 /// A periodic orbit as Fourier series of its coordinates.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Orbit {
     /// Coordinate by coordinate, each laid out as in [`series`].
     pub(crate) series: Vec<f64>,
@@ -64,6 +65,7 @@ impl Orbit {
 
 /// One orbit of a branch.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Point {
     /// Value of what the branch varies: omega or a parameter.
@@ -134,6 +136,7 @@ impl fmt::Display for EventKind {
 
 /// A special orbit of a branch, located until its test function vanished.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Event {
     /// What happens there.
@@ -167,6 +170,7 @@ impl fmt::Display for Event {
 /// Of kind [`EventKind::Fold`] it is a place where the branch turned back, but not through a fold. A sampled balance of a force
 /// that jumps does this, and so does an orbit that grazes a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Turn {
     /// What would have happened where the test function vanishes.
@@ -181,6 +185,7 @@ pub struct Turn {
 
 /// A branch of orbits in the order in which it was followed.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Branch<'a> {
     /// Name of what it varies.
     pub varied: String,
@@ -195,7 +200,9 @@ pub struct Branch<'a> {
     /// What it cost.
     pub statistics: Statistics,
     /// Time of the computation.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::seconds"))]
     pub elapsed: Duration,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) follower: Follower<'a>,
 }
 

@@ -11,6 +11,7 @@ use reader::Reader;
 
 /// What is read off one orbit.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Observed {
     /// One entry per coordinate.
@@ -26,6 +27,7 @@ pub struct Observed {
 
 /// What is read off the motion of one coordinate over a period.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Motion {
     /// Largest value.
@@ -62,6 +64,7 @@ impl Motion {
 
 /// What is read off one contact over a period of the orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ContactMotion {
     /// Largest force by size, one-sided limits at switches included.

@@ -7,5 +7,6 @@ pub mod attractors;
 pub mod model;
 pub mod multipliers;
 pub mod paper;
+pub mod program;
 pub mod response;
 pub mod work_precision;

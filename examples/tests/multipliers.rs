@@ -1,11 +1,13 @@
 //! The program `multipliers` with few harmonics.
 
 use std::fs;
+use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
 use hertzian::stability::{Method, Sorting};
 use hertzian_examples::multipliers::study::{METHODS, Measured, measure, orders, oscillators};
 use hertzian_examples::multipliers::{Options, run};
+use hertzian_examples::response::progress::Progress;
 
 #[test]
 fn writes_a_table_and_two_pictures() {
@@ -13,7 +15,10 @@ fn writes_a_table_and_two_pictures() {
     fs::create_dir_all(&folder).unwrap();
     let words = ["multipliers", "--harmonics", "4", "7", "--folder"];
     let words = words.into_iter().chain([folder.to_str().unwrap()]);
-    let summary = run(&Options::try_parse_from(words).unwrap()).unwrap();
+    let options = Options::try_parse_from(words).unwrap();
+    let quiet = &mut Progress::new(false);
+    let ended = run(&options, &AtomicBool::new(false), quiet).unwrap();
+    let summary = ended.summary;
     for method in METHODS {
         assert!(summary.contains(&format!(", {method}: ")), "{method}");
     }

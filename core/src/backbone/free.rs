@@ -75,6 +75,7 @@ impl std::fmt::Debug for FreeOscillation<'_> {
 
 /// One free oscillation.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct FreePoint {
     /// Its frequency.

@@ -89,6 +89,7 @@ impl std::fmt::Debug for PhaseResonance<'_> {
 
 /// One orbit in phase resonance.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ResonancePoint {
     /// What is varied.

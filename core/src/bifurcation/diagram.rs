@@ -15,6 +15,7 @@ use crate::flow::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side}
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Diagram {
     /// The branches, in the order in which they were found.
@@ -24,11 +25,13 @@ pub struct Diagram {
     /// Attractors whose branch was not followed, and searches that failed: the value and why.
     pub missed: Vec<(f64, Reason)>,
     /// Time of the computation.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::seconds"))]
     pub elapsed: Duration,
 }
 
 /// One branch of a diagram.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Limb {
     /// Where it comes from.
@@ -43,6 +46,8 @@ pub struct Limb {
 
 /// Where a branch comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Origin {
     /// It is the branch that was asked for.
@@ -65,6 +70,7 @@ pub enum Origin {
 
 /// A bifurcation whose further branch was not followed.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Omitted {
     /// Number of the branch in the diagram.
@@ -77,6 +83,8 @@ pub struct Omitted {
 
 /// Why a branch was not followed.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Reason {
     /// It is deeper than asked for.
@@ -93,6 +101,7 @@ pub enum Reason {
     /// The caller asked to stop before.
     Interrupted,
     /// Its first orbit was not found.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::text"))]
     Failed(Error),
 }
 

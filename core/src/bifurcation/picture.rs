@@ -3,7 +3,7 @@
 use super::diagram::Diagram;
 use crate::branch::EventKind;
 use crate::chart::{Chart, Curve, Line, Markers, Run};
-use crate::flow::shooting::{Cycle, CycleBranch, CycleEvent};
+use crate::flow::shooting::{Cycle, CycleBranch};
 use crate::stability::Verdict;
 
 /// Whether events of a kind are chosen.
@@ -22,7 +22,7 @@ impl Diagram {
                 .branches
                 .iter()
                 .filter(|limb| limb.period() == period)
-                .flat_map(|limb| runs(&limb.branch))
+                .flat_map(|limb| limb.branch.runs(place))
                 .collect(),
         });
         let chart = curves.fold(Chart::new(""), Chart::curve);
@@ -39,7 +39,7 @@ impl Diagram {
         kinds.into_iter().fold(chart, |chart, (label, chosen)| {
             let points: Vec<_> = all()
                 .filter(|e| chosen(e.kind))
-                .map(place_of_event)
+                .map(|event| place(&event.cycle))
                 .collect();
             if points.is_empty() {
                 return chart;
@@ -56,45 +56,44 @@ fn place(cycle: &Cycle) -> [f64; 2] {
     [cycle.value, cycle.peak_to_peak()]
 }
 
-fn place_of_event(event: &CycleEvent) -> [f64; 2] {
-    place(&event.cycle)
-}
-
-/// The branch as runs of one stability each; neighbours share the point where they meet, which is the bifurcation if there is one
-/// between them.
-fn runs(branch: &CycleBranch) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for (index, cycle) in branch.cycles.iter().enumerate() {
-        let line = match cycle.stability.verdict {
-            Verdict::Stable => Line::Stable,
-            Verdict::Unstable => Line::Unstable,
-            Verdict::Undecided => Line::Undecided,
-        };
-        let between = branch.events.iter().filter(|event| event.after == index);
-        let joints: Vec<_> = between.map(place_of_event).collect();
-        match runs.last_mut() {
-            Some(run) if run.line == line => {
-                run.points.extend(&joints);
-                run.points.push(place(cycle));
+impl CycleBranch {
+    /// Runs of one stability each for a chart, with every orbit at its place; neighbours share the point where they meet, which is the
+    /// bifurcation if there is one between them.
+    #[must_use]
+    pub fn runs(&self, place: impl Fn(&Cycle) -> [f64; 2]) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        for (index, cycle) in self.cycles.iter().enumerate() {
+            let line = match cycle.stability.verdict {
+                Verdict::Stable => Line::Stable,
+                Verdict::Unstable => Line::Unstable,
+                Verdict::Undecided => Line::Undecided,
+            };
+            let between = self.events.iter().filter(|event| event.after == index);
+            let joints: Vec<_> = between.map(|event| place(&event.cycle)).collect();
+            match runs.last_mut() {
+                Some(run) if run.line == line => {
+                    run.points.extend(&joints);
+                    run.points.push(place(cycle));
+                }
+                Some(run) => {
+                    let joint = joints.first().copied().unwrap_or(place(cycle));
+                    run.points.push(joint);
+                    let points = joints.into_iter().chain([place(cycle)]).collect();
+                    runs.push(Run { line, points });
+                }
+                None => runs.push(Run {
+                    line,
+                    points: joints.into_iter().chain([place(cycle)]).collect(),
+                }),
             }
-            Some(run) => {
-                let joint = joints.first().copied().unwrap_or(place(cycle));
-                run.points.push(joint);
-                let points = joints.into_iter().chain([place(cycle)]).collect();
-                runs.push(Run { line, points });
-            }
-            None => runs.push(Run {
-                line,
-                points: joints.into_iter().chain([place(cycle)]).collect(),
-            }),
         }
+        let behind = self
+            .events
+            .iter()
+            .filter(|event| event.after >= self.cycles.len());
+        if let Some(run) = runs.last_mut() {
+            run.points.extend(behind.map(|event| place(&event.cycle)));
+        }
+        runs
     }
-    let behind = branch
-        .events
-        .iter()
-        .filter(|event| event.after >= branch.cycles.len());
-    if let Some(run) = runs.last_mut() {
-        run.points.extend(behind.map(place_of_event));
-    }
-    runs
 }

@@ -59,6 +59,7 @@ pub struct Sweep {
 
 /// What was seen at one value.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Row {
     /// The value.
@@ -68,6 +69,7 @@ pub struct Row {
     /// Why it has no points; the motion started again.
     pub ended: Option<Ended>,
     /// The state that the next value goes on from.
+    #[cfg_attr(feature = "serde", serde(skip))]
     last: Vec<f64>,
 }
 

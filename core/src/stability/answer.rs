@@ -14,6 +14,7 @@ use crate::truncation::Finer;
 
 /// What a [`Method`] says of one orbit: see [`Branch::multipliers`].
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Answer {
     /// The method.
@@ -25,6 +26,7 @@ pub struct Answer {
     /// which no error has in it. The slope grows without bound towards a fold.
     pub value: f64,
     /// Multipliers of the orbit as it is, largest modulus first; empty if the method found none.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::pairs"))]
     pub uncorrected: Vec<Complex<f64>>,
     /// Estimated error of the method.
     pub by_method: f64,
@@ -37,6 +39,7 @@ pub struct Answer {
     /// What it cost, both orbits together.
     pub cost: Cost,
     /// The time that took, without that of correcting the orbit.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::seconds"))]
     pub elapsed: Duration,
 }
 

@@ -73,6 +73,7 @@ impl std::fmt::Display for Method {
 
 /// What multipliers cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Cost {
     /// Evaluations of the derivatives of a contact's force at one instant.

@@ -48,12 +48,14 @@ pub(crate) use spectrum::{distance, eigenvalues};
 
 /// What is known of the stability of an orbit.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Stability {
     /// The verdict.
     pub verdict: Verdict,
     /// Floquet multipliers over the orbit's own period, largest modulus first; those of the orbit corrected for the
     /// harmonics and samples that were left out.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::pairs"))]
     pub multipliers: Vec<Complex<f64>>,
     /// Estimated error of the multipliers: of the integration, and of the orbit's own truncation.
     pub error: f64,

@@ -4,12 +4,14 @@ pub mod charts;
 pub mod study;
 
 use std::fmt::Write;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
 
+use crate::program::{self, Ended, Failed};
+use crate::response::progress::Progress;
 use study::{Measured, decay, measure, oscillators};
 
 /// Measures every method for Floquet multipliers against the multipliers of the exact orbit, Hill's with all its sortings.
@@ -30,31 +32,35 @@ pub struct Options {
 /// Reads the command line, does what it asks for, and says by the exit code how it went.
 pub fn main() -> ExitCode {
     let options = Options::parse();
-    match run(&options) {
-        Ok(summary) => {
-            // Whoever reads the output may have stopped reading: not an error.
-            let _ = io::Write::write_all(&mut io::stdout(), summary.as_bytes());
-            ExitCode::SUCCESS
-        }
-        Err(failure) => {
-            eprintln!("multipliers: {failure}");
-            ExitCode::from(2)
-        }
-    }
+    program::run("multipliers", false, |interrupted, progress| {
+        run(&options, interrupted, progress).map_err(|failure| Failed {
+            message: failure.to_string(),
+            code: 2,
+        })
+    })
 }
 
-/// Measures and writes; returns what is printed.
+/// Measures and writes; returns what is printed. Setting `interrupted` ends it after the oscillator at hand.
 ///
 /// # Errors
 /// If an orbit is not found or a file cannot be written.
-pub fn run(options: &Options) -> Result<String, Box<dyn std::error::Error>> {
+pub fn run(
+    options: &Options,
+    interrupted: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Ended, Box<dyn std::error::Error>> {
     let mut summary = String::new();
     writeln!(
         summary,
         "coefficients of the displacement fall as k to the power"
     )?;
     let mut all = Vec::new();
-    for oscillator in &oscillators() {
+    let oscillators = oscillators();
+    for oscillator in &oscillators {
+        if interrupted.load(Ordering::Relaxed) {
+            break;
+        }
+        progress.update(|| format!("{}: every method", oscillator.name));
         writeln!(summary, "  {}: {:.2}", oscillator.name, decay(oscillator)?)?;
         all.push((oscillator.name, measure(oscillator, &options.harmonics)?));
     }
@@ -68,7 +74,11 @@ pub fn run(options: &Options) -> Result<String, Box<dyn std::error::Error>> {
     write_table(&file("multipliers.csv"), &all)?;
     charts::by_harmonics(&all).write(file("multipliers-harmonics.svg"))?;
     charts::by_time(&all).write(file("multipliers-time.svg"))?;
-    Ok(summary)
+    Ok(Ended {
+        summary,
+        complaints: Vec::new(),
+        complete: all.len() == oscillators.len(),
+    })
 }
 
 fn write_table(path: &Path, all: &[(&str, Vec<Measured>)]) -> Result<(), csv::Error> {

@@ -6,9 +6,9 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use hertzian::bifurcation::Bifurcations;
-use hertzian::chart::{Chart, Curve, Line, Markers, Run, Scale};
+use hertzian::chart::{Chart, Curve, Markers, Scale};
 use hertzian::flow::shooting::{Cycle, CycleBranch, CycleEvent};
-use hertzian::{Error, EventKind, Shooting, Verdict};
+use hertzian::{Error, EventKind, Shooting};
 
 use super::exact;
 use super::figure::{Drawing, Table, Task, Value};
@@ -95,7 +95,7 @@ impl<'t> Cycles<'t> {
             return;
         };
         let label = format!("period {}", first.period);
-        let runs = runs(branch, place);
+        let runs = branch.runs(place);
         match self.curves.iter_mut().find(|curve| curve.label == label) {
             Some(curve) => curve.runs.extend(runs),
             None => self.curves.push(Curve { label, runs }),
@@ -135,43 +135,6 @@ impl<'t> Cycles<'t> {
         self.drawing.svg = chart.to_svg();
         self.drawing
     }
-}
-
-/// The branch as runs of one stability each, as the library draws those of the balance.
-fn runs(branch: &CycleBranch, place: impl Fn(&Cycle) -> [f64; 2]) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for (index, cycle) in branch.cycles.iter().enumerate() {
-        let line = match cycle.stability.verdict {
-            Verdict::Stable => Line::Stable,
-            Verdict::Unstable => Line::Unstable,
-            Verdict::Undecided => Line::Undecided,
-        };
-        let joint = branch.events.iter().find(|event| event.after == index);
-        let joint = joint.map(|event| place(&event.cycle));
-        match runs.last_mut() {
-            Some(run) if run.line == line => {
-                run.points.extend(joint);
-                run.points.push(place(cycle));
-            }
-            Some(run) => {
-                let joint = joint.unwrap_or(place(cycle));
-                run.points.push(joint);
-                let points = vec![joint, place(cycle)];
-                runs.push(Run { line, points });
-            }
-            None => runs.push(Run {
-                line,
-                points: vec![place(cycle)],
-            }),
-        }
-    }
-    // Where the branch joins another one.
-    let count = branch.cycles.len();
-    let end = branch.events.iter().find(|event| event.after == count);
-    if let (Some(run), Some(end)) = (runs.last_mut(), end) {
-        run.points.push(place(&end.cycle));
-    }
-    runs
 }
 
 fn place(cycle: &Cycle) -> [f64; 2] {
@@ -303,7 +266,7 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
         .y("leading multiplier of period 8")
         .curve(Curve {
             label: String::new(),
-            runs: runs(&branch, leading),
+            runs: branch.runs(leading),
         })
         .markers(Markers {
             label: "printed in the paper".to_owned(),

@@ -11,15 +11,13 @@ mod page;
 mod resonances;
 pub mod run;
 
-use std::fmt::Write as _;
-use std::io::{self, IsTerminal, Write};
+use std::fmt::Write;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use clap::Parser;
 
-use crate::response::progress::Progress;
+use crate::program::{self, Ended};
 use options::Options;
 use run::{Drawn, run};
 
@@ -27,41 +25,23 @@ use run::{Drawn, run};
 /// cannot be written, 3 a figure failed or was not reached.
 pub fn main() -> ExitCode {
     let options = Options::parse();
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&interrupted);
-    // Without a handler, Ctrl-C ends the program at once: a nuisance, but no reason not to compute.
-    let _ = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    });
-    let shown = !options.quiet && io::stderr().is_terminal();
-    let mut progress = Progress::new(shown);
-    let outcome = run(&options, &interrupted, &mut progress);
-    progress.end();
-    match outcome {
-        Ok(drawn) => {
-            let mut complete = !interrupted.load(Ordering::Relaxed);
-            for Drawn {
-                figure, drawing, ..
-            } in &drawn
-            {
-                if let Err(error) = drawing {
-                    complain(&format!("{}: {error}", figure.id));
-                    complete = false;
-                }
-            }
-            if !options.quiet {
-                // Whoever reads the output may have stopped reading: not an error.
-                let _ = io::stdout().write_all(summary(&options, &drawn).as_bytes());
-            }
-            ExitCode::from(if complete { 0 } else { 3 })
-        }
-        Err(failure) => {
-            complain(&failure.to_string());
-            ExitCode::from(2)
-        }
-    }
+    program::run("paper", options.quiet, |interrupted, progress| {
+        let drawn = run(&options, interrupted, progress)?;
+        let failed = drawn.iter().filter_map(
+            |Drawn {
+                 figure, drawing, ..
+             }| {
+                let error = drawing.as_ref().err()?;
+                Some(format!("{}: {error}", figure.id))
+            },
+        );
+        let complaints: Vec<_> = failed.collect();
+        Ok(Ended {
+            summary: summary(&options, &drawn),
+            complete: complaints.is_empty() && !interrupted.load(Ordering::Relaxed),
+            complaints,
+        })
+    })
 }
 
 /// A line for each figure: its time, and the largest difference from an exact value.
@@ -93,8 +73,4 @@ fn summary(options: &Options, drawn: &[Drawn]) -> String {
         text.push('\n');
     }
     text + &format!("written  {}\n", options.out.join("index.html").display())
-}
-
-fn complain(message: &str) {
-    let _ = writeln!(io::stderr(), "paper: {message}");
 }

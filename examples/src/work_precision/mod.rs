@@ -12,15 +12,15 @@ mod page;
 pub mod problem;
 
 use std::fs;
-use std::io::{self, IsTerminal, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
 use hertzian::chart::Page;
 
+use crate::program::{self, Ended};
 use crate::response::progress::Progress;
 use measure::{Measured, measure};
 use method::Reference;
@@ -66,35 +66,14 @@ impl std::error::Error for Failure {}
 /// Reads the command line, measures, writes, and says by the exit code how it went: 0 done, 2 failed, 3 ended early.
 pub fn main() -> ExitCode {
     let options = Options::parse();
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&interrupted);
-    // Without a handler, Ctrl-C ends the program at once: a nuisance, but no reason not to compute.
-    let _ = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    });
-    let shown = !options.quiet && io::stderr().is_terminal();
-    let mut progress = Progress::new(shown);
-    let outcome = run(&options, problem::all(), &interrupted, &mut progress);
-    progress.end();
-    match outcome {
-        Ok(sections) => {
-            if !options.quiet {
-                // Whoever reads the output may have stopped reading: not an error.
-                let _ = io::stdout().write_all(summary(&options, &sections).as_bytes());
-            }
-            ExitCode::from(if interrupted.load(Ordering::Relaxed) {
-                3
-            } else {
-                0
-            })
-        }
-        Err(failure) => {
-            let _ = writeln!(io::stderr(), "work_precision: {failure}");
-            ExitCode::from(2)
-        }
-    }
+    program::run("work_precision", options.quiet, |interrupted, progress| {
+        let sections = run(&options, problem::all(), interrupted, progress)?;
+        Ok(Ended {
+            summary: summary(&options, &sections),
+            complaints: Vec::new(),
+            complete: !interrupted.load(Ordering::Relaxed),
+        })
+    })
 }
 
 /// Measures the problems and writes the results of each as soon as it is done. Setting `interrupted` ends it.

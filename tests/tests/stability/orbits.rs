@@ -84,12 +84,12 @@ impl Summary {
         }
         if ratio > FACTOR {
             // The corrected orbit is a little farther along the axis, which counts beside a fold.
-            let value = branch.multipliers(point, Method::Default).value;
-            let left = refined_at(system, point, value).map_or(ratio, |there| {
-                let there = there.stability;
+            let answer = branch.multipliers(point, Method::Default);
+            let left = refined_at(system, point, answer.value).map_or(ratio, |there| {
+                let (given, there) = (answer.stability, there.stability);
                 let moved = distance(&there.multipliers, exact);
-                let error = distance(&stability.multipliers, &there.multipliers);
-                error / (stability.error + there.error + moved)
+                let error = distance(&given.multipliers, &there.multipliers);
+                error / (given.error + there.error + moved)
             });
             println!("ratio {ratio:.2}, where the corrected orbit is {left:.2}: {place}");
             self.left = self.left.max(left);

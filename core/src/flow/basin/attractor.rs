@@ -7,6 +7,7 @@ use crate::flow::log::{Reader, Writer};
 
 /// A stable periodic orbit.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Attractor {
     /// Its shortest period, in periods of the declaration.
@@ -14,13 +15,17 @@ pub struct Attractor {
     /// Its states at the phase of the basin, in the order in which it visits them, from the one with the smallest first entry.
     pub points: Vec<Vec<f64>>,
     /// Floquet multipliers over its period, largest modulus first.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::pairs"))]
     pub multipliers: Vec<Complex<f64>>,
     /// Where motions are known to end on it.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) balls: Vec<Ball>,
 }
 
 /// What becomes of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Fate {
     /// It settles to a periodic orbit, by its number.

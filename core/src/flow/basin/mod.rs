@@ -65,6 +65,7 @@ pub struct Basin {
 
 /// Basins of attraction.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Basins {
     /// What becomes of the motion of every cell, row by row; see [`Grid::state`].

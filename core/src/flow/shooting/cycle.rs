@@ -12,6 +12,7 @@ use crate::statistics::Statistics;
 
 /// A periodic orbit, as a state that returns to itself.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Cycle {
     /// Value of what is varied: omega or a parameter.
@@ -66,6 +67,7 @@ impl Cycle {
 
 /// A special orbit of a branch, located until its test function vanished.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct CycleEvent {
     /// What happens there.
@@ -139,6 +141,7 @@ impl fmt::Display for End {
 
 /// A branch of orbits in the order in which it was followed.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct CycleBranch {
     /// Name of what it varies.
@@ -158,6 +161,7 @@ pub struct CycleBranch {
     /// What the motions cost.
     pub work: Work,
     /// Time of the computation.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::seconds"))]
     pub elapsed: Duration,
 }
 

@@ -17,6 +17,7 @@ const STEPS: usize = 60;
 
 /// Smallest and largest value of one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Extremes {
     /// The smallest.

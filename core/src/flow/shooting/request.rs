@@ -23,6 +23,8 @@ const MOST_UNKNOWNS: usize = 6000;
 
 /// The side of an event on which a branch is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Side {
     /// One of the two.
     One,

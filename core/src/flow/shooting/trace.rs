@@ -21,6 +21,7 @@ use crate::system::{System, Variable};
 
 /// A curve of bifurcations in the plane of two parameters.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Track {
     /// What bifurcates.
@@ -39,6 +40,7 @@ pub struct Track {
 
 /// One bifurcation of a curve.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct TrackPoint {
     /// Values of the two parameters.
@@ -46,6 +48,7 @@ pub struct TrackPoint {
     /// The state `(q, dq/dt)` at phase zero.
     pub state: Vec<f64>,
     /// Floquet multipliers over the period, largest modulus first.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::pairs"))]
     pub multipliers: Vec<Complex<f64>>,
     /// How often a gap crosses a level in a period.
     pub switches: usize,
@@ -53,6 +56,7 @@ pub struct TrackPoint {
 
 /// A special point of a curve.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Special {
     /// What is special.
