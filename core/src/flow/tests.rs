@@ -206,3 +206,61 @@ fn errors_are_kept_as_numbers() {
     }
     assert_eq!(FlowError::of_numbers([0.0; 3]), None);
 }
+
+crate::oscillator! {
+    /// The paper's continuous spring, with the exponent as a parameter: a level at zero, and a step from there to there.
+    Continuous(x) {
+        param alpha > 0;
+        param zeta in 0.0..;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^alpha = 1 + drive*cos(omega*t);
+    }
+}
+
+/// With the exponent one and at resonance motions settle to `1 + drive / (2 zeta) sin tau`.
+#[test]
+fn many_periods_at_once_settle_to_the_closed_form() {
+    let (zeta, drive) = (0.032, 1.785);
+    for (tolerance, start) in [
+        (1e-6, [-2.0, 0.2]),
+        (1e-10, [0.0, 0.0]),
+        (1e-12, [1.0, 0.0]),
+    ] {
+        let model = Continuous {
+            alpha: 1.0,
+            zeta,
+            drive,
+        };
+        let mut flow = Integrated::new(&model, &[1.0, zeta, drive], 1.0, tolerance).unwrap();
+        let mut state = start;
+        flow.advance(0.0, 300.0 * TAU, &mut state, None, None)
+            .unwrap();
+        let exact = [1.0, drive / (2.0 * zeta)];
+        for (found, exact) in state.iter().zip(exact) {
+            let error = (found - exact).abs() / (drive / (2.0 * zeta));
+            // What each of the last periods adds has died out by `exp(-2 pi zeta)` a period later.
+            assert!(error < 100.0 * tolerance, "{tolerance:e}: {error:e}");
+        }
+    }
+}
+
+/// Where a gap opens for a moment only, a step to its second crossing is not taken again and again.
+#[test]
+fn a_motion_that_almost_touches_goes_on() {
+    let drive = 0.1;
+    let model = Continuous {
+        alpha: 1.5,
+        zeta: 0.0,
+        drive,
+    };
+    let [coarse, fine] = [1e-6, 1e-12].map(|tolerance| {
+        let mut flow = Integrated::new(&model, &[1.5, 0.0, drive], 1.0, tolerance).unwrap();
+        let mut state = [0.0, 0.0];
+        flow.advance(0.0, 30.0 * TAU, &mut state, None, None)
+            .unwrap();
+        state
+    });
+    for (x, y) in coarse.iter().zip(fine) {
+        assert!((x - y).abs() < 1e-3, "{coarse:?} {fine:?}");
+    }
+}

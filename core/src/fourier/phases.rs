@@ -1,28 +1,34 @@
-//! Sines and cosines of many phases at once.
+//! Cosines and sines of many phases at once.
 //!
-//! The argument is reduced to a quarter of a period, `x = n pi/2 + r` with `|r| <= pi/4`, where `pi/2` is taken as the sum of a
-//! number of 33 bits, whose multiples are exact, and its remainder; `sin r` and `cos r` are the polynomials of least error on
-//! that interval. Results differ from the exact ones by one unit in the last place or so, as those of a library do; a
-//! library takes one phase at a time.
+//! A phase is reduced by the nearest multiple of `pi / 2`, in three parts of which the first two are short, so that their multiples
+//! are exact (Cody and Waite), and the rest is put into the polynomials of fdlibm, whose error is below a unit in the last place.
+//! Plain loops without branches, so that they are compiled for the vectors that there are; a library takes one phase at a time.
 //!
-//! Source: Ng (1992), Argument reduction for huge arguments: good to the last bit, and the kernels of FDLIBM (Sun
-//! Microsystems, 1993), from which the coefficients are.
+//! Source: Cody and Waite (1980), Software Manual for the Elementary Functions, chapter 8; Sun Microsystems (1993), fdlibm,
+//! `k_sin.c` and `k_cos.c`.
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
 
 use multiversion::multiversion;
 
 use super::kernels::LANES;
 
-/// Phases beyond this are not reduced exactly.
-#[cfg(test)]
-const LARGEST: f64 = 1e4;
+/// Beyond this many radians the reduction loses digits.
+const LARGEST: f64 = 1e5;
 
-const HALF_PI: [f64; 2] = [
-    f64::from_bits(0x3FF9_21FB_5440_0000),
-    f64::from_bits(0x3DD0_B461_1A62_6331),
+/// Adding this leaves a whole number in the last bits.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
+
+/// `pi / 2` in three parts.
+const HALF_PI: [f64; 3] = [
+    1.570_796_326_734_125_6,
+    6.077_100_506_303_966e-11,
+    2.022_266_248_795_950_6e-21,
 ];
-/// Added and subtracted, it rounds to a whole number.
-const ROUND: f64 = 6_755_399_441_055_744.0;
 
+/// `(sin r - r) / r^3`
 const SINE: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
     8.333_333_333_322_49e-3,
@@ -31,6 +37,8 @@ const SINE: [f64; 6] = [
     -2.505_076_025_340_686_3e-8,
     1.589_690_995_211_55e-10,
 ];
+
+/// `(cos r - 1 + r^2 / 2) / r^4`
 const COSINE: [f64; 6] = [
     4.166_666_666_666_66e-2,
     -1.388_888_888_887_411e-3,
@@ -40,41 +48,48 @@ const COSINE: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// Writes sines and cosines of phases up to some thousand periods. All slices have one length, a multiple of the lanes.
+/// Writes sines and cosines. All slices have one length, a multiple of the lanes.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub(crate) fn sines_and_cosines(phases: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
-    let groups = phases
-        .chunks_exact(LANES)
-        .zip(sines.chunks_exact_mut(LANES))
-        .zip(cosines.chunks_exact_mut(LANES));
-    for ((phases, sines), cosines) in groups {
-        for lane in 0..LANES {
-            let x = phases[lane];
-            let quarters = (x * std::f64::consts::FRAC_2_PI + ROUND) - ROUND;
-            let r = (x - quarters * HALF_PI[0]) - quarters * HALF_PI[1];
-            let z = r * r;
-            let s = r + r * z * polynomial(&SINE, z);
-            // 1 - z/2 first, and what its rounding lost.
-            let half = 0.5 * z;
-            let rest = 1.0 - half;
-            let c = rest + (((1.0 - rest) - half) + z * z * polynomial(&COSINE, z));
-            // The quarter, from 0 to 3.
-            let turn = quarters - 4.0 * ((0.25 * quarters - 0.375 + ROUND) - ROUND);
-            let odd = turn == 1.0 || turn == 3.0;
-            let (sine, cosine) = if odd { (c, s) } else { (s, c) };
-            sines[lane] = if turn >= 2.0 { -sine } else { sine };
-            let left = turn == 1.0 || turn == 2.0;
-            cosines[lane] = if left { -cosine } else { cosine };
-        }
+    let (phases, _) = phases.as_chunks::<LANES>();
+    let (sines, _) = sines.as_chunks_mut::<LANES>();
+    let (cosines, _) = cosines.as_chunks_mut::<LANES>();
+    for ((phases, sines), cosines) in phases.iter().zip(sines).zip(cosines) {
+        [*cosines, *sines] = waves(phases);
     }
 }
 
+/// Cosines and sines.
 #[inline(always)]
-#[allow(
-    clippy::inline_always,
-    reason = "what is not inlined is not compiled for the instruction set of its caller"
-)]
-fn polynomial(c: &[f64; 6], z: f64) -> f64 {
+pub(crate) fn waves<const S: usize>(phases: &[f64; S]) -> [[f64; S]; 2] {
+    let mut within = true;
+    for phase in phases {
+        within &= phase.abs() < LARGEST;
+    }
+    if !within {
+        return [phases.map(f64::cos), phases.map(f64::sin)];
+    }
+    let (mut cosines, mut sines) = ([0.0; S], [0.0; S]);
+    for j in 0..S {
+        let x = phases[j];
+        let shifted = x * std::f64::consts::FRAC_2_PI + WHOLE;
+        let quarter = shifted.to_bits();
+        let n = shifted - WHOLE;
+        let r = ((x - n * HALF_PI[0]) - n * HALF_PI[1]) - n * HALF_PI[2];
+        let z = r * r;
+        let sine = r + r * z * polynomial(z, &SINE);
+        let cosine = 1.0 - (0.5 * z - z * z * polynomial(z, &COSINE));
+        let odd = quarter & 1 == 1;
+        let (c, s) = if odd { (sine, cosine) } else { (cosine, sine) };
+        let sign = |bit: u64| (bit & 1) << 63;
+        cosines[j] = f64::from_bits(c.to_bits() ^ sign(quarter ^ (quarter >> 1)));
+        sines[j] = f64::from_bits(s.to_bits() ^ sign(quarter >> 1));
+    }
+    [cosines, sines]
+}
+
+#[inline(always)]
+fn polynomial(z: f64, c: &[f64; 6]) -> f64 {
     c[0] + z * (c[1] + z * (c[2] + z * (c[3] + z * (c[4] + z * c[5]))))
 }
 
@@ -86,7 +101,7 @@ mod tests {
     #[test]
     fn agrees_with_the_library() {
         let mut random = Random::new(8);
-        for reach in [1e-3, 1.0, 7.0, 100.0, LARGEST] {
+        for reach in [1e-3, 1.0, 7.0, 100.0, 1e4, LARGEST, 1e7] {
             let mut phases: Vec<f64> = (0..4096).map(|_| random.between(-reach, reach)).collect();
             for (index, phase) in phases.iter_mut().take(64).enumerate() {
                 *phase = (index as f64 - 32.0) * std::f64::consts::FRAC_PI_4;
@@ -103,5 +118,6 @@ mod tests {
                 );
             }
         }
+        assert_eq!(waves(&[0.0]), [[1.0], [0.0]]);
     }
 }

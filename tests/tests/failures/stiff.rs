@@ -2,20 +2,9 @@
 
 use hertzian::stability::{Method, Projection};
 use hertzian::{FrequencyResponse, Shooting, Verdict};
+use hertzian_tests::TwoMasses;
 
 use crate::models::distance;
-
-hertzian::oscillator! {
-    /// Two masses in a row, the second held to the ground, the first with an elastic stop at distance one.
-    /// Stiffness and clearance as in example 03 of NLvib (Krack and Gross 2019); damping is 0.03 of the stiffness matrix.
-    TwoMasses(x1, x2) {
-        param stop > 0;
-        param drive;
-        law stop_spring(gap) { gap > 1 => stop*(gap - 1), else => 0 }
-        ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop_spring(x1) = 0;
-        ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t);
-    }
-}
 
 /// A stop a hundred times as stiff as the springs, 20 harmonics: entries of the Hill matrix fall slowly, and its exponential
 /// magnifies what is missing. The bound of Bayer and Leine (2025) needs coefficients that fall exponentially; there is none.

@@ -6,18 +6,7 @@ use crate::stated::assert_stated;
 use hertzian::flow::shooting::End;
 use hertzian::flow::{self, Options};
 use hertzian::{EventKind, FrequencyResponse, Shooting, Stop, Verdict};
-
-hertzian::oscillator! {
-    /// Two masses in a row, the second held to the ground, the first with an elastic stop at distance one.
-    /// Stiffness and clearance as in example 03 of NLvib (Krack and Gross 2019); damping is 0.03 of the stiffness matrix.
-    TwoMasses(x1, x2) {
-        param stop > 0;
-        param drive;
-        law stop_spring(gap) { gap > 1 => stop*(gap - 1), else => 0 }
-        ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop_spring(x1) = 0;
-        ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t);
-    }
-}
+use hertzian_tests::TwoMasses;
 
 /// The Neimark-Sacker bifurcation at omega 0.61861 and the period doubling at 0.73878 are from an independent computation, to
 /// five digits. The system is piecewise affine.

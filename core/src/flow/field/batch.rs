@@ -9,8 +9,8 @@
 
 use multiversion::multiversion;
 
-use super::waves::waves;
 use super::{Contact, Field};
+use crate::fourier::phases::waves;
 use crate::law::{On, Variation};
 use crate::system::Part;
 

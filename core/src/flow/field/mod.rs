@@ -12,7 +12,6 @@
 
 pub(crate) mod batch;
 pub(crate) mod slopes;
-mod waves;
 
 use nalgebra::DMatrix;
 
@@ -351,6 +350,25 @@ impl<'a> Field<'a> {
             }
         }
         change
+    }
+
+    /// Moves positions as little as possible so that the gap of a contact grows by a number.
+    pub(crate) fn move_gap(&self, contact: usize, phase: f64, by: f64, q: &mut [f64]) {
+        let terms = &self.contacts[contact].gap;
+        let d = |item: &Item| self.coefficients[item.coefficient] * self.wave(item, phase).0;
+        let along = |row: usize| {
+            terms
+                .iter()
+                .filter(|item| item.row == row)
+                .map(d)
+                .sum::<f64>()
+        };
+        let square: f64 = (0..q.len()).map(|row| along(row).powi(2)).sum();
+        if square > 0.0 {
+            for (row, q) in q.iter_mut().enumerate() {
+                *q += by * along(row) / square;
+            }
+        }
     }
 
     /// Adds the acceleration that a force of a contact causes.

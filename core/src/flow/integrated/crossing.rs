@@ -2,7 +2,8 @@
 //!
 //! Distances from the levels of a piece are polynomials in `u` through their values at both ends and at the nodes, in
 //! Bernstein form, so that a pair of crossings within one step is not missed. At an end that stands on the level itself the
-//! distance is divided by the part of the step that has passed, or is left: its zero there is taken out.
+//! distance is divided by the part of the step that has passed, or is left: its zero there is taken out, and a double one if the
+//! motion starts there at rest.
 
 use crate::flow::field::Gap;
 
@@ -59,6 +60,12 @@ impl<const S: usize> Engine<'_, S> {
         let starts = self.here.on[contact] == Some(level);
         let ends = self.trial.landing == Some((contact, level));
         let time = self.time();
+        let at_rest = starts && self.is_at_rest(contact);
+        let bend = if at_rest {
+            0.5 * time * time * self.acceleration_of(contact)
+        } else {
+            0.0
+        };
         let tables = &self.tables[self.trial.table];
         let base = self.anchors[contact].gap - value;
         let rise = &self.batch.contacts[contact].rise;
@@ -70,9 +77,12 @@ impl<const S: usize> Engine<'_, S> {
         values[S + 1] = sign * (end.value - value);
         let size = start.size.max(end.size);
         if starts {
+            // A gap that is at rest there goes away from the level as the square.
             let parts = values[1..=S].iter_mut().zip(&tables.passed);
-            parts.for_each(|(distance, part)| *distance /= part);
-            values[0] = sign * start.rate * time;
+            parts.for_each(|(distance, part)| {
+                *distance /= if at_rest { part * part } else { *part }
+            });
+            values[0] = sign * if at_rest { bend } else { start.rate * time };
         }
         if ends {
             let parts = values[1..=S].iter_mut().zip(&tables.left);

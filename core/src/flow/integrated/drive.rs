@@ -15,6 +15,8 @@ const FACTORS: (f64, f64) = (0.2, 3.0);
 /// The first width, in parts of what a vibration would allow; and that of a graded step, in parts of that.
 const FIRST: f64 = 0.6;
 const GRADED: f64 = 0.3;
+/// Least first width in radians: beside a level with an exponent below one, stiffness says nothing of the motion.
+const LEAST_FIRST: f64 = 1e-6;
 /// Attempts at one step.
 const MOST_ATTEMPTS: usize = 200;
 /// A step to a level may be so many times as wide as the widest that is known to be accurate: the step before it would be next to
@@ -26,7 +28,7 @@ const MOST_LANDINGS: usize = 6;
 /// The factor of a step that could not be solved.
 const SHORTEN: f64 = 0.4;
 /// A step is not tried if it is shorter than this, in parts of the phase and in radians.
-const SHORTEST: f64 = 1e-15;
+pub(super) const SHORTEST: f64 = 1e-15;
 
 /// What is tried next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,6 +115,7 @@ impl<const S: usize> Engine<'_, S> {
             }
             if let Some((contact, level)) = landing {
                 self.here.on[contact] = Some(level);
+                self.put_on_level(contact, level);
                 self.find_levels();
                 self.cross(contact, level, tangent.as_deref_mut())?;
             }
@@ -145,7 +148,7 @@ impl<const S: usize> Engine<'_, S> {
         let base = self.field.base().abs();
         let width = FIRST * angle / (frequency / base).max(self.field.highest_harmonic());
         let width = if width.is_finite() {
-            width.min(span.abs())
+            width.max(LEAST_FIRST).min(span.abs())
         } else {
             span.abs()
         };

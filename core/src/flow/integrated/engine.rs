@@ -11,7 +11,7 @@ use crate::law::{Quantity, TermFacts};
 use crate::linear::{Lu, Matrix};
 use crate::system::Variable;
 
-use super::drive::Aim;
+use super::drive::{Aim, SHORTEST};
 use super::map::{Map, Tables};
 use super::rule::Rule;
 
@@ -217,7 +217,17 @@ impl<'a, const S: usize> Engine<'a, S> {
         }
     }
 
-    /// Notes which contacts stand on a level of their piece, within rounding; and those that have left it within the
+    /// Moves the state by what rounding has left between a gap and the level that a step has ended on. The next step takes the gap
+    /// for the level's own, and what is left would grow by the square of its angle from one level to the next.
+    pub(super) fn put_on_level(&mut self, contact: usize, level: usize) {
+        let phase = self.phase();
+        let Here { q, v, .. } = &mut self.here;
+        let gap = self.field.gap(contact, q, v, phase);
+        let left = self.field.contacts[contact].levels[level] - gap.value;
+        self.field.move_gap(contact, phase, left, q);
+    }
+
+    /// Notes which contacts stand on a level of their piece, within rounding or less than the shortest step away; and those that have left it within the
     /// tolerance, too little to have been seen.
     pub(super) fn find_levels(&mut self) {
         let phase = self.phase();
@@ -226,7 +236,10 @@ impl<'a, const S: usize> Engine<'a, S> {
             self.here.gaps[contact] = gap;
             let levels = &self.field.contacts[contact].levels;
             let piece = self.here.pieces[contact];
-            let rounding = |level: f64| ON_LEVEL * (gap.size + level.abs());
+            // No step is as short as the one from here to a level that is nearer than this.
+            let shortest = SHORTEST * phase.abs().max(1.0);
+            let reach = shortest * gap.rate.abs() / self.field.base().abs();
+            let rounding = |level: f64| ON_LEVEL * (gap.size + level.abs()) + reach;
             let lower = piece
                 .checked_sub(1)
                 .filter(|&lower| gap.value - levels[lower] <= rounding(levels[lower]));

@@ -30,7 +30,7 @@ impl<const S: usize> Engine<'_, S> {
             while let Some(level) = self.here.on[contact] {
                 let gap = self.here.gaps[contact];
                 let up = if forward { gap.rate } else { -gap.rate };
-                let at_rest = gap.rate.abs() <= AT_REST * self.rate_size(contact);
+                let at_rest = self.is_at_rest(contact);
                 let direction = if at_rest {
                     self.accelerate_here();
                     self.acceleration_of(contact)
@@ -97,8 +97,13 @@ impl<const S: usize> Engine<'_, S> {
             .max(gap.rate.abs())
     }
 
+    /// The gap has no rate, but for rounding.
+    pub(super) fn is_at_rest(&self, contact: usize) -> bool {
+        self.here.gaps[contact].rate.abs() <= AT_REST * self.rate_size(contact)
+    }
+
     /// The second derivative of a gap by time, from the accelerations here; zero within rounding.
-    fn acceleration_of(&self, contact: usize) -> f64 {
+    pub(super) fn acceleration_of(&self, contact: usize) -> f64 {
         let a = &self.instant.a;
         let phase = self.phase();
         let here = &self.here;

@@ -102,6 +102,60 @@ fn tangents_are_derivatives() {
     }
 }
 
+/// Other values and the motion with its derivatives by them allocate nothing once all maps of steps are known: levels, exponents
+/// and jumps that move, a contact that moves.
+#[test]
+fn nothing_is_allocated_at_other_values() {
+    let model = Everything {
+        stiff: 2.0,
+        alpha: 1.7,
+        level: 0.2,
+        jump: 0.1,
+        sway: 0.2,
+        mass: 1.3,
+    };
+    let mut values = [0.0; 6];
+    model.values(&mut values);
+    let variables = (0..6).map(Variable::Parameter).chain([Variable::Omega]);
+    for variable in variables {
+        let mut flow = Integrated::new(&model, &values, 0.9, 1e-10).unwrap();
+        let mut tangent = Tangent::of_state(2, Some(variable));
+        let value = match variable {
+            Variable::Omega => 0.9,
+            Variable::Parameter(index) => values[index],
+        };
+        let mut run = || {
+            for value in [value, value + 0.01] {
+                let mut state = [0.1, -0.2, 0.3, 0.4];
+                flow.set(variable, value).unwrap();
+                for tangent in [None, Some(&mut tangent)] {
+                    flow.advance(0.0, TAU, &mut state, tangent, None).unwrap();
+                }
+            }
+        };
+        run();
+        assert_eq!(count(run), 0, "{variable:?}");
+    }
+}
+
+/// So close to a level that its stiffness is beyond all bounds, a motion is what it is from the level itself.
+#[test]
+fn stiffness_beside_a_level_does_not_stop_a_motion() {
+    let model = PowerForm::new(false, 0.1, 0.0, 0.0, 0.0);
+    let end = |x: f64| {
+        let mut flow = Integrated::new(&model, &model.values, 1.0, 1e-10).unwrap();
+        let mut state = [x, 1.0];
+        flow.advance(0.0, 1.0, &mut state, None, None).unwrap();
+        state
+    };
+    let exact = end(0.0);
+    for x in [1e-40, -1e-40, 1e-20] {
+        for (found, exact) in end(x).iter().zip(exact) {
+            assert!((found - exact).abs() < 1e-9, "{x:e}: {found} {exact}");
+        }
+    }
+}
+
 /// Moving again, with derivatives and shown to a watcher, allocates nothing.
 #[test]
 fn nothing_is_allocated_again() {
