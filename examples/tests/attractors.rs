@@ -136,7 +136,7 @@ fn every_figure_has_a_command() {
             &["--patience", "6000"],
             &[
                 "period 8 at A = 1.77983",
-                "period 8<",
+                "\"period 8\"",
                 "enlargement",
                 "A = 1.785",
             ],
