@@ -1,6 +1,7 @@
 //! A computed branch of periodic orbits.
 
 use std::fmt;
+use std::mem::discriminant;
 use std::time::Duration;
 
 use crate::continuation::follow::Stop;
@@ -121,6 +122,13 @@ pub enum EventKind {
     },
 }
 
+impl EventKind {
+    /// Whether the branch turns back in what it varies at an event of this kind.
+    pub fn turns(self) -> bool {
+        matches!(self, Self::Fold | Self::Grazing { turns: true })
+    }
+}
+
 impl fmt::Display for EventKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -175,7 +183,7 @@ impl fmt::Display for Event {
 pub struct Turn {
     /// What would have happened where the test function vanishes.
     pub kind: EventKind,
-    /// What the branch varies, where the jump is.
+    /// What the branch varies, where the jump is; in the middle of the step between two points where it was not found.
     pub value: f64,
     /// Value of the test function beside the jump; not a number where it is unknown.
     pub test: f64,
@@ -212,9 +220,10 @@ impl<'a> Branch<'a> {
         self.follower.system
     }
 
-    /// The events of one kind.
+    /// The events of one kind. Whether the branch turns back is not asked: `Grazing` of either kind gives all.
     pub fn events(&self, kind: EventKind) -> impl Iterator<Item = &Event> {
-        self.events.iter().filter(move |event| event.kind == kind)
+        let alike = move |event: &&Event| discriminant(&event.kind) == discriminant(&kind);
+        self.events.iter().filter(alike)
     }
 
     /// The folds.

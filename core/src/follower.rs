@@ -119,6 +119,17 @@ impl<'a> Follower<'a> {
         )
     }
 
+    /// An orbit as extended unknowns of the resolution asked for.
+    pub(crate) fn unknowns_of(&self, orbit: &Orbit, value: f64) -> Vec<f64> {
+        let mut u = orbit.series.clone();
+        u.push(value);
+        let length = series::length(self.resolution.harmonics);
+        let mut u = resize(&u, orbit.coordinates, length);
+        let partition = self.balance(self.resolution).partition();
+        partition.clear_others(&mut u);
+        u
+    }
+
     /// The same resolution with another number of harmonics, and with a core if that pays.
     pub(crate) fn with_harmonics(&self, harmonics: usize, core: usize) -> Resolution {
         let pays = WORTHWHILE * core as f64 <= harmonics as f64;
@@ -239,14 +250,14 @@ impl<'a> Follower<'a> {
     }
 }
 
-/// Points and folds of a branch in their order along it.
+/// Points of a branch, and where it turns back, in their order along it.
 fn chain<'p>(points: &'p [Point], events: &'p [Event]) -> Vec<&'p Point> {
     let mut chain = Vec::with_capacity(points.len() + events.len());
     for (index, point) in points.iter().enumerate() {
-        let folds = events
+        let turns = events
             .iter()
-            .filter(|event| event.after == index && event.kind == EventKind::Fold);
-        chain.extend(folds.map(|event| &event.point));
+            .filter(|event| event.after == index && event.kind.turns());
+        chain.extend(turns.map(|event| &event.point));
         chain.push(point);
     }
     chain

@@ -33,6 +33,16 @@ pub struct Partition {
 }
 
 impl Partition {
+    /// Extended unknowns with zeros for those that are in no part, as the mean of an orbit with odd symmetry.
+    pub(crate) fn clear_others(&self, u: &mut [f64]) {
+        let mut kept = vec![0.0; u.len()];
+        let parameter = u.len() - 1;
+        for &unknown in self.core.iter().chain(&self.tail).chain([&parameter]) {
+            kept[unknown] = u[unknown];
+        }
+        u.copy_from_slice(&kept);
+    }
+
     /// All unknowns in the core.
     pub(crate) fn dense(unknowns: usize) -> Self {
         Self {

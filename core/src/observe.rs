@@ -47,6 +47,9 @@ impl Motion {
     }
 
     /// Reads the motion off a series.
+    ///
+    /// # Panics
+    /// If the series is empty.
     pub fn of(series: &[f64]) -> Self {
         Self::read(&mut Reader::default(), series)
     }
@@ -84,6 +87,9 @@ impl ContactMotion {
 }
 
 /// Amplitude of each harmonic, the mean (with its sign) first.
+///
+/// # Panics
+/// If the series is empty.
 pub fn amplitudes(series: &[f64]) -> Vec<f64> {
     let oscillating = series[1..]
         .chunks_exact(2)
@@ -92,6 +98,9 @@ pub fn amplitudes(series: &[f64]) -> Vec<f64> {
 }
 
 /// Phase lag of each harmonic, in radians, the mean's zero first: harmonic `k` is `amplitude cos(k tau - phase)`.
+///
+/// # Panics
+/// If the series is empty.
 pub fn phases(series: &[f64]) -> Vec<f64> {
     let oscillating = series[1..]
         .chunks_exact(2)

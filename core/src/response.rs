@@ -14,8 +14,6 @@ use crate::continuation::step::StepControl;
 use crate::error::{Attempts, Error};
 use crate::flow::shooting::Side;
 use crate::follower::Sought;
-use crate::fourier::series;
-use crate::harmonics::resize;
 use crate::run::Run;
 use crate::stability::Method;
 use crate::start::{start, without_symmetry};
@@ -186,7 +184,7 @@ impl<'a> FrequencyResponse<'a> {
     }
 
     /// Largest step along the branch, where one is as much as the size of the orbit, or the whole range. Default: 0.1; the
-    /// part of the range in one step is at most 0.15 of it. Steps are shorter where the branch bends.
+    /// part of the range in one step is about 0.15 of it at most. Steps are shorter where the branch bends.
     #[must_use]
     pub fn largest_step(mut self, step: f64) -> Self {
         self.largest_step = step;
@@ -194,20 +192,22 @@ impl<'a> FrequencyResponse<'a> {
     }
 
     /// Whether doublings of the period are located too, where another balance, of twice the period, has the branch that begins.
-    /// Orbits of odd symmetry have none. Default: no, since it takes about as long again.
+    /// Orbits of odd symmetry have none. Default: no, since it takes about as long again. [`bifurcations`](Self::bifurcations)
+    /// include doublings, whatever is said here.
     #[must_use]
     pub fn doublings(mut self, wanted: bool) -> Self {
-        self.sought = if wanted {
-            Sought::Doublings
-        } else {
-            Sought::Folds
+        self.sought = match self.sought {
+            Sought::All => Sought::All,
+            _ if wanted => Sought::Doublings,
+            _ => Sought::Folds,
         };
         self
     }
 
     /// Whether all bifurcations are located and not folds alone: doublings of the period, crossings with other branches,
-    /// Neimark-Sacker bifurcations, and where a gap touches a level. Default: no. Neimark-Sacker bifurcations are seen by the
-    /// multipliers, so they need [`stability`](Self::stability).
+    /// Neimark-Sacker bifurcations, and where a gap touches a level. Default: no, folds alone, or what
+    /// [`doublings`](Self::doublings) says after this. Neimark-Sacker bifurcations are seen by the multipliers, so they need
+    /// [`stability`](Self::stability).
     #[must_use]
     pub fn bifurcations(mut self, wanted: bool) -> Self {
         self.sought = if wanted { Sought::All } else { Sought::Folds };
@@ -282,12 +282,7 @@ impl<'a> FrequencyResponse<'a> {
                 let broken = broken.then(|| without_symmetry(request, &found, &mut statistics));
                 broken.flatten().unwrap_or(found)
             }
-            Some(orbit) => {
-                let mut u = orbit.series.clone();
-                u.push(options.from);
-                let length = series::length(follower.resolution.harmonics);
-                resize(&u, orbit.coordinates, length)
-            }
+            Some(orbit) => follower.unknowns_of(orbit, options.from),
         };
         let run = Run::new(&follower, options, &first);
         self.followed(run, Start::Near(first), &mut visit, (statistics, started))
@@ -338,7 +333,7 @@ impl<'a> FrequencyResponse<'a> {
         mut visit: impl FnMut(&Point) -> ControlFlow<()>,
     ) -> Result<Branch<'a>, Error> {
         let started = Instant::now();
-        self.fits(&event.point.orbit)?;
+        self.has(event)?;
         let doubles = event.kind == EventKind::PeriodDoubling;
         let request = Self {
             period: event.point.orbit.period * if doubles { 2 } else { 1 },

@@ -1,6 +1,7 @@
 //! What a run does with the curve it follows: orbits with their stability, events, and another number of harmonics where the
 //! tolerance asks for it.
 
+mod crossed;
 mod events;
 mod touch;
 mod watch;
@@ -10,13 +11,13 @@ use std::ops::ControlFlow;
 use crate::balance::{Balance, Resolution};
 use crate::branch::{Event, Point, Turn};
 use crate::continuation::follow::{
-    Continue, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, follow,
+    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, follow,
 };
 use crate::error::Error;
 use crate::follower::Follower;
 use crate::fourier::series;
 use crate::harmonics::{Chooser, resize};
-use crate::newton::{Newton, NewtonError};
+use crate::newton::{Border, Newton, NewtonError};
 use crate::reader::Reader;
 use crate::statistics::Statistics;
 use watch::Watch;
@@ -193,24 +194,62 @@ impl<'f, 'a> Run<'f, 'a> {
                     Continue::Continue(())
                 }
             }
-            Visit::Between(before, behind) => {
-                if self.joins(&behind.u) {
-                    self.join(balance, newton, (before, behind));
-                } else {
-                    let known = self.turns.len();
-                    if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
-                        self.turn(balance, newton, (before, behind));
-                    }
-                    let turned = self.turns.get(known).map(|turn| turn.value);
-                    self.look_between(balance, newton, (before, behind), turned);
-                }
-                if self.ended.is_some() {
-                    Continue::Break(Halt::Stop)
-                } else {
-                    Continue::Continue(())
-                }
+            Visit::Between(before, behind) => self.step(balance, newton, (before, behind), visit),
+        }
+    }
+
+    /// Looks at the step between two points.
+    fn step(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): (&CurvePoint, &CurvePoint),
+        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
+    ) -> Continue {
+        if self.joins(&behind.u) {
+            if self.join(balance, newton, (before, behind)) {
+                return Continue::Break(Halt::Stop);
+            }
+            // It only seemed to belong to what comes after the end. The walk cannot be halted here for more harmonics, so
+            // that the point stands with the error it has.
+            let point = self.read_again(balance, newton, behind);
+            let answer = visit(&point);
+            self.points.push(point);
+            if answer.is_break() {
+                return Continue::Break(Halt::Stop);
             }
         }
+        let known = self.turns.len();
+        if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
+            self.turn(balance, newton, (before, behind));
+        }
+        let turned = self.turns.get(known).map(|turn| turn.value);
+        self.look_between(balance, newton, (before, behind), turned);
+        if self.ended.is_some() {
+            Continue::Break(Halt::Stop)
+        } else {
+            Continue::Continue(())
+        }
+    }
+
+    /// Reads a point whose factors Newton's method no longer holds.
+    fn read_again(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        point: &CurvePoint,
+    ) -> Point {
+        let mut u = point.u.clone();
+        let mut row = vec![0.0; u.len()];
+        newton
+            .norm()
+            .linear_form(point.scale, &point.tangent, &mut row);
+        let value = crate::linear::dot(&row, &u);
+        let border = Border { row: &row, value };
+        let options = self.options.newton;
+        let corrected = newton.correct(balance, &mut u, border, point.scale, options);
+        let u = if corrected.is_ok() { &u } else { &point.u };
+        self.reader.read(balance, newton, u)
     }
 
     /// Decides on the resolution of the next point, or of this one again.

@@ -180,9 +180,30 @@ pub(crate) fn mass(system: &dyn System, parameters: &[f64], omega: f64) -> Resul
         mass[(entry.row, entry.column)] += coefficients[entry.coefficient];
     }
     let determinant: f64 = mass.determinant();
-    let inverse = mass.try_inverse();
-    match inverse {
-        Some(inverse) if inverse.iter().all(|x| x.is_finite()) => Ok(()),
-        _ => Err(Error::SingularMass { determinant }),
+    regular(&mass).map_err(|_| Error::SingularMass { determinant })
+}
+
+/// A pivot of a mass matrix that is smaller than this share of the largest is taken for zero.
+const PIVOT: f64 = 1e-13;
+
+/// Whether a mass matrix determines the accelerations; otherwise its smallest pivot as a share of the largest. Rows and columns are
+/// taken in units of their own, since coordinates may be lengths and angles.
+pub(crate) fn regular(mass: &DMatrix<f64>) -> Result<(), f64> {
+    let mut scaled = mass.clone();
+    for mut row in scaled.row_iter_mut() {
+        let largest = row.amax();
+        row /= largest;
+    }
+    for mut column in scaled.column_iter_mut() {
+        let largest = column.amax();
+        column /= largest;
+    }
+    let pivots = scaled.lu().u().diagonal().abs();
+    let share = pivots.min() / pivots.max();
+    if share > PIVOT {
+        Ok(())
+    } else {
+        // A row of zeros has the largest entry zero.
+        Err(if share.is_nan() { 0.0 } else { share })
     }
 }

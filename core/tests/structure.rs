@@ -120,6 +120,24 @@ fn what_does_not_fit_is_said_with_numbers() {
         let fault = fails(Structure::of(&mass, &square(2), &square(2)));
         assert_eq!(fault, StructureError::SingularMass { pivot: 0.0 });
     }
+    // In doubles the determinant of this is 1.4e-17, and its inverse finite.
+    let nearly = DMatrix::from_row_slice(2, 2, &[0.1, 0.3, 0.3, 0.9]);
+    let fault = fails(Structure::of(&nearly, &square(2), &square(2)));
+    assert!(
+        matches!(fault, StructureError::SingularMass { pivot } if pivot < 1e-15),
+        "{fault}"
+    );
+    // A mass and an inertia in other units.
+    let units = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 1e-20]);
+    assert!(
+        Structure::of(&units, &square(2), &square(2))
+            .build()
+            .is_ok()
+    );
+    for name in ["", "omega"] {
+        let fault = fails(two_masses().constant(0, parameter(name, 1.0)));
+        assert!(matches!(fault, StructureError::Name { .. }), "{fault}");
+    }
     let mut holed = square(2);
     holed[(0, 1)] = f64::INFINITY;
     let fault = fails(Structure::of(&square(2), &square(2), &holed));

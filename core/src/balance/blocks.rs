@@ -1,5 +1,7 @@
 //! Blocks of the Jacobian: multiplication by a periodic function as Toeplitz plus Hankel.
 
+use std::collections::BTreeMap;
+
 use super::harmonics::Harmonics;
 use crate::fourier::series;
 use crate::jacobian::Jacobian;
@@ -20,49 +22,38 @@ pub(super) struct Block {
     constant: bool,
 }
 
-/// The blocks that a system can fill, cleared, with series of `reach` harmonics.
+/// The blocks that a system can fill, cleared, with series of `reach` harmonics, row by row.
 pub(super) fn of_layout(layout: &Layout, reach: usize) -> Vec<Block> {
-    let mut blocks = Vec::new();
+    let mut constants = BTreeMap::new();
+    let mut fills = |row: usize, column: usize, constant: bool| {
+        *constants.entry((row, column)).or_insert(true) &= constant;
+    };
     for entry in layout.stiffness.iter().chain(&layout.damping) {
-        find_or_add(
-            &mut blocks,
-            entry.row,
-            entry.column,
-            entry.wave == Wave::CONSTANT,
-            reach,
-        );
+        fills(entry.row, entry.column, entry.wave == Wave::CONSTANT);
     }
     for contact in &layout.contacts {
         for e in &contact.force {
             for d in &contact.gap {
-                find_or_add(&mut blocks, e.index, d.index, false, reach);
+                fills(e.index, d.index, false);
             }
         }
     }
-    blocks
-}
-
-fn find_or_add(blocks: &mut Vec<Block>, row: usize, column: usize, constant: bool, reach: usize) {
-    if let Some(block) = find(blocks, row, column) {
-        block.constant &= constant;
-        return;
-    }
-    let length = series::length(reach);
-    let zeros = || vec![0.0; length];
-    blocks.push(Block {
+    let zeros = || vec![0.0; series::length(reach)];
+    let block = |((row, column), constant)| Block {
         row,
         column,
         stiffness: zeros(),
         damping: zeros(),
         constant,
-    });
+    };
+    constants.into_iter().map(block).collect()
 }
 
-/// The block of an equation and a coordinate.
+/// The block of an equation and a coordinate, among blocks row by row.
 pub(super) fn find(blocks: &mut [Block], row: usize, column: usize) -> Option<&mut Block> {
-    blocks
-        .iter_mut()
-        .find(|block| (block.row, block.column) == (row, column))
+    let place = |block: &Block| (block.row, block.column);
+    let found = blocks.binary_search_by_key(&(row, column), place).ok()?;
+    Some(&mut blocks[found])
 }
 
 impl Block {

@@ -102,10 +102,8 @@ pub(crate) fn locate_crossing<P: Problem>(
     let u = interpolated(&nodes, zero, |node| &node.u);
     let slope = interpolated(&nodes, zero, |node| &node.slope);
     let point = normalised(newton, a, u, slope);
-    let mut residual = vec![0.0; point.u.len()];
-    problem.evaluate(&point.u, &mut residual[..point.u.len() - 1], None);
-    newton.statistics.residuals += 1;
-    let solves = newton.norm().length(a.scale, &residual) <= options.tolerance;
+    let solves = newton_update(problem, newton, &point, (&border, &nodes), options)
+        .is_some_and(|update| update <= options.tolerance);
     let mut error = 0.0_f64;
     for left_out in 0..nodes.len() {
         let node = nodes.remove(left_out);
@@ -119,6 +117,28 @@ pub(crate) fn locate_crossing<P: Problem>(
         error: LEFT_OUT * error,
         point,
     })
+}
+
+/// Length of the update that Newton's method would make at a point, with the matrix of the first node: at the point itself it is
+/// singular, and a residual has units that say nothing of how far a solution is. The first node is the nearest to the zero.
+fn newton_update<P: Problem>(
+    problem: &mut P,
+    newton: &mut Newton,
+    point: &CurvePoint,
+    (border, nodes): (&[f64], &[Node]),
+    options: NewtonOptions,
+) -> Option<f64> {
+    let mut near = nodes.first()?.u.clone();
+    let value = crate::linear::dot(border, &near);
+    let row = Border { row: border, value };
+    let corrected = newton.correct(problem, &mut near, row, point.scale, options);
+    corrected.ok()?;
+    let mut update = vec![0.0; point.u.len()];
+    let last = update.len() - 1;
+    problem.evaluate(&point.u, &mut update[..last], None);
+    newton.statistics.residuals += 1;
+    newton.solve(&mut update);
+    Some(newton.norm().length(point.scale, &update))
 }
 
 /// A point in the scale of another, with its tangent made a unit.

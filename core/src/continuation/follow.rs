@@ -75,7 +75,7 @@ pub enum Stop {
     },
     /// No step, however short, led to another solution.
     StepTooShort {
-        /// Length of the last step tried.
+        /// Length of the last step tried, where one is the size of the orbit, or the range of what is varied.
         step: f64,
         /// Where.
         value: f64,

@@ -10,9 +10,9 @@ pub enum NewtonError {
     NotConverged {
         /// Number of updates.
         iterations: usize,
-        /// Length of the last update.
+        /// Length of the last update, where one is the size of the orbit, or the range of what is varied.
         update: f64,
-        /// Largest residual.
+        /// Largest residual by size, in the units of the equation it is of.
         residual: f64,
     },
     /// The bordered matrix is singular.

@@ -3,7 +3,7 @@
 use super::FrequencyResponse;
 use crate::aft::Aft;
 use crate::balance::{Parity, Resolution};
-use crate::branch::Orbit;
+use crate::branch::{Event, Orbit};
 use crate::continuation::follow::FollowOptions;
 use crate::error::Error;
 use crate::follower::Follower;
@@ -12,7 +12,7 @@ use crate::harmonics::Chooser;
 use crate::layout::{ContactLayout, Layout};
 use crate::newton::NewtonOptions;
 use crate::symmetry::{is_broken, is_odd};
-use crate::system::Variable;
+use crate::system::{Bound, Variable};
 use crate::validate;
 
 /// More samples of an orbit would take more than a gigabyte.
@@ -25,6 +25,8 @@ const LEAST_BEYOND: usize = 4;
 const MOST_HARMONICS: usize = 150;
 /// Part of a value to its neighbour in a range of which only the first orbit is wanted.
 const ASIDE: f64 = 1e-3;
+/// Frequencies that differ by no more than this part are one.
+const SAME: f64 = 1e-9;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
@@ -79,7 +81,8 @@ impl<'a> FrequencyResponse<'a> {
                 resolution.harmonics |= 1;
             }
         }
-        // Levels are affine in the parameters, so if they are in order at both ends, they are in between.
+        // That declared levels are in order within the ranges of the parameters, the compiler has proved. Of other laws the ends are
+        // looked at.
         let at_end = match variable {
             Variable::Omega => (parameters.clone(), to),
             Variable::Parameter(index) => {
@@ -129,12 +132,23 @@ impl<'a> FrequencyResponse<'a> {
         let facts = self.system.facts();
         let unit = if value == 0.0 { 1.0 } else { value.abs() };
         let above = value + ASIDE * unit;
-        Ok(match validate::variable(facts, self.vary.as_deref())? {
-            Variable::Parameter(index) if !facts.parameters[index].admits(above) => {
-                value - ASIDE * unit
-            }
-            _ => above,
-        })
+        let Variable::Parameter(index) = validate::variable(facts, self.vary.as_deref())? else {
+            return Ok(above);
+        };
+        let facts = &facts.parameters[index];
+        let towards = |bound: Bound| match bound {
+            Bound::Unbounded => above,
+            Bound::Included(bound) | Bound::Excluded(bound) => 0.5 * (value + bound),
+        };
+        // In a narrow range, half of the way to one of its ends.
+        let neighbours = [
+            above,
+            value - ASIDE * unit,
+            towards(facts.maximum),
+            towards(facts.minimum),
+        ];
+        let admitted = |neighbour: &f64| *neighbour != value && facts.admits(*neighbour);
+        Ok(neighbours.into_iter().find(admitted).unwrap_or(above))
     }
 
     /// An orbit is one of a system with as many coordinates.
@@ -147,6 +161,36 @@ impl<'a> FrequencyResponse<'a> {
             entries: 2 * orbit.coordinates,
             expected: 2 * expected,
         })
+    }
+
+    /// An event is one of the system, within the range, and at the same excitation frequency if that does not vary.
+    pub(super) fn has(&self, event: &Event) -> Result<(), Error> {
+        self.fits(&event.point.orbit)?;
+        let value = event.point.value;
+        let (from, to) = (self.from.unwrap_or(value), self.to.unwrap_or(value));
+        if !(from.min(to)..=from.max(to)).contains(&value) {
+            return Err(Error::Option {
+                name: "event",
+                value,
+                must: "must be between from and to",
+            });
+        }
+        let varies = validate::variable(self.system.facts(), self.vary.as_deref())?;
+        let expected = match varies {
+            Variable::Omega => Some(value),
+            Variable::Parameter(_) => self.omega,
+        };
+        let omega = event.point.orbit.omega;
+        match expected {
+            Some(expected) if (omega - expected).abs() > SAME * expected.abs() => {
+                Err(Error::Option {
+                    name: "event",
+                    value: omega,
+                    must: "must have the excitation frequency of this request",
+                })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Checks what the first orbit is to be near.
@@ -186,7 +230,7 @@ impl<'a> FrequencyResponse<'a> {
         let free = self.harmonics.is_none() && self.aft == Aft::Switched;
         let layout = Layout::of(self.system);
         let least = (layout.highest_harmonic() + LEAST_BEYOND) * self.period;
-        let unknowns_allow = MOST_UNKNOWNS / (2 * layout.coordinates) - 1;
+        let unknowns_allow = most_harmonics(&layout);
         let most = MOST_HARMONICS * self.period * self.system.facts().divisor as usize;
         free.then(|| {
             Chooser::new(
@@ -204,7 +248,12 @@ impl<'a> FrequencyResponse<'a> {
             .round()
             .clamp(5.0, 100.0) as usize;
         let divisor = self.system.facts().divisor as usize;
-        let per_period = self.harmonics.unwrap_or(by_tolerance * divisor);
+        let layout = Layout::of(self.system);
+        let per_period = self.harmonics.unwrap_or_else(|| {
+            let least = layout.highest_harmonic() + LEAST_BEYOND;
+            let most = (most_harmonics(&layout) / self.period).max(1);
+            (by_tolerance * divisor).max(least).min(most)
+        });
         validate::option(
             "harmonics",
             per_period as f64,
@@ -212,7 +261,6 @@ impl<'a> FrequencyResponse<'a> {
             "must be from 1 to 10000",
         )?;
         let harmonics = per_period * self.period;
-        let layout = Layout::of(self.system);
         let unknowns = layout.coordinates * series::length(harmonics);
         if unknowns > MOST_UNKNOWNS {
             return Err(Error::Unknowns {
@@ -265,6 +313,11 @@ impl<'a> FrequencyResponse<'a> {
             period: self.period,
         })
     }
+}
+
+/// So many harmonics of the base frequency have no more than [`MOST_UNKNOWNS`].
+fn most_harmonics(layout: &Layout) -> usize {
+    (MOST_UNKNOWNS / layout.coordinates).saturating_sub(1) / 2
 }
 
 fn lacks_symmetry(orbit: &Orbit) -> bool {

@@ -120,15 +120,16 @@ impl Run<'_, '_> {
     }
 
     /// Locates where a branch of longer orbits joins one of a shorter period, and ends it there: what would follow are the
-    /// same orbits again, one excitation period later.
+    /// same orbits again, one excitation period later. Says whether it does; what its orbits have in addition may also turn
+    /// without vanishing.
     pub(super) fn join(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         (before, behind): (&CurvePoint, &CurvePoint),
-    ) {
+    ) -> bool {
         let Some(last) = self.points.last() else {
-            return;
+            return false;
         };
         let joined = passes_shorter_period(&last.orbit, &behind.u);
         let addition = |point: &CurvePoint| match joined {
@@ -141,11 +142,12 @@ impl Run<'_, '_> {
         let along = |point: &CurvePoint| addition(point).along();
         let value = match locate(balance, newton, between, options, JOINED, along) {
             // It turned, and did not vanish: the branch goes on.
-            Some(located) if addition(&located.point).size() > LEFT => return,
+            Some(located) if addition(&located.point).size() > LEFT => return false,
             Some(located) => located.point.parameter(),
             None => vertex(newton.norm(), before, behind),
         };
         self.ended = Some(Stop::Joined { period, value });
+        true
     }
 }
 

@@ -24,31 +24,26 @@ use super::touch::{Extreme, Touches, crossings, passed};
 use crate::balance::{Balance, Resolution};
 use crate::block::Block;
 use crate::branch::{Event, EventKind, Point, Turn};
-use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::{Located, locate};
 use crate::follower::{Follower, Sought};
 use crate::fourier::series;
 use crate::harmonics::resize;
-use crate::newton::{Border, Newton};
+use crate::newton::Newton;
 use crate::stability::pairs::Pairs;
 use crate::truncation::BEYOND;
 
 /// Derivatives along the branch are differences over this part of the step.
 const DIFFERENCE: f64 = 1e-4;
-/// The same beside a branch point, where the matrix of a step is singular.
-const BESIDE: f64 = 0.1;
-/// What interpolation leaves of a determinant at a branch point, as a part of what it is at the ends of the step.
-const CROSSED: f64 = 1e-6;
 /// Relative error that rounding leaves in the value of an event.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 /// Values that differ by this part of the range are one.
 const SAME: f64 = 1e-9;
 /// Multipliers whose product is farther than this from one are not looked at more closely.
 const NEAR_CIRCLE: f64 = 0.5;
 
 /// A function of orbits that vanishes at an event.
-enum Test<'t, 'a> {
+pub(super) enum Test<'t, 'a> {
     /// In units of a size, given as its logarithm: that of the first if it is not given.
     Block(&'t mut Block<'a>, Option<f64>),
     Pairs(&'t mut Pairs<'a>),
@@ -57,7 +52,7 @@ enum Test<'t, 'a> {
 }
 
 impl Test<'_, '_> {
-    fn at(&mut self, u: &[f64], tangent: &[f64]) -> f64 {
+    pub(super) fn at(&mut self, u: &[f64], tangent: &[f64]) -> f64 {
         match self {
             Self::Block(block, largest) => {
                 let (sign, size) = block.determinant_along(u, tangent);
@@ -112,7 +107,7 @@ impl<'a> Watch<'a> {
 }
 
 /// Two successive points.
-type Between<'b> = (&'b CurvePoint, &'b CurvePoint);
+pub(super) type Between<'b> = (&'b CurvePoint, &'b CurvePoint);
 
 impl<'a> Run<'_, 'a> {
     /// Locates everything but folds between two points, and where the branch `turned` back without one.
@@ -249,7 +244,7 @@ impl<'a> Run<'_, 'a> {
     }
 
     /// Records what could not be located.
-    fn omit(&mut self, kind: EventKind, (a, b): Between<'_>, test: f64) {
+    pub(super) fn omit(&mut self, kind: EventKind, (a, b): Between<'_>, test: f64) {
         self.turns.push(Turn {
             kind,
             value: 0.5 * (a.parameter() + b.parameter()),
@@ -336,26 +331,23 @@ impl<'a> Run<'_, 'a> {
     /// Estimated error of an event, from the corrected orbit that is held. What the first half of the harmonics that were left out
     /// does and what the second half does may cancel, and are taken by their sizes.
     fn event_error(
-        &self,
+        &mut self,
         point: &CurvePoint,
         step: f64,
         kind: EventKind,
         test: &Test<'_, 'a>,
     ) -> f64 {
         let fine = self.reader.finer.balance().resolution();
-        let some = Resolution {
-            harmonics: fine.harmonics * 3 / 4,
-            core: fine.core.min(fine.harmonics * 3 / 4),
-            ..fine
-        };
-        let [all, half] = [fine, some].map(|of| self.moved(point, step, (kind, of), test));
+        let some = three_quarters(fine);
+        let mut by = |of| self.moved(point, step, (kind, of), test);
+        let (all, half) = (by(fine), by(some));
         let change = half.abs() + (all - half).abs();
         known(BEYOND * change + ROUNDING * point.parameter().abs())
     }
 
     /// (1) with the harmonics of a resolution, and the derivative from differences over `step`.
     fn moved(
-        &self,
+        &mut self,
         point: &CurvePoint,
         step: f64,
         (kind, resolution): (EventKind, Resolution),
@@ -375,83 +367,21 @@ impl<'a> Run<'_, 'a> {
         let (a, here, b) = (at(-step), at(0.0), at(step));
         let along = -here / ((b - a) / (2.0 * step));
         let last = finer.len() - 1;
-        finer[last] - point.parameter() + along * tangent[last]
+        let moved = finer[last] - point.parameter() + along * tangent[last];
+        self.count(&watch);
+        moved
     }
 
-    /// Locates where another branch crosses, by interpolation: close by, the matrix of a step is singular.
-    fn branch_point(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        between: Between<'_>,
-        test: &mut Test<'_, 'a>,
-    ) {
-        let kind = EventKind::BranchPoint;
-        let options = self.options.newton;
-        let value = |point: &CurvePoint| test.at(&point.u, &point.tangent);
-        let found = locate_crossing(balance, newton, between, options, value);
-        let Some(found) = found.filter(|found| found.test.abs() <= CROSSED) else {
-            return self.omit(kind, between, f64::NAN);
-        };
-        let shift = self.crossing_shift(balance, newton, between, &found.point, test);
-        let error = BEYOND * shift + found.error + ROUNDING * found.point.parameter().abs();
-        let point = self.reader.read(balance, newton, &found.point.u);
-        self.events.push(Event {
-            kind,
-            point,
-            error: known(error),
-            test: found.test,
-            after: self.points.len() - 1,
-        });
-    }
-
-    /// How far corrected orbits put a branch point from where it is: the zeros of straight lines through the test function
-    /// on both sides of it, before and after the correction.
-    fn crossing_shift(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        (before, behind): Between<'_>,
-        at: &CurvePoint,
-        test: &mut Test<'_, 'a>,
-    ) -> f64 {
-        let mut row = vec![0.0; at.u.len()];
-        newton
-            .norm()
-            .linear_form(before.scale, &at.tangent, &mut row);
-        let pairs = behind.u.iter().zip(&before.u);
-        let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
-        let width = BESIDE * newton.norm().length(before.scale, &step);
-        let fine_resolution = self.reader.finer.balance().resolution();
-        let mut watch = self.watch_at(EventKind::BranchPoint, fine_resolution);
-        let Some(mut fine) = watch.test(test) else {
-            return f64::INFINITY;
-        };
-        let tangent = self.with_harmonics_of(&at.tangent, fine_resolution);
-        let mut coarse = [[0.0; 2]; 2];
-        let mut finer = [[0.0; 2]; 2];
-        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
-            let pairs = at.u.iter().zip(&at.tangent);
-            let mut u: Vec<f64> = pairs.map(|(x, t)| x + sign * width * t).collect();
-            let border = Border {
-                row: &row,
-                value: crate::linear::dot(&row, &u),
-            };
-            let options = self.options.newton;
-            let corrected = newton.correct(balance, &mut u, border, before.scale, options);
-            if corrected.is_err() || !self.reader.finer.correct(&u, newton) {
-                return f64::INFINITY;
-            }
-            coarse[side] = [u[u.len() - 1], test.at(&u, &at.tangent)];
-            let u = self.reader.finer.extended();
-            finer[side] = [u[u.len() - 1], fine.at(u, &tangent)];
-        }
-        let zero = |[[p, a], [q, b]]: [[f64; 2]; 2]| p + (q - p) * a / (a - b);
-        (zero(finer) - zero(coarse)).abs()
+    /// Adds the work of a watch that was made for one event.
+    pub(super) fn count(&mut self, watch: &Watch<'_>) {
+        let (determinants, monodromies) = watch.computed();
+        self.statistics.jacobians += determinants;
+        self.statistics.factorisations += determinants;
+        self.statistics.monodromies += monodromies;
     }
 
     /// What is watched for one kind of event, in some resolution.
-    fn watch_at(&self, kind: EventKind, resolution: Resolution) -> Watch<'a> {
+    pub(super) fn watch_at(&self, kind: EventKind, resolution: Resolution) -> Watch<'a> {
         let follower = self.follower;
         let mut watch = Watch::default();
         match kind {
@@ -467,7 +397,7 @@ impl<'a> Run<'_, 'a> {
     }
 
     /// A vector of the branch in another resolution.
-    fn with_harmonics_of(&self, v: &[f64], resolution: Resolution) -> Vec<f64> {
+    pub(super) fn with_harmonics_of(&self, v: &[f64], resolution: Resolution) -> Vec<f64> {
         let coordinates = self.follower.system.facts().coordinates.len();
         resize(v, coordinates, series::length(resolution.harmonics))
     }
@@ -475,7 +405,7 @@ impl<'a> Run<'_, 'a> {
 
 impl<'a> Watch<'a> {
     /// The same test function of other orbits, in units of its own.
-    fn test(&mut self, like: &Test<'_, 'a>) -> Option<Test<'_, 'a>> {
+    pub(super) fn test(&mut self, like: &Test<'_, 'a>) -> Option<Test<'_, 'a>> {
         match like {
             Test::Block(..) => self
                 .blocks
@@ -490,8 +420,18 @@ impl<'a> Watch<'a> {
     }
 }
 
+/// With half of the harmonics that a correction adds.
+pub(super) fn three_quarters(fine: Resolution) -> Resolution {
+    let harmonics = fine.harmonics * 3 / 4;
+    Resolution {
+        harmonics,
+        core: fine.core.min(harmonics),
+        ..fine
+    }
+}
+
 /// An error, or infinity where nothing is known of it.
-fn known(error: f64) -> f64 {
+pub(super) fn known(error: f64) -> f64 {
     if error.is_finite() {
         error
     } else {

@@ -36,6 +36,9 @@ use crate::fourier::series;
 use crate::layout::{ContactLayout, Term};
 use crate::system::Wave;
 
+/// More rows of a Hill matrix would take too long, and too much room: its exponential needs ten of them at once.
+const MOST_ROWS: usize = 4000;
+
 /// Fourier coefficients of `S - T'` and `T`.
 #[derive(Debug)]
 pub(super) struct Coefficients {
@@ -77,6 +80,9 @@ impl Coefficients {
     pub(super) fn of(orbit: &Orbit<'_>) -> Option<Self> {
         let n = orbit.layout.coordinates;
         let harmonics = orbit.series.len() / n / 2;
+        if 2 * n * Lattice::Whole.length(harmonics) > MOST_ROWS {
+            return None;
+        }
         let room = || vec![vec![0.0; series::length(2 * harmonics)]; n * n];
         let mut all = Self {
             coordinates: n,

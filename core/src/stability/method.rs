@@ -17,9 +17,10 @@ pub enum Method {
     Default,
     /// The monodromy matrix, integrated from switch to switch: the authority.
     Monodromy,
-    /// Eigenvalues of the Hill matrix.
+    /// Eigenvalues of the Hill matrix. Nothing is found where it would be of an order above 4000: twice as many rows as coordinates, for
+    /// the mean and each cosine and sine of the orbit, which is corrected with twice its harmonics.
     Hill(Sorting),
-    /// An exponential of the Hill matrix.
+    /// An exponential of the Hill matrix, with the same limit.
     KoopmanHill(Projection),
 }
 

@@ -4,7 +4,6 @@ use super::StartRequest;
 use super::effort::Effort;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::problem::Problem;
-use crate::jacobian::Partition;
 use crate::newton::{Border, Newton, NewtonError, NewtonOptions};
 
 /// One balance at a fixed value of the variable.
@@ -100,14 +99,8 @@ pub(super) fn spread(u: &[f64], to: &Fixed<'_>) -> Vec<f64> {
     for i in 0..coordinates {
         result[i * length..][..shared].copy_from_slice(&u[i * from..][..shared]);
     }
-    // What is no unknown there, as the mean of a symmetric orbit, is zero.
-    let Partition { core, tail, .. } = to.balance.partition();
-    let last = result.len() - 1;
-    let mut kept = vec![0.0; result.len()];
-    for unknown in core.into_iter().chain(tail).chain([last]) {
-        kept[unknown] = result[unknown];
-    }
-    kept
+    to.balance.partition().clear_others(&mut result);
+    result
 }
 
 /// Sum of squares of all but the means.

@@ -43,6 +43,11 @@ impl Assembly {
 
     /// The position of a parameter, which is new or has the same value as before.
     fn parameter(&mut self, name: &str, value: f64) -> Result<usize, StructureError> {
+        if name.is_empty() || name == "omega" {
+            return Err(StructureError::Name {
+                parameter: name.to_owned(),
+            });
+        }
         if let Some(&index) = self.known.get(name) {
             let first = self.values[index];
             if first == value {

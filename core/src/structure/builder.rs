@@ -3,9 +3,7 @@
 use super::assembly::Assembly;
 use super::{Contact, DMatrix, Structure, StructureError, Value};
 use crate::system::{ContactFacts, Part, Place, SystemFacts, Wave};
-
-/// A pivot of the mass matrix that is smaller than this share of the largest is taken for zero.
-const PIVOT: f64 = 1e-13;
+use crate::validate;
 
 /// A structure being described; nothing is checked before [`Builder::build`].
 #[derive(Debug)]
@@ -67,7 +65,8 @@ impl Builder {
         let coordinates = self.matrices[0].nrows();
         let mut assembly = Assembly::default();
         self.assemble_matrices(&mut assembly)?;
-        regular(&self.matrices[0])?;
+        validate::regular(&self.matrices[0])
+            .map_err(|pivot| StructureError::SingularMass { pivot })?;
         for &(row, wave, ref value) in &self.loads {
             if row >= coordinates {
                 return Err(StructureError::NoCoordinate {
@@ -131,19 +130,5 @@ impl Builder {
             }
         }
         Ok(())
-    }
-}
-
-/// A mass matrix determines the accelerations.
-fn regular(mass: &DMatrix<f64>) -> Result<(), StructureError> {
-    let upper = mass.clone().lu().u();
-    let pivots = upper.diagonal().abs();
-    let pivot = pivots.min() / pivots.max();
-    // A matrix of zeros has the share 0/0.
-    if pivot > PIVOT {
-        Ok(())
-    } else {
-        let pivot = if pivot.is_nan() { 0.0 } else { pivot };
-        Err(StructureError::SingularMass { pivot })
     }
 }

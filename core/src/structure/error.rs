@@ -65,6 +65,11 @@ pub enum StructureError {
         /// The range, as declared.
         range: String,
     },
+    /// A parameter has no name, or that of the excitation frequency, `omega`.
+    Name {
+        /// The name.
+        parameter: String,
+    },
     /// One name was used with two values.
     TwoValues {
         /// The name.
@@ -124,6 +129,10 @@ impl fmt::Display for StructureError {
             } => write!(
                 formatter,
                 "argument `{argument}` of law `{law}` is {value}, outside its range {range}"
+            ),
+            Self::Name { parameter } => write!(
+                formatter,
+                "a parameter cannot be called `{parameter}`: it needs a name, and `omega` is the excitation frequency"
             ),
             Self::TwoValues {
                 parameter,

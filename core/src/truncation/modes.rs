@@ -59,7 +59,7 @@ impl Modes {
         let (n, length) = (bounds.len(), balance.length());
         let top = balance.resolution().harmonics;
         let base = balance.base();
-        let beyond = base * (top as f64 + 0.5);
+        let beyond = base * top as f64;
         let met: Vec<f64> = self
             .frequencies(mass, stiffness)
             .iter()

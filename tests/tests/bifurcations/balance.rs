@@ -183,10 +183,7 @@ fn broken_symmetry_is_a_branch_point_of_all_harmonics() {
         assert_eq!(found.len(), 2, "{:?} {:?}", branch.events, branch.turns);
         for (event, exact) in found.iter().zip(exact) {
             let error = (event.point.value - exact).abs();
-            assert!(
-                error < 1e-6 && error <= 3.0 * event.error,
-                "{event} {error:.1e}"
-            );
+            assert!(error < 1e-6 && error <= event.error, "{event} {error:.1e}");
         }
     }
 }

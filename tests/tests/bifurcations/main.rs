@@ -13,3 +13,4 @@ mod hidden;
 mod symmetry;
 mod table;
 mod torus;
+mod units;
