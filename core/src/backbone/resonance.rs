@@ -39,6 +39,9 @@ use crate::statistics::Statistics;
 use crate::system::{System, Variable};
 use crate::validate;
 
+#[cfg(test)]
+mod tests;
+
 const HARMONICS: usize = 20;
 const POINTS: usize = 5000;
 /// Step of the difference by what is varied, relative to its value.
@@ -271,12 +274,13 @@ impl<'a> PhaseResonance<'a> {
         let response = response.harmonics(self.harmonics).stability(false);
         let branch = response.run()?;
         let mut balance = self.balance(parameters, low);
-        if load(&balance).1 == [0.0; 2] {
+        let mut room = vec![0.0; balance.unknowns()];
+        if load(&balance, &mut room).1 == [0.0; 2] {
             return Err(Error::NoLoad);
         }
         let mut lag = |orbit: &Orbit| {
             balance.set(orbit.omega);
-            let (place, [a, b]) = load(&balance);
+            let (place, [a, b]) = load(&balance, &mut room);
             let series = orbit.series(0);
             a * series[place] + b * series[place + 1]
         };
@@ -292,10 +296,11 @@ impl<'a> PhaseResonance<'a> {
     }
 }
 
-/// Where the harmonic of the excitation is in the series of the first coordinate, and the load there.
-fn load(balance: &Balance<'_>) -> (usize, [f64; 2]) {
-    let mut load = vec![0.0; balance.unknowns()];
-    balance.add_load(balance.coefficients(), 1.0, &mut load);
+/// Where the harmonic of the excitation is in the series of the first coordinate, and the load there. The room is as long as the
+/// unknowns of the balance.
+fn load(balance: &Balance<'_>, load: &mut [f64]) -> (usize, [f64; 2]) {
+    load.fill(0.0);
+    balance.add_load(balance.coefficients(), 1.0, load);
     let divisor = balance.system().facts().divisor as usize;
     let place = 2 * divisor - 1;
     (place, [load[place], load[place + 1]])
@@ -311,6 +316,7 @@ struct Resonance<'a> {
     ahead: Vec<f64>,
     behind: Vec<f64>,
     column: Vec<f64>,
+    load: Vec<f64>,
 }
 
 impl<'a> Resonance<'a> {
@@ -321,6 +327,7 @@ impl<'a> Resonance<'a> {
             ahead: vec![0.0; n],
             behind: vec![0.0; n],
             column: vec![0.0; n + 1],
+            load: vec![0.0; n],
             balance,
             index,
             size: if size > 0.0 { size } else { 1.0 },
@@ -369,7 +376,7 @@ impl Problem for Resonance<'_> {
         self.inner.clear();
         let inner = jacobian.is_some().then_some(&mut self.inner);
         self.balance.evaluate(&u[..=n], &mut residual[..n], inner);
-        let (place, [a, b]) = load(&self.balance);
+        let (place, [a, b]) = load(&self.balance, &mut self.load);
         let size = a.hypot(b);
         let (a, b) = if size > 0.0 {
             (a / size, b / size)
