@@ -95,6 +95,7 @@ fn history(
     };
     let what = "largest Lyapunov exponent per period, with its standard error";
     let value = Value::of(what, value).stated(error).exact(Some(exact));
+    let value = value.uncertain(uncertain);
     let mut drawing = drawing(results, vec![value]);
     drawing.note = format!(
         "{} The exponent to compare with is itself a mean over a long motion, with a standard error of {uncertain}.",

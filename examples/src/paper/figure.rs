@@ -2,6 +2,11 @@
 
 use std::sync::atomic::AtomicBool;
 
+/// As many times the stated error is allowed.
+const MARGIN: f64 = 3.0;
+/// Allowed where no error is stated, relative, and absolute below one.
+const ROUNDING: f64 = 1e-11;
+
 /// A figure or table of the paper.
 pub struct Figure {
     /// Name of its files, and of the option `--only`.
@@ -67,6 +72,8 @@ pub struct Value {
     pub stated: Option<f64>,
     /// The exact value, unless it is not known, or there is none.
     pub exact: Option<f64>,
+    /// Standard error of the exact value, where that is a mean.
+    pub uncertain: f64,
     /// What the paper prints.
     pub printed: Option<&'static str>,
 }
@@ -79,6 +86,7 @@ impl Value {
             ours: Some(ours),
             stated: None,
             exact: None,
+            uncertain: 0.0,
             printed: None,
         }
     }
@@ -90,6 +98,7 @@ impl Value {
             ours: None,
             stated: None,
             exact: Some(exact),
+            uncertain: 0.0,
             printed: None,
         }
     }
@@ -108,6 +117,13 @@ impl Value {
         self
     }
 
+    /// With the standard error of the exact value.
+    #[must_use]
+    pub fn uncertain(mut self, error: f64) -> Self {
+        self.uncertain = error;
+        self
+    }
+
     /// With what the paper prints.
     #[must_use]
     pub fn printed(mut self, text: &'static str) -> Self {
@@ -118,5 +134,23 @@ impl Value {
     /// Difference of ours from the exact value.
     pub fn error(&self) -> Option<f64> {
         Some((self.ours? - self.exact?).abs())
+    }
+
+    /// What is wrong with it: it is not there, or differs from the exact value by more than three times the errors of both. Where
+    /// none is stated, ours is computed as exactly as numbers are kept.
+    pub fn fault(&self) -> Option<String> {
+        let what = &self.what;
+        let Some(ours) = self.ours else {
+            return Some(format!("{what}: not found"));
+        };
+        let (exact, error) = (self.exact?, self.error()?);
+        let rounding = ROUNDING * exact.abs().max(1.0);
+        let errors = self.stated.unwrap_or(0.0).hypot(self.uncertain);
+        let allowed = (MARGIN * errors).max(rounding);
+        // An error that is not a number is too large too.
+        let holds = error <= allowed;
+        (!holds).then(|| {
+            format!("{what}: {ours} instead of {exact}, and {allowed:.0e} is the largest difference that is explained")
+        })
     }
 }

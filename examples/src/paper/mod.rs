@@ -18,30 +18,41 @@ use std::sync::atomic::Ordering;
 use clap::Parser;
 
 use crate::program::{self, Ended};
+use figure::Value;
 use options::Options;
 use run::{Drawn, run};
 
 /// Reads the command line, does what it asks for, and says by the exit code how it went: 0 all was drawn, 2 bad input or a file that
-/// cannot be written, 3 a figure failed or was not reached.
+/// cannot be written, 3 a figure failed or was not reached, or a value is missing or not the exact one.
 pub fn main() -> ExitCode {
     let options = Options::parse();
     program::run("paper", options.quiet, |interrupted, progress| {
         let drawn = run(&options, interrupted, progress)?;
-        let failed = drawn.iter().filter_map(
-            |Drawn {
-                 figure, drawing, ..
-             }| {
-                let error = drawing.as_ref().err()?;
-                Some(format!("{}: {error}", figure.id))
-            },
-        );
-        let complaints: Vec<_> = failed.collect();
+        let ended_early = interrupted.load(Ordering::Relaxed);
+        let complaints = complaints(&drawn, ended_early);
         Ok(Ended {
             summary: summary(&options, &drawn),
-            complete: complaints.is_empty() && !interrupted.load(Ordering::Relaxed),
+            complete: complaints.is_empty() && !ended_early,
             complaints,
         })
     })
+}
+
+/// Figures that failed; and values that are missing or not the exact ones, unless the computation was ended early.
+pub fn complaints(drawn: &[Drawn], ended_early: bool) -> Vec<String> {
+    let mut complaints = Vec::new();
+    for one in drawn {
+        let id = one.figure.id;
+        match &one.drawing {
+            Err(error) => complaints.push(format!("{id}: {error}")),
+            Ok(drawing) if !ended_early => {
+                let faults = drawing.values.iter().filter_map(Value::fault);
+                complaints.extend(faults.map(|fault| format!("{id}: {fault}")));
+            }
+            Ok(_) => {}
+        }
+    }
+    complaints
 }
 
 /// A line for each figure: its time, and the largest difference from an exact value.
