@@ -5,7 +5,7 @@ use hertzian::{Aft, FrequencyResponse, Shooting, Stop};
 
 use crate::models::{Power, answer, distance, first, linear, shown, start};
 
-/// Wang et al. (2021), Fig. 5a, has two folds: exactly at 0.960163669 and 0.715119550, of the balance with 10 harmonics at
+/// Wang et al. (2021), Fig. 5a, has two folds: exactly at 0.960163672 and 0.715119550, of the balance with 10 harmonics at
 /// 0.960163099 and 0.714851667 (reference values). The sampled residual jumps, and its branch turns where it does.
 #[test]
 fn samples_invent_folds() {
