@@ -63,20 +63,23 @@ pub struct ModelOptions {
     )]
     pub drive: f64,
 
-    /// Frequency of the excitation, positive; used with --sweep drive
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 1.0,
-        allow_hyphen_values = true
-    )]
-    pub omega: f64,
+    /// Frequency of the excitation, positive, where it is not what varies [default: 1]
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    pub omega: Option<f64>,
 }
+
+/// Said where a frequency is given, and a range of it too.
+pub const FREQUENCY_VARIES: &str = "--omega cannot be used where omega varies: the range gives it";
 
 impl ModelOptions {
     /// Whether contact can be lost.
     pub fn loses_contact(&self) -> bool {
         self.file.is_none() && !self.continuous
+    }
+
+    /// Frequency of the excitation where it does not vary.
+    pub fn frequency(&self) -> f64 {
+        self.omega.unwrap_or(1.0)
     }
 }
 

@@ -84,7 +84,7 @@ fn every_option_is_understood() {
                --svg a.svg --csv b.csv --json c.json --multipliers koopman-hill-subharmonic --quiet";
     let options = options(&all.split_whitespace().collect::<Vec<_>>());
     assert!(!options.model.loses_contact() && options.quiet);
-    assert_eq!((options.model.load, options.model.omega), (-0.5, 2.0));
+    assert_eq!((options.model.load, options.model.frequency()), (-0.5, 2.0));
     assert_eq!(
         (options.harmonics, options.samples, options.period),
         (Some(7), Some(99), 2)

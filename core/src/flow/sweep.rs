@@ -7,7 +7,11 @@ use super::FlowError;
 use super::log::{Log, LogError, Reader, Writer};
 use super::poincare::{Crossing, Section};
 use super::stroboscope::Stroboscope;
+use crate::error::Error;
 use crate::system::Variable;
+
+/// What is seen at more values would not fit into memory well.
+const MOST_VALUES: usize = 1 << 24;
 
 /// What is swept and what is kept.
 ///
@@ -25,7 +29,7 @@ use crate::system::Variable;
 /// let model = Linear { drive: 3.0 };
 /// let sweep = Sweep {
 ///     variable: Variable::Omega,
-///     values: Sweep::spread(0.5, 1.5, 5),
+///     values: Sweep::spread(0.5, 1.5, 5)?,
 ///     start: vec![0.0, 0.0],
 ///     transient: 100,
 ///     periods: 1,
@@ -99,13 +103,21 @@ impl std::fmt::Display for Ended {
 
 impl Sweep {
     /// Values at equal distances, both ends included.
-    pub fn spread(from: f64, to: f64, count: usize) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// If there are more than 2^24 of them.
+    pub fn spread(from: f64, to: f64, count: usize) -> Result<Vec<f64>, Error> {
+        if count > MOST_VALUES {
+            let (name, value) = ("values", count as f64);
+            let must = "must be at most 2^24";
+            return Err(Error::Option { name, value, must });
+        }
         let last = count.saturating_sub(1).max(1) as f64;
         let at = |i: usize| {
             let part = i as f64 / last;
             (1.0 - part) * from + part * to
         };
-        (0..count).map(at).collect()
+        Ok((0..count).map(at).collect())
     }
 
     /// Runs the sweep. Points are states of the stroboscope, or crossings of a section. What the log holds of this sweep is
@@ -247,7 +259,7 @@ mod tests {
     fn sweep(from: f64, to: f64, start: [f64; 2]) -> Sweep {
         Sweep {
             variable: Variable::Parameter(2),
-            values: Sweep::spread(from, to, 26),
+            values: Sweep::spread(from, to, 26).expect("values"),
             start: start.to_vec(),
             transient: 400,
             periods: 4,
@@ -324,6 +336,15 @@ mod tests {
         assert_eq!(rows, all);
         assert_eq!(computed, all.len());
         let _ = std::fs::remove_dir_all(&folder);
+    }
+
+    #[test]
+    fn values_beyond_what_memory_holds_are_refused() {
+        for count in [MOST_VALUES + 1, usize::MAX] {
+            let refused = Sweep::spread(0.0, 1.0, count);
+            assert!(matches!(refused, Err(Error::Option { name: "values", .. })));
+        }
+        assert_eq!(Sweep::spread(0.0, 1.0, 3), Ok(vec![0.0, 0.5, 1.0]));
     }
 
     #[test]

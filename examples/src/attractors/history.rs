@@ -22,9 +22,8 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     let facts = task.system.facts();
     let mut map = task.map(None)?;
     let mut state = task.start()?;
-    for _ in 0..options.transient.unwrap_or(0) {
-        map.map(&mut state)?;
-    }
+    // Where this is ended, so is what follows.
+    task.settle(&mut map, &mut state, options.transient.unwrap_or(0))?;
     let periods = options.periods.unwrap_or(1000);
     let mut states = vec![state.clone()];
     for period in 0..periods {

@@ -16,7 +16,7 @@ use super::run::{Failure, Task};
 pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     let options = task.options;
     let order = 2 * task.system.facts().coordinates.len();
-    let batches = options.batches.max(2);
+    let batches = options.batches;
     let length = options.periods.unwrap_or(400_000).div_ceil(batches).max(1);
     let parts = (1..=order).flat_map(|i| [format!("exponent_{i}"), format!("standard_error_{i}")]);
     let names = ["drive", "periods"].map(str::to_owned).into_iter();
@@ -32,9 +32,14 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         let mut map = task.map(drive)?;
         let start = task.start()?;
         let mut lyapunov = Lyapunov::new(&mut map, &start);
-        let divergence = Divergence::new(task.system, &values, options.model.omega)?;
+        let divergence = Divergence::new(task.system, &values, options.model.frequency())?;
         lyapunov = lyapunov.divergence(divergence);
-        lyapunov.settle(options.transient.unwrap_or(5000))?;
+        for _ in 0..options.transient.unwrap_or(5000) {
+            if !task.goes_on() {
+                break;
+            }
+            lyapunov.settle(1)?;
+        }
         for batch in 0..batches {
             if !task.goes_on() {
                 complete = false;

@@ -65,8 +65,9 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         });
         if let Some((fate, state)) = other {
             let label = other_label(fate);
-            let (more, points) = portrait.other(state, label)?;
+            let (more, points) = portrait.other(task, state, label)?;
             portrait = more;
+            complete &= points.len() > POINTS;
             for (point, state) in points.iter().enumerate() {
                 let head = [value, f64::from(fate.label()), 0.0, point as f64];
                 table.row(&[&head, &state[..]].concat());
@@ -110,7 +111,7 @@ fn settled(task: &Task<'_>, drive: Option<f64>) -> Result<(Basins, Option<Other>
             (axis.from, axis.to) = (middle, middle);
         }
     }
-    let basins = basin.compute(task.flows(drive)?, None, &|progress| {
+    let mut basins = basin.compute(task.flows(drive)?, None, &|progress| {
         task.say(|| format!("{} of {} motions", progress.done, progress.cells));
         task.goes_on()
     })?;
@@ -125,8 +126,9 @@ fn settled(task: &Task<'_>, drive: Option<f64>) -> Result<(Basins, Option<Other>
         return Ok((basins, None));
     };
     let mut map = task.map(drive)?;
-    for _ in 0..basin.patience {
-        map.map(&mut state)?;
+    if !task.settle(&mut map, &mut state, basin.patience)? {
+        basins.complete = false;
+        return Ok((basins, None));
     }
     Ok((basins, Some((fate, state))))
 }
@@ -178,9 +180,17 @@ impl Portrait<'_> {
     }
 
     /// A part of the curve of another motion, and many of its points.
-    fn other(mut self, start: Vec<f64>, label: &str) -> Result<(Self, Vec<Vec<f64>>), Failure> {
+    fn other(
+        mut self,
+        task: &Task<'_>,
+        start: Vec<f64>,
+        label: &str,
+    ) -> Result<(Self, Vec<Vec<f64>>), Failure> {
         let mut points = vec![start];
         for i in 0..POINTS {
+            if !task.goes_on() {
+                break;
+            }
             let mut next = points[i].clone();
             self.map.map(&mut next)?;
             points.push(next);

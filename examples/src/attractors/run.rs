@@ -12,9 +12,11 @@ use hertzian::flow::stroboscope::Stroboscope;
 use hertzian::flow::{self, Flow, FlowError};
 use hertzian::{Error, System};
 
-use super::options::Options;
+use super::options::{Options, Swept};
 use super::output::{self, Results};
 use super::{basin, history, lyapunov, phase, sweep};
+use crate::model::FREQUENCY_VARIES;
+use crate::response::files;
 use crate::response::model_file::ModelError;
 use crate::response::models;
 use crate::response::progress::Progress;
@@ -110,9 +112,16 @@ pub fn run(
     progress: &mut Progress,
 ) -> Result<Outcome, Failure> {
     output::check(&options.out)?;
+    let written = output::paths(&options.out);
+    let others = [&options.model.file, &options.checkpoint];
+    let others = others.into_iter().flatten().chain(&written);
+    if let Some(path) = files::shared(others.map(PathBuf::as_path)) {
+        let message = format!("{} is asked for more than once", path.display());
+        return Err(Failure::Option(message));
+    }
     let results = compute(options, interrupted, progress)?;
     output::write(&options.out, &results)?;
-    let paths = output::paths(&options.out).map(|path| path.display().to_string());
+    let paths = written.map(|path| path.display().to_string());
     Ok(Outcome {
         summary: format!("{}written    {}\n", results.summary, paths.join(", ")),
         complete: results.complete,
@@ -128,7 +137,8 @@ pub fn compute(
     interrupted: &AtomicBool,
     progress: &mut Progress,
 ) -> Result<Results, Failure> {
-    let varied = options.sweep.map_or("omega", super::options::Swept::name);
+    check(options)?;
+    let varied = options.sweep.map_or("omega", Swept::name);
     let system = models::model(&options.model, (varied, options.from)).map_err(|error| {
         let path = options.model.file.clone().unwrap_or_default();
         Failure::Model(path, error)
@@ -152,10 +162,52 @@ pub fn compute(
     Ok(results)
 }
 
+/// Options that do not go together.
+fn check(options: &Options) -> Result<(), Failure> {
+    let faults = [
+        (
+            options.sweep == Some(Swept::Omega) && options.model.omega.is_some(),
+            FREQUENCY_VARIES,
+        ),
+        (
+            options.checkpoint.is_some() && options.sweep.is_none() && !options.basin,
+            "--checkpoint is for --basin and --sweep",
+        ),
+        (
+            options.lyapunov && options.batches < 2,
+            "--batches must be at least 2: a standard error is that of their means",
+        ),
+    ];
+    let mut faults = faults.into_iter().filter(|(is_at_fault, _)| *is_at_fault);
+    match faults.next() {
+        Some((_, message)) => Err(Failure::Option(message.to_owned())),
+        None => Ok(()),
+    }
+}
+
 impl<'t> Task<'t> {
     /// Whether to go on.
     pub fn goes_on(&self) -> bool {
         !self.interrupted.load(Ordering::Relaxed)
+    }
+
+    /// Applies the map so many times; false if the task was ended before.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued.
+    pub fn settle(
+        &self,
+        map: &mut Stroboscope<'_>,
+        state: &mut [f64],
+        times: usize,
+    ) -> Result<bool, FlowError> {
+        for _ in 0..times {
+            if !self.goes_on() {
+                return Ok(false);
+            }
+            map.map(state)?;
+        }
+        Ok(true)
     }
 
     /// Says how far the task is.
@@ -207,7 +259,7 @@ impl<'t> Task<'t> {
         Ok(flow::at(
             self.system,
             &values,
-            self.options.model.omega,
+            self.options.model.frequency(),
             how,
         )?)
     }
@@ -260,7 +312,7 @@ impl<'t> Task<'t> {
             return Ok(None);
         };
         let facts = self.system.facts();
-        let (omega, tolerance) = (self.options.model.omega, self.options.tolerance);
+        let (omega, tolerance) = (self.options.model.frequency(), self.options.tolerance);
         // The equation does not say what its laws are.
         let model = &self.options.model;
         let laws = match &model.file {
@@ -296,7 +348,7 @@ impl<'t> Task<'t> {
         let parameters = named
             .filter(|(parameter, _)| parameter.name != varied)
             .map(|(parameter, value)| format!("{} = {value}", symbol(&parameter.name)));
-        let omega = Some(format!("ω = {}", self.options.model.omega));
+        let omega = Some(format!("ω = {}", self.options.model.frequency()));
         let omega = omega.filter(|_| varied != "omega");
         let all: Vec<String> = parameters.chain(omega).collect();
         let name = match self.options.model.file {

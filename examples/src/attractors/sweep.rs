@@ -20,7 +20,7 @@ pub fn run(task: &Task<'_>, swept: Swept) -> Result<Results, Failure> {
     let variable = variable(task, swept)?;
     check(task, swept)?;
     let up = options.up || !options.down;
-    let rising = Sweep::spread(options.from, options.to, options.values);
+    let rising = Sweep::spread(options.from, options.to, options.values)?;
     let falling = rising.iter().rev();
     let mut values = Vec::new();
     values.extend(rising.iter().filter(|_| up));

@@ -1,4 +1,4 @@
-//! Figures of frequency-response curves: 2 to 7 and 9a.
+//! Figures of frequency-response curves: 2 to 7.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
@@ -45,7 +45,7 @@ impl Case {
                 zeta: 0.032,
                 load: 1.0,
                 drive: 0.1,
-                omega: 1.0,
+                omega: None,
             },
             range,
             exact: "",

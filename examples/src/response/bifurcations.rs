@@ -1,21 +1,17 @@
 //! `--bifurcations`, `--follow` and `--track`: what begins on the branch, by shooting.
 
-use std::f64::consts::TAU;
 use std::fmt::{self, Write};
 use std::ops::ControlFlow;
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
-use hertzian::flow::basin::{Axis, Basin, Grid};
 use hertzian::flow::shooting::{CycleEvent, Track};
 use hertzian::{Error, EventKind, Shooting, System};
 
 use super::options::{Options, Tracked};
 use super::records::{EventRecord, PointRecord, Record, TrackRecord};
-
-/// Longest period of an orbit that is looked for, and cells along each side of a grid of initial states.
-const LONGEST: usize = 5;
-const CELLS: usize = 64;
+use super::search::basin;
+use super::summary;
 
 /// Sizes of orbits in a larger ratio than this are drawn over decades.
 const DECADES: f64 = 50.0;
@@ -50,10 +46,12 @@ pub fn find(
         .max_points(options.max_points)
         .depth(options.follow.unwrap_or(0));
     if !options.over_frequency() {
-        request = request.vary(options.varied()).omega(options.model.omega);
+        request = request
+            .vary(options.varied())
+            .omega(options.model.frequency());
     }
     for &value in &options.search {
-        request = request.search(value, basin(options, value));
+        request = request.search(value, basin(options, model, value));
     }
     let mut interrupted = false;
     let diagram = request.run_with(|cycle| {
@@ -155,7 +153,7 @@ impl Found {
     }
 
     /// The picture: of the curves in two parameters if there are any, of the branches otherwise.
-    pub fn chart(&self, options: &Options, title: String) -> Chart {
+    pub fn chart(&self, options: &Options, model: &dyn System) -> Chart {
         let Some(track) = self.tracks.first() else {
             let varied = if options.over_frequency() {
                 "excitation frequency ω"
@@ -166,16 +164,13 @@ impl Found {
                 .diagram
                 .chart()
                 .scales(Scale::Linear, self.scale())
-                .title(title)
+                .title(summary::title(options, model, &[]))
                 .x(varied)
                 .y("peak-to-peak of x");
         };
         let [x, y] = &track.names;
-        // The last entry is the value of what is an axis here.
-        let shared = title.rsplit_once(", ").filter(|_| options.period == 1);
-        let mut chart = Chart::new(shared.map_or(&*title, |(shared, _)| shared))
-            .x(x)
-            .y(y);
+        let title = summary::title(options, model, &track.names);
+        let mut chart = Chart::new(title).x(x).y(y);
         let mut special = Vec::new();
         for track in &self.tracks {
             chart = chart.trace(Trace {
@@ -295,52 +290,22 @@ fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
     Ok(())
 }
 
-/// Initial states to which orbits of up to five periods in free flight under the load come near: one flight of `T` rises
-/// `W T^2 / 8` and falls back with the speed `W T / 2`.
-fn basin(options: &Options, value: f64) -> Basin {
-    let omega = if options.over_frequency() {
-        value
-    } else {
-        options.model.omega
-    };
-    let time = LONGEST as f64 * TAU / omega;
-    let load = options.model.load.abs().max(options.model.drive);
-    let (height, speed) = (0.15 * load * time * time, 0.5 * load * time);
-    let axis = |entry: usize, from: f64, to: f64| Axis {
-        entry,
-        from,
-        to,
-        count: CELLS,
-    };
-    let grid = Grid {
-        start: vec![0.0, 0.0],
-        columns: axis(0, -height, 0.2 * height),
-        rows: axis(1, -speed, speed),
-    };
-    Basin {
-        longest: LONGEST,
-        patience: 3000,
-        ..Basin::new(grid)
-    }
-}
-
 /// Shooting over the range of the branch, and a part of it beyond.
 fn shooting<'a>(options: &Options, model: &'a dyn System) -> Shooting<'a> {
     let margin = 0.1 * (options.to - options.from);
-    let above = |value: f64| {
-        if value > 0.0 {
-            value
-        } else {
-            options.from.min(options.to)
-        }
-    };
+    let mut parameters = model.facts().parameters.iter();
+    let parameter = parameters.find(|parameter| parameter.name == options.varied());
+    let admitted = |value: f64| parameter.map_or(value > 0.0, |p| p.admits(value));
+    let widened = |end: f64, by: f64| if admitted(end + by) { end + by } else { end };
     let request = Shooting::of(model)
-        .from(above(options.from - margin))
-        .to(above(options.to + margin));
+        .from(widened(options.from, -margin))
+        .to(widened(options.to, margin));
     if options.over_frequency() {
         request
     } else {
-        request.vary(options.varied()).omega(options.model.omega)
+        request
+            .vary(options.varied())
+            .omega(options.model.frequency())
     }
 }
 
@@ -369,7 +334,7 @@ fn value_of(options: &Options, model: &dyn System, name: &str) -> f64 {
     let mut values = vec![0.0; facts.parameters.len()];
     model.values(&mut values);
     let index = facts.parameters.iter().position(|p| p.name == name);
-    index.map_or(options.model.omega, |index| values[index])
+    index.map_or(options.model.frequency(), |index| values[index])
 }
 
 /// Whether a curve passes an event, which has this value of the second parameter.

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::records::{PointRecord, Record};
 
@@ -51,6 +51,31 @@ pub fn check(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
+/// A path that leads to the same file as one before it, if there is one. Devices can be written to as often as one likes.
+pub fn shared<'p>(paths: impl IntoIterator<Item = &'p Path>) -> Option<&'p Path> {
+    let mut seen = Vec::new();
+    let mut paths = paths.into_iter();
+    paths.find(|path| {
+        let place = place(path);
+        let is_known = seen.contains(&place);
+        seen.push(place);
+        is_known && (path.is_file() || !path.exists())
+    })
+}
+
+/// Where a path leads, whether there is a file or not.
+fn place(path: &Path) -> PathBuf {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let of_new = || {
+        let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok()?;
+        Some(folder.join(path.file_name()?))
+    };
+    let place = path.canonicalize().ok().or_else(of_new);
+    place.unwrap_or_else(|| path.to_path_buf())
+}
+
 /// Writes everything as JSON. A number that is not finite becomes `null`.
 ///
 /// # Errors
@@ -75,10 +100,11 @@ pub fn write_csv(path: &Path, points: &[PointRecord]) -> io::Result<()> {
     writer.flush()
 }
 
-/// A point as the texts of [`COLUMNS`]; a multiplier that is not known is empty.
+/// A point as the texts of [`COLUMNS`]; what is not known is empty.
 pub fn row(point: &PointRecord) -> Vec<String> {
     // As short as reads back to the same number.
     let number = |value: f64| format!("{value:?}");
+    let known = |value: Option<f64>| value.map_or(String::new(), number);
     let part = |index: usize, part: usize| {
         let multiplier = point.multipliers.get(index);
         multiplier.map_or(String::new(), |multiplier| number(multiplier[part]))
@@ -96,12 +122,14 @@ pub fn row(point: &PointRecord) -> Vec<String> {
         part(0, 1),
         part(1, 0),
         part(1, 1),
-        number(point.contact_fraction),
-        point.contacts.to_string(),
-        number(point.peak_force),
+        known(point.contact_fraction),
+        point
+            .contacts
+            .map_or(String::new(), |count| count.to_string()),
+        known(point.peak_force),
         number(point.dissipated_power),
         point.harmonics.to_string(),
-        point.error.map_or(String::new(), number),
+        known(point.error),
         point.branch.to_string(),
         point.period.to_string(),
         number(point.value),

@@ -10,6 +10,7 @@ pub mod options;
 pub mod progress;
 pub mod records;
 pub mod run;
+pub mod search;
 pub mod summary;
 
 use std::process::ExitCode;

@@ -127,7 +127,7 @@ pub struct Options {
     pub within: Vec<f64>,
 
     /// Also draw the free oscillation without damping and excitation, and where the response is in phase resonance
-    #[arg(long)]
+    #[arg(long, conflicts_with = "track")]
     pub backbone: bool,
 
     /// The picture

@@ -77,12 +77,12 @@ pub struct PointRecord {
     pub amplitudes: Vec<f64>,
     /// Phase lags of the harmonics, the mean's zero first.
     pub phases: Vec<f64>,
-    /// Fraction of the period in contact.
-    pub contact_fraction: f64,
+    /// Fraction of the period in contact; this and the next two of the first contact, if the oscillator has one.
+    pub contact_fraction: Option<f64>,
     /// Contacts per period.
-    pub contacts: usize,
+    pub contacts: Option<usize>,
     /// Largest contact force.
-    pub peak_force: f64,
+    pub peak_force: Option<f64>,
     /// Mean power that is dissipated.
     pub dissipated_power: f64,
 }
@@ -264,8 +264,6 @@ impl PointRecord {
         let series = point.orbit.series(0);
         let multipliers = point.stability.multipliers.iter();
         let contact = point.observed.contacts.first();
-        // A linear spring in both directions is no contact to the library: it never opens, and its force is x.
-        let linear = motion.maximum.abs().max(motion.minimum.abs());
         Self {
             branch: 0,
             period: point.orbit.period,
@@ -283,9 +281,9 @@ impl PointRecord {
             error: point.error,
             amplitudes: amplitudes(series),
             phases: phases(series),
-            contact_fraction: contact.map_or(1.0, |contact| contact.fraction),
-            contacts: contact.map_or(1, |contact| contact.count),
-            peak_force: contact.map_or(linear, |contact| contact.peak_force),
+            contact_fraction: contact.map(|contact| contact.fraction),
+            contacts: contact.map(|contact| contact.count),
+            peak_force: contact.map(|contact| contact.peak_force),
             dissipated_power: point.observed.dissipated_power,
         }
     }

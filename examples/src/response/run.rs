@@ -17,7 +17,9 @@ use super::models::model;
 use super::options::Options;
 use super::progress::Progress;
 use super::records::Record;
+use super::search;
 use super::summary;
+use crate::model::FREQUENCY_VARIES;
 
 /// What came of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +42,8 @@ pub enum Failure {
     At(f64),
     /// The backbone was asked for of an oscillator from a file, or over a parameter.
     Backbone,
+    /// An option cannot be used.
+    Option(String),
     /// The file of the oscillator is at fault.
     Model(PathBuf, ModelError),
     /// A file cannot be written.
@@ -60,6 +64,7 @@ impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Library(error) => error.fmt(f),
+            Self::Option(message) => f.write_str(message),
             Self::Model(path, error) => f.write_str(&error.describe(path)),
             Self::At(value) => write!(f, "at = {value}: must be finite"),
             Self::Backbone => f.write_str(
@@ -93,6 +98,7 @@ pub fn run(
         let path = options.model.file.clone().unwrap_or_default();
         Failure::Model(path, error)
     })?;
+    search::check(options, &*model)?;
     let stop = || interrupted.load(Ordering::Relaxed);
     let go = || {
         if stop() {
@@ -117,7 +123,7 @@ pub fn run(
         _ => bifurcations::find(options, &*model, &mut see)?,
     };
     let mut chart = match &found {
-        Some(found) => found.chart(options, summary::title(options, &*model)),
+        Some(found) => found.chart(options, &*model),
         None => picture(options, &branch, stop),
     };
     if options.backbone && !stop() {
@@ -146,7 +152,7 @@ pub fn run(
     })
 }
 
-/// What the library does not check: values to look at, and files.
+/// What the library does not check: options that do not go together, values to look at, and files.
 fn check(options: &Options) -> Result<(), Failure> {
     if let Some(&value) = options.at.iter().find(|value| !value.is_finite()) {
         return Err(Failure::At(value));
@@ -154,8 +160,25 @@ fn check(options: &Options) -> Result<(), Failure> {
     if options.backbone && (options.model.file.is_some() || !options.over_frequency()) {
         return Err(Failure::Backbone);
     }
+    if options.over_frequency() && options.model.omega.is_some() {
+        return Err(Failure::Option(FREQUENCY_VARIES.to_owned()));
+    }
+    let two = |count| count == 0 || count == 2;
+    if !two(options.plane.len()) {
+        let message = "--in takes two names: --in omega,drive";
+        return Err(Failure::Option(message.to_owned()));
+    }
+    if !two(options.within.len()) {
+        let message = "--within takes two values: --within 0.05,0.5";
+        return Err(Failure::Option(message.to_owned()));
+    }
     for path in paths(options) {
         files::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
+    }
+    let read = options.model.file.as_deref();
+    if let Some(path) = files::shared(read.into_iter().chain(paths(options))) {
+        let message = format!("{} is asked for more than once", path.display());
+        return Err(Failure::Option(message));
     }
     Ok(())
 }
@@ -178,7 +201,9 @@ fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a
         .multipliers(options.multipliers.into())
         .max_points(options.max_points);
     if !options.over_frequency() {
-        request = request.vary(options.varied()).omega(options.model.omega);
+        request = request
+            .vary(options.varied())
+            .omega(options.model.frequency());
     }
     if let Some(harmonics) = options.harmonics {
         request = request.harmonics(harmonics);
@@ -212,7 +237,7 @@ fn picture(options: &Options, branch: &Branch<'_>, stop: impl Fn() -> bool) -> C
     }
     let chart = branch
         .chart()
-        .title(summary::title(options, branch.system()));
+        .title(summary::title(options, branch.system(), &[]));
     if !options.over_frequency() {
         return chart;
     }

@@ -11,14 +11,14 @@ use crate::model::ModelOptions;
 /// As many folds, turns and changes of stability are listed one by one; more of them are counted.
 const LISTED: usize = 6;
 
-/// Title of the picture: the oscillator, and what is the same everywhere.
-pub fn title(options: &Options, model: &dyn System) -> String {
+/// Title of the picture: the oscillator, and what is the same everywhere. The axes are what varies besides.
+pub fn title(options: &Options, model: &dyn System, axes: &[String]) -> String {
     let period = match options.period {
         1 => String::new(),
         n => format!(", period {n}"),
     };
-    let omega = (!options.over_frequency()).then_some(("ω", "omega", options.model.omega));
-    let fixed = |name: &str| name != options.varied();
+    let omega = (!options.over_frequency()).then_some(("ω", "omega", options.model.frequency()));
+    let fixed = |name: &str| name != options.varied() && axes.iter().all(|axis| axis != name);
     if options.model.file.is_some() {
         let facts = model.facts();
         let mut values = vec![0.0; facts.parameters.len()];
@@ -26,7 +26,8 @@ pub fn title(options: &Options, model: &dyn System) -> String {
         let parameters = facts.parameters.iter().zip(values);
         let shown = parameters.filter(|(parameter, _)| fixed(&parameter.name));
         let shown = shown.map(|(parameter, value)| format!("{} = {value}", parameter.name));
-        let omega = omega.map(|(name, _, value)| format!("{name} = {value}"));
+        let omega = omega.filter(|(_, name, _)| fixed(name));
+        let omega = omega.map(|(sign, _, value)| format!("{sign} = {value}"));
         let shown: Vec<_> = shown.chain(omega).collect();
         return format!("{}: {}{period}", facts.name, shown.join(", "));
     }
@@ -119,7 +120,8 @@ fn from_file(
     let fixed = parameters
         .filter(|(parameter, _)| parameter.name != branch.varied)
         .map(|(parameter, value)| format!("{} = {value}", parameter.name));
-    let omega = (!options.over_frequency()).then(|| format!("omega = {}", options.model.omega));
+    let omega =
+        (!options.over_frequency()).then(|| format!("omega = {}", options.model.frequency()));
     writeln!(
         text,
         "{}\n",
@@ -137,7 +139,7 @@ fn equation(text: &mut String, options: &Options) -> fmt::Result {
         ("2 zeta x' + sgn(x) |x|^alpha", "  continuous")
     };
     writeln!(text, "x'' + {force} = drive cos(omega t) + load{remark}")?;
-    let omega = ("ω", "omega", options.model.omega);
+    let omega = ("ω", "omega", options.model.frequency());
     let values = parameters(&options.model).into_iter().chain([omega]);
     let fixed = values.filter(|(_, name, _)| *name != options.varied());
     let fixed: Vec<_> = fixed

@@ -155,7 +155,7 @@ fn problem(
         zeta,
         load,
         drive: 0.1,
-        omega: 1.0,
+        omega: None,
     };
     Problem {
         id,
