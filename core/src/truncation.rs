@@ -251,15 +251,7 @@ impl<'a> Finer<'a> {
                 self.orbit[at(0) + 1] = -(b * c + a * s) / square;
                 continue;
             }
-            // The cosines of all coordinates, then their sines.
-            let matrix = DMatrix::from_fn(2 * n, 2 * n, |row, column| {
-                let entry = row % n * n + column % n;
-                match (row < n, column < n) {
-                    (true, false) => imaginary(entry),
-                    (false, true) => -imaginary(entry),
-                    _ => real(entry),
-                }
-            });
+            let matrix = dynamic_stiffness(n, real, imaginary);
             let residual = DVector::from_fn(2 * n, |row, _| -self.residual[at(row % n) + row / n]);
             let tail = matrix.lu().solve(&residual)?;
             for (row, &value) in tail.iter().enumerate() {
@@ -386,4 +378,20 @@ impl<'a> Finer<'a> {
             BEYOND * change + ROUNDING * value + left
         })
     }
+}
+
+/// Matrix of a complex one of order `n`, given entry by entry: the cosines of all coordinates, then their sines.
+fn dynamic_stiffness(
+    n: usize,
+    real: impl Fn(usize) -> f64,
+    imaginary: impl Fn(usize) -> f64,
+) -> DMatrix<f64> {
+    DMatrix::from_fn(2 * n, 2 * n, |row, column| {
+        let entry = row % n * n + column % n;
+        match (row < n, column < n) {
+            (true, false) => imaginary(entry),
+            (false, true) => -imaginary(entry),
+            _ => real(entry),
+        }
+    })
 }

@@ -7,3 +7,4 @@ pub(crate) mod kernels;
 pub(crate) mod phases;
 pub(crate) mod sampled;
 pub mod series;
+pub(crate) mod taylor;

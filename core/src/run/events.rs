@@ -11,7 +11,7 @@ use crate::subharmonics::{is_shifted, passes_shorter_period};
 use crate::symmetry::{broken, is_broken};
 
 /// The test function of a fold is driven below this.
-pub(super) const FOLD_TOLERANCE: f64 = 1e-10;
+const FOLD_TOLERANCE: f64 = 1e-10;
 /// What the orbits of a longer period have in addition vanishes as the square root of the distance in the parameter, so that
 /// this part of it is as good as nothing.
 const JOINED: f64 = 1e-5;
@@ -27,35 +27,14 @@ impl Run<'_, '_> {
         newton: &mut Newton,
         between: (&CurvePoint, &CurvePoint),
     ) {
-        let options = self.options.newton;
         let slope = CurvePoint::parameter_slope;
-        let found = locate(balance, newton, between, options, FOLD_TOLERANCE, slope);
-        if let Some(fold) = found.as_ref().filter(|located| located.vanishes) {
-            return self.fold(balance, newton, fold);
-        }
-        if self.resolution.core < self.resolution.harmonics {
-            // What core and tail cannot locate, the whole system may.
-            let mut balance = self.follower.balance(Resolution {
-                core: self.resolution.harmonics,
-                ..self.resolution
-            });
-            let mut newton = Newton::new(&balance);
-            let again = locate(
-                &mut balance,
-                &mut newton,
-                between,
-                options,
-                FOLD_TOLERANCE,
-                slope,
-            );
-            if let Some(fold) = again.filter(|located| located.vanishes) {
-                self.fold(&mut balance, &mut newton, &fold);
-                self.statistics += newton.statistics;
-                return;
-            }
-            self.statistics += newton.statistics;
-        }
-        let (value, test) = found.map_or_else(
+        let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, fold: &Located| {
+            run.fold(b, n, fold);
+        };
+        let Err(jump) = self.locate_zero(balance, newton, between, slope, read) else {
+            return;
+        };
+        let (value, test) = jump.map_or_else(
             || {
                 let (a, b) = between;
                 (0.5 * (a.parameter() + b.parameter()), a.parameter_slope())
@@ -68,6 +47,52 @@ impl Run<'_, '_> {
             test,
             after: self.points.len() - 1,
         });
+    }
+
+    /// Locates the zero of a test function between two points, with core and tail, or else with the whole system, and has it read
+    /// while Newton's method holds its factors.
+    ///
+    /// # Errors
+    /// Where it jumps instead, if that was found.
+    pub(super) fn locate_zero(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+        test: impl Fn(&CurvePoint) -> f64,
+        mut read: impl FnMut(&mut Self, &mut Balance<'_>, &mut Newton, &Located),
+    ) -> Result<(), Option<Located>> {
+        let options = self.options.newton;
+        let found = locate(balance, newton, between, options, FOLD_TOLERANCE, &test);
+        if let Some(zero) = found.as_ref().filter(|located| located.vanishes) {
+            read(self, balance, newton, zero);
+            return Ok(());
+        }
+        let whole = Resolution {
+            core: self.resolution.harmonics,
+            ..self.resolution
+        };
+        if self.resolution.core < whole.core {
+            let mut balance = self.follower.balance(whole);
+            let mut newton = Newton::new(&balance);
+            let again = locate(
+                &mut balance,
+                &mut newton,
+                between,
+                options,
+                FOLD_TOLERANCE,
+                &test,
+            );
+            let zero = again.filter(|located| located.vanishes);
+            if let Some(zero) = &zero {
+                read(self, &mut balance, &mut newton, zero);
+            }
+            self.statistics += newton.statistics;
+            if zero.is_some() {
+                return Ok(());
+            }
+        }
+        Err(found)
     }
 
     /// Reads a fold that was located. One of longer orbits that was passed before, but for a shift in time, is the sign of a

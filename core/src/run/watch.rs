@@ -19,13 +19,12 @@
 use std::cell::RefCell;
 
 use super::Run;
-use super::events::FOLD_TOLERANCE;
 use super::touch::{Extreme, Touches, crossings, passed};
 use crate::balance::{Balance, Resolution};
 use crate::block::Block;
 use crate::branch::{Event, EventKind, Point, Turn};
 use crate::continuation::follow::CurvePoint;
-use crate::continuation::locate::{Located, locate};
+use crate::continuation::locate::Located;
 use crate::follower::{Follower, Sought};
 use crate::fourier::series;
 use crate::harmonics::resize;
@@ -262,41 +261,19 @@ impl<'a> Run<'_, 'a> {
         kind: EventKind,
         test: &mut Test<'_, 'a>,
     ) {
-        let options = self.options.newton;
         let ends = [between.0, between.1].map(|end| test.at(&end.u, &end.tangent));
         let cell = RefCell::new(test);
         let value = |point: &CurvePoint| cell.borrow_mut().at(&point.u, &point.tangent);
-        let zero = |located: &Located| located.vanishes;
-        let found = locate(balance, newton, between, options, FOLD_TOLERANCE, value).filter(zero);
-        if let Some(found) = &found {
+        let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, found: &Located| {
             let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
-            return self.located(balance, newton, between, kind, (test, found));
+            run.located(b, n, between, kind, (test, found));
+        };
+        if self
+            .locate_zero(balance, newton, between, value, read)
+            .is_err()
+        {
+            self.omit(kind, between, ends[0]);
         }
-        if self.resolution.core < self.resolution.harmonics {
-            let mut whole = self.follower.balance(Resolution {
-                core: self.resolution.harmonics,
-                ..self.resolution
-            });
-            let mut newton = Newton::new(&whole);
-            let found = locate(
-                &mut whole,
-                &mut newton,
-                between,
-                options,
-                FOLD_TOLERANCE,
-                value,
-            );
-            let found = found.filter(zero);
-            if let Some(found) = &found {
-                let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
-                self.located(&mut whole, &mut newton, between, kind, (test, found));
-            }
-            self.statistics += newton.statistics;
-            if found.is_some() {
-                return;
-            }
-        }
-        self.omit(kind, between, ends[0]);
     }
 
     /// Reads the orbit at an event, whose factors Newton's method holds.

@@ -133,15 +133,7 @@ fn add_answer(
         bounds[0] += envelope(0) / real(0).hypot(w * damping[0]);
         return;
     }
-    // The cosines of all coordinates, then their sines.
-    let matrix = DMatrix::from_fn(2 * n, 2 * n, |row, column| {
-        let entry = row % n * n + column % n;
-        match (row < n, column < n) {
-            (true, false) => w * damping[entry],
-            (false, true) => -w * damping[entry],
-            _ => real(entry),
-        }
-    });
+    let matrix = super::dynamic_stiffness(n, real, |entry| w * damping[entry]);
     let units = DMatrix::from_fn(2 * n, n, |row, column| f64::from(u8::from(row == column)));
     let Some(answer) = matrix.lu().solve(&units) else {
         bounds.fill(f64::INFINITY);

@@ -14,6 +14,7 @@ use crate::fourier::gauss::{self, Rule};
 use crate::fourier::grading::{Grading, power_for};
 use crate::fourier::kernels::{evaluate, padded, project};
 use crate::fourier::series;
+use crate::fourier::taylor::Taylor;
 use crate::law::{Derivatives, On, PieceFacts, Variation};
 
 /// Nodes beyond those that the harmonics take, at first.
@@ -22,8 +23,6 @@ const MARGIN: f64 = 12.0;
 const FORCE_ERROR: f64 = 1e-15;
 /// Error aimed at in the harmonics of the derivatives.
 const SLOPE_ERROR: f64 = 1e-11;
-/// Within this phase of the highest harmonic, four terms of Taylor's series give the gap to rounding.
-const NEAR: f64 = 1e-3;
 /// Panels are cut in two at most so many times.
 const DEPTH: u32 = 12;
 
@@ -79,34 +78,6 @@ struct Part {
     /// It may be cut in two so many times.
     depth: u32,
     spectra: [Spectrum; 4],
-}
-
-/// Derivatives of a gap at a switch, each divided by its factorial.
-#[derive(Debug, Clone, Copy)]
-struct Taylor([f64; 4]);
-
-impl Taylor {
-    fn at(series: &[f64], tau: f64) -> Self {
-        let (sine, cosine) = tau.sin_cos();
-        let (mut c, mut s) = (1.0, 0.0);
-        let mut sums = [0.0; 4];
-        for (index, pair) in series[1..].chunks_exact(2).enumerate() {
-            let k = (index + 1) as f64;
-            (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
-            let (even, odd) = (pair[0] * c + pair[1] * s, pair[1] * c - pair[0] * s);
-            sums[0] += k * odd;
-            sums[1] -= k * k * even;
-            sums[2] -= k * k * k * odd;
-            sums[3] += k * k * k * k * even;
-        }
-        Self([sums[0], sums[1] / 2.0, sums[2] / 6.0, sums[3] / 24.0])
-    }
-
-    /// The gap at a small distance from where it is on the level.
-    fn value(self, level: f64, distance: f64) -> f64 {
-        let [a, b, c, d] = self.0;
-        level + distance * (a + distance * (b + distance * (c + distance * d)))
-    }
 }
 
 /// The harmonics that a panel must serve.
@@ -366,7 +337,7 @@ impl Quadrature {
     /// Replaces the gap close to a singular end by its Taylor polynomial there: a small distance from the level keeps all its
     /// digits then, which an exponent below one needs. (Where the level is not zero, the sum of both is rounded.)
     fn sharpen(&mut self, input: ContactInput<'_>, stretch: &Stretch) {
-        let near = NEAR / series::harmonics(input.gap).max(1) as f64;
+        let near = Taylor::reach(input.gap);
         let width = stretch.end - stretch.start;
         let rule = &self.rules[self.current];
         let [first, last] = self.levels;

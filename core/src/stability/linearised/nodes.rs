@@ -4,12 +4,9 @@ use super::Panel;
 use crate::fourier::grading::Grading;
 use crate::fourier::kernels::{evaluate, padded};
 use crate::fourier::phases::sines_and_cosines;
-use crate::fourier::series;
+use crate::fourier::taylor::Taylor;
 use crate::stability::magnus;
 use crate::stability::path::{Contact, Cut, Event};
-
-/// Within this phase of the highest harmonic, four terms of Taylor's series give the gap to rounding.
-const NEAR: f64 = 1e-3;
 
 /// The nodes of one panel: three for each step.
 #[derive(Debug, Default)]
@@ -109,7 +106,7 @@ impl Nodes {
             &mut self.gap,
             &mut self.rate,
         );
-        let near = NEAR / series::harmonics(&contact.gap).max(1) as f64;
+        let near = Taylor::reach(&contact.gap);
         let powers = [panel.grading.start, panel.grading.end];
         let phases = [panel.start, panel.end];
         for end in 0..2 {
@@ -117,32 +114,14 @@ impl Nodes {
             else {
                 continue;
             };
-            let taylor = taylor(&contact.gap, phases[end]);
+            let taylor = Taylor::at(&contact.gap, phases[end]);
             let level = contact.levels[cut.level];
             for (&distance, gap) in self.offsets.iter().zip(&mut self.gap) {
                 let of_this_end = distance.is_sign_negative() == (end == 1);
                 if of_this_end && distance.abs() < near {
-                    let [a, b, c, d] = taylor;
-                    *gap = level + distance * (a + distance * (b + distance * (c + distance * d)));
+                    *gap = taylor.value(level, distance);
                 }
             }
         }
     }
-}
-
-/// Derivatives of a series at a phase, from the first to the fourth, each divided by its factorial.
-fn taylor(series: &[f64], tau: f64) -> [f64; 4] {
-    let (sine, cosine) = tau.sin_cos();
-    let (mut c, mut s) = (1.0, 0.0);
-    let mut sums = [0.0; 4];
-    for (index, pair) in series[1..].chunks_exact(2).enumerate() {
-        let k = (index + 1) as f64;
-        (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
-        let (even, odd) = (pair[0] * c + pair[1] * s, pair[1] * c - pair[0] * s);
-        sums[0] += k * odd;
-        sums[1] -= k * k * even;
-        sums[2] -= k * k * k * odd;
-        sums[3] += k * k * k * k * even;
-    }
-    [sums[0], sums[1] / 2.0, sums[2] / 6.0, sums[3] / 24.0]
 }
