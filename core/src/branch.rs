@@ -231,7 +231,8 @@ impl<'a> Branch<'a> {
         self.events(EventKind::Fold)
     }
 
-    /// Every orbit of the branch at a value of what it varies, in branch order; empty where the branch does not pass.
+    /// Every orbit of the branch at a value of what it varies, in branch order; empty where the branch does not pass. Harmonics
+    /// follow the tolerance as along the branch.
     ///
     /// # Errors
     /// If an orbit between two points cannot be computed.

@@ -193,9 +193,33 @@ impl<'a> Follower<'a> {
         Ok(found)
     }
 
-    /// The orbit at a value between those of two neighbours, searched along the chord of the two.
+    /// The orbit at a value between those of two neighbours, with their harmonics, or more where the tolerance asks for them.
     fn between(&self, (a, b): (&Point, &Point), value: f64) -> Result<Point, Error> {
-        let harmonics = a.orbit.harmonics().max(b.orbit.harmonics());
+        let mut harmonics = a.orbit.harmonics().max(b.orbit.harmonics());
+        let mut point = self.searched((a, b), value, harmonics)?;
+        let mut chooser = self.chooser.clone();
+        loop {
+            let error = point.error.unwrap_or(f64::INFINITY);
+            let chosen = chooser.as_mut().and_then(|c| c.decide(harmonics, error));
+            let Some(more) = chosen.filter(|&chosen| chosen > harmonics) else {
+                return Ok(point);
+            };
+            harmonics = more;
+            match self.searched((a, b), value, harmonics) {
+                Ok(better) => point = better,
+                // What was found stands, with its error.
+                Err(_) => return Ok(point),
+            }
+        }
+    }
+
+    /// The orbit at a value between those of two neighbours, searched along the chord of the two.
+    fn searched(
+        &self,
+        (a, b): (&Point, &Point),
+        value: f64,
+        harmonics: usize,
+    ) -> Result<Point, Error> {
         let mut balance = self.balance(self.with_harmonics(harmonics, harmonics));
         let newton = &mut Newton::new(&balance);
         let extended = |point: &Point| {

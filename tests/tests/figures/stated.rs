@@ -1,7 +1,8 @@
 //! What is stated of the error of an event, and of an orbit, against the true error.
 
-use hertzian::{Event, EventKind, FrequencyResponse};
+use hertzian::{Event, EventKind, FrequencyResponse, Point};
 
+use crate::curves::{CURVE_2B, CURVE_5A};
 use crate::direct::PowerForm;
 use crate::exact::{Exact, FIGURE_2A_BREAKS, FIGURE_2B_BREAKS, FIGURE_2B_UNLISTED, PERIOD_2_FOLDS};
 use crate::models::{
@@ -161,42 +162,38 @@ fn of_symmetry() -> Vec<Row> {
     rows
 }
 
-/// Peak-to-peak of orbits along curves of 5 and 10 harmonics against 80, whose errors are below 1e-6.
+/// Orbits of 5 and 10 harmonics along curves, each the nearest in size to one that is known. Where none is within a tenth of it, as
+/// where few harmonics have a fold elsewhere, what is stated does not hold either.
 #[test]
 fn the_true_error_of_orbits_is_at_most_three_times_the_stated_one() {
-    let (mut all, mut holding) = (0, 0);
-    for figure in [FIGURE_5A, FIGURE_2B] {
+    let (mut all, mut holding, mut missed) = (0, 0, 0);
+    for (figure, known) in [(FIGURE_5A, &CURVE_5A[..]), (FIGURE_2B, &CURVE_2B[..])] {
         let model = figure.model();
-        let request = figure.request(&*model);
-        let fine = request.clone().harmonics(80).stability(false);
-        let fine = fine.run().unwrap();
         for few in [5, 10] {
-            let coarse = request.clone().harmonics(few).run().unwrap();
-            for index in 1..20 {
-                let omega = figure.from + (figure.to - figure.from) * f64::from(index) / 20.0;
-                let [orbits, exact] = [&coarse, &fine].map(|branch| {
-                    let mut orbits = branch.at(omega).unwrap();
-                    orbits.sort_by(|a, b| a.peak_to_peak().total_cmp(&b.peak_to_peak()));
-                    orbits
-                });
-                if orbits.len() != exact.len() {
+            let request = figure.request(&*model).harmonics(few);
+            let branch = request.run().unwrap();
+            for &[omega, exact] in known {
+                let orbits = branch.at(omega).unwrap();
+                let error = |orbit: &Point| (orbit.peak_to_peak() / exact - 1.0).abs();
+                let nearest = orbits.iter().min_by(|a, b| error(a).total_cmp(&error(b)));
+                let Some(orbit) = nearest.filter(|orbit| error(orbit) < 0.1) else {
+                    println!("{}: nothing at {omega} with {few}", figure.name);
+                    missed += 1;
                     continue;
-                }
-                for (orbit, exact) in orbits.iter().zip(&exact) {
-                    let size = exact.peak_to_peak();
-                    let error = (orbit.peak_to_peak() - size).abs() / size;
-                    let stated = orbit.error.unwrap();
-                    if stated > 1e-5 {
-                        all += 1;
-                        holding += usize::from(error <= MARGIN * stated);
-                    }
+                };
+                let (error, stated) = (error(orbit), orbit.error.unwrap());
+                // Below, the rounding of what is known would count.
+                if stated > 1e-5 {
+                    all += 1;
+                    holding += usize::from(error <= MARGIN * stated);
                 }
             }
         }
     }
+    println!("{holding} of {all} hold, {missed} missed");
     assert!(all > 60, "{all}");
-    let part = holding as f64 / f64::from(all);
-    assert!(part >= 0.95, "{holding} of {all}");
+    let part = holding as f64 / f64::from(all + missed);
+    assert!(part >= 0.95, "{holding} of {all}, {missed} missed");
 }
 
 #[test]
