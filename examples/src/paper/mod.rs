@@ -3,7 +3,7 @@
 mod chaos;
 mod curves;
 mod cycles;
-mod exact;
+pub mod exact;
 pub mod figure;
 pub mod figures;
 pub mod options;
