@@ -10,6 +10,7 @@ mod curves;
 mod doubling;
 mod grazing;
 mod hidden;
+mod mirrored;
 mod symmetry;
 mod table;
 mod torus;
