@@ -125,21 +125,25 @@ impl<'a> Block<'a> {
 const INVERSE: usize = 3;
 
 impl Block<'_> {
-    /// The orbit as one of the larger balance, and the null vector of the block there, extended by a zero: at an event.
-    pub(crate) fn null_vector(&mut self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// The orbit as one of the larger balance, and the null vector of the block there, at an event whose branch has this tangent. Its
+    /// last entry, for the parameter, is zero but where all harmonics are in the block.
+    pub(crate) fn null_vector(&mut self, u: &[f64], tangent: &[f64]) -> (Vec<f64>, Vec<f64>) {
         self.orbit.clear();
-        self.determinant(u);
+        self.determinant_along(u, tangent);
         let n = self.residual.len();
         let mut v: Vec<f64> = (0..=n).map(|i| (1.0 + i as f64).sin()).collect();
         for _ in 0..INVERSE {
+            // What the border says is across the tangent.
             v[n] = 0.0;
             self.jacobian.solve(&mut v);
-            let largest = v[..n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
             for x in &mut v {
                 *x /= largest;
             }
         }
-        v[n] = 0.0;
+        if self.kind != EventKind::BranchPoint {
+            v[n] = 0.0;
+        }
         (self.stretched.clone(), v)
     }
 }

@@ -158,6 +158,9 @@ pub struct Event {
     pub test: f64,
     /// Number of points of the branch before it.
     pub after: usize,
+    /// At a branch point the tangent of the branch, in extended unknowns; otherwise nothing.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) tangent: Vec<f64>,
 }
 
 impl fmt::Display for Event {

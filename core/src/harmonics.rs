@@ -79,6 +79,11 @@ impl Chooser {
         }
     }
 
+    /// The number nearest to one that may be taken.
+    pub(crate) fn admitted(&self, harmonics: usize) -> usize {
+        self.rounded(harmonics as f64).max(self.least)
+    }
+
     /// Keeps the number for some points: another one has failed here.
     pub(crate) fn keep(&mut self) {
         self.kept = self.keep;

@@ -289,8 +289,9 @@ impl<'a> FrequencyResponse<'a> {
     }
 
     /// The branch that begins at an event of another one, as [`run`](Self::run) would follow it: of twice the period at a doubling
-    /// ([`doublings`](Self::doublings)), of orbits without the symmetry where an odd symmetry breaks. There the two sides are mirror
-    /// images; at a doubling both are one branch.
+    /// ([`doublings`](Self::doublings)), of orbits without the symmetry where an odd symmetry breaks, and the other one where two cross
+    /// ([`bifurcations`](Self::bifurcations)). Where a symmetry breaks the two sides are mirror images; at a doubling both are one
+    /// branch.
     ///
     /// ```
     /// use hertzian::{EventKind, FrequencyResponse, Side};
@@ -341,8 +342,15 @@ impl<'a> FrequencyResponse<'a> {
             ..self.clone()
         };
         let (mut follower, options) = request.check()?;
+        // Of the system, where orbits of period one may have it.
+        let odd = follower.asymmetric || follower.resolution.parity == Parity::Odd;
         follower.resolution.parity = Parity::All;
-        follower.asymmetric = !doubles;
+        follower.asymmetric = odd && !doubles;
+        if let Some(chooser) = &follower.chooser {
+            let times = request.period / event.point.orbit.period;
+            let known = times * event.point.orbit.harmonics();
+            follower.resolution.harmonics = chooser.admitted(known);
+        }
         let point = depart(&follower, event, side.sign())?;
         let run = Run::new(&follower, options, &point.u);
         let start = Start::Along(Box::new(point));
@@ -361,11 +369,14 @@ impl<'a> FrequencyResponse<'a> {
         let follower = run.follower.clone();
         let Run {
             points,
-            events,
-            turns,
+            mut events,
+            mut turns,
             statistics: followed,
             ..
         } = run;
+        // What a step hid is found one step later.
+        events.sort_by_key(|event| event.after);
+        turns.sort_by_key(|turn| turn.after);
         statistics += followed;
         Ok(Branch {
             varied: self.vary.clone().unwrap_or_else(|| "omega".to_owned()),

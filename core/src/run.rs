@@ -3,6 +3,8 @@
 
 mod crossed;
 mod events;
+mod grazing;
+mod hidden;
 mod touch;
 mod watch;
 
@@ -11,7 +13,8 @@ use std::ops::ControlFlow;
 use crate::balance::{Balance, Resolution};
 use crate::branch::{Event, Point, Turn};
 use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, follow,
+    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit,
+    follow_until_stuck,
 };
 use crate::error::Error;
 use crate::follower::Follower;
@@ -25,6 +28,8 @@ use watch::Watch;
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;
 const SLOW_POINTS: usize = 2;
+/// A core that no number of harmonics exceeds.
+const ALL: usize = 1 << 24;
 
 /// What a run has gathered.
 pub(crate) struct Run<'f, 'a> {
@@ -40,6 +45,8 @@ pub(crate) struct Run<'f, 'a> {
     chooser: Option<Chooser>,
     /// The resolution asked for when the walk was halted.
     wanted: Resolution,
+    /// The point before the last step.
+    earlier: Option<CurvePoint>,
     /// The last point was refused and is to be read again.
     refused: bool,
     slow: usize,
@@ -65,6 +72,7 @@ impl<'f, 'a> Run<'f, 'a> {
             watch: Watch::new(follower, resolution),
             chooser: follower.chooser.clone(),
             wanted: resolution,
+            earlier: None,
             refused: false,
             slow: 0,
             ended: None,
@@ -86,25 +94,44 @@ impl<'f, 'a> Run<'f, 'a> {
     ) -> Result<Stop, Error> {
         // Where the walk was halted last, in case that another resolution fails there.
         let mut last: Option<(Box<Halted>, Resolution, usize)> = None;
+        if matches!(start, Start::Along(_)) {
+            // Where another branch is near, what the tail leaves out decides between the two.
+            self.couple_all();
+            self.reader = self.follower.reader(self.resolution);
+            self.watch = Watch::new(self.follower, self.resolution);
+        }
         loop {
+            let begun = start.clone();
             let mut balance = self.follower.balance(self.resolution);
             let mut newton = Newton::new(&balance);
             let options = self.options;
-            let outcome = follow(
+            let mut stuck = None;
+            let outcome = follow_until_stuck(
                 &mut balance,
                 &mut newton,
                 start,
                 options,
                 &mut |b, n, seen| self.visit(b, n, &seen, visit),
+                &mut stuck,
             );
             self.statistics += newton.statistics;
             self.count_others();
             match outcome {
-                Ok(Outcome::Stopped(stop)) => return Ok(self.ended.unwrap_or(stop)),
+                Ok(Outcome::Stopped(stop)) => {
+                    let Some(halted) = stuck.filter(|_| self.has_tail()) else {
+                        return Ok(self.ended.unwrap_or(stop));
+                    };
+                    self.couple_all();
+                    start = Start::At(halted);
+                }
                 Ok(Outcome::Halted(halted)) => {
                     start = Start::At(Box::new(self.resized(&halted, &balance)));
                     last = Some((halted, self.resolution, self.core_before));
                     self.resolution = self.wanted;
+                }
+                Err(_) if self.has_tail() => {
+                    self.couple_all();
+                    start = begun;
                 }
                 Err(reason) => {
                     let Some((halted, resolution, core)) = last.take() else {
@@ -118,6 +145,19 @@ impl<'f, 'a> Run<'f, 'a> {
             self.reader = self.follower.reader(self.resolution);
             self.watch = Watch::new(self.follower, self.resolution);
         }
+    }
+
+    /// Whether harmonics are coupled to the core alone.
+    fn has_tail(&self) -> bool {
+        self.resolution.core < self.resolution.harmonics
+    }
+
+    /// Couples all harmonics from here on: what core and tail cannot solve, the whole system may.
+    fn couple_all(&mut self) {
+        self.core = ALL;
+        self.core_before = ALL;
+        self.resolution.core = self.resolution.harmonics;
+        self.wanted = self.resolution;
     }
 
     /// The state of a halted walk in the resolution wanted.
@@ -221,9 +261,10 @@ impl<'f, 'a> Run<'f, 'a> {
         }
         let known = self.turns.len();
         if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
-            self.turn(balance, newton, (before, behind));
+            self.turn(balance, newton, (before, behind), self.points.len() - 1);
         }
-        let turned = self.turns.get(known).map(|turn| turn.value);
+        let turned = self.turns.get(known).copied();
+        self.hidden(balance, newton, (before, behind));
         self.look_between(balance, newton, (before, behind), turned);
         if self.ended.is_some() {
             Continue::Break(Halt::Stop)

@@ -2,7 +2,9 @@
 //!
 //! At the event the block of harmonics that the orbits do not have is singular ([`block`](crate::block)). Its null vector is the
 //! direction of the new branch, which leaves the old one at a right angle: for a step `e` the parameter changes by `e^2` only.
-//! So the first orbit is solved for with its component in that direction held.
+//! So the first orbit is solved for with its component in that direction held. Where two branches of orbits with the same harmonics
+//! cross, the null vector is across the tangent of the known one, which has no component there but by its curvature; the other one
+//! has, at whatever angle it crosses.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 8 (branch switching); Detroux,
 //! Renson, Masset and Kerschen (2015), The harmonic balance method for bifurcation analysis, section 4.
@@ -43,6 +45,7 @@ pub(crate) fn depart(
     let parity = match event.kind {
         EventKind::PeriodDoubling => Parity::All,
         EventKind::SymmetryBreaking => Parity::Odd,
+        EventKind::BranchPoint if !event.tangent.is_empty() => Parity::All,
         _ => return Err(nothing),
     };
     let mut old = follower.with_harmonics(orbit.harmonics(), orbit.harmonics());
@@ -55,14 +58,24 @@ pub(crate) fn depart(
         follower.variable,
         old,
     );
-    let (on_block, direction) = block.null_vector(&u);
+    let (on_block, direction) = block.null_vector(&u, &event.tangent);
     let harmonics = follower.resolution.harmonics;
     let length = series::length(harmonics);
     let of_branch = |u: &[f64]| resize(u, orbit.coordinates, length);
-    let (start, direction) = (of_branch(&on_block), of_branch(&direction));
+    let (start, mut direction) = (of_branch(&on_block), of_branch(&direction));
     let mut balance = follower.balance(follower.with_harmonics(harmonics, harmonics));
     let mut newton = Newton::new(&balance);
     let range = (follower.to - follower.from).abs();
+    if event.kind == EventKind::BranchPoint {
+        let norm = newton.norm();
+        let scale = norm.scale_at(&start, range, &mut [0.0; 2]);
+        let tangent = of_branch(&event.tangent);
+        let along = norm.product(scale, &direction, &tangent);
+        let part = along / norm.product(scale, &tangent, &tangent);
+        for (x, t) in direction.iter_mut().zip(&tangent) {
+            *x -= part * t;
+        }
+    }
     for departure in DEPARTURES {
         let scale = newton.norm().scale_at(&start, range, &mut [0.0; 2]);
         let length = newton.norm().length(scale, &direction);

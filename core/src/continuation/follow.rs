@@ -125,6 +125,7 @@ pub(crate) enum Halt {
 pub(crate) type Continue = std::ops::ControlFlow<Halt>;
 
 /// Where a walk begins.
+#[derive(Clone)]
 pub(crate) enum Start {
     /// Near a solution, given as extended unknowns.
     Near(Vec<f64>),
@@ -182,6 +183,18 @@ pub(crate) fn follow<P: Problem>(
     options: FollowOptions,
     visit: &mut dyn FnMut(&mut P, &mut Newton, Visit<'_>) -> Continue,
 ) -> Result<Outcome, NewtonError> {
+    follow_until_stuck(problem, newton, start, options, visit, &mut None)
+}
+
+/// The same, and where no step led on, as it is to be resumed with another matrix.
+pub(crate) fn follow_until_stuck<P: Problem>(
+    problem: &mut P,
+    newton: &mut Newton,
+    start: Start,
+    options: FollowOptions,
+    visit: &mut dyn FnMut(&mut P, &mut Newton, Visit<'_>) -> Continue,
+    stuck: &mut Option<Box<Halted>>,
+) -> Result<Outcome, NewtonError> {
     let stopped = |stop| Ok(Outcome::Stopped(stop));
     let resumed = matches!(start, Start::At(_));
     let Begun {
@@ -236,7 +249,10 @@ pub(crate) fn follow<P: Problem>(
                 previous = Some(std::mem::replace(&mut point, next));
                 stop = end;
             }
-            Err(stop) => return stopped(stop),
+            Err(stop) => {
+                *stuck = Some(walk.stuck(point, first, count - 1));
+                return stopped(stop);
+            }
         }
     }
 }

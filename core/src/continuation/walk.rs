@@ -107,7 +107,8 @@ impl Walk {
         }
     }
 
-    /// Corrects a point of another number of unknowns, in the plane across its tangent; at an end of the range, there.
+    /// Corrects a point of another number of unknowns, in the plane across its tangent; at an end of the range, there. Without a
+    /// tangent the branch goes towards the end of the range.
     fn again<P: Problem>(
         &mut self,
         problem: &mut P,
@@ -130,11 +131,15 @@ impl Walk {
             newton.correct(problem, &mut self.trial, border, self.scale, options)?;
         }
         let mut again = self.point(problem, newton);
-        if newton
+        let along = newton
             .norm()
-            .product(point.scale, &again.tangent, &point.tangent)
-            < 0.0
-        {
+            .product(point.scale, &again.tangent, &point.tangent);
+        let ahead = if along == 0.0 {
+            again.parameter_slope() * (self.options.to - self.options.from)
+        } else {
+            along
+        };
+        if ahead < 0.0 {
             for t in &mut again.tangent {
                 *t = -*t;
             }
@@ -164,6 +169,29 @@ impl Walk {
             count,
             ended,
         }))
+    }
+
+    /// Where no step led on: to go on with the first step again. What was between this point and the one before has been seen. The
+    /// direction at the start of the range is that of the matrix that led nowhere, and forgotten.
+    pub(super) fn stuck(
+        &self,
+        mut point: CurvePoint,
+        first: CurvePoint,
+        count: usize,
+    ) -> Box<Halted> {
+        if count == 0 && point.parameter() == self.options.from {
+            point.tangent.fill(0.0);
+        }
+        Box::new(Halted {
+            point,
+            previous: None,
+            before: None,
+            first,
+            step: self.options.steps.initial,
+            largest: self.largest,
+            count,
+            ended: None,
+        })
     }
 
     /// Solves at the first parameter and points the tangent towards the end of the range.

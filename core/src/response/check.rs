@@ -107,6 +107,10 @@ impl<'a> FrequencyResponse<'a> {
             steps: validate::largest_step(self.largest_step)?,
             newton,
         };
+        let chooser = self.chooser(resolution);
+        if let (Some(chooser), Some(orbit)) = (&chooser, given) {
+            resolution.harmonics = chooser.admitted(orbit.harmonics());
+        }
         let system = self.system;
         Ok((
             Follower {
@@ -119,7 +123,7 @@ impl<'a> FrequencyResponse<'a> {
                 sought: self.sought,
                 asymmetric: symmetric && self.period == 1 && !kept,
                 stability: self.stability.then_some(self.method),
-                chooser: self.chooser(resolution),
+                chooser,
                 from,
                 to,
             },

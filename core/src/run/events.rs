@@ -8,28 +8,32 @@ use crate::continuation::locate::{Located, locate};
 use crate::continuation::problem::Norm;
 use crate::newton::Newton;
 use crate::subharmonics::{is_shifted, passes_shorter_period};
-use crate::symmetry::{broken, is_broken};
+use crate::symmetry::{broken, broken_share};
 
 /// The test function of a fold is driven below this.
-const FOLD_TOLERANCE: f64 = 1e-10;
+pub(super) const FOLD_TOLERANCE: f64 = 1e-10;
 /// What the orbits of a longer period have in addition vanishes as the square root of the distance in the parameter, so that
 /// this part of it is as good as nothing.
 const JOINED: f64 = 1e-5;
 
+/// What Newton's method leaves is below so many times its tolerance.
+const BEYOND_NEWTON: f64 = 100.0;
 /// An orbit that has more than this part of it left is not one of the more regular branch.
 const LEFT: f64 = 0.05;
 
 impl Run<'_, '_> {
-    /// Locates the fold between two points, or the jump that is there instead.
+    /// Locates the fold between two points, or the jump that is there instead, behind so many points of the branch: the one behind the
+    /// turn has been stored already.
     pub(super) fn turn(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         between: (&CurvePoint, &CurvePoint),
+        after: usize,
     ) {
         let slope = CurvePoint::parameter_slope;
         let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, fold: &Located| {
-            run.fold(b, n, fold);
+            run.fold(b, n, fold, after);
         };
         let Err(jump) = self.locate_zero(balance, newton, between, slope, read) else {
             return;
@@ -45,7 +49,7 @@ impl Run<'_, '_> {
             kind: EventKind::Fold,
             value,
             test,
-            after: self.points.len() - 1,
+            after,
         });
     }
 
@@ -97,12 +101,18 @@ impl Run<'_, '_> {
 
     /// Reads a fold that was located. One of longer orbits that was passed before, but for a shift in time, is the sign of a
     /// branch that closes after a part of the period.
-    fn fold(&mut self, balance: &mut Balance<'_>, newton: &mut Newton, located: &Located) {
+    fn fold(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        located: &Located,
+        after: usize,
+    ) {
         let u = &located.point.u;
         let error = self.reader.finer.fold_error(u, newton);
         let point = self.reader.read(balance, newton, u);
         let turns = |after: usize, value: f64| self.points[after - 1].value < value;
-        let same_way = turns(self.points.len() - 1, point.value);
+        let same_way = turns(after, point.value);
         let near = |other: &&Event| {
             let apart = (other.point.value - point.value).abs();
             let errors = other.error + error;
@@ -126,8 +136,8 @@ impl Run<'_, '_> {
             point,
             error,
             test: located.test,
-            // The point behind the turn has been stored already.
-            after: self.points.len() - 1,
+            after,
+            tangent: Vec::new(),
         });
     }
 
@@ -137,8 +147,9 @@ impl Run<'_, '_> {
         let orbit = self.points.last().map(|point| &point.orbit);
         orbit.is_some_and(|orbit| {
             let length = orbit.series(0).len();
+            let least = BEYOND_NEWTON * self.options.newton.tolerance;
             let symmetric = self.follower.asymmetric
-                && is_broken(&orbit.series, length)
+                && broken_share(&orbit.series, length) > least * least
                 && broken(orbit, u).vanished();
             symmetric || passes_shorter_period(orbit, u).is_some()
         })

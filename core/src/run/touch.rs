@@ -10,9 +10,12 @@ use std::f64::consts::{PI, TAU};
 use crate::balance::{Balance, gap_series};
 use crate::fourier::crossings::{Crossing, CrossingFinder};
 use crate::fourier::series;
+use crate::system::Part;
 
 /// An extreme of a gap is followed from one orbit to the next as long as it moves by less than this phase.
 const FAR: f64 = 1.0;
+/// Derivatives by the parameter are differences over this part of its range.
+const DIFFERENCE: f64 = 1e-6;
 
 /// One extreme of a gap, seen from one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +26,8 @@ pub(super) struct Extreme {
     maximum: bool,
     /// Gap less level, in units of half of the gap's range.
     pub(super) above: f64,
+    /// Half of the gap's range.
+    size: f64,
 }
 
 /// Reads extremes of gaps off the orbits of one balance.
@@ -50,6 +55,51 @@ impl<'a> Touches<'a> {
             turns: Vec::new(),
             balance,
         }
+    }
+
+    /// Writes the linear form of extended unknowns that gap less level is where the extreme lies, in its units. By the parameter,
+    /// whose range has this length, it is a difference.
+    pub(super) fn form(&mut self, u: &[f64], extreme: &Extreme, range: f64, row: &mut [f64]) {
+        let last = u.len() - 1;
+        let step = DIFFERENCE * range;
+        row.fill(0.0);
+        row[last] = (self.height(u, u[last] + step, extreme)
+            - self.height(u, u[last] - step, extreme))
+            / (2.0 * step * extreme.size);
+        self.balance.set(u[last]);
+        let (length, period) = (self.balance.length(), self.balance.resolution().period);
+        let coefficients = self.balance.coefficients();
+        for term in &self.balance.layout().contacts[extreme.contact].gap {
+            let (sine, cosine) =
+                (f64::from(term.wave.harmonic) * period as f64 * extreme.tau).sin_cos();
+            let wave = match term.wave.part {
+                Part::Cosine => cosine,
+                Part::Sine => sine,
+            };
+            let factor = coefficients[term.coefficient] * wave / extreme.size;
+            let row = &mut row[term.index * length..][..length];
+            row[0] += factor;
+            for (k, pair) in row[1..].chunks_exact_mut(2).enumerate() {
+                let (sine, cosine) = ((k + 1) as f64 * extreme.tau).sin_cos();
+                pair[0] += factor * cosine;
+                pair[1] += factor * sine;
+            }
+        }
+    }
+
+    /// Gap less level at the phase of an extreme, with another value of the parameter.
+    fn height(&mut self, u: &[f64], parameter: f64, extreme: &Extreme) -> f64 {
+        self.balance.set(parameter);
+        let (length, period) = (self.balance.length(), self.balance.resolution().period);
+        let of = &self.balance.layout().contacts[extreme.contact];
+        let law = self.balance.system().law(of.law);
+        let coefficients = self.balance.coefficients();
+        self.levels.resize(law.facts().levels.len(), 0.0);
+        self.arguments.resize(of.argument_count, 0.0);
+        of.arguments(coefficients, &mut self.arguments);
+        law.levels(&self.arguments, &mut self.levels);
+        gap_series(of, coefficients, period, u, length, &mut self.gap);
+        series::value(&self.gap, extreme.tau) - self.levels[extreme.level]
     }
 
     /// Writes the extremes of all gaps, from every level, in order of phase.
@@ -84,6 +134,7 @@ impl<'a> Touches<'a> {
                     tau: at.tau,
                     maximum: !at.rising,
                     above: (series::value(&self.gap, at.tau) - value) / size,
+                    size,
                 }));
             }
         }
@@ -91,6 +142,11 @@ impl<'a> Touches<'a> {
 }
 
 impl Extreme {
+    /// Whether the level is not crossed beside it: a maximum below, or a minimum above.
+    pub(super) fn is_clear(&self) -> bool {
+        (self.above < 0.0) == self.maximum
+    }
+
     fn is_alike(&self, other: &Self) -> bool {
         (self.contact, self.level, self.maximum) == (other.contact, other.level, other.maximum)
     }
@@ -111,15 +167,15 @@ impl Extreme {
     }
 }
 
-/// The extremes that have gone through their levels from one orbit to the next, where they were.
-pub(super) fn passed(before: &[Extreme], behind: &[Extreme]) -> Vec<Extreme> {
-    let through = |extreme: &&Extreme| {
-        let there = extreme.nearest(behind);
+/// The extremes that have gone through their levels from one orbit to the next, where they were and where they are.
+pub(super) fn passed(before: &[Extreme], behind: &[Extreme]) -> Vec<(Extreme, Extreme)> {
+    let through = |extreme: &Extreme| {
+        let there = extreme.nearest(behind)?;
         // Each must be the nearest of the other.
-        let there = there.filter(|there| there.nearest(before) == Some(extreme));
-        there.is_some_and(|there| (there.above < 0.0) != (extreme.above < 0.0))
+        let same = there.nearest(before) == Some(extreme);
+        (same && (there.above < 0.0) != (extreme.above < 0.0)).then_some((*extreme, *there))
     };
-    before.iter().filter(through).copied().collect()
+    before.iter().filter_map(through).collect()
 }
 
 /// How often levels are crossed in a period: between two successive extremes on different sides, once.
@@ -148,6 +204,7 @@ mod tests {
             tau,
             maximum,
             above,
+            size: 1.0,
         }
     }
 
@@ -157,7 +214,7 @@ mod tests {
         // The phase goes round, and the minimum below.
         let behind = [at(3.1, true, 1.0), at(6.2, false, -0.01)];
         let found = passed(&before, &behind);
-        assert_eq!(found, [before[0]]);
+        assert_eq!(found, [(before[0], behind[1])]);
         assert_eq!((crossings(&before), crossings(&behind)), (0, 2));
         assert!(passed(&before, &before).is_empty());
         // A new pair of extremes is nothing that went through.

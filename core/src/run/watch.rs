@@ -3,9 +3,9 @@
 //! | event | test function |
 //! |---|---|
 //! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`block`](crate::block)) |
-//! | branch point | the determinant of the Jacobian with the tangent as its border |
+//! | branch point ([`crossed`](super::crossed)) | the determinant of the Jacobian with the tangent as its border |
 //! | Neimark-Sacker | the product over pairs of multipliers ([`pairs`](crate::stability::pairs)), and a pair is complex |
-//! | grazing | an extreme of a gap less the level ([`touch`](super::touch)) |
+//! | grazing ([`grazing`](super::grazing)) | an extreme of a gap less the level ([`touch`](super::touch)) |
 //!
 //! All are functions of the discrete orbit, and driven to zero on the branch. The same functions of the orbit that is corrected for
 //! the harmonics left out say where the event would be then: with `s` along the unit tangent `t`, and `du` the correction,
@@ -19,7 +19,7 @@
 use std::cell::RefCell;
 
 use super::Run;
-use super::touch::{Extreme, Touches, crossings, passed};
+use super::touch::{Extreme, Touches};
 use crate::balance::{Balance, Resolution};
 use crate::block::Block;
 use crate::branch::{Event, EventKind, Point, Turn};
@@ -36,8 +36,6 @@ use crate::truncation::BEYOND;
 const DIFFERENCE: f64 = 1e-4;
 /// Relative error that rounding leaves in the value of an event.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Values that differ by this part of the range are one.
-const SAME: f64 = 1e-9;
 /// Multipliers whose product is farther than this from one are not looked at more closely.
 const NEAR_CIRCLE: f64 = 0.5;
 
@@ -115,7 +113,7 @@ impl<'a> Run<'_, 'a> {
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         between: Between<'_>,
-        turned: Option<f64>,
+        turned: Option<Turn>,
     ) {
         let mut watch = std::mem::take(&mut self.watch);
         for block in &mut watch.blocks {
@@ -191,57 +189,6 @@ impl<'a> Run<'_, 'a> {
         }
     }
 
-    /// Where an extreme of a gap reaches a level.
-    fn grazing(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        between: Between<'_>,
-        (touches, [before, behind]): (&mut Touches<'a>, &mut [Vec<Extreme>; 2]),
-        turned: Option<f64>,
-    ) {
-        touches.read(&between.0.u, before);
-        touches.read(&between.1.u, behind);
-        let kind = EventKind::Grazing { turns: false };
-        let range = (self.options.to - self.options.from).abs();
-        let (first, after) = (self.events.len(), self.points.len() - 1);
-        let found = passed(before, behind);
-        for extreme in &found {
-            let known = self.events.len();
-            let mut test = Test::Touch(touches, *extreme);
-            self.event(balance, newton, between, kind, &mut test);
-            // Orbits with a symmetry touch in several places at once, which is one event.
-            let again = self.events.get(known).is_some_and(|new| {
-                let apart = |other: &Event| (other.point.value - new.point.value).abs();
-                let mut others = self.events[first..known].iter();
-                others.any(|other| apart(other) <= SAME * range)
-            });
-            if again {
-                self.events.truncate(known);
-            }
-        }
-        if found.is_empty() && crossings(before) != crossings(behind) {
-            self.omit(kind, between, f64::NAN);
-        }
-        // What was located nowhere may be where the branch turned.
-        let omitted = self.turns.iter_mut().filter(|turn| turn.after == after);
-        for turn in omitted.filter(|turn| turn.kind == kind) {
-            turn.kind = EventKind::Grazing {
-                turns: turned.is_some(),
-            };
-        }
-        let Some(turned) = turned else {
-            return;
-        };
-        let mut events = self.events[first..].iter_mut();
-        let there = events.find(|event| (event.point.value - turned).abs() <= SAME * range);
-        if let Some(event) = there {
-            // That is where the branch turned, and why.
-            event.kind = EventKind::Grazing { turns: true };
-            self.turns.retain(|turn| turn.value != turned);
-        }
-    }
-
     /// Records what could not be located.
     pub(super) fn omit(&mut self, kind: EventKind, (a, b): Between<'_>, test: f64) {
         self.turns.push(Turn {
@@ -253,7 +200,7 @@ impl<'a> Run<'_, 'a> {
     }
 
     /// Locates the zero of a test function, with core and tail, or else with the whole system.
-    fn event(
+    pub(super) fn event(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
@@ -277,7 +224,7 @@ impl<'a> Run<'_, 'a> {
     }
 
     /// Reads the orbit at an event, whose factors Newton's method holds.
-    fn located(
+    pub(super) fn located(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
@@ -302,6 +249,7 @@ impl<'a> Run<'_, 'a> {
             error,
             test: located.test,
             after: self.points.len() - 1,
+            tangent: Vec::new(),
         });
     }
 

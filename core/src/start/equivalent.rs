@@ -8,7 +8,12 @@ use super::effort::Effort;
 use super::fixed::{Fixed, geometric, oscillation, spread};
 use crate::layout::Layout;
 
-/// Solutions in the harmonics of the load alone, smallest amplitude first.
+/// Amplitudes whose residuals differ by no more than this part are on a plateau, as all tiny ones are.
+const PLATEAU: f64 = 1e-6;
+/// Solutions that differ by no more than this part are one.
+const SAME: f64 = 1e-6;
+
+/// Different solutions in the harmonics of the load alone, smallest amplitude first.
 pub(super) fn equivalent_linearisation(
     request: StartRequest<'_>,
     rest: Option<&[f64]>,
@@ -27,7 +32,8 @@ pub(super) fn equivalent_linearisation(
         if effort.is_spent() {
             break;
         }
-        if fixed.solve(&mut u, request.damped(60), effort).is_ok() {
+        let solved = fixed.solve(&mut u, request.damped(60), effort).is_ok();
+        if solved && !found.iter().any(|other| is_same(other, &u)) {
             found.push(u);
         }
     }
@@ -36,7 +42,14 @@ pub(super) fn equivalent_linearisation(
     found
 }
 
-/// Where the residual is smaller than at the neighbours, along a pattern from the origin and back.
+/// Whether two solutions are one.
+fn is_same(a: &[f64], b: &[f64]) -> bool {
+    let size = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let mut pairs = a.iter().zip(b);
+    pairs.all(|(x, y)| (x - y).abs() <= SAME * size)
+}
+
+/// The smallest amplitude, and where the residual is smaller than at the neighbours, along a pattern from the origin and back.
 fn valleys(
     fixed: &mut Fixed<'_>,
     origin: &[f64],
@@ -57,8 +70,12 @@ fn valleys(
             .collect();
         let valleys = along
             .windows(3)
-            .filter(|w| w[1].0 <= w[0].0 && w[1].0 <= w[2].0);
-        starts.extend(valleys.map(|w| w[1].1.clone()));
+            .filter(|w| w[1].0 < (1.0 - PLATEAU) * w[0].0 && w[1].0 <= w[2].0)
+            .map(|w| w[1].1.clone());
+        if sign > 0.0 {
+            starts.extend(along.first().map(|(_, u)| u.clone()));
+        }
+        starts.extend(valleys);
     }
     starts
 }

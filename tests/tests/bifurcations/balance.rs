@@ -2,10 +2,11 @@
 //! system. Doublings of the period are in `doubling`.
 
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Shooting, Stop, System, Verdict};
+use hertzian_tests::TwoMasses;
 
 use crate::cascade::MODEL;
 use crate::symmetry::{HARDENING, Hardening, SOFTENING, Softening};
-use crate::torus::{Circulatory, TwoMasses};
+use crate::torus::Circulatory;
 
 hertzian::oscillator! {
     /// Wang et al. (2021), Fig. 5a.
@@ -145,26 +146,33 @@ fn levels_are_touched_where_the_linear_motion_reaches_them() {
     let shooting = Shooting::of(&contact).from(0.8).to(1.3).run().unwrap();
     let mut touches = shooting.events(EventKind::Grazing { turns: false });
     assert!((touches.next().unwrap().cycle.value - omega).abs() < 1e-10);
-    let preloaded = Preloaded {
-        preload: 0.05,
-        drive: 0.15,
-    };
-    let branch = FrequencyResponse::of(&preloaded).from(0.6).to(1.6);
-    let branch = branch.bifurcations(true).run().unwrap();
-    let first = grazings(&branch)[0];
-    let omega = first.point.value;
-    let amplitude = 0.15 / (1.0 - omega * omega).hypot(0.1 * omega);
-    assert!((amplitude - 1.0).abs() < 1e-10, "{first}");
-    // Back from contact the force jumps, and the branch turns there.
-    let turns = EventKind::Grazing { turns: true };
-    let located = branch.events.iter().map(|event| event.kind);
-    let mut all = located.chain(branch.turns.iter().map(|turn| turn.kind));
-    assert!(
-        all.any(|kind| kind == turns),
-        "{:?} {:?}",
-        branch.events,
-        branch.turns
-    );
+}
+
+/// A spring with a stop meets it where its linear motion has an amplitude of one, `1 = A / | 1 - w^2 + 0.1 i w |`. Above the resonance the
+/// jump of the force drives the motion on, and the branch turns back there, whichever way it is followed; below it goes on.
+#[test]
+fn a_preloaded_stop_is_left_where_the_linear_motion_leaves_it() {
+    let (preload, drive) = (0.05_f64, 0.15_f64);
+    // (1 - w^2)^2 + 0.01 w^2 = A^2
+    let root = (0.995_f64 * 0.995 - 1.0 + drive * drive).sqrt();
+    let [low, high] = [-root, root].map(|root| (0.995 + root).sqrt());
+    let model = Preloaded { preload, drive };
+    for [from, to] in [[0.6, 1.6], [1.6, 0.6]] {
+        let branch = FrequencyResponse::of(&model).bifurcations(true);
+        let branch = branch.from(from).to(to).run().unwrap();
+        assert_eq!(branch.stopped, Stop::ReachedEnd);
+        assert!(branch.turns.is_empty(), "{:?}", branch.turns);
+        assert_eq!(branch.folds().count(), 1);
+        assert_eq!(branch.events.len(), 3);
+        for (omega, turns) in [(low, false), (high, true)] {
+            let [event] = of_kind(&branch, EventKind::Grazing { turns })[..] else {
+                panic!("{:?}", branch.events);
+            };
+            let error = (event.point.value - omega).abs();
+            assert!(error < 1e-10 && error <= event.error, "{event} {error:.1e}");
+            assert!(event.error < 1e-9, "{event}");
+        }
+    }
 }
 
 /// Figure 2: with all harmonics the branch of symmetric orbits is crossed where the symmetry breaks.

@@ -6,7 +6,7 @@ use hertzian::{Error, EventKind, Shooting, System};
 
 hertzian::oscillator! {
     /// `y = 0`, or `y^2 = omega - at`.
-    Pitchfork(x, y) {
+    pub Pitchfork(x, y) {
         param at;
         law contact(gap) { gap > 0 => 0.1*dot(gap) + gap^1.5, else => 0 }
         ddot(x) + contact(x) = 0.1*cos(omega*t) + 1;
@@ -16,7 +16,7 @@ hertzian::oscillator! {
 
 hertzian::oscillator! {
     /// `y = 0`, or `y = at - omega`.
-    Transcritical(x, y) {
+    pub Transcritical(x, y) {
         param at;
         law contact(gap) { gap > 0 => 0.1*dot(gap) + gap^1.5, else => 0 }
         ddot(x) + contact(x) = 0.1*cos(omega*t) + 1;
@@ -24,7 +24,7 @@ hertzian::oscillator! {
     }
 }
 
-const AT: f64 = 2.3;
+pub const AT: f64 = 2.3;
 
 fn diagram(system: &dyn System) -> Diagram {
     let request = Bifurcations::of(system).from(2.0).to(2.6).depth(2);

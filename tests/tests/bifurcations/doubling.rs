@@ -1,10 +1,14 @@
-//! Doublings of the period located by the harmonic balance itself.
+//! Doublings of the period and crossings located by the harmonic balance itself, and the branches that begin there.
 
 use hertzian::flow::shooting::Side;
-use hertzian::{EventKind, FrequencyResponse, Stop};
+use hertzian::{Error, Event, EventKind, FrequencyResponse, Stop, System};
+use hertzian_tests::{TwoMasses, nearest};
 
 use crate::cascade::{A1, A4, A6, MODEL};
-use crate::symmetry::{HARDENING, HARDENING_EVENTS, Hardening};
+use crate::crossing::{AT, Pitchfork, Transcritical};
+use crate::symmetry::{
+    Events, HARDENING, HARDENING_EVENTS, Hardening, SOFTENING, SOFTENING_EVENTS, Softening,
+};
 
 /// The error is that of the harmonics left out: it is stated, and falls with the tolerance.
 #[test]
@@ -62,46 +66,167 @@ fn the_balance_switches_to_longer_periods() {
     assert!((value - A6.drive).abs() < 1e-3, "{value}");
 }
 
-/// Figure 2a: both asymmetric branches go from one point of broken symmetry to the other.
-#[test]
-fn the_balance_switches_to_orbits_without_the_symmetry() {
-    let model = Hardening {
-        zeta: 0.01,
-        drive: 0.1,
-    };
-    let request = FrequencyResponse::of(&model)
-        .tolerance(1e-8)
-        .from(0.45)
-        .to(0.3);
-    let branch = request.run().unwrap();
-    let breaks = branch
-        .events
-        .iter()
-        .filter(|e| e.kind == EventKind::SymmetryBreaking);
-    let breaks: Vec<_> = breaks.collect();
-    for (event, exact) in breaks.iter().zip(HARDENING) {
-        let error = (event.point.value - exact).abs();
-        assert!(error < 1e-6, "{event} {error:.1e}");
-    }
-    let sides = [Side::One, Side::Other].map(|side| request.switch(breaks[0], side).unwrap());
+/// Both asymmetric branches go from one point of broken symmetry to the other, through all events that are known. They are followed from
+/// events found by odd harmonics, and from crossings found by all.
+fn assert_asymmetric_branches(
+    request: &FrequencyResponse<'_>,
+    event: &Event,
+    exact: [f64; 2],
+    (events, unlisted): (Events<'_>, usize),
+) {
+    let sides = [Side::One, Side::Other].map(|side| request.switch(event, side).unwrap());
     for side in &sides {
-        let Stop::Joined { value, .. } = side.stopped else {
+        let Stop::Joined { period: 1, value } = side.stopped else {
             panic!("{}", side.stopped);
         };
-        assert!((value - HARDENING[1]).abs() < 1e-4, "{value}");
-        let folds: Vec<_> = side.folds().collect();
-        assert_eq!(folds.len(), 2);
-        for (fold, (_, omega, peak_to_peak)) in folds.iter().zip(HARDENING_EVENTS) {
-            assert!((fold.point.value - omega).abs() < 1e-6, "{fold}");
+        let joined = exact
+            .iter()
+            .find(|exact| (event.point.value - *exact).abs() > 1e-3);
+        assert!((value - joined.unwrap()).abs() < 1e-6, "{value}");
+        for (kind, omega, peak_to_peak) in events {
+            let event = nearest(side.events(*kind), *omega, |event| event.point.value).unwrap();
+            let error = (event.point.value - omega).abs();
             assert!(
-                (fold.point.peak_to_peak() - peak_to_peak).abs() < 1e-6,
-                "{fold}"
+                error < 1e-6 && error <= 3.0 * event.error,
+                "{event} {error:.1e}"
             );
+            let error = (event.point.peak_to_peak() - peak_to_peak).abs();
+            assert!(error < 1e-6, "{event} {error:.1e}");
         }
+        let found =
+            [EventKind::Fold, EventKind::PeriodDoubling].map(|kind| side.events(kind).count());
+        assert_eq!(
+            found.iter().sum::<usize>(),
+            events.len() + unlisted,
+            "{:?}",
+            side.events
+        );
     }
+    // They are mirror images.
     let means = [&sides[0], &sides[1]].map(|side| side.points[5].motion().mean);
     assert!(
         (means[0] + means[1]).abs() < 1e-6 * means[0].abs().max(1e-3),
         "{means:?}"
+    );
+}
+
+fn assert_symmetry_breaks(
+    system: &dyn System,
+    [from, to]: [f64; 2],
+    exact: [f64; 2],
+    events: (Events<'_>, usize),
+) {
+    let request = FrequencyResponse::of(system).stability(false);
+    let request = request.doublings(true).from(from).to(to);
+    let branch = request.run().unwrap();
+    let breaks: Vec<_> = branch.events(EventKind::SymmetryBreaking).collect();
+    assert_eq!(breaks.len(), 2);
+    for (event, exact) in breaks.iter().zip(exact) {
+        let error = (event.point.value - exact).abs();
+        assert!(error < 1e-6 && error <= event.error, "{event} {error:.1e}");
+    }
+    assert_asymmetric_branches(&request, breaks[0], exact, events);
+}
+
+#[test]
+fn symmetry_breaks_in_figure_2a_by_the_balance() {
+    let (zeta, drive) = (0.01, 0.1);
+    let model = Hardening { zeta, drive };
+    assert_symmetry_breaks(&model, [0.45, 0.3], HARDENING, (HARDENING_EVENTS, 0));
+}
+
+/// The list of the softening spring lacks two folds that are 1.3e-4 apart.
+#[test]
+fn symmetry_breaks_in_figure_2b_by_the_balance() {
+    let (zeta, drive) = (0.01, 0.1);
+    let model = Softening { zeta, drive };
+    assert_symmetry_breaks(&model, [1.05, 0.82], SOFTENING, (SOFTENING_EVENTS, 2));
+}
+
+/// Figure 2a again: with all harmonics the broken symmetry is a crossing, and the same branches lead away from either.
+#[test]
+fn the_balance_switches_where_the_symmetric_branch_is_crossed() {
+    let (zeta, drive) = (0.01, 0.1);
+    let model = Hardening { zeta, drive };
+    let request = FrequencyResponse::of(&model).symmetric(false);
+    let request = request.bifurcations(true).from(0.41).to(0.34);
+    let branch = request.run().unwrap();
+    let crossings: Vec<_> = branch.events(EventKind::BranchPoint).collect();
+    assert_eq!(crossings.len(), 2);
+    for crossing in crossings {
+        assert_asymmetric_branches(&request, crossing, HARDENING, (HARDENING_EVENTS, 0));
+    }
+}
+
+/// Both directions of the branch that crosses another one at [`AT`], whose orbits are known.
+fn assert_crossed(system: &dyn System, expected: impl Fn(f64, f64) -> f64) {
+    let request = FrequencyResponse::of(system).bifurcations(true);
+    let request = request.from(2.0).to(2.6);
+    let branch = request.run().unwrap();
+    let crossing = branch.events(EventKind::BranchPoint).next().unwrap();
+    let error = (crossing.point.value - AT).abs();
+    assert!(
+        error < 1e-9 && error <= crossing.error,
+        "{crossing} {error:.1e}"
+    );
+    let limbs = [Side::One, Side::Other].map(|side| request.switch(crossing, side).unwrap());
+    let signs = [&limbs[0], &limbs[1]].map(|limb| limb.points[0].orbit.series(1)[0].signum());
+    assert_eq!(signs[0], -signs[1]);
+    for (limb, sign) in limbs.iter().zip(signs) {
+        assert!(matches!(limb.stopped, Stop::ReachedEnd | Stop::LeftAtStart));
+        for point in &limb.points {
+            let y = point.orbit.series(1);
+            let error = (y[0] - expected(point.value, sign)).abs();
+            assert!(error < 1e-8, "{} {error:.1e}", point.value);
+            assert!(y[1..].iter().all(|x| x.abs() < 1e-8));
+        }
+    }
+}
+
+#[test]
+fn the_balance_switches_where_branches_cross() {
+    assert_crossed(&Pitchfork { at: AT }, |omega, side| {
+        side * (omega - AT).sqrt()
+    });
+    assert_crossed(&Transcritical { at: AT }, |omega, _| AT - omega);
+}
+
+/// At a fold no other branch begins.
+#[test]
+fn there_is_nothing_to_switch_to_at_a_fold() {
+    let (zeta, drive) = (0.01, 0.1);
+    let model = Hardening { zeta, drive };
+    let request = FrequencyResponse::of(&model).stability(false);
+    let request = request.from(0.7).to(1.7);
+    let branch = request.run().unwrap();
+    let fold = branch.folds().next().unwrap();
+    let error = request.switch(fold, Side::One).unwrap_err();
+    assert!(matches!(error, Error::NoBranch { .. }), "{error}");
+}
+
+/// At 0.73878 the period of two masses with a stop doubles, by an independent computation with five digits. The orbit in contact at
+/// 0.7348 is one of several there, with a core of harmonics that has to grow.
+#[test]
+fn a_doubling_is_found_from_an_orbit_beside_it() {
+    let model = TwoMasses {
+        stop: 100.0,
+        drive: 0.1,
+    };
+    let request = FrequencyResponse::of(&model).harmonics(60);
+    let to = request.clone().stability(false).from(0.55).to(0.7348);
+    let to = to.run().unwrap();
+    let last = to.points.last().unwrap();
+    assert_eq!(last.value, 0.7348);
+    let branch = request.bifurcations(true).near_orbit(&last.orbit);
+    let branch = branch.from(0.7348).to(0.75).run().unwrap();
+    assert_eq!(branch.stopped, Stop::ReachedEnd);
+    let [doubling] = &branch.events[..] else {
+        panic!("{:?}", branch.events);
+    };
+    assert_eq!(doubling.kind, EventKind::PeriodDoubling);
+    let error = (doubling.point.value - 0.73878).abs();
+    assert!(
+        error < 5e-6 + doubling.error && doubling.error < 2e-4,
+        "{doubling}"
     );
 }

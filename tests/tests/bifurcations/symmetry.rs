@@ -7,6 +7,7 @@
 use hertzian::bifurcation::Bifurcations;
 use hertzian::flow::shooting::{CycleEvent, End};
 use hertzian::{EventKind, System};
+use hertzian_tests::nearest;
 
 hertzian::oscillator! {
     pub Hardening(x) {
@@ -30,7 +31,7 @@ pub const HARDENING_EVENTS: Events<'static> = &[
     (EventKind::Fold, 0.382_084_326_345_429, 0.831_452_991_128_14),
     (EventKind::Fold, 0.385_408_321_288_445, 0.815_360_413_849_17),
 ];
-const SOFTENING_EVENTS: Events<'static> = &[
+pub const SOFTENING_EVENTS: Events<'static> = &[
     (EventKind::Fold, 0.902_396_742_342_991, 0.137_655_259_145_97),
     (EventKind::Fold, 0.934_177_569_964_217, 0.095_132_668_619_52),
     (
@@ -82,11 +83,10 @@ fn assert_symmetry_breaks(
         let grazing = |event: &&CycleEvent| matches!(event.kind, EventKind::Grazing { .. });
         let found: Vec<_> = found.iter().filter(|event| !grazing(event)).collect();
         for (kind, omega, peak_to_peak) in events {
-            let of_kind = found.iter().filter(|event| event.kind == *kind);
-            let distance = |event: &CycleEvent| (event.cycle.value - omega).abs();
-            let nearest = of_kind.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-            let event = nearest.unwrap();
-            assert!(distance(event) < 1e-11, "{event} {:.1e}", distance(event));
+            let event = nearest(limb.branch.events(*kind), *omega, |event| event.cycle.value);
+            let event = event.unwrap();
+            let error = (event.cycle.value - omega).abs();
+            assert!(error < 1e-11, "{event} {error:.1e}");
             let error = (event.cycle.peak_to_peak() - peak_to_peak).abs();
             assert!(error < 1e-9, "{event} {error:.1e}");
         }

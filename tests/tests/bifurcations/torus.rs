@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use hertzian::{EventKind, Shooting};
+use hertzian_tests::TwoMasses;
 
 hertzian::oscillator! {
     /// Two oscillators under a circulatory force, as of a shaft with internal friction.
@@ -13,18 +14,6 @@ hertzian::oscillator! {
         param drive;
         ddot(x) + c*dot(x) + k*x + p*y = drive*cos(omega*t);
         ddot(y) + c*dot(y) + k*y - p*x = 0;
-    }
-}
-
-hertzian::oscillator! {
-    /// Two masses in a row, the second held to the ground, the first with an elastic stop at distance one.
-    /// Stiffness and clearance as in example 03 of NLvib (Krack and Gross 2019); damping is 0.03 of the stiffness matrix.
-    pub TwoMasses(x1, x2) {
-        param stop > 0;
-        param drive;
-        law stop_spring(gap) { gap > 1 => stop*(gap - 1), else => 0 }
-        ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop_spring(x1) = 0;
-        ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t);
     }
 }
 
