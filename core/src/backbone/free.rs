@@ -171,6 +171,7 @@ impl<'a> FreeOscillation<'a> {
         let mut equations = self.equations()?;
         let mut u = self.first(&mut equations, options.from)?;
         u.push(options.from);
+        equations.measure(&u);
         let mut newton = Newton::new(&equations);
         let mut points = Vec::new();
         let mut failure = None;

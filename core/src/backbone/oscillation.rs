@@ -19,6 +19,19 @@ const SCALES: usize = 12;
 /// Part of the time that it stays to.
 const SAME: f64 = 0.01;
 
+/// When a motion from rest is at rest again.
+enum Rest {
+    /// After this time.
+    At(f64),
+    /// Not within the time that was looked at.
+    Later,
+    /// It begins where nothing moves.
+    Always,
+}
+
+/// The phase from which a motion is repeated, as a part of its period: neither of those about which a cosine or a sine is even or odd.
+const ELSEWHERE: f64 = 0.3;
+
 /// The equations (1) of [`free`](super::free); unknowns are the other positions and the frequency, the parameter is the first position.
 pub(super) struct Equations<'a> {
     pub(super) flow: Box<dyn Flow + 'a>,
@@ -26,6 +39,8 @@ pub(super) struct Equations<'a> {
     state: Vec<f64>,
     tangent: Tangent,
     column: Vec<f64>,
+    /// What counts as one for positions and for the frequency.
+    units: [f64; 2],
 }
 
 impl<'a> Equations<'a> {
@@ -35,27 +50,49 @@ impl<'a> Equations<'a> {
             state: vec![0.0; 2 * n],
             tangent: Tangent::of_state(n, Some(Variable::Omega)),
             column: vec![0.0; n],
+            units: [1.0; 2],
             divisor,
             flow,
         }
     }
 
+    /// Takes the sizes of the first oscillation for units.
+    pub(super) fn measure(&mut self, u: &[f64]) {
+        let n = self.column.len();
+        let others = u[..n - 1].iter().chain([&u[n]]);
+        let size = others.fold(0.0, |m: f64, q| m.max(q.abs()));
+        self.units = [size, u[n - 1]].map(|unit| if unit > 0.0 { unit } else { 1.0 });
+    }
+
     /// The time to the first moment of rest, at any scale of time: steps grow until there is one, and shrink until it stays.
     pub(super) fn half_period(&mut self, from: f64) -> Result<f64, Error> {
-        let mut step = STEP;
-        let mut found = self.first_rest(from, step)?;
-        for _ in 0..SCALES {
-            if found.is_some() {
-                break;
-            }
-            step *= COARSER;
-            found = self.first_rest(from, step)?;
-        }
+        let motion = |reason| Error::Motion {
+            value: from,
+            reason,
+        };
         let never = Error::NeverAtRest { position: from };
-        let mut time = found.ok_or(never.clone())?;
+        let mut step = STEP;
+        let mut time = None;
+        for _ in 0..SCALES {
+            match self.first_rest(from, step) {
+                Ok(Rest::At(found)) => {
+                    time = Some(found);
+                    break;
+                }
+                Ok(Rest::Always) => return Err(never),
+                Ok(Rest::Later) => step *= COARSER,
+                // So many oscillations go into one step.
+                Err(FlowError::TooManySwitches { .. }) => step /= COARSER,
+                Err(reason) => return Err(motion(reason)),
+            }
+        }
+        let mut time = time.ok_or(never.clone())?;
         for _ in 0..SCALES {
             step /= FINER;
-            let again = self.first_rest(from, step)?.unwrap_or(time);
+            let again = match self.first_rest(from, step).map_err(motion)? {
+                Rest::At(found) => found,
+                Rest::Later | Rest::Always => time,
+            };
             let same = (again - time).abs() <= SAME * again;
             time = again;
             if same && time > 10.0 * step {
@@ -65,28 +102,28 @@ impl<'a> Equations<'a> {
         Err(never)
     }
 
-    /// The same, looked for in steps of this time.
-    fn first_rest(&mut self, from: f64, step: f64) -> Result<Option<f64>, Error> {
+    /// The same, looked for in steps of this time. Each is the same part of a period of the flow, whose frequency does not matter.
+    fn first_rest(&mut self, from: f64, step: f64) -> Result<Rest, FlowError> {
         let n = self.flow.coordinates();
-        let value = from;
         let mut state = vec![0.0; 2 * n];
         state[0] = from;
         let (mut phase, mut before) = (0.0, 0.0);
-        let motion = |reason| Error::Motion { value, reason };
-        self.flow.set(Variable::Omega, 1.0).map_err(motion)?;
+        let omega = STEP / step;
+        self.flow.set(Variable::Omega, omega)?;
+        let mut moves = false;
         for _ in 0..STEPS {
-            let next = phase + step / self.divisor;
-            let moved = self.flow.advance(phase, next, &mut state, None, None);
-            moved.map_err(motion)?;
+            let next = phase + STEP / self.divisor;
+            self.flow.advance(phase, next, &mut state, None, None)?;
             let velocity = state[n];
             if before * velocity < 0.0 {
                 let part = before / (before - velocity);
-                let time = (phase + part * (next - phase)) * self.divisor;
-                return Ok(Some(time));
+                let time = (phase + part * (next - phase)) * self.divisor / omega;
+                return Ok(Rest::At(time));
             }
+            moves |= state[n..].iter().any(|v| *v != 0.0);
             (phase, before) = (next, velocity);
         }
-        Ok(None)
+        Ok(if moves { Rest::Later } else { Rest::Always })
     }
 
     /// Sets `state` to rest at the positions of the unknowns, and the frequency to theirs.
@@ -113,7 +150,13 @@ impl<'a> Equations<'a> {
             pairs.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()))
         };
         let size = largest(&first, &other).max(f64::MIN_POSITIVE);
-        let apart = largest(&first, &self.state[..n]) / size;
+        let mut apart = largest(&first, &self.state[..n]) / size;
+        // What goes back the way it came under an excitation does so from a phase about which that is even, and from no other.
+        self.begin(u)?;
+        let start = ELSEWHERE * end;
+        self.flow
+            .advance(start, start + end, &mut self.state, None, None)?;
+        apart = apart.max(largest(&first, &self.state[..n]) / size);
         let point = FreePoint {
             omega: u[n - 1],
             ends: [first, other],
@@ -162,7 +205,10 @@ impl Problem for Equations<'_> {
     }
 
     fn weights(&self, weights: &mut [f64]) {
+        // The frequency counts relative to itself, as positions do.
+        let [size, omega] = self.units;
         weights.fill(1.0);
+        weights[self.column.len() - 1] = (size / omega).powi(2);
     }
 
     fn is_mean(&self, _: usize) -> bool {

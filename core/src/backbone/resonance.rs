@@ -187,7 +187,8 @@ impl<'a> PhaseResonance<'a> {
         let mut u = resize(&u, first.coordinates(), series::length(self.harmonics));
         u.push(value);
         let balance = self.balance(&parameters, first.omega);
-        let mut equations = Resonance::new(balance, index, motion.peak_to_peak());
+        let units = (motion.peak_to_peak(), (options.to - value).abs());
+        let mut equations = Resonance::new(balance, index, units);
         let mut newton = Newton::new(&equations);
         let mut points = Vec::new();
         let see = &mut |equations: &mut Resonance<'_>, _: &mut Newton, seen: Visit<'_>| {
@@ -285,7 +286,7 @@ impl<'a> PhaseResonance<'a> {
             a * series[place] + b * series[place + 1]
         };
         let lags: Vec<f64> = branch.points.iter().map(|p| lag(&p.orbit)).collect();
-        let change = (1..lags.len()).find(|&i| lags[i - 1] * lags[i] < 0.0);
+        let change = (1..lags.len()).find(|&i| lags[i - 1] * lags[i] <= 0.0);
         let nearest = change.map(|i| {
             let nearer = lags[i - 1].abs() < lags[i].abs();
             branch.points[i - usize::from(nearer)].orbit.clone()
@@ -312,6 +313,8 @@ struct Resonance<'a> {
     index: usize,
     /// What counts as one for displacements.
     size: f64,
+    /// How far the parameter goes.
+    range: f64,
     inner: Jacobian,
     ahead: Vec<f64>,
     behind: Vec<f64>,
@@ -320,7 +323,7 @@ struct Resonance<'a> {
 }
 
 impl<'a> Resonance<'a> {
-    fn new(balance: Balance<'a>, index: usize, size: f64) -> Self {
+    fn new(balance: Balance<'a>, index: usize, (size, range): (f64, f64)) -> Self {
         let n = balance.unknowns();
         Self {
             inner: Jacobian::new(balance.partition()),
@@ -331,6 +334,7 @@ impl<'a> Resonance<'a> {
             balance,
             index,
             size: if size > 0.0 { size } else { 1.0 },
+            range,
         }
     }
 
@@ -362,7 +366,7 @@ impl Problem for Resonance<'_> {
         let n = self.ahead.len();
         let value = u[n + 1];
         if jacobian.is_some() {
-            let step = STEP * value.abs().max(STEP);
+            let step = STEP * value.abs().max(self.range);
             for (sign, to) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
                 self.balance.set_parameter(self.index, value + sign * step);
                 self.balance.evaluate(&u[..=n], to, None);

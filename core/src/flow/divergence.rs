@@ -149,7 +149,7 @@ impl<'a> Divergence<'a> {
     }
 
     /// The divergence at a phase and a state, per unit of time.
-    pub fn at(&mut self, phase: f64, state: &[f64]) -> f64 {
+    fn at(&mut self, phase: f64, state: &[f64]) -> f64 {
         let mut sum = self.constant;
         for (contact, gap) in &self.contacts {
             let arguments = &mut self.arguments[..contact.argument_count];

@@ -79,7 +79,8 @@ pub struct Batch {
 #[non_exhaustive]
 pub struct Exponents {
     /// Largest first, per period of the declaration. NaN for those so far below the largest that neighbours are pressed
-    /// together beyond ten decades in one application of the map; with one coordinate, `divergence` less the largest then.
+    /// together beyond ten decades in one application of the map, as the units of the state measure it: least where `omega` is about
+    /// one; with one coordinate, `divergence` less the largest then.
     pub exponents: Vec<Estimate>,
     /// Their sum, as the determinants of the tangent maps give it (3).
     pub sum: Estimate,
@@ -160,12 +161,26 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
     /// The exponents of all batches, which must be equally long.
     pub fn exponents(&self) -> Exponents {
         let all = || self.batches.iter();
-        let exponents = (0..self.state.len())
+        let mut exponents: Vec<Estimate> = (0..self.state.len())
             .map(|i| Estimate::of(all().map(move |batch| batch.exponents[i])))
             .collect();
-        let divergence = all().try_fold(Integral::default(), |mut sum, batch| {
-            sum += batch.divergence?;
-            Some(sum)
+        let key = |exponent: &Estimate| {
+            if exponent.value.is_nan() {
+                f64::NEG_INFINITY
+            } else {
+                exponent.value
+            }
+        };
+        exponents.sort_by(|a, b| key(b).total_cmp(&key(a)));
+        let asked = self
+            .divergence
+            .as_ref()
+            .filter(|_| !self.batches.is_empty());
+        let divergence = asked.and_then(|_| {
+            all().try_fold(Integral::default(), |mut sum, batch| {
+                sum += batch.divergence?;
+                Some(sum)
+            })
         });
         Exponents {
             exponents,

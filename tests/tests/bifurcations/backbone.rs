@@ -162,6 +162,89 @@ fn any_scale_of_time() {
     }
 }
 
+hertzian::oscillator! {
+    /// A ball on a plane, `s` units of time in each of its own.
+    Ball(x) {
+        param s > 0;
+        law contact(gap) { gap > 0 => s^2*gap^1.5, else => 0 }
+        ddot(x) + contact(x) = s^2;
+    }
+}
+
+/// A megahertz, with contact lost in each period: the value of `WITH_LOAD`.
+#[test]
+fn any_scale_of_time_with_a_contact() {
+    let row = WITH_LOAD
+        .iter()
+        .find(|(one_sided, alpha, _)| *one_sided && *alpha == 1.5);
+    let [largest, _, expected] = row.unwrap().2[2];
+    for s in [1e-6, 1e7] {
+        let point = &curve(&Ball { s }, largest, 1.01 * largest)[0];
+        let error = (point.omega / (s * expected) - 1.0).abs();
+        assert!(error < 1e-9, "{s} {error:.1e}");
+    }
+}
+
+hertzian::oscillator! {
+    /// Two masses pressed together by a spring of Hertz: with `x = -y` a single mass with the spring `(2 x)^1.5`.
+    Pair(x, y) {
+        param s > 0;
+        param l > 0;
+        law spring(gap) {
+            gap > 0 => s^2*l*(gap/l)^1.5,
+            else    => -s^2*l*(-gap/l)^1.5,
+        }
+        ddot(x) + 0.5*s^2*x + spring(x - y) = 0;
+        ddot(y) + 0.5*s^2*y - spring(x - y) = 0;
+    }
+}
+
+/// Frequency and other positions count relative to themselves: as many points, and the same ones, in any units.
+#[test]
+fn several_coordinates_in_any_units() {
+    let follow = |s: f64, l: f64| {
+        let model = Pair { s, l };
+        let request = FreeOscillation::of(&model).from(0.5 * l).to(2.0 * l);
+        let found = request.near(&[0.5 * l, -0.5 * l], 1.7 * s).run();
+        found.unwrap().points
+    };
+    let expected = follow(1.0, 1.0);
+    for (s, l) in [(1e6, 1e-6), (1e-3, 1e3)] {
+        let found = follow(s, l);
+        assert_eq!(found.len(), expected.len());
+        for (a, b) in found.iter().zip(&expected) {
+            assert!((a.omega / (s * b.omega) - 1.0).abs() < 1e-8);
+            assert!((a.ends[0][1] / (l * b.ends[0][1]) - 1.0).abs() < 1e-8);
+        }
+    }
+}
+
+/// Nothing moves: in the dead zone of a contact, and at a position of equilibrium.
+#[test]
+fn rest_does_not_oscillate() {
+    for (load, from) in [(0.0, -1.0), (1.0, 1.0)] {
+        let model = OneSided { alpha: 1.0, load };
+        let request = FreeOscillation::of(&model).from(from).to(2.0);
+        let error = request.run().unwrap_err();
+        assert!(
+            matches!(error, Error::NeverAtRest { position } if position == from),
+            "{error}"
+        );
+    }
+}
+
+/// What is driven by a cosine goes back the way it came when it begins at the crest, and is not free all the same.
+#[test]
+fn what_is_driven_is_not_free() {
+    let model = Driven {
+        zeta: 0.0,
+        drive: 0.1,
+    };
+    let request = FreeOscillation::of(&model).from(0.5).to(1.0);
+    let error = request.near(&[0.5], 0.67).run().unwrap_err();
+    assert!(matches!(error, Error::NotFree { .. }), "{error}");
+}
+
 #[test]
 fn what_is_damped_is_not_free() {
     let model = Driven {

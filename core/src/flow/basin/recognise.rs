@@ -164,7 +164,7 @@ impl Returns {
             near &= (state[i] - self.reference[i]).abs() <= self.tolerance * self.size[i];
         }
         if passed == self.window {
-            self.window = (2 * self.window).min(2 * longest);
+            self.window = (2 * self.window).min(longest.saturating_mul(2));
             self.renew(period, state);
         }
         near.then_some(passed)
