@@ -249,6 +249,18 @@ impl<'a> Field<'a> {
         gap
     }
 
+    /// What a gap is a sum of, in size, where coordinates have sizes, the first of each pair.
+    pub(crate) fn gap_size(&self, contact: usize, sizes: &[[f64; 2]], phase: f64) -> f64 {
+        let contact = &self.contacts[contact];
+        let size =
+            |item: &Item| (self.coefficients[item.coefficient] * self.wave(item, phase).0).abs();
+        let gap = contact
+            .gap
+            .iter()
+            .map(|item| size(item) * sizes[item.row][0]);
+        gap.sum::<f64>() + contact.offset.iter().map(size).sum::<f64>()
+    }
+
     /// The second derivative of a gap by time, from the acceleration.
     pub(crate) fn gap_acceleration(
         &self,
@@ -276,8 +288,8 @@ impl<'a> Field<'a> {
         gap.sum::<f64>() - offset.sum::<f64>()
     }
 
-    /// What the rate of a gap is a sum of, in size and about.
-    pub(crate) fn rate_size(&self, contact: usize, q: &[f64], v: &[f64]) -> f64 {
+    /// What the rate of a gap is a sum of, in size and about, where coordinates and their rates have sizes.
+    pub(crate) fn rate_size(&self, contact: usize, sizes: impl Fn(usize) -> [f64; 2]) -> f64 {
         let contact = &self.contacts[contact];
         let turning = |item: &Item| {
             let harmonic = item.wave.map_or(0, |(index, _)| self.harmonics[index]);
@@ -285,7 +297,8 @@ impl<'a> Field<'a> {
         };
         let gap = contact.gap.iter().map(|item| {
             let d = self.coefficients[item.coefficient].abs();
-            d * (v[item.row].abs() + turning(item) * q[item.row].abs())
+            let [q, v] = sizes(item.row);
+            d * (v + turning(item) * q)
         });
         let offset = contact
             .offset

@@ -3,7 +3,7 @@
 //! Distances from the levels of a piece are polynomials in `u` through their values at both ends and at the nodes, in
 //! Bernstein form, so that a pair of crossings within one step is not missed. At an end that stands on the level itself the
 //! distance is divided by the part of the step that has passed, or is left: its zero there is taken out, and a double one if the
-//! motion starts there at rest.
+//! motion starts there at rest. Not if it only touches the level there: what it does within rounding of the level is no crossing.
 
 use crate::flow::field::Gap;
 
@@ -22,6 +22,8 @@ pub(super) struct Found {
     pub(super) u: f64,
     /// It stands on that level and leaves without having been on the piece.
     pub(super) at_once: bool,
+    /// The step starts on that level, slowly, and the acceleration leads away from it.
+    pub(super) doubtful: bool,
 }
 
 impl<const S: usize> Engine<'_, S> {
@@ -37,35 +39,32 @@ impl<const S: usize> Engine<'_, S> {
             let upper = (piece < count).then_some(piece);
             for (level, sign) in [(lower, 1.0), (upper, -1.0)] {
                 let Some(level) = level else { continue };
-                let Some((u, at_once)) = self.leaves(contact, level, sign, gap) else {
-                    continue;
-                };
-                if first.is_none_or(|found| u < found.u) {
-                    first = Some(Found {
-                        contact,
-                        level,
-                        u,
-                        at_once,
-                    });
+                let found = self.leaves(contact, level, sign, gap);
+                if found.is_some_and(|found| first.is_none_or(|first| found.u < first.u)) {
+                    first = found;
                 }
             }
         }
         first
     }
 
-    /// Where `sign` times the distance from a level becomes negative, and whether that is at the start.
-    fn leaves(&mut self, contact: usize, level: usize, sign: f64, end: Gap) -> Option<(f64, bool)> {
+    /// Where `sign` times the distance from a level becomes negative.
+    fn leaves(&mut self, contact: usize, level: usize, sign: f64, end: Gap) -> Option<Found> {
         let value = self.field.contacts[contact].levels[level];
         let start = self.here.gaps[contact];
         let starts = self.here.on[contact] == Some(level);
         let ends = self.trial.landing == Some((contact, level));
         let time = self.time();
         let at_rest = starts && self.is_at_rest(contact);
-        let bend = if at_rest {
-            0.5 * time * time * self.acceleration_of(contact)
+        let touches = starts && !at_rest && self.touches(contact, level);
+        let acceleration = if starts {
+            self.acceleration_of(contact)
         } else {
             0.0
         };
+        let doubtful = !at_rest && sign * acceleration > 0.0 && self.is_slow(contact);
+        let rounding = self.rounding(contact, level);
+        let rounding = rounding.unwrap_or(ROUNDING * start.size.max(end.size));
         let tables = &self.tables[self.trial.table];
         let base = self.anchors[contact].gap - value;
         let rise = &self.batch.contacts[contact].rise;
@@ -75,14 +74,18 @@ impl<const S: usize> Engine<'_, S> {
         }
         values[0] = sign * (start.value - value);
         values[S + 1] = sign * (end.value - value);
-        let size = start.size.max(end.size);
-        if starts {
+        if starts && !touches {
             // A gap that is at rest there goes away from the level as the square.
             let parts = values[1..=S].iter_mut().zip(&tables.passed);
             parts.for_each(|(distance, part)| {
                 *distance /= if at_rest { part * part } else { *part }
             });
-            values[0] = sign * if at_rest { bend } else { start.rate * time };
+            values[0] = sign
+                * if at_rest {
+                    0.5 * time * time * acceleration
+                } else {
+                    start.rate * time
+                };
         }
         if ends {
             let parts = values[1..=S].iter_mut().zip(&tables.left);
@@ -90,7 +93,8 @@ impl<const S: usize> Engine<'_, S> {
             values[S + 1] = -sign * end.rate * time;
         }
         let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let noise = ROUNDING * largest.max(if starts || ends { 0.0 } else { size });
+        let divided = ends || starts && !touches;
+        let noise = (ROUNDING * largest).max(if divided { 0.0 } else { rounding });
         if largest == 0.0 {
             return None;
         }
@@ -98,6 +102,12 @@ impl<const S: usize> Engine<'_, S> {
             .in_bernstein_form(values, noise, &mut self.coefficients);
         let u = roots::first(&self.coefficients)?;
         let inside = roots::value(&self.coefficients, 0.5 * u) - noise;
-        Some((u, starts && inside <= 2.0 * noise))
+        Some(Found {
+            contact,
+            level,
+            u,
+            at_once: starts && inside <= 2.0 * noise,
+            doubtful,
+        })
     }
 }

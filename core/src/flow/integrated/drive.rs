@@ -42,7 +42,7 @@ enum Plan {
 /// A level that the motion is about to reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Aim {
-    contact: usize,
+    pub(super) contact: usize,
     level: usize,
     distance: f64,
     /// From the trial that showed it, or else from the acceleration here.
@@ -117,7 +117,9 @@ impl<const S: usize> Engine<'_, S> {
                 self.here.on[contact] = Some(level);
                 self.put_on_level(contact, level);
                 self.find_levels();
-                self.cross(contact, level, tangent.as_deref_mut())?;
+                if !self.turns(contact, level) {
+                    self.cross(contact, level, tangent.as_deref_mut())?;
+                }
             }
             self.settle(tangent.as_deref_mut())?;
         }
@@ -236,6 +238,11 @@ impl<const S: usize> Engine<'_, S> {
                 Tried::Instead(Plan::Span(SHORTEN * width))
             }
             None => Tried::Solved,
+            // A polynomial that begins almost as a square may seem to cross again at once.
+            Some(found) if found.doubtful => {
+                self.work.rejected += 1;
+                Tried::Instead(Plan::Span(SHORTEN * width))
+            }
             Some(found) if found.at_once => {
                 *turned += 1;
                 if *turned > 2 {
@@ -302,6 +309,10 @@ impl<const S: usize> Engine<'_, S> {
         }
         match self.crossing() {
             None => Tried::Solved,
+            Some(found) if found.doubtful => {
+                self.work.rejected += 1;
+                Tried::Instead(Plan::Span(SHORTEN * aim.distance))
+            }
             Some(found) => Tried::Instead(self.towards(found)),
         }
     }

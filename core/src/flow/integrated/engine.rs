@@ -18,8 +18,11 @@ use super::rule::Rule;
 /// A coordinate that hardly moves is held to this part of the accuracy of the one that moves most.
 const LEAST_SCALE: f64 = 1e-3;
 
-/// A gap is on a level if it is within this many rounding errors of what it is a sum of.
+/// A gap stands on a level if it is within this many rounding errors of what it is a sum of, or beyond.
 const ON_LEVEL: f64 = 16.0 * f64::EPSILON;
+
+/// Rounding of the distance of a gap from a level, in parts of what it is a sum of where the motion was largest.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The state of a motion from switch to switch.
 #[derive(Debug)]
@@ -253,6 +256,30 @@ impl<'a, const S: usize> Engine<'a, S> {
                 self.here.gaps[contact].value = levels[level];
             }
         }
+    }
+
+    /// What rounding leaves in the distance of a gap from a level, where a motion that is beyond it by no more may as well not be: there
+    /// are neither jumps nor unbounded derivatives. A state errs by parts of the largest one of the motion.
+    pub(super) fn rounding(&self, contact: usize, level: usize) -> Option<f64> {
+        let facts = self.field.law(contact).facts();
+        if facts.levels[level].force_jumps || self.is_unbounded(contact, level) {
+            return None;
+        }
+        let size = self.field.gap_size(contact, &self.here.sizes, self.phase());
+        let level = self.field.contacts[contact].levels[level];
+        Some(ROUNDING * (size + level.abs()))
+    }
+
+    /// Whether the stiffness is unbounded at a level. That may depend on an exponent, so it is not asked of the facts of the level.
+    fn is_unbounded(&self, contact: usize, level: usize) -> bool {
+        let facts = self.field.law(contact).facts();
+        let arguments = &self.field.contacts[contact].arguments;
+        let below = facts.pieces[level].terms.iter();
+        let above = facts.pieces[level + 1].terms.iter();
+        let ends = below.map(|term| (term.of, term.upper));
+        let ends = ends.chain(above.map(|term| (term.of, term.lower)));
+        ends.into_iter()
+            .any(|(of, end)| of == Quantity::ByGap && end.value(arguments) < 0.0)
     }
 
     /// The powers that make the force and its derivatives analytic at either end of each piece.

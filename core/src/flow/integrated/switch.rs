@@ -15,10 +15,12 @@
 use crate::flow::field::Room;
 use crate::flow::{FlowError, Tangent};
 
-use super::engine::Engine;
+use super::engine::{Engine, Here};
 
 /// A rate below this part of the rates that it is a sum of is none.
 const AT_REST: f64 = 1e-14;
+/// One below this part of the largest of the motion is hardly one.
+const SLOW: f64 = 1e-4;
 
 impl<const S: usize> Engine<'_, S> {
     /// Finds the pieces that the motion goes to from here. Tangents jump, unless this is where the motion begins.
@@ -30,9 +32,8 @@ impl<const S: usize> Engine<'_, S> {
             while let Some(level) = self.here.on[contact] {
                 let gap = self.here.gaps[contact];
                 let up = if forward { gap.rate } else { -gap.rate };
-                let at_rest = self.is_at_rest(contact);
-                let direction = if at_rest {
-                    self.accelerate_here();
+                let turns_here = self.turns(contact, level);
+                let direction = if turns_here {
                     self.acceleration_of(contact)
                 } else {
                     up
@@ -50,7 +51,7 @@ impl<const S: usize> Engine<'_, S> {
                 self.cross(
                     contact,
                     level,
-                    if at_rest {
+                    if turns_here {
                         None
                     } else {
                         tangent.as_deref_mut()
@@ -72,6 +73,10 @@ impl<const S: usize> Engine<'_, S> {
         let to = if from == level { level + 1 } else { level };
         self.here.pieces[contact] = to;
         self.here.on[contact] = Some(level);
+        // A level that was ahead on the other side is behind now.
+        if self.aim.is_some_and(|aim| aim.contact == contact) {
+            self.aim = None;
+        }
         if let Some(tangent) = tangent {
             self.saltate(contact, level, [from, to], tangent)?;
         }
@@ -89,17 +94,41 @@ impl<const S: usize> Engine<'_, S> {
         self.count_switch()
     }
 
-    /// What the rate of a gap is a sum of, in size.
-    fn rate_size(&self, contact: usize) -> f64 {
-        let gap = self.here.gaps[contact];
-        self.field
-            .rate_size(contact, &self.here.q, &self.here.v)
-            .max(gap.rate.abs())
-    }
-
     /// The gap has no rate, but for rounding.
     pub(super) fn is_at_rest(&self, contact: usize) -> bool {
-        self.here.gaps[contact].rate.abs() <= AT_REST * self.rate_size(contact)
+        let Here { q, v, gaps, .. } = &self.here;
+        let rate = gaps[contact].rate.abs();
+        let size = self.field.rate_size(contact, |i| [q[i].abs(), v[i].abs()]);
+        rate <= AT_REST * size.max(rate)
+    }
+
+    /// The gap only touches the level that it stands on: it turns before it can be told apart from the level. Accelerations must be
+    /// those of this instant.
+    pub(super) fn touches(&self, contact: usize, level: usize) -> bool {
+        let rate = self.here.gaps[contact].rate;
+        let rounding = self.rounding(contact, level);
+        rounding.is_some_and(|rounding| {
+            0.5 * rate * rate <= rounding * self.acceleration_of(contact).abs()
+        })
+    }
+
+    /// Whether the acceleration decides where a gap goes from the level that it stands on; it is that of this instant then.
+    pub(super) fn turns(&mut self, contact: usize, level: usize) -> bool {
+        if self.is_at_rest(contact) {
+            self.accelerate_here();
+            return true;
+        }
+        if !self.is_slow(contact) {
+            return false;
+        }
+        self.accelerate_here();
+        self.touches(contact, level)
+    }
+
+    /// The gap has hardly any rate.
+    pub(super) fn is_slow(&self, contact: usize) -> bool {
+        let size = self.field.rate_size(contact, |i| self.here.sizes[i]);
+        self.here.gaps[contact].rate.abs() <= SLOW * size
     }
 
     /// The second derivative of a gap by time, from the accelerations here; zero within rounding.

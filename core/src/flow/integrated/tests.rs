@@ -8,6 +8,7 @@
 mod accuracy;
 mod exact;
 mod tangents;
+mod touch;
 
 use std::f64::consts::TAU;
 

@@ -24,8 +24,8 @@ hertzian::oscillator! {
     }
 }
 
-/// The end of a motion over two periods and a half, with one number changed.
-fn end(change: impl FnOnce(&mut Integrated<'_>, &mut [f64])) -> [f64; 4] {
+/// The model with the values of its parameters.
+fn everything() -> (Everything, [f64; 6]) {
     let model = Everything {
         stiff: 2.0,
         alpha: 1.7,
@@ -36,6 +36,19 @@ fn end(change: impl FnOnce(&mut Integrated<'_>, &mut [f64])) -> [f64; 4] {
     };
     let mut values = [0.0; 6];
     model.values(&mut values);
+    (model, values)
+}
+
+/// What it is varied by, and the values.
+fn variables(values: &[f64; 6]) -> impl Iterator<Item = (Variable, f64)> {
+    let parameters = values.iter().enumerate();
+    let parameters = parameters.map(|(index, value)| (Variable::Parameter(index), *value));
+    parameters.chain([(Variable::Omega, 0.9)])
+}
+
+/// The end of a motion over two periods and a half, with one number changed.
+fn end(change: impl FnOnce(&mut Integrated<'_>, &mut [f64])) -> [f64; 4] {
+    let (model, values) = everything();
     let mut flow = Integrated::new(&model, &values, 0.9, 1e-13).unwrap();
     let mut state = [0.1, -0.2, 0.3, 0.4];
     change(&mut flow, &mut state);
@@ -60,28 +73,14 @@ fn difference(end: impl Fn(f64) -> [f64; 4]) -> [f64; 4] {
 
 #[test]
 fn tangents_are_derivatives() {
-    let variables = (0..6).map(Variable::Parameter).chain([Variable::Omega]);
-    let model = Everything {
-        stiff: 2.0,
-        alpha: 1.7,
-        level: 0.2,
-        jump: 0.1,
-        sway: 0.2,
-        mass: 1.3,
-    };
-    let mut values = [0.0; 6];
-    model.values(&mut values);
-    for variable in variables {
+    let (model, values) = everything();
+    for (variable, value) in variables(&values) {
         let mut tangent = Tangent::of_state(2, Some(variable));
         let mut flow = Integrated::new(&model, &values, 0.9, 1e-13).unwrap();
         let mut state = [0.1, -0.2, 0.3, 0.4];
         flow.advance(0.3, 0.3 + 2.5 * TAU, &mut state, Some(&mut tangent), None)
             .unwrap();
         assert!(flow.work().switches >= 8, "{:?}", flow.work());
-        let value = match variable {
-            Variable::Omega => 0.9,
-            Variable::Parameter(index) => values[index],
-        };
         let by_variable = difference(|h| end(|flow, _| flow.set(variable, value + h).unwrap()));
         let compare = |column: usize, exact: [f64; 4]| {
             let size = exact.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
@@ -106,24 +105,10 @@ fn tangents_are_derivatives() {
 /// and jumps that move, a contact that moves.
 #[test]
 fn nothing_is_allocated_at_other_values() {
-    let model = Everything {
-        stiff: 2.0,
-        alpha: 1.7,
-        level: 0.2,
-        jump: 0.1,
-        sway: 0.2,
-        mass: 1.3,
-    };
-    let mut values = [0.0; 6];
-    model.values(&mut values);
-    let variables = (0..6).map(Variable::Parameter).chain([Variable::Omega]);
-    for variable in variables {
+    let (model, values) = everything();
+    for (variable, value) in variables(&values) {
         let mut flow = Integrated::new(&model, &values, 0.9, 1e-10).unwrap();
         let mut tangent = Tangent::of_state(2, Some(variable));
-        let value = match variable {
-            Variable::Omega => 0.9,
-            Variable::Parameter(index) => values[index],
-        };
         let mut run = || {
             for value in [value, value + 0.01] {
                 let mut state = [0.1, -0.2, 0.3, 0.4];
