@@ -91,6 +91,7 @@ pub mod generic;
 mod guide;
 mod harmonics;
 mod jacobian;
+mod labels;
 pub mod law;
 mod layout;
 mod linear;

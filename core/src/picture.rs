@@ -1,25 +1,18 @@
 //! The chart of a branch.
 
+use std::mem::discriminant;
+
 use crate::branch::{Branch, EventKind, Point};
 use crate::chart::{Chart, Curve, Line, Markers, Run};
+use crate::labels::Labels;
 use crate::stability::Verdict;
 
 impl Branch<'_> {
     /// Peak-to-peak of the first coordinate over what the branch varies: stable solid, unstable dashed, undecided
-    /// dotted; folds and symmetry-breaking points are marked, and so are turns that were not confirmed as folds. More can be
-    /// added before it is written.
+    /// dotted; events are marked, each kind by a shape of its own, and so are places where an event could not be located.
+    /// More can be added before it is written.
     pub fn chart(&self) -> Chart {
-        let coordinate = &self.follower.system.facts().coordinates[0];
-        let folds = self
-            .folds()
-            .map(|fold| place(&fold.point))
-            .collect::<Vec<_>>();
-        let broken = self
-            .events
-            .iter()
-            .filter(|event| event.kind == EventKind::SymmetryBreaking)
-            .map(|event| place(&event.point))
-            .collect();
+        let events = self.events.iter();
         let turns = self.turns.iter().filter_map(|turn| {
             let [before, behind] = [
                 self.points.get(turn.after.checked_sub(1)?)?,
@@ -28,108 +21,121 @@ impl Branch<'_> {
             let size = 0.5 * (before.peak_to_peak() + behind.peak_to_peak());
             Some([turn.value, size])
         });
-        Chart::new(self.title())
-            .x(self.name_of_varied())
-            .y(format!("peak-to-peak of {coordinate}"))
-            .curve(Curve {
-                label: String::new(),
-                runs: self.runs(),
-            })
-            .markers(Markers {
-                label: "fold".to_owned(),
-                points: folds,
-            })
-            .markers(Markers {
-                label: "symmetry-breaking".to_owned(),
-                points: broken,
-            })
-            .markers(Markers {
-                label: "turn, unconfirmed".to_owned(),
-                points: turns.collect(),
-            })
+        let curve = Curve {
+            label: String::new(),
+            runs: self.runs(),
+        };
+        let chart = self.labels().chart().curve(curve);
+        let events = events.map(|event| (event.kind, place(&event.point)));
+        with_events(chart, &events.collect::<Vec<_>>(), turns.collect())
     }
 
-    /// The branch as runs of one stability each; neighbours share the point where they meet, which is the fold if
-    /// there is one between them.
-    pub fn runs(&self) -> Vec<Run> {
-        let mut runs: Vec<Run> = Vec::new();
-        for (index, point) in self.points.iter().enumerate() {
-            let line = line_of(point);
-            let here = place(point);
-            let folds = self.folds().filter(|fold| fold.after == index);
-            let joint = folds.map(|fold| place(&fold.point)).next();
-            match runs.last_mut() {
-                Some(run) if run.line == line => {
-                    run.points.extend(joint);
-                    run.points.push(here);
-                }
-                Some(run) => {
-                    let joint = joint.unwrap_or(here);
-                    run.points.push(joint);
-                    runs.push(Run {
-                        line,
-                        points: vec![joint, here],
-                    });
-                }
-                None => runs.push(Run {
-                    line,
-                    points: vec![here],
-                }),
-            }
-        }
-        runs
-    }
-
-    /// The system and everything that is the same all along the branch.
-    fn title(&self) -> String {
+    /// What a chart says of it.
+    fn labels(&self) -> Labels {
         let facts = self.follower.system.facts();
         let Some(point) = self.points.first() else {
-            return facts.name.to_string();
+            return Labels::of(facts, &self.varied, &[], 0.0);
         };
-        let parameters = facts
-            .parameters
-            .iter()
-            .zip(&point.parameters)
-            .filter(|(parameter, _)| parameter.name != self.varied)
-            .map(|(parameter, value)| format!("{} = {value}", parameter.name));
-        let omega = (self.varied != "omega").then(|| format!("omega = {}", point.omega()));
-        let period = Some(point.orbit.period).filter(|&period| period > 1);
-        let values: Vec<String> = parameters
-            .chain(omega)
-            .chain(period.map(|period| format!("period {period}")))
-            .collect();
-        if values.is_empty() {
-            facts.name.to_string()
-        } else {
-            format!("{}: {}", facts.name, values.join(", "))
-        }
+        let labels = Labels::of(facts, &self.varied, &point.parameters, point.omega());
+        labels.with_period(point.orbit.period)
     }
 
-    /// What is written at the horizontal axis: a parameter by its name and the first line of its documentation.
-    fn name_of_varied(&self) -> String {
-        if self.varied == "omega" {
-            return "excitation frequency ω".to_owned();
-        }
-        let facts = self.follower.system.facts();
-        let parameter = facts.parameters.iter().find(|p| p.name == self.varied);
-        let documentation = parameter.and_then(|p| p.documentation.lines().next());
-        match documentation.map(str::trim).filter(|line| !line.is_empty()) {
-            Some(line) => format!("{} ({line})", self.varied),
-            None => self.varied.clone(),
+    /// The branch as runs of one stability each; neighbours share the point where they meet, which is the event if
+    /// there is one between them.
+    pub fn runs(&self) -> Vec<Run> {
+        let points = self.points.iter();
+        let points = points.map(|point| (place(point), point.stability.verdict));
+        let events = self.events.iter();
+        let events = events.map(|event| (event.after, place(&event.point)));
+        runs(points, &events.collect::<Vec<_>>())
+    }
+}
+
+/// Points with their verdicts as runs of one stability each, with events, each behind so many points. Neighbours share the point
+/// where they meet.
+pub(crate) fn runs(
+    points: impl Iterator<Item = ([f64; 2], Verdict)>,
+    events: &[(usize, [f64; 2])],
+) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    let mut count = 0;
+    for (index, (here, verdict)) in points.enumerate() {
+        count = index + 1;
+        let line = Line::of(verdict);
+        let between = events.iter().filter(|(after, _)| *after == index);
+        let joints: Vec<_> = between.map(|(_, place)| *place).collect();
+        match runs.last_mut() {
+            Some(run) if run.line == line => {
+                run.points.extend(&joints);
+                run.points.push(here);
+            }
+            Some(run) => {
+                let joint = joints.first().copied().unwrap_or(here);
+                run.points.push(joint);
+                let points = joints.into_iter().chain([here]).collect();
+                runs.push(Run { line, points });
+            }
+            None => runs.push(Run {
+                line,
+                points: joints.into_iter().chain([here]).collect(),
+            }),
         }
     }
+    let behind = events.iter().filter(|(after, _)| *after >= count);
+    if let Some(run) = runs.last_mut() {
+        run.points.extend(behind.map(|(_, place)| place));
+    }
+    runs
 }
 
 fn place(point: &Point) -> [f64; 2] {
     [point.value, point.peak_to_peak()]
 }
 
-fn line_of(point: &Point) -> Line {
-    match point.stability.verdict {
-        Verdict::Stable => Line::Stable,
-        Verdict::Unstable => Line::Unstable,
-        Verdict::Undecided => Line::Undecided,
+impl Line {
+    pub(crate) fn of(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Stable => Self::Stable,
+            Verdict::Unstable => Self::Unstable,
+            Verdict::Undecided => Self::Undecided,
+        }
     }
+}
+
+impl Labels {
+    /// A chart with nothing on it yet.
+    pub(crate) fn chart(&self) -> Chart {
+        Chart::new(&self.title).x(&self.varied).y(&self.size)
+    }
+}
+
+/// Marks events, in an order that gives every kind its shape, and what was not located.
+pub(crate) fn with_events(
+    chart: Chart,
+    events: &[(EventKind, [f64; 2])],
+    turns: Vec<[f64; 2]>,
+) -> Chart {
+    let kinds = [
+        EventKind::Fold,
+        EventKind::PeriodDoubling,
+        EventKind::SymmetryBreaking,
+        EventKind::BranchPoint,
+        EventKind::NeimarkSacker,
+        EventKind::Grazing { turns: false },
+    ];
+    let marked = kinds.into_iter().fold(chart, |chart, kind| {
+        let of_kind = events
+            .iter()
+            .filter(|(other, _)| discriminant(other) == discriminant(&kind));
+        chart.markers(Markers {
+            label: kind.to_string(),
+            points: of_kind.map(|(_, place)| *place).collect(),
+        })
+    });
+    marked.markers(Markers {
+        label: "unlocated".to_owned(),
+        points: turns,
+    })
 }
 
 #[cfg(test)]
@@ -192,7 +198,7 @@ mod tests {
         ] {
             assert!(svg.contains(part), "{part}");
         }
-        assert!(!svg.contains("unconfirmed"));
+        assert!(!svg.contains("undecided") && !svg.contains("unlocated"));
     }
 
     #[test]

@@ -488,7 +488,7 @@ fn the_cascade_of_figure_8a() {
         assert!(points.iter().any(|point| point["branch"] == branch));
     }
     check_csv(&csv, points);
-    for part in ["period 8", "period doubling", "grazing"] {
+    for part in ["period 8", "period-doubling", "grazing"] {
         let picture = std::fs::read_to_string(&svg).expect("a picture");
         assert!(picture.contains(part), "{part}");
     }

@@ -1,19 +1,21 @@
-//! The chart of a diagram.
+//! The charts of a branch by shooting, and of a diagram.
 
-use super::diagram::Diagram;
+use super::diagram::{Diagram, Limb};
 use crate::branch::EventKind;
-use crate::chart::{Chart, Curve, Line, Markers, Run};
+use crate::chart::{Chart, Curve, Run};
+use crate::error::Error;
 use crate::flow::shooting::{Cycle, CycleBranch};
-use crate::stability::Verdict;
-
-/// Whether events of a kind are chosen.
-type Chosen = fn(EventKind) -> bool;
+use crate::picture::{runs, with_events};
 
 impl Diagram {
     /// Peak-to-peak of the first coordinate over what is varied, one curve for each period: stable solid, unstable dashed,
-    /// undecided dotted; bifurcations and grazing are marked. Titles and axes can be added.
+    /// undecided dotted; events are marked, each kind by a shape of its own, and so are places where an event could not be
+    /// located. Title and axes can be changed, and more can be added.
     pub fn chart(&self) -> Chart {
-        let mut periods: Vec<usize> = self.branches.iter().map(super::Limb::period).collect();
+        let Some(first) = self.branches.first() else {
+            return Chart::default();
+        };
+        let mut periods: Vec<usize> = self.branches.iter().map(Limb::period).collect();
         periods.sort_unstable();
         periods.dedup();
         let curves = periods.iter().map(|&period| Curve {
@@ -25,30 +27,22 @@ impl Diagram {
                 .flat_map(|limb| limb.branch.runs(place))
                 .collect(),
         });
-        let chart = curves.fold(Chart::new(""), Chart::curve);
-        let kinds: [(&str, Chosen); 5] = [
-            ("fold", |kind| kind == EventKind::Fold),
-            ("period doubling", |kind| kind == EventKind::PeriodDoubling),
-            ("broken symmetry", |kind| {
-                kind == EventKind::SymmetryBreaking
-            }),
-            ("Neimark-Sacker", |kind| kind == EventKind::NeimarkSacker),
-            ("grazing", |kind| matches!(kind, EventKind::Grazing { .. })),
-        ];
-        let all = || self.branches.iter().flat_map(|limb| &limb.branch.events);
-        kinds.into_iter().fold(chart, |chart, (label, chosen)| {
-            let points: Vec<_> = all()
-                .filter(|e| chosen(e.kind))
-                .map(|event| place(&event.cycle))
-                .collect();
-            if points.is_empty() {
-                return chart;
-            }
-            chart.markers(Markers {
-                label: label.to_owned(),
-                points,
-            })
-        })
+        let chart = curves.fold(first.branch.labels.chart(), Chart::curve);
+        let branches = || self.branches.iter().map(|limb| &limb.branch);
+        let events: Vec<_> = branches().flat_map(CycleBranch::marked).collect();
+        with_events(
+            chart,
+            &events,
+            branches().flat_map(CycleBranch::unlocated).collect(),
+        )
+    }
+
+    /// Draws the [`chart`](Self::chart) as an SVG file.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn plot(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
+        Ok(self.chart().write(path)?)
     }
 }
 
@@ -57,43 +51,56 @@ fn place(cycle: &Cycle) -> [f64; 2] {
 }
 
 impl CycleBranch {
+    /// Peak-to-peak of the first coordinate over what the branch varies, drawn as [`Branch::chart`](crate::Branch::chart) draws a
+    /// branch of the balance.
+    pub fn chart(&self) -> Chart {
+        let curve = Curve {
+            label: String::new(),
+            runs: self.runs(place),
+        };
+        let period = self.cycles.first().map_or(1, |cycle| cycle.period);
+        let labels = self.labels.clone().with_period(period);
+        let events: Vec<_> = self.marked().collect();
+        with_events(
+            labels.chart().curve(curve),
+            &events,
+            self.unlocated().collect(),
+        )
+    }
+
+    /// Draws the [`chart`](Self::chart) as an SVG file.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn plot(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
+        Ok(self.chart().write(path)?)
+    }
+
     /// Runs of one stability each for a chart, with every orbit at its place; neighbours share the point where they meet, which is the
-    /// bifurcation if there is one between them.
+    /// event if there is one between them.
     #[must_use]
     pub fn runs(&self, place: impl Fn(&Cycle) -> [f64; 2]) -> Vec<Run> {
-        let mut runs: Vec<Run> = Vec::new();
-        for (index, cycle) in self.cycles.iter().enumerate() {
-            let line = match cycle.stability.verdict {
-                Verdict::Stable => Line::Stable,
-                Verdict::Unstable => Line::Unstable,
-                Verdict::Undecided => Line::Undecided,
-            };
-            let between = self.events.iter().filter(|event| event.after == index);
-            let joints: Vec<_> = between.map(|event| place(&event.cycle)).collect();
-            match runs.last_mut() {
-                Some(run) if run.line == line => {
-                    run.points.extend(&joints);
-                    run.points.push(place(cycle));
-                }
-                Some(run) => {
-                    let joint = joints.first().copied().unwrap_or(place(cycle));
-                    run.points.push(joint);
-                    let points = joints.into_iter().chain([place(cycle)]).collect();
-                    runs.push(Run { line, points });
-                }
-                None => runs.push(Run {
-                    line,
-                    points: joints.into_iter().chain([place(cycle)]).collect(),
-                }),
-            }
-        }
-        let behind = self
-            .events
-            .iter()
-            .filter(|event| event.after >= self.cycles.len());
-        if let Some(run) = runs.last_mut() {
-            run.points.extend(behind.map(|event| place(&event.cycle)));
-        }
-        runs
+        let cycles = self.cycles.iter();
+        let cycles = cycles.map(|cycle| (place(cycle), cycle.stability.verdict));
+        let events = self.events.iter();
+        let events = events.map(|event| (event.after, place(&event.cycle)));
+        runs(cycles, &events.collect::<Vec<_>>())
+    }
+
+    fn marked(&self) -> impl Iterator<Item = (EventKind, [f64; 2])> {
+        let events = self.events.iter();
+        events.map(|event| (event.kind, place(&event.cycle)))
+    }
+
+    /// Where test functions change their sign without an event.
+    fn unlocated(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.turns.iter().filter_map(|turn| {
+            let [before, behind] = [
+                self.cycles.get(turn.after.checked_sub(1)?)?,
+                self.cycles.get(turn.after)?,
+            ];
+            let size = 0.5 * (before.peak_to_peak() + behind.peak_to_peak());
+            Some([turn.value, size])
+        })
     }
 }

@@ -217,7 +217,7 @@ struct Contents {
     references: Vec<Vec<Vec<Pixel>>>,
     runs: Vec<(Pen, Vec<Vec<Pixel>>)>,
     markers: Vec<(Shape, Vec<Pixel>)>,
-    traces: Vec<Vec<Vec<Pixel>>>,
+    traces: Vec<(Pen, Vec<Vec<Pixel>>)>,
     clouds: Vec<Dots>,
     /// Everything is covered by coloured cells.
     covered: Option<Rectangle>,
@@ -229,15 +229,18 @@ impl Contents {
             polylines(points.iter().map(|&point| plot.pixel(point)), &plot.frame)
         };
         let references = chart.references.iter();
-        let runs = chart.curves.iter().enumerate().flat_map(|(index, curve)| {
+        let styles = Styles::of(chart);
+        let curves = chart.curves.iter().zip(styles.curves);
+        let runs = curves.flat_map(|(curve, style)| {
             let runs = curve.runs.iter();
-            runs.map(move |run| (curve_pen(index, run.line), lines(&run.points)))
+            runs.map(move |run| (curve_pen(style, run.line), lines(&run.points)))
         });
-        let markers = chart.markers.iter().enumerate().map(|(index, markers)| {
+        let markers = chart.markers.iter().zip(styles.markers);
+        let markers = markers.map(|(markers, style)| {
             let points = markers.points.iter();
             let pixels = points.filter_map(|&point| plot.pixel(point));
             let pixels = pixels.filter(|&pixel| plot.frame.grown(0.5).contains(pixel));
-            (Shape::of(index), pixels.collect())
+            (Shape::of(style), pixels.collect())
         });
         let traces = chart.traces.iter();
         let clouds = chart.clouds.iter();
@@ -246,7 +249,10 @@ impl Contents {
             references: references.map(|line| lines(&line.points)).collect(),
             runs: runs.collect(),
             markers: markers.collect(),
-            traces: traces.map(|trace| lines(&trace.points)).collect(),
+            traces: traces
+                .zip(styles.traces)
+                .map(|(trace, style)| (trace_pen(style), lines(&trace.points)))
+                .collect(),
             clouds: clouds
                 .map(|cloud| Dots::of(cloud.points.iter().filter_map(place)))
                 .collect(),
@@ -258,7 +264,7 @@ impl Contents {
     fn everything(&self) -> Vec<Vec<Pixel>> {
         let references = self.references.iter().flatten();
         let runs = self.runs.iter().flat_map(|(_, lines)| lines);
-        let traces = self.traces.iter().flatten();
+        let traces = self.traces.iter().flat_map(|(_, lines)| lines);
         let markers = self.markers.iter().flat_map(|(_, pixels)| pixels);
         let covered = self.covered.iter().flat_map(Rectangle::scanned);
         references
@@ -278,8 +284,8 @@ impl Contents {
         for (pen, lines) in &self.runs {
             svg.lines(lines, *pen);
         }
-        for (index, lines) in self.traces.iter().enumerate() {
-            svg.lines(lines, trace_pen(index));
+        for (pen, lines) in &self.traces {
+            svg.lines(lines, *pen);
         }
         for (index, dots) in self.clouds.iter().enumerate() {
             dots.draw(svg, cloud::pen(index, self.clouds.len()));
@@ -290,6 +296,36 @@ impl Contents {
             }
         }
     }
+}
+
+/// Numbers of the styles of what is on a chart: parts with one label look alike.
+struct Styles {
+    curves: Vec<usize>,
+    traces: Vec<usize>,
+    markers: Vec<usize>,
+}
+
+impl Styles {
+    fn of(chart: &Chart) -> Self {
+        Self {
+            curves: numbered(chart.curves.iter().map(|curve| &*curve.label)),
+            traces: numbered(chart.traces.iter().map(|trace| &*trace.label)),
+            markers: numbered(chart.markers.iter().map(|markers| &*markers.label)),
+        }
+    }
+}
+
+/// Labels numbered in the order in which they first appear; empty ones count each for itself.
+fn numbered<'l>(labels: impl Iterator<Item = &'l str>) -> Vec<usize> {
+    let mut known: Vec<&str> = Vec::new();
+    let number = |label: &'l str| {
+        let same = known.iter().position(|other| *other == label);
+        same.filter(|_| !label.is_empty()).unwrap_or_else(|| {
+            known.push(label);
+            known.len() - 1
+        })
+    };
+    labels.map(number).collect()
 }
 
 fn trace_pen(index: usize) -> Pen {
@@ -325,24 +361,30 @@ fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
         .copied()
 }
 
-/// The rows of the legend: the curves if there are several, the kinds of line, references, markers; only what is seen.
+/// The rows of the legend: the curves if there are several, the kinds of line, references, markers; only what is seen, and
+/// nothing twice.
 fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
-    let mut entries = Vec::new();
+    let mut entries: Vec<Entry> = Vec::new();
     let mut add = |sample, label: &str| {
         let label = label.to_string();
-        entries.push(Entry { sample, label });
+        let entry = Entry { sample, label };
+        if !entries.contains(&entry) {
+            entries.push(entry);
+        }
     };
     let several = chart.curves.len() > 1;
-    for (index, curve) in chart.curves.iter().enumerate().filter(|_| several) {
-        add(Sample::Line(curve_pen(index, Line::Stable)), &curve.label);
+    let styles = Styles::of(chart);
+    let curves = chart.curves.iter().zip(styles.curves);
+    for (curve, style) in curves.filter(|_| several) {
+        add(Sample::Line(curve_pen(style, Line::Stable)), &curve.label);
     }
     for (line, name) in [
         (Line::Stable, "stable"),
         (Line::Unstable, "unstable"),
         (Line::Undecided, "undecided"),
     ] {
-        let runs = || chart.curves.iter().flat_map(|curve| &curve.runs);
-        if runs().any(|run| run.line == line && !run.points.is_empty()) {
+        let mut runs = chart.curves.iter().flat_map(|curve| &curve.runs);
+        if runs.any(|run| run.line == line && !run.points.is_empty()) {
             let pen = curve_pen(0, line);
             let colour = if several { INK } else { pen.colour };
             add(Sample::Line(Pen { colour, ..pen }), name);
@@ -353,9 +395,9 @@ fn entries(chart: &Chart, contents: &Contents) -> Vec<Entry> {
             add(Sample::Line(REFERENCE), &reference.label);
         }
     }
-    for (index, (trace, lines)) in chart.traces.iter().zip(&contents.traces).enumerate() {
+    for (trace, (pen, lines)) in chart.traces.iter().zip(&contents.traces) {
         if !lines.is_empty() && !trace.label.is_empty() {
-            add(Sample::Line(trace_pen(index)), &trace.label);
+            add(Sample::Line(*pen), &trace.label);
         }
     }
     for (index, cloud) in chart.clouds.iter().enumerate() {

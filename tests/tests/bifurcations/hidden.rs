@@ -1,7 +1,8 @@
 //! Bifurcations that the signs of test functions at the ends of a step do not show, or show as something else.
 
+use hertzian::bifurcation::{Bifurcations, Reason};
 use hertzian::flow::shooting::{CycleBranch, CycleEvent};
-use hertzian::{EventKind, Shooting};
+use hertzian::{End, EventKind, Shooting};
 
 use crate::cascade::A1;
 
@@ -157,5 +158,34 @@ fn doublings_do_not_depend_on_where_a_branch_begins() {
             (low - 1.053_610).abs() < 2e-6 && (high - 1.079_517).abs() < 2e-6,
             "{low} {high}"
         );
+    }
+}
+
+/// However short the steps are, the branch of period two from one doubling ends at the other, and is followed once.
+#[test]
+fn no_branch_is_followed_twice() {
+    let model = Stopped { drive: 1.0 };
+    for step in [0.1, 0.03, 0.01, 0.005] {
+        let request = Bifurcations::of(&model).from(0.8).to(1.3).depth(2);
+        let diagram = request.largest_step(step).run().unwrap();
+        let [first, second] = &diagram.branches[..] else {
+            panic!("{step}: {} branches", diagram.branches.len());
+        };
+        assert_eq!([first.period(), second.period()], [1, 2]);
+        let end = End::Joined {
+            period: 1,
+            symmetric: false,
+        };
+        assert_eq!(second.branch.end, end, "{step}");
+        let reasons: Vec<_> = diagram.omitted.iter().map(|o| &o.reason).collect();
+        assert_eq!(reasons, [&Reason::Known { branch: 1 }], "{step}");
+        let joint = second.branch.events.last().unwrap();
+        let doubling = first
+            .branch
+            .events(EventKind::PeriodDoubling)
+            .nth(1)
+            .unwrap();
+        let apart = (joint.cycle.value - doubling.cycle.value).abs();
+        assert!(apart <= joint.error + doubling.error, "{joint} {doubling}");
     }
 }

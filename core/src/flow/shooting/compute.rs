@@ -19,19 +19,23 @@ use crate::system::Variable;
 /// If none is found.
 pub(super) fn cycle(setting: &Setting<'_>, guess: &Guess, value: f64) -> Result<Cycle, Error> {
     let found = first(setting, guess, value, setting.omega_at(value))?;
-    let (
-        mut run,
-        First {
-            mut equations,
-            u,
-            iterations,
-            ..
-        },
-    ) = run(setting, found, value, value)?;
-    let read = run.read(&mut equations, &u);
+    read(setting, found, value)
+}
+
+/// A solution as an orbit.
+///
+/// # Errors
+/// If its motion cannot be computed.
+pub(super) fn read<'a>(
+    setting: &Setting<'a>,
+    found: First<'a>,
+    value: f64,
+) -> Result<Cycle, Error> {
+    let (mut run, mut found) = run(setting, found, value, value)?;
+    let read = run.read(&mut found.equations, &found.u);
     let (cycle, _) = read.map_err(|reason| Error::Motion { value, reason })?;
     Ok(Cycle {
-        iterations,
+        iterations: found.iterations,
         ..cycle
     })
 }
@@ -133,6 +137,7 @@ fn followed<'a>(
     } = run;
     Ok(CycleBranch {
         varied: setting.varied.clone(),
+        labels: setting.labels.clone(),
         cycles,
         events,
         turns,

@@ -17,9 +17,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::cycle::CycleEvent;
-use super::equations::{Equations, Frame, Span};
+use super::equations::Equations;
 use super::setting::Setting;
-use super::start::First;
+use super::start::{self, First};
 use super::switch::{Begun, DEPARTURES, FARTHEST};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::problem::Problem;
@@ -78,21 +78,9 @@ pub(super) fn depart<'a>(
 /// The equations of the event's own orbit, and the orbit as a solution of them.
 fn same<'a>(setting: &Setting<'a>, event: &CycleEvent) -> Result<First<'a>, Error> {
     let cycle = &event.cycle;
-    let order = 2 * cycle.extremes.len();
-    let span = Span {
-        period: cycle.period,
-        half: cycle.symmetric,
-        segments: cycle.states.len() / order,
-    };
-    let frame = Frame {
-        variable: setting.variable,
-        reference: vec![0.0; order / 2],
-        omega: cycle.omega,
-        ratio: 1.0,
-    };
-    let equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
+    let (equations, u) = start::known(setting, cycle)?;
     let mut first = First {
-        u: equations.unknowns_of(&cycle.states, cycle.value),
+        u,
         equations,
         iterations: 0,
         size: cycle.size(),

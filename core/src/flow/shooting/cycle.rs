@@ -7,6 +7,7 @@ use super::extremes::Extremes;
 use crate::branch::{EventKind, Turn};
 use crate::continuation::follow::Stop;
 use crate::flow::{FlowError, Work};
+use crate::labels::Labels;
 use crate::stability::Stability;
 use crate::statistics::Statistics;
 
@@ -146,6 +147,8 @@ impl fmt::Display for End {
 pub struct CycleBranch {
     /// Name of what it varies.
     pub varied: String,
+    /// What a chart says of it.
+    pub labels: Labels,
     /// The orbits.
     pub cycles: Vec<Cycle>,
     /// Special orbits.

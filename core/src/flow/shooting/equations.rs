@@ -74,6 +74,18 @@ pub(super) struct Frame {
     pub(super) ratio: f64,
 }
 
+impl Frame {
+    /// Positions count from zero.
+    pub(super) fn plain(variable: Variable, coordinates: usize, omega: f64) -> Self {
+        Self {
+            variable,
+            reference: vec![0.0; coordinates],
+            omega,
+            ratio: 1.0,
+        }
+    }
+}
+
 /// The equations of one system, as a problem of continuation.
 pub(super) struct Equations<'a> {
     pub(super) flow: Box<dyn Flow + 'a>,

@@ -4,9 +4,11 @@
 //! rounding. So shooting refines what a balance has found, and follows branches of orbits with their folds and period doublings
 //! by the same continuation.
 
+mod at;
 mod bend;
 mod between;
 mod beyond;
+mod checked;
 mod companion;
 mod compute;
 mod crossed;
@@ -31,6 +33,7 @@ mod trace;
 mod track;
 mod watch;
 
+pub use crate::labels::Labels;
 pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
 pub use extremes::Extremes;
 pub use request::{Shooting, Side};

@@ -12,6 +12,8 @@ use crate::newton::{Newton, NewtonOptions};
 
 /// Two states are the same if they differ by this part of the orbit's size.
 const SAME: f64 = 1e-7;
+/// The same at a branch point: along a branch that turns there, states are known to the root of what the value is known to.
+const SAME_AT_POINT: f64 = 1e-4;
 /// The other branch is followed beyond the point before by this part of the step.
 const MARGIN: f64 = 0.5;
 
@@ -32,6 +34,26 @@ impl Recurrence {
         size: f64,
         odd: bool,
     ) -> Result<Self, FlowError> {
+        Self::within(equations, u, (size, SAME), odd)
+    }
+
+    /// The same at a branch point.
+    pub(super) fn at_point(
+        equations: &mut Equations<'_>,
+        u: &[f64],
+        size: f64,
+        odd: bool,
+    ) -> Result<Self, FlowError> {
+        Self::within(equations, u, (size, SAME_AT_POINT), odd)
+    }
+
+    fn within(
+        equations: &mut Equations<'_>,
+        u: &[f64],
+        (size, same): (f64, f64),
+        odd: bool,
+    ) -> Result<Self, FlowError> {
+        let most = same * size;
         let span = equations.span;
         let value = u[u.len() - 1];
         let first = equations.states_of(u)[..equations.order()].to_vec();
@@ -45,7 +67,7 @@ impl Recurrence {
         let mut state = first.clone();
         for passed in 1..=span.period / 2 {
             equations.pass(&mut state, value, 2)?;
-            if span.period.is_multiple_of(passed) && returns(equations, &state, &first, size) {
+            if span.period.is_multiple_of(passed) && returns(equations, &state, &first, most) {
                 recurrence.period = passed;
                 break;
             }
@@ -56,19 +78,19 @@ impl Recurrence {
             for x in &mut state {
                 *x = -*x;
             }
-            recurrence.odd = returns(equations, &state, &first, size);
+            recurrence.odd = returns(equations, &state, &first, most);
         }
         Ok(recurrence)
     }
 }
 
-/// Whether a state is that at the beginning.
-fn returns(equations: &Equations<'_>, state: &[f64], first: &[f64], size: f64) -> bool {
+/// Whether a state is that at the beginning, but for this.
+fn returns(equations: &Equations<'_>, state: &[f64], first: &[f64], most: f64) -> bool {
     let n = state.len() / 2;
     let mut pairs = state.iter().zip(first).enumerate();
     pairs.all(|(i, (x, y))| {
         let unit = if i < n { 1.0 } else { equations.frame.omega };
-        (x - y).abs() <= SAME * size * unit
+        (x - y).abs() <= most * unit
     })
 }
 

@@ -3,23 +3,14 @@
 use std::ops::ControlFlow;
 
 use super::cycle::{Cycle, CycleBranch, CycleEvent};
-use super::setting::{Setting, Source};
 use super::start::Guess;
 use super::trace::{self, Track};
-use super::{compute, series};
+use super::{at, compute, series};
 use crate::branch::{EventKind, Orbit, Point};
 use crate::continuation::step::StepControl;
 use crate::error::Error;
-use crate::flow::affine::Affine;
-use crate::flow::{self, Options};
-use crate::layout::Layout;
-use crate::response::FrequencyResponse;
-use crate::symmetry::is_odd;
-use crate::system::{System, Variable};
+use crate::system::System;
 use crate::validate;
-
-/// The dense matrix of more unknowns would take more than 300 megabytes.
-const MOST_UNKNOWNS: usize = 6000;
 
 /// The side of an event on which a branch is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -69,18 +60,18 @@ impl Side {
 /// ```
 #[derive(Clone)]
 pub struct Shooting<'a> {
-    system: &'a dyn System,
-    vary: Option<String>,
-    omega: Option<f64>,
-    from: Option<f64>,
-    to: Option<f64>,
-    near: Option<Guess>,
-    period: usize,
-    segments: Option<usize>,
-    tolerance: f64,
-    max_points: usize,
-    largest_step: f64,
-    stability: bool,
+    pub(super) system: &'a dyn System,
+    pub(super) vary: Option<String>,
+    pub(super) omega: Option<f64>,
+    pub(super) from: Option<f64>,
+    pub(super) to: Option<f64>,
+    pub(super) near: Option<Guess>,
+    pub(super) period: usize,
+    pub(super) segments: Option<usize>,
+    pub(super) tolerance: f64,
+    pub(super) max_points: usize,
+    pub(super) largest_step: f64,
+    pub(super) stability: bool,
 }
 
 impl std::fmt::Debug for Shooting<'_> {
@@ -187,7 +178,7 @@ impl<'a> Shooting<'a> {
         self
     }
 
-    /// Largest step along the branch, as [`FrequencyResponse::largest_step`] measures it. Default: 0.1.
+    /// Largest step along the branch, as [`FrequencyResponse::largest_step`](crate::FrequencyResponse::largest_step) measures it. Default: 0.1.
     #[must_use]
     pub fn largest_step(mut self, step: f64) -> Self {
         self.largest_step = step;
@@ -289,6 +280,47 @@ impl<'a> Shooting<'a> {
         compute::branch_through(&setting, &guess, value, [from, to], &mut visit)
     }
 
+    /// Every orbit of a branch at a value of what it varies, in branch order; empty where the branch does not pass.
+    ///
+    /// ```
+    /// use hertzian::Shooting;
+    ///
+    /// hertzian::oscillator! {
+    ///     Duffing(x) {
+    ///         param drive;
+    ///         ddot(x) + 0.1*dot(x) + x + x^3 = drive*cos(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let model = Duffing { drive: 0.2 };
+    /// let shooting = Shooting::of(&model).from(0.5).to(2.0);
+    /// let branch = shooting.run()?;
+    /// // Between its two folds the resonance has three orbits.
+    /// assert_eq!(shooting.at(&branch, 1.3)?.len(), 3);
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, the branch varies something else, or an orbit between two others cannot be
+    /// computed.
+    pub fn at(&self, branch: &CycleBranch, value: f64) -> Result<Vec<Cycle>, Error> {
+        let Some(cycle) = branch.cycles.first() else {
+            return Ok(Vec::new());
+        };
+        let request = Self {
+            period: cycle.period,
+            segments: None,
+            ..self.clone()
+        };
+        let setting = request.setting(value, value)?;
+        if setting.varied != branch.varied {
+            let name = setting.varied;
+            let must = "must be what the branch varies";
+            return Err(Error::Varied { name, must });
+        }
+        at::at(&setting, branch, value)
+    }
+
     /// An orbit as a point of a branch by harmonic balance: its Fourier series, of 20 harmonics for each period of the excitation,
     /// with everything that is read off an orbit.
     ///
@@ -337,139 +369,5 @@ impl<'a> Shooting<'a> {
             ranges: [[from, to], [low, high]],
         };
         trace::track(&setting, event, &plane)
-    }
-
-    /// The range, and everything else that was asked for, checked.
-    fn ranged(&self) -> Result<([f64; 2], Setting<'a>), Error> {
-        let from = self.from.ok_or(Error::Missing { name: "from" })?;
-        let to = self.to.ok_or(Error::Missing { name: "to" })?;
-        let setting = self.setting(from, to)?;
-        validate::range(self.system.facts(), setting.variable, from, to)?;
-        Ok(([from, to], setting))
-    }
-
-    /// Checks everything that was asked for.
-    fn setting(&self, from: f64, to: f64) -> Result<Setting<'a>, Error> {
-        let facts = self.system.facts();
-        if facts.coordinates.is_empty() {
-            return Err(Error::NoCoordinates);
-        }
-        self.check_options()?;
-        let variable = validate::variable(facts, self.vary.as_deref())?;
-        let mut parameters = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut parameters);
-        let given = match (variable, self.omega) {
-            (Variable::Omega, None) => None,
-            (Variable::Omega, Some(value)) => {
-                let must = "is what is varied: it has its own value";
-                return Err(Error::Option {
-                    name: "omega",
-                    value,
-                    must,
-                });
-            }
-            (Variable::Parameter(_), None) => return Err(Error::Missing { name: "omega" }),
-            (Variable::Parameter(_), Some(omega)) => Some(omega),
-        };
-        for value in [to, from] {
-            let omega = validate::omega(given.unwrap_or(value))?;
-            if let Variable::Parameter(index) = variable {
-                parameters[index] = value;
-            }
-            validate::parameters(facts, &parameters)?;
-            validate::levels(self.system, &parameters, omega)?;
-            validate::mass(self.system, &parameters, omega)?;
-        }
-        let omega = given.unwrap_or(from);
-        let layout = Layout::of(self.system);
-        let range = [from, to];
-        let odd = is_odd(self.system, &layout, &parameters, omega, variable, range);
-        Ok(Setting {
-            source: self.source(&parameters, omega),
-            varied: self.vary.clone().unwrap_or_else(|| "omega".to_owned()),
-            parameters,
-            omega,
-            variable,
-            divisor: facts.divisor,
-            period: self.period,
-            segments: self.segments.unwrap_or(self.period),
-            odd: odd && !self.period.is_multiple_of(2),
-            stability: self.stability,
-            points: validate::max_points(self.max_points)?,
-            steps: validate::largest_step(self.largest_step)?,
-        })
-    }
-
-    /// Checks the numbers among the options.
-    fn check_options(&self) -> Result<(), Error> {
-        let coordinates = self.system.facts().coordinates.len();
-        let segments = self.segments.unwrap_or(self.period);
-        for (name, value, range, must) in [
-            (
-                "period",
-                self.period as f64,
-                1.0..=1000.0,
-                "must be from 1 to 1000",
-            ),
-            (
-                "tolerance",
-                self.tolerance,
-                1e-14..=1e-3,
-                "must be from 1e-14 to 1e-3",
-            ),
-            (
-                "segments",
-                segments as f64,
-                1.0..=(MOST_UNKNOWNS / (2 * coordinates)) as f64,
-                "must be at least 1, and 3000 at most, divided by the number of coordinates",
-            ),
-        ] {
-            validate::option(name, value, range, must)?;
-        }
-        let (entries, state) = match &self.near {
-            None => return Ok(()),
-            Some(Guess::State(state)) => (state.len(), &state[..]),
-            Some(Guess::Series(orbit)) => (2 * orbit.coordinates, &[][..]),
-        };
-        if entries != 2 * coordinates {
-            let expected = 2 * coordinates;
-            return Err(Error::State { entries, expected });
-        }
-        let bad = state.iter().find(|x| !x.is_finite());
-        bad.map_or(Ok(()), |&value| {
-            Err(Error::Option {
-                name: "near",
-                value,
-                must: "must be finite",
-            })
-        })
-    }
-
-    /// Where flows of the system come from.
-    fn source(&self, parameters: &[f64], omega: f64) -> Source<'a> {
-        let system = self.system;
-        let parameters = parameters.to_vec();
-        let exact = Affine::new(system, &parameters, omega).is_ok();
-        Source {
-            make: Box::new(move |tolerance| {
-                flow::at(system, &parameters, omega, Options { tolerance })
-            }),
-            exact,
-            tolerance: self.tolerance,
-        }
-    }
-
-    /// What the orbit at a value is near.
-    fn guess(&self, value: f64) -> Result<Guess, Error> {
-        if let Some(guess) = &self.near {
-            return Ok(guess.clone());
-        }
-        let mut request = FrequencyResponse::of(self.system)
-            .period(self.period)
-            .stability(false);
-        if let (Some(name), Some(omega)) = (&self.vary, self.omega) {
-            request = request.vary(name).omega(omega);
-        }
-        Ok(Guess::Series(request.orbit(value)?.orbit))
     }
 }

@@ -223,7 +223,7 @@ impl<'r, 'a> Run<'r, 'a> {
             return false;
         }
         let u = equations.unknowns_of(&event.cycle.states, event.cycle.value);
-        let Ok(recurrence) = Recurrence::of(equations, &u, self.size, odd) else {
+        let Ok(recurrence) = Recurrence::at_point(equations, &u, self.size, odd) else {
             return false;
         };
         let regular =

@@ -4,6 +4,7 @@ use crate::continuation::follow::FollowOptions;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::flow::Flow;
+use crate::labels::Labels;
 use crate::newton::NewtonOptions;
 use crate::system::Variable;
 
@@ -24,6 +25,8 @@ pub(super) struct Setting<'a> {
     pub(super) source: Source<'a>,
     /// Name of what is varied.
     pub(super) varied: String,
+    /// What charts say.
+    pub(super) labels: Labels,
     /// Parameters; what is varied has any value.
     pub(super) parameters: Vec<f64>,
     /// Frequency, unless it is varied.

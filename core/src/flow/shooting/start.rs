@@ -1,5 +1,6 @@
 //! The first orbit: from a guess to a solution, with what is known of it.
 
+use super::cycle::Cycle;
 use super::equations::{Equations, Frame, Span};
 use super::extremes::{self, Extremes};
 use super::recurrence::Recurrence;
@@ -43,12 +44,7 @@ pub(super) fn first<'a>(
         segments: setting.segments,
     };
     let coordinates = setting.flow(setting.source.tolerance)?.coordinates();
-    let frame = Frame {
-        variable: setting.variable,
-        reference: vec![0.0; coordinates],
-        omega,
-        ratio: 1.0,
-    };
+    let frame = Frame::plain(setting.variable, coordinates, omega);
     let mut equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
     let motion = |reason| Error::Motion { value, reason };
     let states = states(setting, &mut equations, guess, value).map_err(motion)?;
@@ -90,6 +86,44 @@ pub(super) fn first<'a>(
         first.halve(setting)?;
     }
     Ok(first)
+}
+
+/// The equations of an orbit that is known, and the orbit as a solution of them.
+///
+/// # Errors
+/// If there is no flow.
+pub(super) fn known<'a>(
+    setting: &Setting<'a>,
+    cycle: &Cycle,
+) -> Result<(Equations<'a>, Vec<f64>), Error> {
+    through(
+        setting,
+        cycle,
+        (cycle.period, cycle.symmetric),
+        &cycle.states,
+    )
+}
+
+/// The same with other states at the beginnings of the segments, over another period, or half of it.
+///
+/// # Errors
+/// If there is no flow.
+pub(super) fn through<'a>(
+    setting: &Setting<'a>,
+    cycle: &Cycle,
+    (period, half): (usize, bool),
+    states: &[f64],
+) -> Result<(Equations<'a>, Vec<f64>), Error> {
+    let coordinates = cycle.extremes.len();
+    let span = Span {
+        period,
+        half,
+        segments: states.len() / (2 * coordinates),
+    };
+    let frame = Frame::plain(setting.variable, coordinates, cycle.omega);
+    let equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
+    let u = equations.unknowns_of(states, cycle.value);
+    Ok((equations, u))
 }
 
 /// States at the beginnings of the segments.

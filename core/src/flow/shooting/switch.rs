@@ -20,10 +20,10 @@
 use nalgebra::DMatrix;
 
 use super::cycle::{Cycle, CycleEvent};
-use super::equations::{Equations, Frame, Span};
+use super::equations::Equations;
 use super::recurrence::Recurrence;
 use super::setting::Setting;
-use super::start::First;
+use super::start::{self, First};
 use crate::branch::EventKind;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::problem::Scale;
@@ -130,24 +130,10 @@ pub(super) fn resume<'a>(
 
 /// The equations of the new branch, and the orbit as a solution of them.
 fn twice<'a>(setting: &Setting<'a>, cycle: &Cycle) -> Result<(Equations<'a>, Vec<f64>), Error> {
-    let order = 2 * cycle.extremes.len();
     let sign = if cycle.symmetric { -1.0 } else { 1.0 };
     let mut states = cycle.states.clone();
     states.extend(cycle.states.iter().map(|x| sign * x));
-    let span = Span {
-        period: setting.period,
-        half: false,
-        segments: states.len() / order,
-    };
-    let frame = Frame {
-        variable: setting.variable,
-        reference: vec![0.0; order / 2],
-        omega: cycle.omega,
-        ratio: 1.0,
-    };
-    let equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
-    let u = equations.unknowns_of(&states, cycle.value);
-    Ok((equations, u))
+    start::through(setting, cycle, (setting.period, false), &states)
 }
 
 /// The direction of the new branch in extended unknowns, from (1); its entry for the parameter is zero.

@@ -49,6 +49,7 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting<'sta
             exact: false,
             tolerance: 1e-8,
         },
+        labels: crate::labels::Labels::default(),
         varied: "something".to_owned(),
         parameters: parameters.to_vec(),
         omega,

@@ -173,7 +173,8 @@ impl<'a> Touch<'a> {
         found
     }
 
-    /// Shows all extremes of the gap along an orbit.
+    /// Shows all extremes of the gap along an orbit. As long as the orbit does not close, the rate has two values where it ends and
+    /// begins again, with an extreme between them if their signs differ.
     fn extremes(
         &mut self,
         equations: &mut Equations<'_>,
@@ -183,6 +184,8 @@ impl<'a> Touch<'a> {
         let mut passed = 0.0;
         // The rate is carried from stretch to stretch: where a step ends at an extreme, rounding could change its sign.
         let mut last: Option<f64> = None;
+        let mut first: Option<(f64, f64)> = None;
+        let mut end = 0.0;
         let (gap, state) = (&self.gap, &mut self.state);
         let scan = &mut |stretch: &dyn Stretch| {
             let (from, to) = stretch.phases();
@@ -210,10 +213,36 @@ impl<'a> Touch<'a> {
                 }
                 part += 1.0;
             }
+            if first.is_none() && last.is_none() {
+                first = Some(at(from));
+            }
             last = Some(before.1);
+            end = at(to).0;
             passed += to - from;
         };
-        equations.trace(u, scan).ok()
+        if let Err(failure) = equations.trace(u, scan) {
+            equations.failure = Some(failure);
+            return None;
+        }
+        let (rate, (gap, first)) = (last?, first?);
+        // Of half of an orbit with odd symmetry, all rates turn their signs at the end.
+        let half = equations.span.half;
+        let turned = if half { -first } else { first };
+        if rate * turned < 0.0 || turned == 0.0 && rate != 0.0 {
+            see(Extreme {
+                passed,
+                gap: end,
+                largest: rate > 0.0,
+            });
+            if half {
+                see(Extreme {
+                    passed: 0.0,
+                    gap,
+                    largest: first < 0.0,
+                });
+            }
+        }
+        Some(())
     }
 }
 

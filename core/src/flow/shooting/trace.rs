@@ -5,10 +5,10 @@
 use nalgebra::Complex;
 
 use super::cycle::CycleEvent;
-use super::equations::{Equations, Frame, Span};
 use super::run::no_orbit;
 use super::setting::Setting;
 use super::solve;
+use super::start;
 use super::touch::Touch;
 use super::track::{Condition, Curve};
 use super::watch::Watch;
@@ -16,6 +16,7 @@ use crate::branch::EventKind;
 use crate::continuation::follow::{CurvePoint, FollowOptions, Outcome, Start, Stop, follow};
 use crate::continuation::step::StepControl;
 use crate::error::Error;
+use crate::flow::FlowError;
 use crate::newton::Newton;
 use crate::system::{System, Variable};
 
@@ -96,6 +97,8 @@ pub enum TrackEnd {
     Left,
     /// The curve closed upon itself.
     Closed,
+    /// The motion at the next point, or its derivatives, cannot be computed: beside a touch, a power below one half has none.
+    Motion(FlowError),
     /// Following it ended otherwise.
     Stopped(Stop),
 }
@@ -105,6 +108,7 @@ impl std::fmt::Display for TrackEnd {
         match self {
             Self::Left => f.write_str("left the range"),
             Self::Closed => f.write_str("closed"),
+            Self::Motion(reason) => write!(f, "no further motion computed: {reason}"),
             Self::Stopped(stop) => stop.fmt(f),
         }
     }
@@ -230,16 +234,18 @@ fn half<'a>(
         options,
         &mut |curve, newton, seen| watch.visit(curve, newton, &seen),
     );
-    let end = match outcome {
+    let failure = watch.failure.or(curve.equations.failure);
+    let end = match (outcome, failure) {
         _ if watch.left => TrackEnd::Left,
-        Err(reason) => {
-            return Err(no_orbit(event.cycle.value, reason, curve.equations.failure));
+        (Err(reason), failure) => return Err(no_orbit(event.cycle.value, reason, failure)),
+        (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {
+            TrackEnd::Motion(reason)
         }
-        Ok(Outcome::Stopped(Stop::ReachedEnd | Stop::LeftAtStart)) => TrackEnd::Left,
-        Ok(Outcome::Stopped(Stop::Closed)) => TrackEnd::Closed,
-        Ok(Outcome::Stopped(stop)) => TrackEnd::Stopped(stop),
+        (Ok(Outcome::Stopped(Stop::ReachedEnd | Stop::LeftAtStart)), _) => TrackEnd::Left,
+        (Ok(Outcome::Stopped(Stop::Closed)), _) => TrackEnd::Closed,
+        (Ok(Outcome::Stopped(stop)), _) => TrackEnd::Stopped(stop),
         // A curve is never resized.
-        Ok(Outcome::Halted(_)) => TrackEnd::Stopped(Stop::Interrupted),
+        (Ok(Outcome::Halted(_)), _) => TrackEnd::Stopped(Stop::Interrupted),
     };
     Ok(Half {
         points: watch.points,
@@ -263,20 +269,7 @@ fn curve<'a>(
     plane: &Plane<'a>,
 ) -> Result<(Curve<'a>, Vec<f64>), Error> {
     let cycle = &event.cycle;
-    let order = 2 * cycle.extremes.len();
-    let span = Span {
-        period: cycle.period,
-        half: cycle.symmetric,
-        segments: cycle.states.len() / order,
-    };
-    let frame = Frame {
-        variable: setting.variable,
-        reference: vec![0.0; order / 2],
-        omega: cycle.omega,
-        ratio: 1.0,
-    };
-    let mut equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
-    let mut u = equations.unknowns_of(&cycle.states, cycle.value);
+    let (mut equations, mut u) = start::known(setting, cycle)?;
     let nothing = Error::NoBranch {
         kind: event.kind,
         value: cycle.value,

@@ -23,6 +23,7 @@ use super::trace::{Plane, Special, SpecialKind, TrackPoint};
 use super::track::{Condition, Curve, determinant};
 use crate::continuation::follow::{Continue, CurvePoint, Halt, Visit};
 use crate::continuation::locate::locate;
+use crate::flow::FlowError;
 use crate::newton::{Newton, NewtonOptions};
 use crate::stability::eigenvalues;
 
@@ -47,6 +48,8 @@ pub(super) struct Watch<'p, 'a> {
     pub(super) special: Vec<Special>,
     /// The first parameter left its range.
     pub(super) left: bool,
+    /// Why a point that was found could not be read.
+    pub(super) failure: Option<FlowError>,
 }
 
 /// Test functions at a point.
@@ -85,6 +88,7 @@ impl<'p, 'a> Watch<'p, 'a> {
             points: Vec::new(),
             special: Vec::new(),
             left: false,
+            failure: None,
         }
     }
 
@@ -105,6 +109,7 @@ impl<'p, 'a> Watch<'p, 'a> {
                     return Continue::Break(Halt::Stop);
                 }
                 let Some((map, switches)) = counted(curve, &at.u) else {
+                    self.failure = curve.equations.failure;
                     return Continue::Break(Halt::Stop);
                 };
                 curve.follow(&at.u);
