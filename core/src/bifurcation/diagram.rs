@@ -61,14 +61,14 @@ pub enum Origin {
         /// Side of the event.
         side: Side,
     },
-    /// Nothing leads to it: motions were found to settle to one of its orbits.
+    /// Nothing that was followed leads to it: motions were found to settle to one of its orbits.
     Attractor {
         /// Where, in what is varied.
         value: f64,
     },
 }
 
-/// A bifurcation whose further branch was not followed.
+/// A bifurcation of which a further branch was not followed; of two sides the other may have been.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -162,6 +162,8 @@ impl<'v> Watch<'v> {
 pub(super) struct Search<'a, 'v> {
     pub(super) watch: Watch<'v>,
     shooting: Shooting<'a>,
+    /// Length of the range.
+    range: f64,
     depth: usize,
     most_branches: usize,
     points_left: usize,
@@ -178,6 +180,7 @@ impl<'a, 'v> Search<'a, 'v> {
         watch: Watch<'v>,
     ) -> Self {
         Self {
+            range: shooting.length(),
             shooting,
             depth,
             most_branches: branches,
@@ -286,6 +289,7 @@ impl<'a, 'v> Search<'a, 'v> {
         if mirrored {
             return Err(Reason::Mirrored);
         }
+        let mut failed = None;
         for &side in sides {
             if self.watch.interrupted {
                 return Err(Reason::Interrupted);
@@ -294,8 +298,14 @@ impl<'a, 'v> Search<'a, 'v> {
                 return Err(Reason::Budget);
             }
             let request = self.shooting.clone().max_points(self.points_left);
-            let branch = request.switch_with(&event, side, |cycle| self.watch.see(cycle));
-            let branch = branch.map_err(Reason::Failed)?;
+            let branch = match request.switch_with(&event, side, |cycle| self.watch.see(cycle)) {
+                Ok(branch) => branch,
+                Err(error) => {
+                    // The other side may begin all the same.
+                    failed = Some(error);
+                    continue;
+                }
+            };
             let origin = Origin::Event {
                 branch: number,
                 event: index,
@@ -303,12 +313,12 @@ impl<'a, 'v> Search<'a, 'v> {
             };
             self.add(origin, depth, branch);
         }
-        Ok(())
+        failed.map_or(Ok(()), |error| Err(Reason::Failed(error)))
     }
 
     /// Another branch that passes the same crossing.
     fn crossing_at(&self, number: usize, event: &CycleEvent) -> Option<usize> {
-        let same = |other: &&CycleEvent| known::is_same_place(other, event);
+        let same = |other: &&CycleEvent| known::is_same_place(other, event, self.range);
         let mut limbs = self.diagram.branches.iter().enumerate();
         let crosses = |limb: &Limb| {
             let mut crossings = limb.branch.events(EventKind::BranchPoint);
@@ -325,7 +335,7 @@ impl<'a, 'v> Search<'a, 'v> {
         let is_joint = |end: Option<End>, joint: Option<&CycleEvent>| {
             let regular =
                 matches!(end, Some(End::Joined { period, .. }) if period == event.cycle.period);
-            regular && joint.is_some_and(|joint| known::is_same_place(joint, event))
+            regular && joint.is_some_and(|joint| known::is_same_place(joint, event, self.range))
         };
         let ends = limbs.filter(|(_, limb)| {
             let joints = || limb.branch.events(EventKind::BranchPoint);

@@ -3,14 +3,16 @@
 use super::diagram::Limb;
 use crate::flow::shooting::{Cycle, CycleEvent, Shooting};
 
-/// Values and states of one event, found on two branches, differ by no more than this part, or by their stated errors.
+/// Values of one event, found on two branches, differ by no more than this part of the range, or by their stated errors.
 const SAME: f64 = 1e-6;
+/// Stated errors are heeded up to this part of the range.
+const LARGEST: f64 = 1e-3;
 
-/// Whether an event at the end of a branch is this event of a more regular one.
-pub(super) fn is_same_place(end: &CycleEvent, event: &CycleEvent) -> bool {
+/// Whether an event at the end of a branch is this event of a more regular one, in a range of some length.
+pub(super) fn is_same_place(end: &CycleEvent, event: &CycleEvent, range: f64) -> bool {
     let (a, b) = (end.cycle.value, event.cycle.value);
-    let error = (end.error + event.error).min(SAME * b.abs().max(SAME));
-    (a - b).abs() <= SAME * b.abs() + error && visits(&end.cycle, event.cycle.state())
+    let error = (end.error + event.error).min(LARGEST * range);
+    (a - b).abs() <= SAME * range + error && visits(&end.cycle, event.cycle.state())
 }
 
 /// Whether an orbit passes through a state at the beginning of one of its segments.
@@ -48,6 +50,16 @@ pub(super) fn contains(shooting: &Shooting<'_>, limb: &Limb, orbit: &Cycle) -> b
         };
         let request = shooting.clone().period(orbit.period).near(start.state());
         let found = request.orbit(orbit.value);
-        found.is_ok_and(|found| visits(&found, orbit.state()))
+        found.is_ok_and(|found| visits(&found, orbit.state()) || is_later(shooting, &found, orbit))
     })
+}
+
+/// Whether a symmetric orbit of several periods begins in another one of them: its segments are parts of half of it, which need not
+/// be whole periods.
+fn is_later(shooting: &Shooting<'_>, found: &Cycle, orbit: &Cycle) -> bool {
+    let several = orbit.symmetric && orbit.period > 1;
+    several
+        && shooting
+            .returns(orbit)
+            .is_ok_and(|states| states.iter().any(|state| visits(found, state)))
 }

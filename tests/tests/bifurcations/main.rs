@@ -1,5 +1,6 @@
 //! Branches that begin at bifurcations, against exact values.
 
+mod asked;
 mod backbone;
 mod balance;
 mod cascade;

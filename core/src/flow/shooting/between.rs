@@ -62,7 +62,7 @@ impl<'a> Run<'_, 'a> {
         let mut index = 0;
         while index + 1 < parts.len() {
             let (a, b) = (&parts[index], &parts[index + 1]);
-            let both = Tests::changes(a.tests, b.tests, half).contains(&Change::TURNED);
+            let both = Tests::changes(a.tests, b.tests, half, 0.0).contains(&Change::TURNED);
             let apart = if both {
                 self.beside_turn(equations, newton, [a, b])
             } else {

@@ -11,7 +11,7 @@ use crate::continuation::problem::Scale;
 use crate::error::Error;
 use crate::newton::{Newton, NewtonOptions};
 
-/// An orbit this far from the value, relative to it, has nothing to do with it.
+/// An orbit this far from the value, relative to it, or to one if it is zero, has nothing to do with it.
 const FAR: f64 = 0.1;
 /// First step, as a part of the size of the orbit, and how the steps grow.
 const STEP: f64 = 1e-5;
@@ -80,7 +80,12 @@ impl Search<'_, '_> {
         for held in 0..self.equations.order() {
             let mut u = u.to_vec();
             let solved = self.solve(&mut u, held);
-            let far = FAR * self.value.abs();
+            let unit = if self.value == 0.0 {
+                1.0
+            } else {
+                self.value.abs()
+            };
+            let far = FAR * unit;
             let distance = self.distance(&u);
             let nearer = nearest.as_ref().is_none_or(|n| distance < self.distance(n));
             if solved && distance <= far && nearer {

@@ -1,10 +1,12 @@
 //! What was asked for, checked before any work.
 
+use super::cycle::Cycle;
 use super::request::Shooting;
 use super::setting::{Setting, Source};
 use super::start::Guess;
 use crate::error::Error;
 use crate::flow::affine::Affine;
+use crate::flow::stroboscope::Stroboscope;
 use crate::flow::{self, Options};
 use crate::labels::Labels;
 use crate::layout::Layout;
@@ -17,6 +19,57 @@ use crate::validate;
 const MOST_UNKNOWNS: usize = 6000;
 
 impl<'a> Shooting<'a> {
+    /// An orbit that is given is one of this system, and its value is that of what is varied here.
+    pub(super) fn belongs(&self, cycle: &Cycle) -> Result<(), Error> {
+        let facts = self.system.facts();
+        let expected = 2 * facts.coordinates.len();
+        let entries = 2 * cycle.extremes.len();
+        if entries != expected {
+            return Err(Error::State { entries, expected });
+        }
+        let (values, expected) = (cycle.parameters.len(), facts.parameters.len());
+        if values != expected {
+            return Err(Error::Values { values, expected });
+        }
+        let varied = match validate::variable(facts, self.vary.as_deref())? {
+            Variable::Omega => cycle.omega,
+            Variable::Parameter(index) => cycle.parameters[index],
+        };
+        if varied == cycle.value {
+            return Ok(());
+        }
+        let name = self.vary.clone().unwrap_or_else(|| "omega".to_owned());
+        let must = "must be what the branch of the event or orbit varies";
+        Err(Error::Varied { name, must })
+    }
+
+    /// The states of an orbit at the beginnings of its periods of the declaration, the first of which it is given by.
+    pub(crate) fn returns(&self, cycle: &Cycle) -> Result<Vec<Vec<f64>>, Error> {
+        let tolerance = self.tolerance;
+        let flow = flow::at(
+            self.system,
+            &cycle.parameters,
+            cycle.omega,
+            Options { tolerance },
+        )?;
+        let mut map = Stroboscope::new(flow);
+        let mut state = cycle.state().to_vec();
+        let mut states = vec![state.clone()];
+        for _ in 1..cycle.period {
+            let value = cycle.value;
+            map.map(&mut state)
+                .map_err(|reason| Error::Motion { value, reason })?;
+            states.push(state.clone());
+        }
+        Ok(states)
+    }
+
+    /// Length of the range; zero without one.
+    pub(crate) fn length(&self) -> f64 {
+        let ends = self.from.zip(self.to);
+        ends.map_or(0.0, |(from, to)| (to - from).abs())
+    }
+
     /// The range, and everything else that was asked for, checked.
     pub(super) fn ranged(&self) -> Result<([f64; 2], Setting<'a>), Error> {
         let from = self.from.ok_or(Error::Missing { name: "from" })?;

@@ -10,8 +10,6 @@ use crate::continuation::follow::CurvePoint;
 use crate::flow::FlowError;
 use crate::newton::{Newton, NewtonOptions};
 
-/// Two states are the same if they differ by this part of the orbit's size.
-const SAME: f64 = 1e-7;
 /// The same at a branch point: along a branch that turns there, states are known to the root of what the value is known to.
 const SAME_AT_POINT: f64 = 1e-4;
 /// The other branch is followed beyond the point before by this part of the step.
@@ -27,24 +25,25 @@ pub(super) struct Recurrence {
 }
 
 impl Recurrence {
-    /// Of the orbit `u` of some size; whether it has odd symmetry only where that is possible.
+    /// Of the orbit `u` of some size, two states of which are one if they differ by this part of it; whether it has odd symmetry only
+    /// where that is possible.
     pub(super) fn of(
         equations: &mut Equations<'_>,
         u: &[f64],
-        size: f64,
+        (size, same): (f64, f64),
         odd: bool,
     ) -> Result<Self, FlowError> {
-        Self::within(equations, u, (size, SAME), odd)
+        Self::within(equations, u, (size, same), odd)
     }
 
     /// The same at a branch point.
     pub(super) fn at_point(
         equations: &mut Equations<'_>,
         u: &[f64],
-        size: f64,
+        (size, same): (f64, f64),
         odd: bool,
     ) -> Result<Self, FlowError> {
-        Self::within(equations, u, (size, SAME_AT_POINT), odd)
+        Self::within(equations, u, (size, same.max(SAME_AT_POINT)), odd)
     }
 
     fn within(

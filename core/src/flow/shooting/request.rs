@@ -246,6 +246,7 @@ impl<'a> Shooting<'a> {
         side: Side,
         mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
     ) -> Result<CycleBranch, Error> {
+        self.belongs(&event.cycle)?;
         let doubles = event.kind == EventKind::PeriodDoubling;
         let request = Self {
             period: event.cycle.period * if doubles { 2 } else { 1 },
@@ -276,6 +277,12 @@ impl<'a> Shooting<'a> {
         mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
     ) -> Result<CycleBranch, Error> {
         let ([from, to], setting) = self.ranged()?;
+        validate::option(
+            "through",
+            value,
+            from.min(to)..=from.max(to),
+            "must be between from and to",
+        )?;
         let guess = self.guess(value)?;
         compute::branch_through(&setting, &guess, value, [from, to], &mut visit)
     }
@@ -327,6 +334,7 @@ impl<'a> Shooting<'a> {
     /// # Errors
     /// If a parameter or an option is not usable, or the motion cannot be computed.
     pub fn point(&self, cycle: &Cycle) -> Result<Point, Error> {
+        self.belongs(cycle)?;
         let request = Self {
             period: cycle.period,
             segments: None,
@@ -348,6 +356,7 @@ impl<'a> Shooting<'a> {
         second: &str,
         [low, high]: [f64; 2],
     ) -> Result<Track, Error> {
+        self.belongs(&event.cycle)?;
         let facts = self.system.facts();
         let request = Self {
             period: event.cycle.period,

@@ -22,6 +22,9 @@ use crate::newton::{Newton, NewtonError, NewtonOptions};
 use crate::stability::{Stability, distance};
 use crate::statistics::Statistics;
 
+/// Test functions are noise below so many times of what must vanish.
+const NOISE: f64 = 10.0;
+
 /// What a run has gathered.
 pub(super) struct Run<'r, 'a> {
     pub(super) setting: &'r Setting<'a>,
@@ -145,7 +148,7 @@ impl<'r, 'a> Run<'r, 'a> {
         let span = equations.span;
         let odd = self.setting.odd;
         if !self.cycles.is_empty() && (span.period > 1 || odd) {
-            let recurrence = Recurrence::of(equations, &at.u, self.size, odd)?;
+            let recurrence = Recurrence::of(equations, &at.u, self.regular(equations), odd)?;
             if recurrence.period < span.period || recurrence.odd != span.half {
                 // The step that led here is seen next, and is the last one.
                 self.joined = Some(recurrence);
@@ -185,13 +188,15 @@ impl<'r, 'a> Run<'r, 'a> {
                 tests,
             });
             let parts = self.parts(equations, newton, ends);
+            let noise = NOISE * self.setting.vanishing(equations.frame.ratio);
             self.earlier = Some(Earlier {
                 distance: along(newton, before, behind),
                 tests: a,
             });
             for pair in parts.windows(2) {
                 let step = (&pair[0].point, &pair[1].point);
-                for change in Tests::changes(pair[0].tests, pair[1].tests, equations.span.half) {
+                let half = equations.span.half;
+                for change in Tests::changes(pair[0].tests, pair[1].tests, half, noise) {
                     let known = self.events.len();
                     self.event(equations, newton, step, change);
                     if change.kind == EventKind::BranchPoint
@@ -212,6 +217,11 @@ impl<'r, 'a> Run<'r, 'a> {
         Continue::Continue(())
     }
 
+    /// The size of the orbits, and by what part of it two states differ that are one.
+    fn regular(&self, equations: &Equations<'_>) -> (f64, f64) {
+        (self.size, self.setting.same(equations.frame.ratio))
+    }
+
     /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
     /// same orbits again, looked at from elsewhere.
     fn meets(&mut self, equations: &mut Equations<'a>) -> bool {
@@ -223,7 +233,8 @@ impl<'r, 'a> Run<'r, 'a> {
             return false;
         }
         let u = equations.unknowns_of(&event.cycle.states, event.cycle.value);
-        let Ok(recurrence) = Recurrence::at_point(equations, &u, self.size, odd) else {
+        let Ok(recurrence) = Recurrence::at_point(equations, &u, self.regular(equations), odd)
+        else {
             return false;
         };
         let regular =

@@ -79,6 +79,13 @@ impl<'a> Setting<'a> {
         }
     }
 
+    /// By what part of the size of an orbit two states differ that are one: half of an orbit, or one of its periods, is not integrated
+    /// in the same steps as all of it.
+    pub(super) fn same(&self, ratio: f64) -> f64 {
+        let noise = self.noise(self.source.tolerance, ratio);
+        (1e3 * noise).clamp(1e-7, 1e-2)
+    }
+
     /// How exactly a test function must vanish.
     pub(super) fn vanishing(&self, ratio: f64) -> f64 {
         let noise = self.noise(self.source.tolerance, ratio);

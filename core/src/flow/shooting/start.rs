@@ -68,7 +68,8 @@ pub(super) fn first<'a>(
     };
     first.settle(setting).map_err(motion)?;
     let size = first.size;
-    let recurrence = Recurrence::of(&mut first.equations, &first.u, size, setting.odd);
+    let same = (size, setting.same(first.equations.frame.ratio));
+    let recurrence = Recurrence::of(&mut first.equations, &first.u, same, setting.odd);
     let recurrence = recurrence.map_err(motion)?;
     if recurrence.period < setting.period {
         return Err(Error::NoSuchPeriod {

@@ -86,7 +86,8 @@ pub(super) fn depart<'a>(
         let step = (side * departure, range);
         if let Some(found) = first_orbit(setting, &mut first, &direction, step) {
             let (u, point) = found;
-            let recurrence = Recurrence::of(&mut first.equations, &u, first.size, setting.odd);
+            let same = (first.size, setting.same(first.equations.frame.ratio));
+            let recurrence = Recurrence::of(&mut first.equations, &u, same, setting.odd);
             let is_new = |found: Recurrence| found.period == setting.period && !found.odd;
             if recurrence.is_ok_and(is_new) {
                 first.u = u;

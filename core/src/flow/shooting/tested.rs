@@ -92,8 +92,9 @@ impl Tests {
         }
     }
 
-    /// What changes its sign from one orbit to the next. Without maps every turn counts as a fold.
-    pub(super) fn changes(a: Self, b: Self, half: bool) -> Vec<Change> {
+    /// What changes its sign from one orbit to the next. Without maps every turn counts as a fold. Without damping the product of
+    /// pairs is rounding all along, and so is what is below `noise` at both orbits.
+    pub(super) fn changes(a: Self, b: Self, half: bool, noise: f64) -> Vec<Change> {
         let turned = (a.slope < 0.0) != (b.slope < 0.0);
         let minus = a.minus * b.minus < 0.0;
         let known = !a.minus.is_nan() && !b.minus.is_nan();
@@ -117,7 +118,7 @@ impl Tests {
             let test = Test::Plus;
             changes.push(Change { test, kind });
         }
-        if a.pairs * b.pairs < 0.0 {
+        if a.pairs * b.pairs < 0.0 && a.pairs.abs().max(b.pairs.abs()) > noise {
             changes.push(Change {
                 test: Test::Pairs,
                 kind: EventKind::NeimarkSacker,

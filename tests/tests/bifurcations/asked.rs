@@ -1,0 +1,111 @@
+//! What is asked of shooting, and cannot be; and what is no bifurcation.
+
+use hertzian::{Error, EventKind, Shooting, Side};
+use hertzian_tests::TwoMasses;
+
+use crate::cascade::MODEL;
+
+hertzian::oscillator! {
+    /// Nothing takes energy away.
+    Undamped(x) {
+        param drive;
+        ddot(x) + x + x^3 = drive*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// A loaded contact that is not in closed form.
+    Contact(x) {
+        param drive;
+        law contact(gap) { gap > 0 => 0.1*dot(gap) + gap^1.5, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + 1;
+    }
+}
+
+/// Areas are kept all along the branch: that is no torus.
+#[test]
+fn without_damping_there_is_no_neimark_sacker_bifurcation() {
+    let model = Undamped { drive: 0.1 };
+    let branch = Shooting::of(&model).from(0.3).to(0.9).run().unwrap();
+    assert!(branch.cycles.len() > 10);
+    let tori = branch.events(EventKind::NeimarkSacker).count();
+    let omitted = branch.turns.iter();
+    assert_eq!(tori, 0);
+    assert!(
+        omitted
+            .clone()
+            .all(|turn| turn.kind != EventKind::NeimarkSacker)
+    );
+}
+
+/// Twice the period of an orbit is not its period, however coarse the flow.
+#[test]
+fn a_shorter_period_is_recognised_at_any_tolerance() {
+    let model = Contact { drive: 0.1 };
+    for tolerance in [1e-3, 1e-4, 1e-8] {
+        let request = Shooting::of(&model).tolerance(tolerance);
+        let orbit = request.orbit(1.5).unwrap();
+        let twice = request.near(orbit.state()).period(2).orbit(1.5);
+        assert!(
+            matches!(twice, Err(Error::NoSuchPeriod { period: 2, .. })),
+            "{tolerance}: {twice:?}"
+        );
+    }
+}
+
+/// The doubling at a drive of 1.28, given where the frequency varies, and to other systems.
+#[test]
+fn an_event_belongs_to_what_is_varied() {
+    let request = Shooting::of(&MODEL).vary("drive").omega(1.0);
+    let branch = request.from(1.0).to(1.4).run().unwrap();
+    let event = branch.events(EventKind::PeriodDoubling).next().unwrap();
+    let over_omega = Shooting::of(&MODEL).from(0.4).to(2.0);
+    let varied = |error| matches!(error, Error::Varied { .. });
+    assert!(varied(over_omega.switch(event, Side::One).unwrap_err()));
+    assert!(varied(over_omega.point(&event.cycle).unwrap_err()));
+    assert!(varied(
+        over_omega.track(event, "drive", [1.0, 2.0]).unwrap_err()
+    ));
+    let masses = TwoMasses {
+        stop: 1.0,
+        drive: 0.1,
+    };
+    let another = Shooting::of(&masses).from(0.4).to(2.0);
+    let state = |error| {
+        matches!(
+            error,
+            Error::State {
+                entries: 2,
+                expected: 4
+            }
+        )
+    };
+    assert!(state(another.switch(event, Side::One).unwrap_err()));
+    let contact = Contact { drive: 1.0 };
+    let another = Shooting::of(&contact).vary("drive").omega(1.0);
+    let another = another.from(1.0).to(1.4);
+    let values = |error| matches!(error, Error::Values { expected: 1, .. });
+    assert!(values(another.switch(event, Side::One).unwrap_err()));
+    assert!(values(
+        another.track(event, "omega", [0.9, 1.1]).unwrap_err()
+    ));
+}
+
+#[test]
+fn a_branch_goes_through_values_of_its_range() {
+    let model = Contact { drive: 0.1 };
+    let request = Shooting::of(&model).from(1.4).to(1.6);
+    for value in [1.3, f64::NAN] {
+        let error = request.through(value).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                Error::Option {
+                    name: "through",
+                    ..
+                }
+            ),
+            "{error}"
+        );
+    }
+}
