@@ -1,5 +1,52 @@
 //! Tests of hertzian across its crates, and what several of them need.
 
+use hertzian::Complex;
+
+hertzian::oscillator! {
+    /// Contact on one side, Wang et al. (2021), Eq. (1).
+    pub OneSided(x) {
+        /// damping ratio
+        param zeta in 0.0..;
+        /// exponent of the force
+        param alpha > 0;
+        /// load
+        param load;
+        /// amplitude
+        param drive;
+        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^alpha, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// The same with a linear spring: its motions have closed forms between switches.
+    pub OneSidedLinear(x) {
+        /// damping ratio
+        param zeta in 0.0..;
+        /// load
+        param load;
+        /// amplitude
+        param drive;
+        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+hertzian::oscillator! {
+    /// The same spring on both sides.
+    pub Continuous(x) {
+        /// damping ratio
+        param zeta in 0.0..;
+        /// exponent of the force
+        param alpha > 0;
+        /// load
+        param load;
+        /// amplitude
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^alpha = drive*cos(omega*t) + load;
+    }
+}
+
 hertzian::oscillator! {
     /// Two masses in a row, the second held to the ground, the first with an elastic stop at distance one.
     /// Stiffness and clearance as in example 03 of NLvib (Krack and Gross 2019); damping is 0.03 of the stiffness matrix.
@@ -24,4 +71,21 @@ pub fn nearest<T>(
     among
         .into_iter()
         .min_by(|a, b| apart(a).total_cmp(&apart(b)))
+}
+
+/// Largest distance between two sets of multipliers, each matched with its nearest.
+///
+/// # Panics
+/// If they are not as many.
+pub fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let mut free = b.to_vec();
+    let mut largest = 0.0_f64;
+    for x in a {
+        let apart = |i: &usize| (free[*i] - x).norm();
+        if let Some(index) = nearest(0..free.len(), 0.0, apart) {
+            largest = largest.max((free.swap_remove(index) - x).norm());
+        }
+    }
+    largest
 }

@@ -26,17 +26,7 @@
 use hertzian::flow::Tangent;
 use hertzian::flow::affine::Affine;
 use hertzian::flow::stroboscope::Stroboscope;
-
-hertzian::oscillator! {
-    /// One-sided spring.
-    OneSided(x) {
-        param zeta in 0.0..;
-        param load;
-        param drive;
-        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
+use hertzian_tests::OneSidedLinear;
 
 type State = [f64; 2];
 
@@ -45,7 +35,7 @@ const PERIODS: usize = 6;
 const RETURN: usize = 28;
 
 fn with_map<T>(drive: f64, then: impl FnOnce(&mut Stroboscope<'_>) -> T) -> T {
-    let model = OneSided {
+    let model = OneSidedLinear {
         zeta: 0.032,
         load: 1.0,
         drive,

@@ -20,6 +20,8 @@ use crate::system::Variable;
 
 /// Points of a branch, at most.
 const POINTS: usize = 2000;
+/// Largest step: only the end counts, and the angle between tangents keeps to the branch.
+const STEP: f64 = 0.4;
 /// Multiples of the frequency wanted at which a branch is begun.
 const HIGHER: [f64; 4] = [1.3, 2.0, 4.0, 10.0];
 
@@ -98,7 +100,7 @@ fn followed<P: Problem>(
         from,
         to,
         points: POINTS,
-        steps: StepControl::default(),
+        steps: StepControl::with_largest(STEP),
         newton: NewtonOptions {
             iterations: 12,
             damped: false,

@@ -2,22 +2,11 @@
 //! system. Doublings of the period are in `doubling`.
 
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Shooting, Stop, System, Verdict};
-use hertzian_tests::TwoMasses;
+use hertzian_tests::{OneSidedLinear, TwoMasses};
 
 use crate::cascade::MODEL;
 use crate::symmetry::{HARDENING, Hardening, SOFTENING, Softening};
 use crate::torus::Circulatory;
-
-hertzian::oscillator! {
-    /// Wang et al. (2021), Fig. 5a.
-    OneSided(x) {
-        param zeta in 0.0..;
-        param load;
-        param drive;
-        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
 
 hertzian::oscillator! {
     /// Two wells, at minus one and one.
@@ -129,7 +118,7 @@ fn contact_is_lost_where_the_linear_motion_reaches_zero() {
 /// meets it where its linear motion has an amplitude of one. Shooting has the first at the same place.
 #[test]
 fn levels_are_touched_where_the_linear_motion_reaches_them() {
-    let contact = OneSided {
+    let contact = OneSidedLinear {
         zeta: 0.032,
         load: 1.0,
         drive: 0.1,

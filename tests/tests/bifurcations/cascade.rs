@@ -9,18 +9,9 @@ use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Reason};
 use hertzian::flow;
 use hertzian::flow::stroboscope::Stroboscope;
 use hertzian::{CycleEvent, End, EventKind, Stop};
+use hertzian_tests::{OneSidedLinear, nearest};
 
-hertzian::oscillator! {
-    pub OneSided(x) {
-        param zeta >= 0;
-        param load;
-        param drive;
-        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
-
-pub const MODEL: OneSided = OneSided {
+pub const MODEL: OneSidedLinear = OneSidedLinear {
     zeta: 0.032,
     load: 1.0,
     drive: 0.1,
@@ -68,12 +59,9 @@ fn assert_found<'e>(
     kind: EventKind,
     exact: &Exact,
 ) -> &'e CycleEvent {
-    let distance = |event: &&CycleEvent| (event.cycle.value - exact.drive).abs();
-    let nearest = events
-        .filter(|event| event.kind == kind)
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .unwrap();
-    let error = distance(&nearest);
+    let of_kind = events.filter(|event| event.kind == kind);
+    let nearest = nearest(of_kind, exact.drive, |event| event.cycle.value).unwrap();
+    let error = (nearest.cycle.value - exact.drive).abs();
     assert!(error < 1e-11, "{nearest}: {error:.1e}");
     assert!(error <= nearest.error, "{nearest}: {error:.1e}");
     let critical = if kind == EventKind::Fold { 1.0 } else { -1.0 };
@@ -169,7 +157,7 @@ fn as_far_as_period_16() {
     }
     let cycles = &first(16).branch.cycles;
     let cycle = &cycles[cycles.len() / 2];
-    let model = OneSided {
+    let model = OneSidedLinear {
         drive: cycle.value,
         ..MODEL
     };

@@ -2,15 +2,14 @@
 
 use hertzian::flow::shooting::SpecialKind;
 use hertzian::{EventKind, Shooting};
-
-use crate::cascade::OneSided;
+use hertzian_tests::OneSidedLinear;
 
 /// Drive and frequency stay in contact as long as the linear motion does not reach zero: `A^2 = W^2 ((1 - omega^2)^2 +
 /// (2 zeta omega)^2)`.
 #[test]
 fn a_linear_contact_is_lost_on_a_known_curve() {
     let (zeta, load) = (0.032, 1.0);
-    let model = OneSided {
+    let model = OneSidedLinear {
         zeta,
         load,
         drive: 0.2,

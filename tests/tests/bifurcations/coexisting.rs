@@ -8,8 +8,8 @@ use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin};
 use hertzian::flow::basin::{Axis, Basin, Grid};
 use hertzian::flow::shooting::Cycle;
 use hertzian::{Complex, Shooting, Verdict};
+use hertzian_tests::OneSidedLinear;
 
-use crate::cascade::OneSided;
 use crate::curves::Hertz;
 
 /// Period, multiplier of the pair with a positive imaginary part, peak-to-peak, and the states once in every period of the
@@ -63,7 +63,7 @@ fn basin() -> Basin {
 }
 
 /// The orbits of a period at frequency one, on all branches.
-fn at_frequency_1(diagram: &Diagram, model: &OneSided, period: usize) -> Vec<Cycle> {
+fn at_frequency_1(diagram: &Diagram, model: &OneSidedLinear, period: usize) -> Vec<Cycle> {
     let mut found = Vec::new();
     for limb in diagram
         .branches
@@ -86,7 +86,7 @@ fn at_frequency_1(diagram: &Diagram, model: &OneSided, period: usize) -> Vec<Cyc
 
 #[test]
 fn periods_one_to_five_of_figure_9() {
-    let model = OneSided {
+    let model = OneSidedLinear {
         zeta: 0.032,
         load: 1.0,
         drive: 1.0,

@@ -3,8 +3,7 @@
 
 use hertzian::flow::shooting::{SpecialKind, Track};
 use hertzian::{Error, EventKind, Shooting, System};
-
-use crate::cascade::OneSided;
+use hertzian_tests::{OneSidedLinear, nearest};
 
 hertzian::oscillator! {
     pub Hertz(x) {
@@ -22,7 +21,7 @@ fn model(hertz: bool, drive: f64) -> Box<dyn System> {
     if hertz {
         Box::new(Hertz { zeta, load, drive })
     } else {
-        Box::new(OneSided { zeta, load, drive })
+        Box::new(OneSidedLinear { zeta, load, drive })
     }
 }
 
@@ -42,7 +41,7 @@ fn assert_confirmed(track: &Track, hertz: bool) {
                 .near(&point.state);
             let branch = near.from(aside(part)).to(aside(-part)).run().ok()?;
             let values = branch.events(track.kind).map(|event| event.cycle.value);
-            values.min_by(|a, b| (a - omega).abs().total_cmp(&(b - omega).abs()))
+            nearest(values, omega, |value| *value)
         });
         let error = found.map(|value| (value - omega).abs());
         assert!(

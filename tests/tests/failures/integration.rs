@@ -3,7 +3,7 @@
 use hertzian::FrequencyResponse;
 use hertzian::stability::Method;
 
-use crate::models::{Power, answer, distance, first, linear};
+use crate::models::{OneSided, answer, distance, first, linear};
 use crate::oracle::{Contact, EXACT, Switches, pair, paper};
 
 /// Fourth order in name: a step that does not know of the switch errs by its own length there.
@@ -41,7 +41,7 @@ fn without_saltation_an_error_stays() {
         omega: 0.8,
         ..paper(0.1)
     };
-    let model = Power {
+    let model = OneSided {
         zeta: oracle.zeta,
         alpha: oracle.alpha,
         load: oracle.load,

@@ -3,7 +3,7 @@
 use hertzian::stability::{Method, Projection};
 use hertzian::{Error, FrequencyResponse, Point, Shooting, Stability, System, Verdict};
 
-use crate::models::{Continuous, Power, answer, distance, first, shown, start};
+use crate::models::{Continuous, OneSided, answer, distance, first, shown, start};
 
 /// The first orbit at a frequency, at defaults, and what is true of it.
 fn at(system: &dyn System, omega: f64) -> (Point, Stability) {
@@ -43,7 +43,7 @@ fn projected(system: &dyn System, omega: f64, harmonics: usize, exact: &Stabilit
 /// Both multipliers are on the unit circle. Whoever compares moduli with one gets a verdict by chance.
 #[test]
 fn without_damping_nothing_is_decided() {
-    let model = Power {
+    let model = OneSided {
         zeta: 0.0,
         alpha: 1.5,
         load: 1.0,
@@ -125,7 +125,7 @@ fn many_impacts_in_a_slow_period() {
         (1.0, 0.2, 1.5, false),
         (1.5, 0.05, 1.1, false),
     ] {
-        let model = Power {
+        let model = OneSided {
             zeta,
             alpha,
             load: 1.0,

@@ -3,7 +3,7 @@
 use hertzian::stability::{Method, Sorting};
 use hertzian::{Aft, FrequencyResponse, Shooting, Stop};
 
-use crate::models::{Power, answer, distance, first, linear, shown, start};
+use crate::models::{OneSided, answer, distance, first, linear, shown, start};
 
 /// Wang et al. (2021), Fig. 5a, has two folds: exactly at 0.960163672 and 0.715119550, of the balance with 10 harmonics at
 /// 0.960163099 and 0.714851667 (reference values). The sampled residual jumps, and its branch turns where it does.
@@ -34,7 +34,7 @@ fn samples_invent_folds() {
 #[test]
 fn samples_of_an_unbounded_stiffness_are_erratic() {
     let (drive, omega) = (1.0, 0.7);
-    let model = Power {
+    let model = OneSided {
         zeta: 0.032,
         alpha: 0.6,
         load: 1.0,

@@ -1,31 +1,9 @@
 //! The two oscillators of the paper, and its figures: where each is swept, and what is known of it.
 
 use hertzian::{Event, FrequencyResponse, Stop, System};
+pub use hertzian_tests::{Continuous, OneSided};
 
 use crate::exact::{self, Exact};
-
-hertzian::oscillator! {
-    /// Continuous power-form spring, Wang et al. (2021), Eq. (1).
-    pub Continuous(x) {
-        param zeta >= 0;
-        param alpha > 0;
-        param load;
-        param drive;
-        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^alpha = drive*cos(omega*t) + load;
-    }
-}
-
-hertzian::oscillator! {
-    /// The same with spring and damping on one side only, as in a contact that opens.
-    pub OneSided(x) {
-        param zeta >= 0;
-        param alpha > 0;
-        param load;
-        param drive;
-        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^alpha, else => 0 }
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
 
 /// A sweep of the frequency, with the folds that it passes in order of frequency.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,7 @@
 //! What is stated of the error of an event, and of an orbit, against the true error.
 
 use hertzian::{Event, EventKind, FrequencyResponse, Point};
+use hertzian_tests::nearest;
 
 use crate::curves::{CURVE_2B, CURVE_5A};
 use crate::direct::PowerForm;
@@ -51,11 +52,11 @@ impl std::fmt::Display for Row {
 /// `None` if there is none, as where harmonics are too few to know it.
 fn meant<'e>(folds: &'e [Event], exact: &Exact) -> Option<&'e Event> {
     let far = |fold: &Event| (fold.point.value - exact.omega).abs();
-    folds
+    let alike = folds
         .iter()
         .filter(|fold| (fold.point.peak_to_peak() / exact.peak_to_peak - 1.0).abs() < 0.1)
-        .filter(|fold| far(fold) < 0.01)
-        .min_by(|a, b| far(a).total_cmp(&far(b)))
+        .filter(|fold| far(fold) < 0.01);
+    nearest(alike, exact.omega, |fold| fold.point.value)
 }
 
 /// Rows of one figure, and how many folds were missed.

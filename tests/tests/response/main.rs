@@ -6,34 +6,14 @@ mod requests;
 mod start;
 mod values;
 
+pub use hertzian_tests::{Continuous, OneSided};
+
 hertzian::oscillator! {
     /// Nothing but linear terms.
     pub Linear(x) {
         param zeta >= 0;
         param drive;
         ddot(x) + 2*zeta*dot(x) + x = drive*cos(omega*t);
-    }
-}
-
-hertzian::oscillator! {
-    /// The paper's Eq. (1).
-    pub OneSided(x) {
-        param zeta in 0.0..;
-        param alpha > 0;
-        param load;
-        param drive;
-        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^alpha, else => 0 }
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
-
-hertzian::oscillator! {
-    pub Continuous(x) {
-        param zeta in 0.0..;
-        param alpha > 0;
-        param load;
-        param drive;
-        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^alpha = drive*cos(omega*t) + load;
     }
 }
 

@@ -135,3 +135,39 @@ fn a_vanishing_frequency_ends() {
         }
     }
 }
+
+hertzian::oscillator! {
+    /// Beside its resonance the linear motion meets the stop, and says nothing of the orbit.
+    CubicWithStop(x) {
+        param drive;
+        law hertz(gap) { gap > 0 => 5*gap^1.5, else => 0 }
+        ddot(x) + 0.04*dot(x) + x + 0.3*x^3 + hertz(x - 0.8) = drive*cos(omega*t);
+    }
+}
+
+/// A start costs little wherever it is, and finds an orbit of the branch that begins far from the resonance. Harmonics are few again
+/// where contact is lost.
+#[test]
+fn a_start_beside_a_resonance_is_cheap() {
+    let model = CubicWithStop { drive: 0.1 };
+    let request = FrequencyResponse::of(&model).to(1.6);
+    let whole = request.clone().from(0.3).run().unwrap();
+    for omega in [0.9, 1.0, 1.05, 1.1, 1.3] {
+        let only = request.clone().from(omega);
+        let first = only.run_with(|_| std::ops::ControlFlow::Break(()));
+        let first = first.unwrap();
+        assert!(
+            first.statistics.jacobians < 150,
+            "{omega}: {}",
+            first.statistics.jacobians
+        );
+        let found = first.points[0].peak_to_peak();
+        let expected = whole.at(omega).unwrap();
+        let near = expected
+            .iter()
+            .any(|point| (found / point.peak_to_peak() - 1.0).abs() < 2e-6);
+        assert!(near, "{omega}: {found}");
+    }
+    let branch = request.from(1.0).run().unwrap();
+    assert_eq!(branch.points.last().unwrap().orbit.harmonics(), 5);
+}

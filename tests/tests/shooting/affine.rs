@@ -11,18 +11,9 @@
 
 use hertzian::flow::shooting::{Cycle, CycleBranch, CycleEvent};
 use hertzian::{Complex, Error, EventKind, FrequencyResponse, Shooting, Verdict};
+use hertzian_tests::OneSidedLinear;
 
-hertzian::oscillator! {
-    OneSided(x) {
-        param zeta >= 0;
-        param load;
-        param drive;
-        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
-
-const MODEL: OneSided = OneSided {
+const MODEL: OneSidedLinear = OneSidedLinear {
     zeta: 0.032,
     load: 1.0,
     drive: 1.0,

@@ -12,29 +12,7 @@ use std::f64::consts::TAU;
 use hertzian::flow::shooting::{CycleBranch, CycleEvent, End};
 use hertzian::flow::{self, Options};
 use hertzian::{EventKind, Shooting, Stop, System, Verdict};
-
-hertzian::oscillator! {
-    /// Continuous power-form spring, Wang et al. (2021), Eq. (1).
-    pub Continuous(x) {
-        param zeta >= 0;
-        param alpha > 0;
-        param load;
-        param drive;
-        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^alpha = drive*cos(omega*t) + load;
-    }
-}
-
-hertzian::oscillator! {
-    /// The same with spring and damping on one side only, as in a contact that opens.
-    pub OneSided(x) {
-        param zeta >= 0;
-        param alpha > 0;
-        param load;
-        param drive;
-        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^alpha, else => 0 }
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
+use hertzian_tests::{Continuous, OneSided};
 
 /// What the exact values leave open.
 const EXACT: f64 = 1e-12;

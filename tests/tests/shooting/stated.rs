@@ -1,24 +1,10 @@
 //! What is stated of errors: orbits at a coarse tolerance against the same orbits at a fine one.
 
 use hertzian::flow::shooting::Cycle;
-use hertzian::{Complex, Shooting, System, Verdict};
+use hertzian::{Shooting, System, Verdict};
+use hertzian_tests::distance;
 
 use crate::integrated::{continuous, one_sided};
-
-/// Largest distance between multipliers, each matched with its nearest.
-fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
-    let mut free = b.to_vec();
-    let mut largest = 0.0_f64;
-    for x in a {
-        let by_distance = |i: &usize, j: &usize| {
-            let [p, q] = [i, j].map(|&k| (free[k] - x).norm());
-            p.total_cmp(&q)
-        };
-        let nearest = (0..free.len()).min_by(by_distance).unwrap();
-        largest = largest.max((free.swap_remove(nearest) - x).norm());
-    }
-    largest
-}
 
 /// Errors of states and multipliers are within what is stated, and no verdict is false.
 pub fn assert_stated(cycle: &Cycle, finer: &Cycle) {

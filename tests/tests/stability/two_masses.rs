@@ -1,8 +1,8 @@
 //! Where two masses with an elastic stop lose stability, by verdicts, and every method there.
 
 use hertzian::stability::{Method, Projection, Sorting};
-use hertzian::{Branch, Complex, FrequencyResponse, Point, Shooting, Verdict};
-use hertzian_tests::TwoMasses;
+use hertzian::{Branch, FrequencyResponse, Point, Shooting, Verdict};
+use hertzian_tests::{TwoMasses, distance, nearest};
 
 const MODEL: TwoMasses = TwoMasses {
     stop: 100.0,
@@ -14,9 +14,7 @@ const BIFURCATIONS: [f64; 2] = [0.61861, 0.73878];
 
 /// The orbit at a frequency whose size is nearest to a given one.
 fn at(branch: &Branch<'_>, omega: f64, size: f64) -> Point {
-    let far = |point: &Point| (point.peak_to_peak() - size).abs();
-    let orbits = branch.at(omega).unwrap().into_iter();
-    orbits.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap()
+    nearest(branch.at(omega).unwrap(), size, Point::peak_to_peak).unwrap()
 }
 
 /// Between two neighbours of the branch whose verdicts differ: up to where the first is said, and from where on the second, by
@@ -115,14 +113,4 @@ fn every_method_beside_the_bifurcations() {
             }
         }
     }
-}
-
-/// Largest distance between two sets of multipliers, each matched with its nearest.
-fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
-    let mut free = b.to_vec();
-    a.iter().fold(0.0, |largest: f64, x| {
-        let far = |&i: &usize| (free[i] - x).norm();
-        let nearest = (0..free.len()).min_by(|i, j| far(i).total_cmp(&far(j)));
-        largest.max((free.swap_remove(nearest.unwrap()) - x).norm())
-    })
 }
