@@ -27,7 +27,7 @@ impl Branch<'_> {
         };
         let chart = self.labels().chart().curve(curve);
         let events = events.map(|event| (event.kind, place(&event.point)));
-        with_events(chart, &events.collect::<Vec<_>>(), turns.collect())
+        chart.events(events).unlocated(turns.collect())
     }
 
     /// What a chart says of it.
@@ -109,33 +109,48 @@ impl Labels {
     }
 }
 
-/// Marks events, in an order that gives every kind its shape, and what was not located.
-pub(crate) fn with_events(
-    chart: Chart,
-    events: &[(EventKind, [f64; 2])],
-    turns: Vec<[f64; 2]>,
-) -> Chart {
-    let kinds = [
-        EventKind::Fold,
-        EventKind::PeriodDoubling,
-        EventKind::SymmetryBreaking,
-        EventKind::BranchPoint,
-        EventKind::NeimarkSacker,
-        EventKind::Grazing { turns: false },
-    ];
-    let marked = kinds.into_iter().fold(chart, |chart, kind| {
-        let of_kind = events
-            .iter()
-            .filter(|(other, _)| discriminant(other) == discriminant(&kind));
-        chart.markers(Markers {
-            label: kind.to_string(),
-            points: of_kind.map(|(_, place)| *place).collect(),
+impl Chart {
+    /// Marks bifurcations, each kind by the same shape in every chart to which no other markers were added before.
+    ///
+    /// ```
+    /// use hertzian::EventKind;
+    /// use hertzian::chart::Chart;
+    ///
+    /// let chart = Chart::new("Two of them").events([
+    ///     (EventKind::Fold, [1.0, 2.0]),
+    ///     (EventKind::PeriodDoubling, [1.5, 2.5]),
+    /// ]);
+    /// assert!(chart.to_svg().contains("</svg>"));
+    /// ```
+    #[must_use]
+    pub fn events(self, events: impl IntoIterator<Item = (EventKind, [f64; 2])>) -> Self {
+        let events: Vec<_> = events.into_iter().collect();
+        let kinds = [
+            EventKind::Fold,
+            EventKind::PeriodDoubling,
+            EventKind::SymmetryBreaking,
+            EventKind::BranchPoint,
+            EventKind::NeimarkSacker,
+            EventKind::Grazing { turns: false },
+        ];
+        kinds.into_iter().fold(self, |chart, kind| {
+            let of_kind = events
+                .iter()
+                .filter(|(other, _)| discriminant(other) == discriminant(&kind));
+            chart.markers(Markers {
+                label: kind.to_string(),
+                points: of_kind.map(|(_, place)| *place).collect(),
+            })
         })
-    });
-    marked.markers(Markers {
-        label: "unlocated".to_owned(),
-        points: turns,
-    })
+    }
+
+    /// Marks places where something was not located.
+    pub(crate) fn unlocated(self, points: Vec<[f64; 2]>) -> Self {
+        self.markers(Markers {
+            label: "unlocated".to_owned(),
+            points,
+        })
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::branch::EventKind;
 use crate::chart::{Chart, Curve, Run};
 use crate::error::Error;
 use crate::flow::shooting::{Cycle, CycleBranch};
-use crate::picture::{runs, with_events};
+use crate::picture::runs;
 
 impl Diagram {
     /// Peak-to-peak of the first coordinate over what is varied, one curve for each period: stable solid, unstable dashed,
@@ -29,12 +29,9 @@ impl Diagram {
         });
         let chart = curves.fold(first.branch.labels.chart(), Chart::curve);
         let branches = || self.branches.iter().map(|limb| &limb.branch);
-        let events: Vec<_> = branches().flat_map(CycleBranch::marked).collect();
-        with_events(
-            chart,
-            &events,
-            branches().flat_map(CycleBranch::unlocated).collect(),
-        )
+        chart
+            .events(branches().flat_map(CycleBranch::marked))
+            .unlocated(branches().flat_map(CycleBranch::unlocated).collect())
     }
 
     /// Draws the [`chart`](Self::chart) as an SVG file.
@@ -60,12 +57,10 @@ impl CycleBranch {
         };
         let period = self.cycles.first().map_or(1, |cycle| cycle.period);
         let labels = self.labels.clone().with_period(period);
-        let events: Vec<_> = self.marked().collect();
-        with_events(
-            labels.chart().curve(curve),
-            &events,
-            self.unlocated().collect(),
-        )
+        let chart = labels.chart().curve(curve);
+        chart
+            .events(self.marked())
+            .unlocated(self.unlocated().collect())
     }
 
     /// Draws the [`chart`](Self::chart) as an SVG file.

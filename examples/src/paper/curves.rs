@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
-use hertzian::chart::{Chart, Curve, Markers, Reference, Scale};
+use hertzian::chart::{Chart, Curve, Reference, Scale};
 use hertzian::flow::shooting::Side;
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop, System};
 
@@ -89,7 +89,7 @@ pub struct Curves<'t> {
     task: &'t Task<'t>,
     chart: Chart,
     lines: Vec<Curve>,
-    marks: Vec<(EventKind, Vec<[f64; 2]>)>,
+    marks: Vec<(EventKind, [f64; 2])>,
     drawing: Drawing,
     notes: Vec<String>,
 }
@@ -208,10 +208,7 @@ impl<'t> Curves<'t> {
         }
         for event in &branch.events {
             let place = [event.point.value, event.point.peak_to_peak()];
-            match self.marks.iter_mut().find(|(kind, _)| *kind == event.kind) {
-                Some((_, points)) => points.push(place),
-                None => self.marks.push((event.kind, vec![place])),
-            }
+            self.marks.push((event.kind, place));
         }
         for point in &branch.points {
             let mut row = vec![label.to_owned()];
@@ -311,11 +308,7 @@ impl<'t> Curves<'t> {
             ..
         } = self;
         let drawn = lines.into_iter().fold(chart, Chart::curve);
-        let marked = marks.into_iter().fold(drawn, |chart, (kind, points)| {
-            let label = kind.to_string();
-            chart.markers(Markers { label, points })
-        });
-        drawing.svg = marked.to_svg();
+        drawing.svg = drawn.events(marks).to_svg();
         drawing.note = notes.join(" ");
         drawing
     }

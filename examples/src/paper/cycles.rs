@@ -36,7 +36,7 @@ fn model(drive: f64) -> OneSidedLinear {
 struct Cycles<'t> {
     task: &'t Task<'t>,
     curves: Vec<Curve>,
-    marks: Vec<(EventKind, Vec<[f64; 2]>)>,
+    marks: Vec<(EventKind, [f64; 2])>,
     events: Vec<CycleEvent>,
     scale: Scale,
     drawing: Drawing,
@@ -102,10 +102,7 @@ impl<'t> Cycles<'t> {
         }
         for event in &branch.events {
             let place = place(&event.cycle);
-            match self.marks.iter_mut().find(|(kind, _)| *kind == event.kind) {
-                Some((_, points)) => points.push(place),
-                None => self.marks.push((event.kind, vec![place])),
-            }
+            self.marks.push((event.kind, place));
         }
         self.events.extend(branch.events.iter().cloned());
         let rows = branch.cycles.iter().map(row);
@@ -128,11 +125,7 @@ impl<'t> Cycles<'t> {
         for curve in self.curves {
             chart = chart.curve(curve);
         }
-        for (kind, points) in self.marks {
-            let label = kind.to_string();
-            chart = chart.markers(Markers { label, points });
-        }
-        self.drawing.svg = chart.to_svg();
+        self.drawing.svg = chart.events(self.marks).to_svg();
         self.drawing
     }
 }
