@@ -511,6 +511,32 @@ fn folds_are_tracked_in_two_parameters() {
     assert_eq!(tracks[0]["special"][0]["kind"], "cusp");
 }
 
+/// Where a Hertzian contact is lost: both events of the branch are on one curve, and it has a least drive between them.
+#[test]
+fn grazing_is_tracked_in_two_parameters() {
+    let folder = Folder::new("touch");
+    let [svg, json] = ["a.svg", "a.json"].map(|name| folder.file(name));
+    let command = "--from 0.6 --to 1.6 --track grazing --in omega,drive --within 0.03,0.5";
+    let files = ["--svg", &svg, "--json", &json];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    let outcome = run_with(&arguments).expect("a branch");
+    assert!(outcome.complete, "{}", outcome.summary);
+    let all = all(&json);
+    let tracks = all["tracks"].as_array().expect("tracks");
+    assert_eq!(tracks.len(), 1);
+    assert_eq!(tracks[0]["kind"], "grazing");
+    let points = tracks[0]["points"].as_array().expect("points");
+    let drives = points
+        .iter()
+        .map(|point| point[1].as_f64().expect("a number"));
+    let drives: Vec<f64> = drives.collect();
+    assert!(drives.len() > 20);
+    for end in [drives[0], drives[drives.len() - 1]] {
+        assert!((end - 0.5).abs() < 1e-12, "{end}");
+    }
+    assert!(drives.iter().copied().fold(f64::INFINITY, f64::min) < 0.1);
+}
+
 /// What `--in` names must be what varies and something else.
 #[test]
 fn a_plane_has_two_parameters() {

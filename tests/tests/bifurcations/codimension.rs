@@ -1,6 +1,6 @@
 //! Curves of grazing in two parameters, and points of codimension two on curves of doublings.
 
-use hertzian::flow::shooting::SpecialKind;
+use hertzian::flow::shooting::{CycleEvent, Side, SpecialKind};
 use hertzian::{EventKind, Shooting};
 use hertzian_tests::OneSidedLinear;
 
@@ -56,7 +56,7 @@ fn a_doubling_is_degenerate_where_its_cubic_term_vanishes() {
         .abs()
         .max(special.values[1].abs());
     assert!(
-        error < 1e-5 && error <= special.error,
+        error < 1e-10 && error <= special.error,
         "{special:?} {error:.1e}"
     );
 }
@@ -96,4 +96,61 @@ fn two_multipliers_are_minus_one_at_once() {
             assert!(error < 1e-6, "{special:?} {error:.1e}");
         }
     }
+}
+
+/// The doublings of period two at a frequency, near a drive.
+fn doubling_of_period_2(omega: f64, drive: f64) -> Option<(OneSided, CycleEvent)> {
+    let model = OneSided {
+        zeta: 0.032,
+        load: 1.0,
+        drive: 1.0,
+    };
+    let shooting = Shooting::of(&model).vary("drive").omega(omega);
+    let first = shooting.clone().from(1.0).to(2.2).run().ok()?;
+    let doubling = first.events(EventKind::PeriodDoubling).next()?;
+    let branch = shooting
+        .from(1.0)
+        .to(2.4)
+        .switch(doubling, Side::One)
+        .ok()?;
+    let doublings = branch.events(EventKind::PeriodDoubling).cloned();
+    let near = |event: &CycleEvent| (event.cycle.value - drive).abs();
+    let event = doublings.min_by(|a, b| near(a).total_cmp(&near(b)))?;
+    Some((model, event))
+}
+
+/// Which way the branch of period four begins: towards larger drives or smaller ones, from orbits close by.
+fn begins_upwards(omega: f64, drive: f64) -> bool {
+    let (model, event) = doubling_of_period_2(omega, drive).unwrap();
+    let shooting = Shooting::of(&model).vary("drive").omega(omega);
+    let value = event.cycle.value;
+    let request = shooting
+        .from(value - 0.01)
+        .to(value + 0.01)
+        .largest_step(1e-4);
+    let branch = request.max_points(3).switch(&event, Side::One).unwrap();
+    branch.cycles[0].value > value
+}
+
+/// On the curve of doublings of period two beside figure 8, with `A4`: a point where period four begins upwards on one side, as far as
+/// orbits at a hundredth of the size say, and downwards on the other, and the end at a grazing orbit.
+#[test]
+fn a_doubling_of_period_two_is_degenerate() {
+    let (model, event) = doubling_of_period_2(1.0, 1.531).unwrap();
+    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let request = shooting.from(1.0).to(2.4);
+    let track = request.track(&event, "omega", [0.8, 1.2]).unwrap();
+    let degenerate = track
+        .special
+        .iter()
+        .filter(|s| s.kind == SpecialKind::Degenerate);
+    let [special] = degenerate.collect::<Vec<_>>()[..] else {
+        panic!("{:?}", track.special);
+    };
+    assert!(special.error < 1e-5, "{special:?}");
+    let [drive, omega] = special.values;
+    for (part, expected) in [(-1e-2, true), (1e-2, false)] {
+        assert_eq!(begins_upwards(omega + part, drive), expected, "{special:?}");
+    }
+    assert!(track.special.iter().any(|s| s.kind == SpecialKind::Grazing));
 }

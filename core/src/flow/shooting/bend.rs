@@ -8,7 +8,8 @@
 //!
 //! `k` is the cubic coefficient of the normal form but for a positive or negative factor that does not vanish. It is taken from
 //! two orbits of the new branch, at `e` and `e / 2`, so that the term of the next order cancels; the third derivatives of the map
-//! are not needed, and need not exist.
+//! are not needed, and need not exist. (1) holds as far as no level begins or ceases to be crossed along the branch: where the orbit at
+//! `e` has passed such a grazing, a smaller `e` is taken.
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, sections 4.5 and 9.3 (the generalised flip).
 
@@ -21,9 +22,14 @@ use crate::error::Error;
 use crate::newton::{Border, Newton};
 use crate::system::Variable;
 
-/// `e`, in units of the orbit's size, and that of what it is compared with.
-pub(super) const DISTANCE: f64 = 1e-2;
-pub(super) const FARTHER: f64 = 2e-2;
+/// `e`, in units of the orbit's size: what is left of the next order falls as `e^4`, and the error of the flow grows as `e^-2`.
+const DISTANCE: f64 = 2.5e-3;
+/// The same for a closed form.
+const EXACT: f64 = 6.25e-4;
+/// What it is compared with is so many times as far.
+const FARTHER: f64 = 2.0;
+/// Smaller ones are these parts of it.
+const PARTS: [f64; 3] = [1.0, 0.25, 0.0625];
 
 /// Orbits of the new branch, beside those of a curve.
 pub(super) struct Bend<'a> {
@@ -37,7 +43,7 @@ pub(super) struct Bend<'a> {
 }
 
 impl<'a> Bend<'a> {
-    /// Of a curve, at this distance.
+    /// Of a curve; at a larger distance to compare with.
     ///
     /// # Errors
     /// If there is no flow.
@@ -45,8 +51,13 @@ impl<'a> Bend<'a> {
         setting: &Setting<'a>,
         curve: &Curve<'a>,
         symmetric: bool,
-        distance: f64,
+        farther: bool,
     ) -> Result<Self, Error> {
+        let distance = if setting.source.exact {
+            EXACT
+        } else {
+            DISTANCE
+        };
         let Span {
             period, segments, ..
         } = curve.equations.span;
@@ -62,7 +73,11 @@ impl<'a> Bend<'a> {
             equations,
             second: curve.second,
             symmetric,
-            distance,
+            distance: if farther {
+                FARTHER * distance
+            } else {
+                distance
+            },
             scale: Scale {
                 parameter: curve.units[1],
                 oscillation: curve.units[0],
@@ -87,19 +102,33 @@ impl<'a> Bend<'a> {
         }
         let u = self.equations.unknowns_of(&states, u[last - 1]);
         let direction = direction(&mut self.equations, &u, self.symmetric)?;
-        let [far, near] = [self.distance, 0.5 * self.distance]
-            .map(|e| self.coefficient(setting, &u, &direction, e));
-        Some((4.0 * near? - far?) / 3.0)
+        let crossed = self.crossings(&u)?;
+        PARTS.into_iter().find_map(|part| {
+            let e = part * self.distance;
+            let (far, same) = self.coefficient(setting, &u, &direction, e)?;
+            if self.crossings(&same)? != crossed {
+                return None;
+            }
+            let (near, _) = self.coefficient(setting, &u, &direction, 0.5 * e)?;
+            Some((4.0 * near - far) / 3.0)
+        })
     }
 
-    /// `(lambda(e) - lambda(0)) / e^2`
+    /// How often levels are crossed along an orbit.
+    fn crossings(&mut self, u: &[f64]) -> Option<usize> {
+        let before = self.equations.flow.work().switches;
+        self.equations.trace(u, &mut |_| {}).ok()?;
+        Some(self.equations.flow.work().switches - before)
+    }
+
+    /// `(lambda(e) - lambda(0)) / e^2`, and the orbit.
     fn coefficient(
         &mut self,
         setting: &Setting<'a>,
         u: &[f64],
         direction: &[f64],
         e: f64,
-    ) -> Option<f64> {
+    ) -> Option<(f64, Vec<f64>)> {
         let (norm, scale) = (self.newton.norm(), self.scale);
         let length = norm.length(scale, direction);
         let unit: Vec<f64> = direction.iter().map(|x| x / length).collect();
@@ -116,6 +145,6 @@ impl<'a> Bend<'a> {
                 .correct(&mut self.equations, &mut beside, border, scale, options);
         corrected.ok()?;
         let last = u.len() - 1;
-        Some((beside[last] - u[last]) / (e * e))
+        Some(((beside[last] - u[last]) / (e * e), beside))
     }
 }

@@ -16,13 +16,13 @@ use std::cell::RefCell;
 
 use nalgebra::{Complex, DMatrix};
 
-use super::bend::{Bend, DISTANCE, FARTHER};
+use super::bend::Bend;
 use super::companion::Companion;
 use super::setting::Setting;
 use super::trace::{Plane, Special, SpecialKind, TrackPoint};
 use super::track::{Condition, Curve, determinant};
 use crate::continuation::follow::{Continue, CurvePoint, Halt, Visit};
-use crate::continuation::locate::locate;
+use crate::continuation::locate::{inside, locate};
 use crate::flow::FlowError;
 use crate::newton::{Newton, NewtonOptions};
 use crate::stability::eigenvalues;
@@ -30,8 +30,16 @@ use crate::stability::eigenvalues;
 /// A slope of the second parameter counts as none below this, and that of the first, where the second has none, below the other.
 const VANISHED: f64 = 1e-9;
 const FLAT: f64 = 1e-3;
+/// So many times what another distance changes in a coefficient is its error: where rounding makes it, the farther one is the better.
+const BENT: f64 = 3.0;
+/// A coefficient that is larger than this part of what it is at both ends of a step has not vanished, but jumps.
+const JUMPS: f64 = 1e-3;
 /// What rounding leaves in the values of a special point, as a part of them.
 const ROUNDING: f64 = 1e-12;
+/// A step over a grazing is divided so many times, at the first of these parts where there is a solution: beside it the equations have the
+/// root of the distance in them.
+const HALVINGS: usize = 60;
+const PARTS: [f64; 5] = [0.5, 0.4, 0.6, 0.25, 0.75];
 
 /// What is looked at along a curve.
 pub(super) struct Watch<'p, 'a> {
@@ -60,6 +68,7 @@ struct At {
     other: f64,
     /// The product of what is left without the multiplier that is critical.
     rest: f64,
+    /// The coefficient of [`bend`](super::bend) times the slope of the second parameter: where that vanishes the coefficient is infinite.
     bend: f64,
 }
 
@@ -75,8 +84,7 @@ impl<'p, 'a> Watch<'p, 'a> {
             Condition::Multiplier(shift) => Some(shift),
             Condition::Touch(..) => None,
         };
-        let bend =
-            (shift == Some(1.0)).then(|| Bend::new(setting, curve, symmetric, DISTANCE).ok());
+        let bend = (shift == Some(1.0)).then(|| Bend::new(setting, curve, symmetric, false).ok());
         Self {
             setting,
             plane,
@@ -115,7 +123,7 @@ impl<'p, 'a> Watch<'p, 'a> {
                 curve.follow(&at.u);
                 let point = self.point(curve, &at.u, &map, switches);
                 self.points.push(point);
-                let tests = self.tests(curve, &at.u, (&map, switches), self.bend.as_ref());
+                let tests = self.tests(curve, at, (&map, switches), self.bend.as_ref());
                 self.seen = [self.seen[1], tests];
             }
             Visit::Between(before, behind) => self.between(curve, newton, (before, behind)),
@@ -150,17 +158,17 @@ impl<'p, 'a> Watch<'p, 'a> {
     fn tests(
         &self,
         curve: &Curve<'a>,
-        u: &[f64],
+        at: &CurvePoint,
         (map, switches): (&DMatrix<f64>, usize),
         bend: Option<&RefCell<Bend<'a>>>,
     ) -> Option<At> {
         let shift = self.shift?;
-        let bend = bend.and_then(|bend| bend.borrow_mut().at(self.setting, curve, u));
+        let bend = bend.and_then(|bend| bend.borrow_mut().at(self.setting, curve, &at.u));
         Some(At {
             switches,
             other: determinant(map, -shift),
             rest: rest(map, -shift),
-            bend: bend.unwrap_or(f64::NAN),
+            bend: bend.unwrap_or(f64::NAN) * at.parameter_slope(),
         })
     }
 
@@ -181,25 +189,25 @@ impl<'p, 'a> Watch<'p, 'a> {
             self.cusp(curve, newton, between);
         }
         if a.switches != b.switches {
-            let side = |at: Option<At>| {
-                let before = at.is_some_and(|at| at.switches == a.switches);
-                if before { 1.0 } else { -1.0 }
-            };
-            self.place(curve, newton, between, (SpecialKind::Grazing, 0.0), side);
+            self.grazing(curve, newton, between, a.switches);
         }
         let value = |at: Option<At>, of: fn(At) -> f64| at.map_or(f64::NAN, of);
         let fold = self.shift.is_some_and(|shift| shift < 0.0);
         if fold && a.other * b.other < 0.0 {
             let kind = (SpecialKind::FoldFlip, VANISHED);
-            self.place(curve, newton, between, kind, |at| value(at, |at| at.other));
+            let of = |at| value(at, |at| at.other);
+            self.place(curve, newton, between, kind, (VANISHED, of));
         }
         if a.rest * b.rest < 0.0 {
             let kind = (SpecialKind::Double, VANISHED);
-            self.place(curve, newton, between, kind, |at| value(at, |at| at.rest));
+            let of = |at| value(at, |at| at.rest);
+            self.place(curve, newton, between, kind, (VANISHED, of));
         }
         if a.bend * b.bend < 0.0 {
-            let kind = (SpecialKind::Degenerate, 0.0);
-            self.place(curve, newton, between, kind, |at| value(at, |at| at.bend));
+            let kind = SpecialKind::Degenerate;
+            let least = JUMPS * a.bend.abs().min(b.bend.abs());
+            let of = |at| value(at, |at| at.bend);
+            self.place(curve, newton, between, (kind, 0.0), (least, of));
         }
     }
 
@@ -230,6 +238,75 @@ impl<'p, 'a> Watch<'p, 'a> {
         self.keep(SpecialKind::Cusp, Some((found.point, other)), between);
     }
 
+    /// Where levels are not crossed so many times any more.
+    fn grazing(
+        &mut self,
+        curve: &mut Curve<'a>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+        many: usize,
+    ) {
+        let options = self.options;
+        let side = |at: Option<At>| {
+            let before = at.is_some_and(|at| at.switches == many);
+            if before { 1.0 } else { -1.0 }
+        };
+        let with = (&mut *curve, &mut *newton, options);
+        let exact = |found: CurvePoint| (found, 0.0);
+        let looked = (&side, None);
+        let found = self.look(with, between, (0.0, f64::INFINITY), looked);
+        let found = found
+            .map(exact)
+            .or_else(|| self.bracket((&mut *curve, newton, options), between, many));
+        let other = self
+            .companion(curve)
+            .and_then(|(mut other, mut newton, options, part)| {
+                let with = (&mut other, &mut newton, options);
+                let found = self.look(with, between, (0.0, f64::INFINITY), looked);
+                let (point, width) = found.map(exact).or_else(|| {
+                    let with = (&mut other, &mut newton, options);
+                    self.bracket(with, between, many)
+                })?;
+                Some((point, width, part))
+            });
+        let width = found.as_ref().map_or(0.0, |(_, width)| *width);
+        let beside = other.as_ref().map_or(0.0, |(_, width, part)| part * width);
+        let other = other.map(|(point, _, part)| (point, part));
+        let located = found.map(|(point, _)| (point, other));
+        self.keep(SpecialKind::Grazing, located, between);
+        if let Some(special) = self.special.last_mut() {
+            special.error += width + beside;
+        }
+    }
+
+    /// The last point before it, and how far behind that the next one is.
+    fn bracket(
+        &self,
+        (curve, newton, options): (&mut Curve<'a>, &mut Newton, NewtonOptions),
+        between: (&CurvePoint, &CurvePoint),
+        many: usize,
+    ) -> Option<(CurvePoint, f64)> {
+        let mut other = curve.again(self.setting).ok()?;
+        let (mut before, mut behind) = (between.0.clone(), between.1.clone());
+        for _ in 0..HALVINGS {
+            let ends = (&before, &behind);
+            let mut parts = PARTS.into_iter();
+            let point = parts.find_map(|part| inside(curve, newton, ends, part, options));
+            let Some(point) = point else { break };
+            if counted(&mut other, &point.u).is_some_and(|(_, count)| count == many) {
+                before = point;
+            } else {
+                behind = point;
+            }
+            let [a, b] = values(&before);
+            if apart(values(&before), values(&behind)) <= ROUNDING * a.abs().max(b.abs()) {
+                break;
+            }
+        }
+        let width = apart(values(&before), values(&behind));
+        Some((before, width))
+    }
+
     /// Keeps the place where a function of the tests changes its sign.
     fn place(
         &mut self,
@@ -237,22 +314,26 @@ impl<'p, 'a> Watch<'p, 'a> {
         newton: &mut Newton,
         between: (&CurvePoint, &CurvePoint),
         (kind, tolerance): (SpecialKind, f64),
-        of: impl Fn(Option<At>) -> f64,
+        (least, of): (f64, impl Fn(Option<At>) -> f64),
     ) {
         let with = (&mut *curve, newton, self.options);
         let looked = (&of, self.bend.as_ref());
-        let found = self.look(with, between, (kind, tolerance), looked);
+        let found = self.look(with, between, (tolerance, least), looked);
+        // A jump is none of these.
+        if kind == SpecialKind::Degenerate && found.is_none() {
+            return;
+        }
         let other = self
             .companion(curve)
             .and_then(|(mut other, mut newton, options, part)| {
                 // What is left of the next order at a distance is not proportional to the error of the flow.
                 let bent = kind == SpecialKind::Degenerate;
-                let bend = bent.then(|| Bend::new(self.setting, &other, self.symmetric, FARTHER));
+                let bend = bent.then(|| Bend::new(self.setting, &other, self.symmetric, true));
                 let bend = bend.and_then(Result::ok).map(RefCell::new);
                 let with = (&mut other, &mut newton, options);
                 let looked = (&of, bend.as_ref());
-                let place = self.look(with, between, (kind, tolerance), looked)?;
-                Some((place, if bent { 1.0 } else { part }))
+                let place = self.look(with, between, (tolerance, f64::INFINITY), looked)?;
+                Some((place, if bent { BENT } else { part }))
             });
         self.keep(kind, found.map(|point| (point, other)), between);
     }
@@ -261,7 +342,7 @@ impl<'p, 'a> Watch<'p, 'a> {
         &self,
         (curve, newton, options): (&mut Curve<'a>, &mut Newton, NewtonOptions),
         between: (&CurvePoint, &CurvePoint),
-        (kind, tolerance): (SpecialKind, f64),
+        (tolerance, least): (f64, f64),
         (of, bend): (&impl Fn(Option<At>) -> f64, Option<&RefCell<Bend<'a>>>),
     ) -> Option<CurvePoint> {
         // The curve is busy while a test function is evaluated.
@@ -269,14 +350,11 @@ impl<'p, 'a> Watch<'p, 'a> {
         let value = |at: &CurvePoint| {
             let mut other = other.borrow_mut();
             let counted = counted(&mut other, &at.u);
-            let tests =
-                counted.and_then(|(map, many)| self.tests(&other, &at.u, (&map, many), bend));
+            let tests = counted.and_then(|(map, many)| self.tests(&other, at, (&map, many), bend));
             of(tests)
         };
         let found = locate(curve, newton, between, options, tolerance, value)?;
-        // A jump is a place of grazing only.
-        let jumps = tolerance > 0.0 && !found.vanishes;
-        (!jumps || kind == SpecialKind::Grazing).then_some(found.point)
+        (found.vanishes || found.test.abs() <= least).then_some(found.point)
     }
 
     /// The same curve by the equations of a companion, and the part of what differs that is an error.
@@ -296,9 +374,6 @@ impl<'p, 'a> Watch<'p, 'a> {
         located: Option<(CurvePoint, Option<(CurvePoint, f64)>)>,
         (before, behind): (&CurvePoint, &CurvePoint),
     ) {
-        let last = before.u.len() - 1;
-        let values = |point: &CurvePoint| [point.u[last - 1], point.u[last]];
-        let apart = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
         let ends = [values(before), values(behind)];
         let unknown = 0.5 * apart(ends[0], ends[1]);
         let (values, error) = match located {
@@ -321,6 +396,16 @@ impl<'p, 'a> Watch<'p, 'a> {
             after: self.points.len().saturating_sub(1),
         });
     }
+}
+
+/// Values of both parameters at a point.
+fn values(point: &CurvePoint) -> [f64; 2] {
+    let last = point.u.len() - 1;
+    [point.u[last - 1], point.u[last]]
+}
+
+fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).abs().max((a[1] - b[1]).abs())
 }
 
 /// `M` at a point, and how often levels are crossed.
