@@ -116,8 +116,9 @@ fn assert_symmetry_breaks(
     exact: [f64; 2],
     events: (Events<'_>, usize),
 ) {
-    let request = FrequencyResponse::of(system).stability(false);
-    let request = request.doublings(true).from(from).to(to);
+    let request = FrequencyResponse::of(system).tolerance(1e-7);
+    let request = request.stability(false).doublings(true);
+    let request = request.from(from).to(to);
     let branch = request.run().unwrap();
     let breaks: Vec<_> = branch.events(EventKind::SymmetryBreaking).collect();
     assert_eq!(breaks.len(), 2);
