@@ -163,8 +163,8 @@ def race(kernels, turns):
     return {name: 1e9 * statistics.median(t) / (CALLS * COUNT) for name, t in times.items()}
 
 
-def aims(exponent, times):
-    """What is aimed at: a sentence, the ratio, whether it holds."""
+def ratios(exponent, times):
+    """What is compared with what, and the ratio of their times."""
     ours = times["hertzian"]
     generated = {n: t for n, t in times.items() if n.startswith(("CasADi C", "SymPy", "SymForce"))}
     natural = {n: t for n, t in generated.items() if "told" not in n}
@@ -178,19 +178,19 @@ def aims(exponent, times):
     if exponent == "power":
         for how, those in [("best generator", natural), ("best if told how", generated)]:
             name, best = least(those)
-            found.append((f"{how} ({name}) / hertzian, at least 2.5", best / ours, best / ours >= 2.5))
+            found.append((f"{how} ({name}) / hertzian", best / ours))
         ratio = ours / times["C by hand, fast-math"]
-        found.append(("hertzian / C by hand with fast-math, at most 1.0", ratio, ratio <= 1.0))
+        found.append(("hertzian / C by hand with fast-math", ratio))
         ratio = ours / times["C by hand, in blocks, fast-math"]
-        found.append(("hertzian / C by hand in blocks with fast-math", ratio, ratio <= 1.0))
+        found.append(("hertzian / C by hand in blocks with fast-math", ratio))
         ratio = times["hertzian, fast"] / times["C by hand, fast-math"]
-        found.append(("fast variant / C by hand with fast-math, at most 0.7", ratio, ratio <= 0.7))
+        found.append(("fast variant / C by hand with fast-math", ratio))
     else:
         name, best = least({n: t for n, t in times.items() if not n.startswith("hertzian")})
-        found.append((f"hertzian / best of all ({name}), at most 1.10", ours / best, ours / best <= 1.10))
-    found.append(("CasADi's own evaluation / hertzian, at least 10", own / ours, own / ours >= 10))
+        found.append((f"hertzian / best of all ({name})", ours / best))
+    found.append(("CasADi's own evaluation / hertzian", own / ours))
     code = times["CasADi C, strict"]
-    found.append(("CasADi C, strict / hertzian, at least 10", code / ours, code / ours >= 10))
+    found.append(("CasADi C, strict / hertzian", code / ours))
     return found
 
 
@@ -224,7 +224,7 @@ def main():
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     samples = Samples()
-    rows, judged, about = [], [], machine()
+    rows, compared, about = [], [], machine()
     print(f"{about['processor']} ({', '.join(about['features'])}); {about['gcc']}; {about['rustc']}; {about['libc']}")
     for exponent, title in TITLES.items():
         kernels = contenders(exponent, options.library.resolve(), options.out, samples)
@@ -236,14 +236,14 @@ def main():
             print(f"| {name} | {median:.2f} | {median / times['hertzian']:.2f} | {errors[name]:.0e} |")
             rows.append({"exponent": title, "contender": name, "nanoseconds": median, "error": errors[name]})
         print()
-        for sentence, ratio, holds in aims(exponent, times):
-            print(f"- {sentence}: {ratio:.2f}, {'holds' if holds else 'does not'}")
-            judged.append({"exponent": title, "aim": sentence, "ratio": ratio, "holds": holds})
+        for sentence, ratio in ratios(exponent, times):
+            print(f"- {sentence}: {ratio:.2f}")
+            compared.append({"exponent": title, "what": sentence, "ratio": ratio})
     with open(options.out / "peers.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
         writer.writerows(rows)
-    everything = {"machine": about, "times": rows, "aims": judged}
+    everything = {"machine": about, "times": rows, "ratios": compared}
     (options.out / "peers.json").write_text(json.dumps(everything, indent=1) + "\n")
 
 

@@ -25,17 +25,12 @@ hertzian::oscillator! {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut sizes = std::env::args().filter_map(|argument| argument.parse().ok());
     let count = sizes.next_back().unwrap_or(256);
-    let axis = |entry, from, to| Axis {
-        entry,
-        from,
-        to,
-        count,
-    };
-    let basin = Basin::new(Grid {
-        start: vec![0.0; 2],
-        columns: axis(0, -110.0, 15.0),
-        rows: axis(1, -16.0, 16.0),
-    });
+    let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(count);
+    let basin = Basin::new(Grid::new(
+        vec![0.0; 2],
+        axis(0, -110.0, 15.0),
+        axis(1, -16.0, 16.0),
+    ));
     let model = OneSided {
         zeta: 0.032,
         load: 1.0,

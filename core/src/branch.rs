@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use crate::continuation::follow::Stop;
 use crate::error::Error;
+use crate::export::Table;
 use crate::follower::Follower;
 use crate::fourier::series;
 use crate::observe::{Motion, Observed};
@@ -241,6 +242,27 @@ impl<'a> Branch<'a> {
     /// If an orbit between two points cannot be computed.
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
         self.follower.at(&self.points, &self.events, value)
+    }
+
+    /// The orbits as a table with names of the columns, one row for each: see [`COLUMNS`](crate::export::COLUMNS).
+    pub fn to_csv(&self) -> String {
+        let mut table = Table::of(self.system());
+        for point in &self.points {
+            table.add(0, point);
+        }
+        table.to_csv()
+    }
+
+    /// Writes the orbits as a table, one row for each: see [`COLUMNS`](crate::export::COLUMNS).
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_csv(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        std::fs::write(path, self.to_csv()).map_err(|source| Error::File {
+            path: path.to_path_buf(),
+            kind: source.kind(),
+        })
     }
 
     /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.

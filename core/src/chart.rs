@@ -27,6 +27,7 @@ mod cloud;
 mod drawing;
 mod glyphs;
 mod legend;
+mod note;
 mod page;
 mod polyline;
 mod raster;
@@ -55,6 +56,7 @@ pub struct Chart {
     markers: Vec<Markers>,
     traces: Vec<Trace>,
     clouds: Vec<Cloud>,
+    notes: Vec<Note>,
     raster: Option<Raster>,
     limits: Option<[[f64; 2]; 2]>,
 }
@@ -125,6 +127,15 @@ pub struct Markers {
     pub label: String,
     /// Points `[x, y]`.
     pub points: Vec<[f64; 2]>,
+}
+
+/// A point with its name written beside it, where it covers nothing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Note {
+    /// The name.
+    pub label: String,
+    /// The point `[x, y]`.
+    pub point: [f64; 2],
 }
 
 /// Why a chart was not written.
@@ -223,6 +234,13 @@ impl Chart {
     #[must_use]
     pub fn cloud(mut self, cloud: Cloud) -> Self {
         self.clouds.push(cloud);
+        self
+    }
+
+    /// Adds a named point.
+    #[must_use]
+    pub fn note(mut self, note: Note) -> Self {
+        self.notes.push(note);
         self
     }
 

@@ -9,6 +9,7 @@ use crate::branch::EventKind;
 #[cfg(feature = "plot")]
 use crate::chart::ChartError;
 use crate::flow::FlowError;
+use crate::flow::basin::BasinError;
 #[cfg(feature = "text")]
 use crate::generic::DeclarationError;
 use crate::structure::StructureError;
@@ -189,7 +190,7 @@ pub enum Error {
         /// Value of what is varied.
         value: f64,
         /// Why.
-        reason: String,
+        reason: BasinError,
     },
     /// No branch begins at an event, or none was found.
     NoBranch {
@@ -282,6 +283,7 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Motion { reason, .. } => Some(reason),
+            Self::Search { reason, .. } => Some(reason),
             Self::NoStart { reason, .. } | Self::SearchLimit { reason, .. } => Some(reason),
             _ => None,
         }

@@ -70,7 +70,9 @@ impl Motion {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ContactMotion {
-    /// Largest force by size, one-sided limits at switches included.
+    /// Largest value of the law by size, one-sided limits at switches included. A factor that stands outside of the law in an
+    /// equation is not in it: of `2*stop(x - 1)` this is the largest `stop(x - 1)`. The factor belongs to the place where the force
+    /// acts, and one law may act on several equations with a different factor in each.
     pub peak_force: f64,
     /// Fraction of the period spent on pieces whose force is not identically zero.
     pub fraction: f64,

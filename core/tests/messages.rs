@@ -15,8 +15,14 @@ const MODEL: Linear = Linear { drive: 0.1 };
 fn a_missing_end_is_named() {
     let of = || FrequencyResponse::of(&MODEL);
     for (request, expected) in [
-        (of().to(2.0), "the range has no end: call `from`"),
-        (of().from(0.5), "the range has no end: call `to`"),
+        (
+            of().to(2.0),
+            "the range is not complete: `from(...)` has not been called",
+        ),
+        (
+            of().from(0.5),
+            "the range is not complete: `to(...)` has not been called",
+        ),
         (
             of().vary("drive").from(0.1).to(0.2),
             "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`",

@@ -4,6 +4,7 @@
 //! of one's own, [`response::models`] is the part to copy.
 
 pub mod attractors;
+pub mod misplaced;
 pub mod model;
 pub mod multipliers;
 pub mod paper;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use hertzian_examples::response::files::COLUMNS;
+use hertzian::export::COLUMNS;
 use hertzian_examples::response::options::Options;
 use hertzian_examples::response::progress::Progress;
 use hertzian_examples::response::run::run;
@@ -122,7 +122,7 @@ fn fields_are_those_of_the_chapter() {
     let rows = table("response --json");
     let fields: BTreeSet<String> = rows.iter().flat_map(|(names, _)| quoted(names)).collect();
     assert_eq!(names(&all), fields);
-    let lists = set(&["multipliers", "amplitudes", "phases"]);
+    let lists = set(&["drive", "multipliers", "amplitudes", "phases"]);
     assert_eq!(described("points"), lists);
     let point: BTreeSet<String> = columns().union(&lists).cloned().collect();
     assert_fields(&all["points"], &point);

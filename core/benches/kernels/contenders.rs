@@ -15,7 +15,7 @@ pub struct Contender {
     pub evaluate: Box<dyn Fn(&mut Samples)>,
 }
 
-/// Generated and interpreted law on every instruction set, and whom else the call of the law's aim is put to.
+/// Generated and interpreted law on every instruction set, and whom else the compared call of the law is put to.
 pub fn contenders(subject: &'static Subject, call: Call) -> Vec<Contender> {
     let mut contenders = Vec::new();
     for instructions in processor::instructions() {
@@ -34,7 +34,7 @@ pub fn contenders(subject: &'static Subject, call: Call) -> Vec<Contender> {
             "interpreted",
             Box::new(move |s| evaluate(&law, call, arguments, s)),
         );
-        let (true, Some(sides)) = (call == subject.aim, subject.sides) else {
+        let (true, Some(sides)) = (call == subject.compared, subject.sides) else {
             continue;
         };
         if let [zeta, alpha] = *arguments {

@@ -34,7 +34,7 @@ pub struct Subject {
     /// The argument that derivatives are taken by.
     pub argument: usize,
     /// The call for which others compete.
-    pub aim: Call,
+    pub compared: Call,
     /// What others compute, if it is a power of the gap with linear damping.
     pub sides: Option<Sides>,
 }
@@ -56,7 +56,7 @@ pub static SUBJECTS: [Subject; 5] = [
         law: &Continuous,
         arguments: &[0.032],
         argument: 0,
-        aim: Call::Derivatives,
+        compared: Call::Derivatives,
         sides: Some(Sides::Both),
     },
     Subject {
@@ -64,7 +64,7 @@ pub static SUBJECTS: [Subject; 5] = [
         law: &OneSided,
         arguments: &[0.032],
         argument: 0,
-        aim: Call::Derivatives,
+        compared: Call::Derivatives,
         sides: Some(Sides::One),
     },
     Subject {
@@ -72,7 +72,7 @@ pub static SUBJECTS: [Subject; 5] = [
         law: &ContinuousPower,
         arguments: &[0.032, 1.7],
         argument: 1,
-        aim: Call::ByArgument(1),
+        compared: Call::ByArgument(1),
         sides: Some(Sides::Both),
     },
     Subject {
@@ -80,7 +80,7 @@ pub static SUBJECTS: [Subject; 5] = [
         law: &OneSidedPower,
         arguments: &[0.032, 1.7],
         argument: 1,
-        aim: Call::ByArgument(1),
+        compared: Call::ByArgument(1),
         sides: Some(Sides::One),
     },
     Subject {
@@ -88,7 +88,7 @@ pub static SUBJECTS: [Subject; 5] = [
         law: &Backlash,
         arguments: &[0.3],
         argument: 0,
-        aim: Call::Derivatives,
+        compared: Call::Derivatives,
         sides: None,
     },
 ];

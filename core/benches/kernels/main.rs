@@ -4,11 +4,10 @@
 //! The contenders of a law run in turns, on all instruction sets that the processor has, so that a change of its frequency
 //! meets all alike; medians are compared.
 //!
-//! What is aimed at, for force, derivatives by gap and rate, and by the exponent where it is an argument:
+//! Compared are force, derivatives by gap and rate, and by the exponent where it is an argument:
 //!
-//! - exponent 3/2: at most 1.10 times the best loop written by hand for the same instruction set (`by_hand`, `newton`);
-//! - exponent an argument: six times faster than a loop with `powf`, six times faster than dual numbers (`scalar`), and four
-//!   times faster than the interpreter.
+//! - exponent 3/2: with the best loop written by hand for the same instruction set (`by_hand`, `newton`);
+//! - exponent an argument: with a loop that calls `powf`, with dual numbers (`scalar`), and with the interpreter.
 
 mod by_hand;
 mod contenders;

@@ -121,7 +121,7 @@ impl<'a> FreeOscillation<'a> {
 
     /// The first oscillation is near these positions at rest and this frequency: needed where there are several coordinates.
     #[must_use]
-    pub fn near(mut self, positions: &[f64], omega: f64) -> Self {
+    pub fn near_rest(mut self, positions: &[f64], omega: f64) -> Self {
         self.near = Some((positions.to_vec(), omega));
         self
     }
@@ -255,7 +255,12 @@ impl<'a> FreeOscillation<'a> {
         let mut parameters = vec![0.0; facts.parameters.len()];
         self.system.values(&mut parameters);
         let tolerance = self.tolerance;
-        let flow = flow::at(self.system, &parameters, 1.0, Options { tolerance })?;
+        let flow = flow::at(
+            self.system,
+            &parameters,
+            1.0,
+            Options::default().tolerance(tolerance),
+        )?;
         Ok(Equations::new(flow, f64::from(facts.divisor)))
     }
 

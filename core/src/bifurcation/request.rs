@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
 use crate::error::Error;
 use crate::flow;
-use crate::flow::basin::{Attractor, Basin};
+use crate::flow::basin::{Basin, Basins, Progress};
 use crate::flow::shooting::{Cycle, Shooting};
 use crate::system::{System, Variable};
 use crate::validate;
@@ -18,7 +18,7 @@ const POINTS: usize = 50_000;
 /// Tolerance of the flow by which motions settle, where it is not in closed form.
 const SETTLED: f64 = 1e-9;
 /// By this part of the range further branches may go beyond its ends.
-const BEYOND: f64 = 0.1;
+const MARGIN: f64 = 0.1;
 
 /// All branches of periodic orbits that are connected with a first one by bifurcations, to a depth: set up step by step, then
 /// [run](Bifurcations::run).
@@ -61,8 +61,9 @@ pub struct Bifurcations<'a> {
     depth: usize,
     branches: usize,
     points: usize,
-    beyond: f64,
+    margin: f64,
     searched: Vec<(f64, Basin)>,
+    watch: Option<&'a (dyn Fn(Progress) -> bool + Sync)>,
 }
 
 impl std::fmt::Debug for Bifurcations<'_> {
@@ -87,8 +88,9 @@ impl<'a> Bifurcations<'a> {
             depth: 3,
             branches: BRANCHES,
             points: POINTS,
-            beyond: BEYOND,
+            margin: MARGIN,
             searched: Vec::new(),
+            watch: None,
         }
     }
 
@@ -154,8 +156,8 @@ impl<'a> Bifurcations<'a> {
     /// Branches other than the first may go beyond the ends of the range by this part of it, as far as the equations
     /// make sense there. Default: 0.1.
     #[must_use]
-    pub fn beyond(mut self, part: f64) -> Self {
-        self.beyond = part;
+    pub fn margin(mut self, part: f64) -> Self {
+        self.margin = part;
         self
     }
 
@@ -165,6 +167,14 @@ impl<'a> Bifurcations<'a> {
     #[must_use]
     pub fn search(mut self, value: f64, basin: Basin) -> Self {
         self.searched.push((value, basin));
+        self
+    }
+
+    /// Tells `watch` how far each [`search`](Self::search) is, which takes long before it has an orbit to show. It ends the
+    /// computation by answering false; what was found until then comes back.
+    #[must_use]
+    pub fn watch(mut self, watch: &'a (dyn Fn(Progress) -> bool + Sync)) -> Self {
+        self.watch = Some(watch);
         self
     }
 
@@ -227,11 +237,19 @@ impl<'a> Bifurcations<'a> {
                 search.diagram.missed.push((*value, Reason::Interrupted));
                 continue;
             }
-            let found = self.attractors(*value, basin).unwrap_or_else(|error| {
-                search.diagram.missed.push((*value, Reason::Failed(error)));
-                Vec::new()
-            });
-            for attractor in found {
+            let found = match self.basins(*value, basin) {
+                Ok(found) => found,
+                Err(error) => {
+                    search.diagram.missed.push((*value, Reason::Failed(error)));
+                    continue;
+                }
+            };
+            if !found.complete {
+                search.watch.interrupted = true;
+                search.diagram.missed.push((*value, Reason::Interrupted));
+                continue;
+            }
+            for attractor in found.attractors {
                 let (period, state) = (attractor.period, &attractor.points[0]);
                 if let Err(reason) = search.add_attractor(*value, period, state) {
                     search.diagram.missed.push((*value, reason));
@@ -245,7 +263,7 @@ impl<'a> Bifurcations<'a> {
     }
 
     /// What motions settle to at a value.
-    fn attractors(&self, value: f64, basin: &Basin) -> Result<Vec<Attractor>, Error> {
+    fn basins(&self, value: f64, basin: &Basin) -> Result<Basins, Error> {
         let facts = self.system.facts();
         let variable = validate::variable(facts, self.vary.as_deref())?;
         let mut parameters = vec![0.0; facts.parameters.len()];
@@ -257,18 +275,15 @@ impl<'a> Bifurcations<'a> {
                 self.omega.ok_or(Error::Missing { name: "omega" })?
             }
         };
-        let options = flow::Options { tolerance: SETTLED };
+        let options = flow::Options::default().tolerance(SETTLED);
         let flow = flow::at(self.system, &parameters, omega, options)?;
-        let found = basin.compute(vec![flow], None, &|_| true);
-        let found = found.map_err(|error| Error::Search {
-            value,
-            reason: error.to_string(),
-        })?;
-        Ok(found.attractors)
+        let watch = self.watch.unwrap_or(&|_| true);
+        let found = basin.compute(vec![flow], None, watch);
+        found.map_err(|reason| Error::Search { value, reason })
     }
 
     fn check(&self) -> Result<(), Error> {
-        validate::option("beyond", self.beyond, 0.0..=10.0, "must be from 0 to 10")?;
+        validate::option("margin", self.margin, 0.0..=10.0, "must be from 0 to 10")?;
         let branches = self.branches as f64;
         validate::option("max_branches", branches, 1.0..=1e6, "must be 1 or more")?;
         validate::max_points(self.points).map(|_| ())
@@ -291,7 +306,7 @@ impl<'a> Bifurcations<'a> {
                 && validate::levels(self.system, &parameters, omega).is_ok()
                 && validate::mass(self.system, &parameters, omega).is_ok()
         };
-        let margin = self.beyond * (to - from);
+        let margin = self.margin * (to - from);
         // As much of it as makes sense.
         let widened = |end: f64, by: f64| {
             let parts = [1.0, 0.5, 0.25, 0.125, 0.0625];

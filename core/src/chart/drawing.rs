@@ -3,6 +3,7 @@
 use super::axis::{Range, Scale, Ticks, superscript};
 use super::cloud::{self, Dots};
 use super::legend::{Entry, Legend, Sample};
+use super::note::{self, Placed};
 use super::polyline::polylines;
 use super::shape::{Shape, draw_shape};
 use super::svg::{Anchor, INK, Pen, Pixel, Rectangle, Svg, fitted, width_of};
@@ -219,6 +220,7 @@ struct Contents {
     markers: Vec<(Shape, Vec<Pixel>)>,
     traces: Vec<(Pen, Vec<Vec<Pixel>>)>,
     clouds: Vec<Dots>,
+    notes: Vec<Placed>,
     /// Everything is covered by coloured cells.
     covered: Option<Rectangle>,
 }
@@ -245,7 +247,7 @@ impl Contents {
         let traces = chart.traces.iter();
         let clouds = chart.clouds.iter();
         let place = |&point: &[f64; 2]| plot.pixel(point).filter(|&p| plot.frame.contains(p));
-        Self {
+        let mut contents = Self {
             references: references.map(|line| lines(&line.points)).collect(),
             runs: runs.collect(),
             markers: markers.collect(),
@@ -256,8 +258,13 @@ impl Contents {
             clouds: clouds
                 .map(|cloud| Dots::of(cloud.points.iter().filter_map(place)))
                 .collect(),
+            notes: Vec::new(),
             covered: chart.raster.is_some().then_some(plot.frame),
-        }
+        };
+        let notes = chart.notes.iter();
+        let notes = notes.filter_map(|note| Some((note.label.as_str(), place(&note.point)?)));
+        contents.notes = note::place(notes, &plot.frame, &contents.everything());
+        contents
     }
 
     /// All lines, and each marker as a line of one point.
@@ -274,6 +281,7 @@ impl Contents {
             .chain(markers.map(|&pixel| vec![pixel]))
             .chain(self.clouds.iter().flat_map(Dots::lines))
             .chain(covered)
+            .chain(self.notes.iter().flat_map(Placed::lines))
             .collect()
     }
 
@@ -294,6 +302,9 @@ impl Contents {
             for &pixel in pixels {
                 draw_shape(svg, *shape, pixel);
             }
+        }
+        for note in &self.notes {
+            note.draw(svg);
         }
     }
 }
@@ -349,13 +360,15 @@ fn shown(chart: &Chart) -> impl Iterator<Item = [f64; 2]> {
     let markers = chart.markers.iter().flat_map(|markers| &markers.points);
     let traces = chart.traces.iter().flat_map(|trace| &trace.points);
     let clouds = chart.clouds.iter().flat_map(|cloud| &cloud.points);
-    let plain = chart.traces.is_empty() && chart.clouds.is_empty();
+    let notes = chart.notes.iter().map(|note| &note.point);
+    let plain = chart.traces.is_empty() && chart.clouds.is_empty() && chart.notes.is_empty();
     let alone = plain && chart.curves.is_empty() && chart.markers.is_empty();
     let references = chart.references.iter().filter(move |_| alone);
     curves
         .chain(markers)
         .chain(traces)
         .chain(clouds)
+        .chain(notes)
         .chain(references.flat_map(|line| &line.points))
         .filter(|point| point.iter().all(|value| value.is_finite()))
         .copied()

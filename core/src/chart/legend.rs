@@ -131,7 +131,7 @@ impl Legend {
 }
 
 /// Whether a polyline (a single point for a marker) meets a rectangle, looked at every few pixels.
-fn crosses(line: &[Pixel], rectangle: &Rectangle) -> bool {
+pub(super) fn crosses(line: &[Pixel], rectangle: &Rectangle) -> bool {
     let on_segment = |pair: &[Pixel]| {
         let [from, to] = [pair[0], pair[1]];
         let steps = ((to[0] - from[0]).hypot(to[1] - from[1]) / 4.0)

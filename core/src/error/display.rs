@@ -22,7 +22,10 @@ impl Error {
             ),
             Self::Missing {
                 name: name @ ("from" | "to"),
-            } => write!(f, "the range has no end: call `{name}`"),
+            } => write!(
+                f,
+                "the range is not complete: `{name}(...)` has not been called"
+            ),
             Self::Missing { name } => write!(f, "`{name}` has not been given"),
             Self::Varied { name, must } => write!(f, "what is varied is {name}: it {must}"),
             Self::EmptyRange { value } => {

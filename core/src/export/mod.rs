@@ -3,7 +3,9 @@
 #[cfg(feature = "serde")]
 mod json;
 mod npy;
+mod table;
 
 #[cfg(feature = "serde")]
 pub(crate) use json::{pairs, seconds, text};
 pub use npy::{Npy, Number};
+pub use table::{COLUMNS, Table, row};

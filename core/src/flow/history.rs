@@ -5,11 +5,20 @@ use std::f64::consts::TAU;
 use super::{FlowError, Stretch};
 use crate::flow::stroboscope::Stroboscope;
 
-/// Shows a motion to `see`, at its start and then `samples` times in each of some periods. Times are counted in periods of the
-/// declaration from the start.
+/// How long a motion is recorded, and how densely.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Span {
+    /// Periods of the declaration.
+    pub periods: usize,
+    /// States in each of them.
+    pub samples: usize,
+}
+
+/// Shows a motion to `see`: at its start, and then at equal distances. Times are counted in periods of the declaration from the
+/// start.
 ///
 /// ```
-/// use hertzian::flow::{history, stroboscope::Stroboscope};
+/// use hertzian::flow::{history::{self, Span}, stroboscope::Stroboscope};
 ///
 /// hertzian::oscillator! {
 ///     Linear(x) {
@@ -21,7 +30,8 @@ use crate::flow::stroboscope::Stroboscope;
 /// let model = Linear { drive: 3.0 };
 /// let mut map = Stroboscope::of(&model, 1.0)?;
 /// let (mut state, mut positions) = ([0.0, 0.0], Vec::new());
-/// history::record(&mut map, &mut state, (2, 50), &mut |_, state| positions.push(state[0]))?;
+/// let span = Span { periods: 2, samples: 50 };
+/// history::record(&mut map, &mut state, span, &mut |_, state| positions.push(state[0]))?;
 /// assert_eq!(positions.len(), 101);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
@@ -31,7 +41,7 @@ use crate::flow::stroboscope::Stroboscope;
 pub fn record(
     map: &mut Stroboscope<'_>,
     state: &mut [f64],
-    (periods, samples): (usize, usize),
+    Span { periods, samples }: Span,
     see: &mut dyn FnMut(f64, &[f64]),
 ) -> Result<(), FlowError> {
     let mut between = state.to_vec();

@@ -6,7 +6,7 @@
 //! Source of the checksum: Fowler, Noll and Vo, FNV-1a, 64 bits.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// What every such file begins with; the number is that of the format.
@@ -21,7 +21,7 @@ pub struct Log {
 }
 
 /// Why there is no log, or none any more.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LogError {
     /// The file cannot be read or written.
@@ -29,7 +29,7 @@ pub enum LogError {
         /// Its path.
         path: PathBuf,
         /// What the system said.
-        source: io::Error,
+        kind: ErrorKind,
     },
     /// The file belongs to another computation, or is no log.
     Other {
@@ -48,9 +48,9 @@ impl Log {
     /// If the file cannot be read and written, or belongs to something else.
     pub fn open(path: impl AsRef<Path>, identity: &str) -> Result<Self, LogError> {
         let path = path.as_ref().to_path_buf();
-        let failed = |source| LogError::File {
+        let failed = |source: io::Error| LogError::File {
             path: path.clone(),
-            source,
+            kind: source.kind(),
         };
         let mut options = OpenOptions::new();
         let options = options.read(true).write(true).create(true).truncate(false);
@@ -102,7 +102,7 @@ impl Log {
             .write_all(&frame)
             .map_err(|source| LogError::File {
                 path: self.path.clone(),
-                source,
+                kind: source.kind(),
             })
     }
 }
@@ -173,8 +173,8 @@ impl Reader<'_> {
 impl std::fmt::Display for LogError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::File { path, source } => {
-                write!(f, "cannot use the checkpoint {}: {source}", path.display())
+            Self::File { path, kind } => {
+                write!(f, "cannot use the checkpoint {}: {kind}", path.display())
             }
             Self::Other { path, found } if found.is_empty() => {
                 write!(f, "{} is no checkpoint", path.display())
@@ -188,14 +188,7 @@ impl std::fmt::Display for LogError {
     }
 }
 
-impl std::error::Error for LogError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::File { source, .. } => Some(source),
-            Self::Other { .. } => None,
-        }
-    }
-}
+impl std::error::Error for LogError {}
 
 #[cfg(test)]
 mod tests {

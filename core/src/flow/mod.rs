@@ -70,6 +70,7 @@ pub trait Flow: Send {
 
 /// How a flow is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Options {
     /// The error allowed in a state, relative to the largest states of the motion; from `1e-14` to `1e-2`. A closed form is
     /// always exact to rounding.
@@ -80,6 +81,22 @@ impl Default for Options {
     /// A tolerance of `1e-10`.
     fn default() -> Self {
         Self { tolerance: 1e-10 }
+    }
+}
+
+impl Options {
+    /// The error allowed in a state; see [`Options::tolerance`](#structfield.tolerance).
+    ///
+    /// ```
+    /// use hertzian::flow::Options;
+    ///
+    /// let options = Options::default().tolerance(1e-7);
+    /// assert_eq!(options.tolerance, 1e-7);
+    /// ```
+    #[must_use]
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
     }
 }
 

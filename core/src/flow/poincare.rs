@@ -103,15 +103,17 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The gap of a contact of a system passes a value, at given values of the parameters and of `omega`.
+    /// The gap of a contact of a system, counted from zero, passes a value, at given values of the parameters and of `omega`.
     ///
     /// # Errors
     /// If there is no such contact, or the values cannot be used.
     pub fn gap(
         system: &dyn System,
-        (parameters, omega): (&[f64], f64),
+        parameters: &[f64],
+        omega: f64,
         contact: usize,
-        (value, direction): (f64, Direction),
+        value: f64,
+        direction: Direction,
     ) -> Result<Self, Error> {
         validate::values(system, parameters, omega)?;
         let layout = Layout::of(system);

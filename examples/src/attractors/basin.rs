@@ -71,18 +71,13 @@ pub fn request(task: &Task<'_>, count: usize) -> Result<Basin, Failure> {
             let message = format!("the range from {from} to {to} is empty");
             return Err(Failure::Option(message));
         }
-        Ok(Axis {
-            entry,
-            from,
-            to,
-            count,
-        })
+        Ok(Axis::of(entry).from(from).to(to).cells(count))
     };
-    let basin = Basin::new(Grid {
-        start: task.start()?,
-        columns: axis(0, &options.x_range)?,
-        rows: axis(task.system.facts().coordinates.len(), &options.v_range)?,
-    });
+    let basin = Basin::new(Grid::new(
+        task.start()?,
+        axis(0, &options.x_range)?,
+        axis(task.system.facts().coordinates.len(), &options.v_range)?,
+    ));
     Ok(Basin {
         longest: options.longest,
         patience: options.patience,

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
-use hertzian::flow::history;
+use hertzian::flow::history::{self, Span};
 
 use super::output::{Results, Table, entries};
 use super::run::{Failure, Task};
@@ -60,7 +60,10 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     history::record(
         &mut map,
         &mut moving,
-        (last - from, SAMPLES),
+        Span {
+            periods: last - from,
+            samples: SAMPLES,
+        },
         &mut |time, state| {
             curve.push([from as f64 + time, state[0]]);
         },

@@ -13,8 +13,6 @@ pub mod sweep;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 use crate::program::{self, Ended};
 use options::Options;
 use run::{Outcome, run};
@@ -22,7 +20,7 @@ use run::{Outcome, run};
 /// Reads the command line, does what it asks for, and says by the exit code how it went.
 pub fn main() -> ExitCode {
     // Bad usage ends here, with clap's message and exit code 2.
-    let options = Options::parse_from(figures::expanded(std::env::args_os()));
+    let options = Options::read(std::env::args_os()).unwrap_or_else(|error| error.exit());
     program::run("attractors", options.quiet, |interrupted, progress| {
         let Outcome { summary, complete } = run(&options, interrupted, progress)?;
         let early = "ended before it was complete; what was computed is written";

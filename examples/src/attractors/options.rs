@@ -1,5 +1,6 @@
 //! What can be asked for on the command line.
 
+use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -7,6 +8,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Parser, ValueEnum};
 
 use super::figures;
+use crate::misplaced::{self, count};
 use crate::model::ModelOptions;
 
 /// Finds what the motions of one mass on a power-law contact settle to, and draws it.
@@ -81,7 +83,7 @@ pub struct Options {
     pub to: f64,
 
     /// --sweep: number of values in each direction
-    #[arg(long, value_name = "COUNT", default_value_t = 400)]
+    #[arg(long, value_name = "COUNT", default_value_t = 400, value_parser = count)]
     pub values: usize,
 
     /// --sweep: look where x rises through this value, instead of once in each period
@@ -93,15 +95,15 @@ pub struct Options {
     pub start: Vec<f64>,
 
     /// Periods that are dropped first [default: 400 with --sweep, 5000 with --lyapunov, otherwise none]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
     pub transient: Option<usize>,
 
     /// Periods that are looked at [default: 100 with --sweep, 400000 with --lyapunov, 1000 with --history]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
     pub periods: Option<usize>,
 
     /// --lyapunov: batches that the periods are divided into for the standard error
-    #[arg(long, value_name = "COUNT", default_value_t = 40)]
+    #[arg(long, value_name = "COUNT", default_value_t = 40, value_parser = count)]
     pub batches: usize,
 
     /// --history: show every so many periods
@@ -121,11 +123,11 @@ pub struct Options {
     pub zoom: Vec<f64>,
 
     /// --phase: starts along each side of a grid; with 0 the one of --start
-    #[arg(long, value_name = "COUNT", default_value_t = 16)]
+    #[arg(long, value_name = "COUNT", default_value_t = 16, value_parser = count)]
     pub starts: usize,
 
     /// --basin: cells along each side of the grid
-    #[arg(long, value_name = "COUNT", default_value_t = 512)]
+    #[arg(long, value_name = "COUNT", default_value_t = 512, value_parser = count)]
     pub grid: usize,
 
     /// --basin, --phase: range of x on the grid
@@ -137,11 +139,11 @@ pub struct Options {
     pub v_range: Vec<f64>,
 
     /// --basin, --phase: the longest period that is looked for
-    #[arg(long, value_name = "COUNT", default_value_t = 64)]
+    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = count)]
     pub longest: usize,
 
     /// --basin, --phase: periods after which a motion is given up that has not come to a periodic orbit
-    #[arg(long, value_name = "COUNT", default_value_t = 20_000)]
+    #[arg(long, value_name = "COUNT", default_value_t = 20_000, value_parser = count)]
     pub patience: usize,
 
     /// A motion that goes beyond this, in x or x', has escaped
@@ -167,6 +169,47 @@ pub struct Options {
     /// Say nothing but errors
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Options and the tasks that look at them.
+const BELONGS: [(&str, &[&str]); 21] = [
+    ("up", &["sweep"]),
+    ("down", &["sweep"]),
+    ("from", &["sweep"]),
+    ("to", &["sweep"]),
+    ("values", &["sweep"]),
+    ("section", &["sweep"]),
+    ("transient", &["sweep", "lyapunov", "history"]),
+    ("periods", &["sweep", "lyapunov", "history"]),
+    ("batches", &["lyapunov"]),
+    ("every", &["history"]),
+    ("drives", &["lyapunov", "phase"]),
+    ("mark", &["phase"]),
+    ("zoom", &["phase"]),
+    ("starts", &["phase"]),
+    ("grid", &["basin"]),
+    ("x_range", &["basin", "phase"]),
+    ("v_range", &["basin", "phase"]),
+    ("longest", &["basin", "phase"]),
+    ("patience", &["basin", "phase"]),
+    ("threads", &["basin"]),
+    ("checkpoint", &["basin", "sweep"]),
+];
+
+impl Options {
+    /// From the words of a command line, the first of which is the program; figures stand for their options.
+    ///
+    /// # Errors
+    /// What cannot be understood, and what would do nothing.
+    pub fn read(words: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        misplaced::parsed(figures::expanded(words), |options: &Self, given| {
+            let swept = options.sweep.map(Swept::name);
+            let taken = swept.filter(|name| given.has(name)).map(|name| {
+                format!("--sweep {name} takes the place of --{name}: --from and --to say where it begins and ends")
+            });
+            taken.or_else(|| given.misplaced(&BELONGS))
+        })
+    }
 }
 
 /// What a sweep changes.

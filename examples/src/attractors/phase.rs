@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
 use hertzian::flow::basin::{Attractor, Basins, Fate};
-use hertzian::flow::history;
+use hertzian::flow::history::{self, Span};
 use hertzian::flow::stroboscope::Stroboscope;
 
 use super::basin::{name, request};
@@ -219,7 +219,10 @@ impl Portrait<'_> {
         history::record(
             &mut self.map,
             &mut state,
-            (periods, SAMPLES),
+            Span {
+                periods,
+                samples: SAMPLES,
+            },
             &mut |_, state| {
                 curve.push(place(state));
             },

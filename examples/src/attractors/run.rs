@@ -252,9 +252,7 @@ impl<'t> Task<'t> {
     /// # Errors
     /// If the values or the tolerance are outside of their ranges.
     pub fn flow(&self, drive: Option<f64>) -> Result<Box<dyn Flow + 't>, Failure> {
-        let how = flow::Options {
-            tolerance: self.options.tolerance,
-        };
+        let how = flow::Options::default().tolerance(self.options.tolerance);
         let values = self.values(drive)?;
         Ok(flow::at(
             self.system,

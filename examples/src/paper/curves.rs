@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use hertzian::chart::{Chart, Curve, Reference, Scale};
+use hertzian::export;
 use hertzian::flow::shooting::Side;
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop, System};
 
@@ -11,9 +12,7 @@ use super::exact;
 use super::figure::{Drawing, Table, Task, Value};
 use crate::model::ModelOptions;
 use crate::response::boundary::loss_of_contact;
-use crate::response::files;
 use crate::response::models::declared;
-use crate::response::records::PointRecord;
 
 /// Column of peak-to-peak in the data: the name of the curve comes before those of the program `response`.
 const PEAK_TO_PEAK: usize = 3;
@@ -97,7 +96,7 @@ pub struct Curves<'t> {
 impl<'t> Curves<'t> {
     /// Without any.
     pub fn new(task: &'t Task<'t>) -> Self {
-        let names = std::iter::once("curve").chain(files::COLUMNS);
+        let names = std::iter::once("curve").chain(export::COLUMNS);
         Self {
             task,
             chart: Chart::new(task.figure.title())
@@ -198,7 +197,6 @@ impl<'t> Curves<'t> {
 
     /// Adds a branch: its curve, its data and its special orbits. Branches of one name have one place in the legend.
     pub fn add(&mut self, label: &str, branch: &Branch<'_>) {
-        let facts = branch.system().facts();
         match self.lines.iter_mut().find(|curve| curve.label == label) {
             Some(curve) => curve.runs.extend(branch.runs()),
             None => self.lines.push(Curve {
@@ -212,7 +210,7 @@ impl<'t> Curves<'t> {
         }
         for point in &branch.points {
             let mut row = vec![label.to_owned()];
-            row.extend(files::row(&PointRecord::of(point, facts)));
+            row.extend(export::row(0, point));
             self.drawing.data.rows.push(row);
         }
         let joined = matches!(branch.stopped, Stop::Joined { .. });

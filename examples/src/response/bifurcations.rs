@@ -5,6 +5,8 @@ use std::ops::ControlFlow;
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
+use hertzian::export::Table;
+use hertzian::flow::basin::Progress;
 use hertzian::flow::shooting::{CycleEvent, Track};
 use hertzian::{Error, EventKind, Shooting, System};
 
@@ -35,6 +37,7 @@ pub fn find(
     options: &Options,
     model: &dyn System,
     go: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    search: &(dyn Fn(Progress) -> bool + Sync),
 ) -> Result<Option<Found>, Error> {
     if !options.bifurcations && options.track.is_none() {
         return Ok(None);
@@ -53,6 +56,7 @@ pub fn find(
     for &value in &options.search {
         request = request.search(value, basin(options, model, value));
     }
+    let request = request.watch(search);
     let mut interrupted = false;
     let diagram = request.run_with(|cycle| {
         let answer = go(cycle.value);
@@ -109,7 +113,8 @@ impl Found {
             if self.tracks.iter().any(|track| on_it(&track)) {
                 continue;
             }
-            match shooting.track(&event, second, range) {
+            let tracked = shooting.track_with(&event, second, range, |point| go(point.values[0]));
+            match tracked {
                 Ok(track) => self.tracks.push(track),
                 Err(error) => self
                     .warnings
@@ -119,13 +124,14 @@ impl Found {
         Ok(())
     }
 
-    /// Puts the events, and the branches other than the first, into the record.
+    /// Puts the events, and the branches other than the first, into the record and the table.
     ///
     /// # Errors
     /// If the motion of an orbit cannot be computed.
     pub fn add_to(
         &self,
         record: &mut Record,
+        table: &mut Table,
         options: &Options,
         model: &dyn System,
     ) -> Result<(), Error> {
@@ -141,7 +147,9 @@ impl Found {
                 continue;
             }
             for cycle in &limb.branch.cycles {
-                let point = PointRecord::of(&shooting.point(cycle)?, facts);
+                let point = shooting.point(cycle)?;
+                table.add(number, &point);
+                let point = PointRecord::of(&point, facts);
                 record.points.push(PointRecord {
                     branch: number,
                     ..point

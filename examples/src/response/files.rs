@@ -4,32 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::records::{PointRecord, Record};
-
-/// Columns of the CSV file; each multiplier has two.
-pub const COLUMNS: [&str; 21] = [
-    "omega",
-    "drive",
-    "peak_to_peak",
-    "max",
-    "min",
-    "mean",
-    "rms",
-    "stability",
-    "multiplier_1_re",
-    "multiplier_1_im",
-    "multiplier_2_re",
-    "multiplier_2_im",
-    "contact_fraction",
-    "contacts",
-    "peak_force",
-    "dissipated_power",
-    "harmonics",
-    "error",
-    "branch",
-    "period",
-    "value",
-];
+use super::records::Record;
 
 /// Whether a file can be written there, as far as can be told without touching it.
 ///
@@ -85,53 +60,4 @@ pub fn write_json(path: &Path, record: &Record) -> io::Result<()> {
     serde_json::to_writer(&mut file, record)?;
     writeln!(file)?;
     file.flush()
-}
-
-/// Writes one row per point.
-///
-/// # Errors
-/// If the file cannot be written.
-pub fn write_csv(path: &Path, points: &[PointRecord]) -> io::Result<()> {
-    let mut writer = csv::Writer::from_path(path)?;
-    writer.write_record(COLUMNS)?;
-    for point in points {
-        writer.write_record(row(point))?;
-    }
-    writer.flush()
-}
-
-/// A point as the texts of [`COLUMNS`]; what is not known is empty.
-pub fn row(point: &PointRecord) -> Vec<String> {
-    // As short as reads back to the same number.
-    let number = |value: f64| format!("{value:?}");
-    let known = |value: Option<f64>| value.map_or(String::new(), number);
-    let part = |index: usize, part: usize| {
-        let multiplier = point.multipliers.get(index);
-        multiplier.map_or(String::new(), |multiplier| number(multiplier[part]))
-    };
-    vec![
-        number(point.omega),
-        number(point.drive),
-        number(point.peak_to_peak),
-        number(point.max),
-        number(point.min),
-        number(point.mean),
-        number(point.rms),
-        point.stability.clone(),
-        part(0, 0),
-        part(0, 1),
-        part(1, 0),
-        part(1, 1),
-        known(point.contact_fraction),
-        point
-            .contacts
-            .map_or(String::new(), |count| count.to_string()),
-        known(point.peak_force),
-        number(point.dissipated_power),
-        point.harmonics.to_string(),
-        known(point.error),
-        point.branch.to_string(),
-        point.period.to_string(),
-        number(point.value),
-    ]
 }

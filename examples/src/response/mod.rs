@@ -15,8 +15,6 @@ pub mod summary;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 use crate::program::{self, Ended, Failed};
 use options::Options;
 use run::run;
@@ -24,7 +22,7 @@ use run::run;
 /// Reads the command line, does what it asks for, and says by the exit code how it went.
 pub fn main() -> ExitCode {
     // Bad usage ends here, with clap's message and exit code 2.
-    let options = Options::parse();
+    let options = Options::read(std::env::args_os()).unwrap_or_else(|error| error.exit());
     program::run("response", options.quiet, |interrupted, progress| {
         let outcome = run(&options, interrupted, progress).map_err(|failure| Failed {
             message: failure.to_string(),

@@ -146,7 +146,7 @@ pub fn declared(options: &ModelOptions) -> Box<dyn System> {
 }
 
 /// The declared oscillator whose exponent is a parameter.
-fn of_any_exponent(options: &ModelOptions) -> Box<dyn System> {
+pub fn of_any_exponent(options: &ModelOptions) -> Box<dyn System> {
     let &ModelOptions {
         alpha,
         zeta,

@@ -1,10 +1,12 @@
 //! What can be asked for on the command line.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 use hertzian::stability::{Method, Projection, Sorting};
 
+use crate::misplaced::{self, Given, count};
 use crate::model::ModelOptions;
 
 /// Traces the periodic response of one mass on a power-law contact, says what is stable, and draws it.
@@ -48,15 +50,15 @@ pub struct Options {
     pub to: f64,
 
     /// Period of the orbit, in periods of the excitation
-    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count)]
     pub period: usize,
 
     /// Harmonics per period of the excitation [default: from the tolerance]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
     pub harmonics: Option<usize>,
 
     /// Samples per period of the excitation [default: from the harmonics]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
     pub samples: Option<usize>,
 
     /// How the harmonics of the contact force are computed
@@ -77,7 +79,7 @@ pub struct Options {
     pub tolerance: f64,
 
     /// Stop after this many points
-    #[arg(long, value_name = "COUNT", default_value_t = 20_000)]
+    #[arg(long, value_name = "COUNT", default_value_t = 20_000, value_parser = count)]
     pub max_points: usize,
 
     /// Also compute every orbit of the branch at exactly these values of what varies
@@ -89,7 +91,7 @@ pub struct Options {
     pub bifurcations: bool,
 
     /// Follow the branches that begin there too, and those that begin on them, to this depth
-    #[arg(long, value_name = "DEPTH", requires = "bifurcations")]
+    #[arg(long, value_name = "DEPTH", requires = "bifurcations", value_parser = count)]
     pub follow: Option<usize>,
 
     /// Also look for branches that nothing leads to, among what motions settle to at this value of what varies
@@ -215,6 +217,30 @@ impl From<Multipliers> for Method {
 }
 
 impl Options {
+    /// From the words of a command line, the first of which is the program.
+    ///
+    /// # Errors
+    /// What cannot be understood, and what would do nothing.
+    pub fn read(words: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        misplaced::parsed(words, Self::fault)
+    }
+
+    /// What was given and would do nothing.
+    fn fault(&self, given: &Given<'_>) -> Option<String> {
+        let swept = self.varied();
+        let known = ["omega", "alpha", "zeta", "load", "drive"].contains(&swept);
+        if (known && given.has(swept)) || self.model.set.iter().any(|(name, _)| name == swept) {
+            return Some(format!(
+                "--sweep {swept} takes the place of the value of {swept}: --from and --to say where it begins and ends"
+            ));
+        }
+        let samples = given.has("samples") && self.aft == Aft::Switched;
+        samples.then(|| {
+            "--samples belongs to --aft sampled or --aft primitive: nothing is sampled here"
+                .to_owned()
+        })
+    }
+
     /// Name of what varies, as the models call it.
     pub fn varied(&self) -> &str {
         &self.sweep

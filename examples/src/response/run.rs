@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hertzian::chart::{Chart, Reference};
+use hertzian::export::Table;
 use hertzian::{Branch, Error, FrequencyResponse, Point, Stop, System};
 
 use super::backbone;
@@ -118,9 +119,11 @@ pub fn run(
     let mut warnings = Vec::new();
     let at = solutions_at(options, &branch, &mut warnings);
     let mut record = Record::of(&branch, options, &at);
+    let mut table = Table::of(&*model);
+    branch.points.iter().for_each(|point| table.add(0, point));
     let found = match branch.stopped {
         Stop::Interrupted => None,
-        _ => bifurcations::find(options, &*model, &mut see)?,
+        _ => bifurcations::find(options, &*model, &mut see, &|_| !stop())?,
     };
     let mut chart = match &found {
         Some(found) => found.chart(options, &*model),
@@ -133,10 +136,10 @@ pub fn run(
         warnings.extend(missing);
     }
     if let Some(found) = &found {
-        found.add_to(&mut record, options, &*model)?;
+        found.add_to(&mut record, &mut table, options, &*model)?;
         warnings.extend(found.warnings.iter().cloned());
     }
-    let written = write(options, &record, &chart)?;
+    let written = write(options, &record, &table, &chart)?;
     let reached = branch.stopped == Stop::ReachedEnd;
     if !reached {
         warnings.push(format!("the branch ended early: {}", branch.stopped));
@@ -255,6 +258,7 @@ fn picture(options: &Options, branch: &Branch<'_>, stop: impl Fn() -> bool) -> C
 fn write<'a>(
     options: &'a Options,
     record: &Record,
+    table: &Table,
     chart: &Chart,
 ) -> Result<Vec<&'a Path>, Failure> {
     let failed = |path: &Path| {
@@ -264,7 +268,7 @@ fn write<'a>(
     let svg = &options.svg;
     std::fs::write(svg, chart.to_svg()).map_err(failed(svg))?;
     if let Some(path) = &options.csv {
-        files::write_csv(path, &record.points).map_err(failed(path))?;
+        std::fs::write(path, table.to_csv()).map_err(failed(path))?;
     }
     if let Some(path) = &options.json {
         files::write_json(path, record).map_err(failed(path))?;

@@ -42,17 +42,12 @@ pub fn basin(options: &Options, model: &dyn System, value: f64) -> Basin {
     let time = periods as f64 * TAU / omega;
     let acceleration = acceleration(options, model, value);
     let (height, speed) = (0.15 * acceleration * time * time, 0.5 * acceleration * time);
-    let axis = |entry: usize, from: f64, to: f64| Axis {
-        entry,
-        from,
-        to,
-        count: CELLS,
-    };
-    let grid = Grid {
-        start: vec![0.0, 0.0],
-        columns: axis(0, -height, 0.2 * height),
-        rows: axis(1, -speed, speed),
-    };
+    let axis = |entry: usize, from: f64, to: f64| Axis::of(entry).from(from).to(to).cells(CELLS);
+    let grid = Grid::new(
+        vec![0.0, 0.0],
+        axis(0, -height, 0.2 * height),
+        axis(1, -speed, speed),
+    );
     Basin {
         longest: LONGEST,
         patience: 3000,

@@ -1,11 +1,12 @@
 //! Error over time, both logarithmic.
 
-use hertzian::chart::{Chart, Markers, Scale, Trace};
+use hertzian::chart::{Chart, Markers, Note, Scale, Trace};
 
 use super::measure::Measured;
 use super::method::Family;
 use super::multipliers::{Answer, NAMES};
-use super::problem::{POINTS, Problem};
+use super::peer::Peer;
+use super::problem::Problem;
 
 /// Errors below this are drawn as this: closed forms reach rounding.
 const FLOOR: f64 = 1e-16;
@@ -30,10 +31,16 @@ pub fn chart(
             .iter()
             .filter(|one| one.family == family && one.failure.is_none());
         let points: Vec<[f64; 2]> = right.filter_map(place).collect();
+        // Samples and harmonics are swept both, and points that differ in both are on no line.
+        let line = if family.is_sampled() {
+            Vec::new()
+        } else {
+            points.clone()
+        };
         chart = chart
             .trace(Trace {
                 label: String::new(),
-                points: points.clone(),
+                points: line,
             })
             .markers(Markers {
                 label: family.name().to_owned(),
@@ -42,19 +49,33 @@ pub fn chart(
     }
     let failed = measured.iter().filter(|one| one.failure.is_some());
     chart.markers(Markers {
-        label: "any, with folds that are not there, or incomplete".to_owned(),
+        label: "any of them, failed".to_owned(),
         points: failed.filter_map(place).collect(),
     })
 }
 
 /// The same with the points of other programs, failures as well.
-pub fn with_peers(chart: Chart, problem: &Problem) -> Chart {
-    problem.peers.iter().fold(chart, |chart, peer| {
-        let [least, most] = peer.milliseconds;
-        let failed = if peer.failed { ", failed" } else { "" };
-        chart.markers(Markers {
-            label: format!("{}{failed}", peer.name),
-            points: vec![[POINTS * (least * most).sqrt(), peer.error]],
+pub fn with_peers(chart: Chart, peers: &[Peer], error: impl Fn(&Peer) -> Option<f64>) -> Chart {
+    let mut last = None;
+    peers.iter().fold(chart, |chart, peer| {
+        let Some(error) = error(peer) else {
+            return chart;
+        };
+        // Of several settings of one program the first has the name.
+        let who = (&peer.name, peer.failure.is_some());
+        if last.replace(who) == Some(who) {
+            return chart.note(Note {
+                label: peer.setting.clone(),
+                point: [1e3 * peer.seconds[0], error.max(FLOOR)],
+            });
+        }
+        let harmonics = peer.setting.starts_with("K =").then_some(&peer.setting);
+        let setting = harmonics.map_or_else(String::new, |setting| format!(", {setting}"));
+        let failed = peer.failure.as_ref().map_or("", |_| ", failed");
+        let name = peer.name.split(' ').next().unwrap_or_default();
+        chart.note(Note {
+            label: format!("{name}{setting}{failed}"),
+            point: [1e3 * peer.seconds[0], error.max(FLOOR)],
         })
     })
 }

@@ -1,5 +1,7 @@
 //! Runs in turns, medians, errors and failures.
 
+use std::time::Instant;
+
 use super::method::{self, Family, Reference, Run, Setting};
 use super::problem::Problem;
 
@@ -60,15 +62,33 @@ impl Measured {
     }
 }
 
+/// How long measuring may take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Runs of each method at each setting.
+    pub repeats: usize,
+    /// Seconds after which a run is given up.
+    pub patience: f64,
+    /// Seconds after which no run is begun.
+    pub budget: f64,
+}
+
 /// Measures every method on a problem: all once, then all again, so that what else the machine does falls on all alike.
 pub fn measure(
     problem: &Problem,
     reference: &Reference,
-    (repeats, patience): (usize, f64),
+    limits: Limits,
     visit: &mut dyn FnMut(usize, usize) -> bool,
 ) -> Vec<Measured> {
+    let Limits {
+        repeats,
+        patience,
+        budget,
+    } = limits;
+    let started = Instant::now();
     let mut all: Vec<Measured> = Family::ALL
         .iter()
+        .filter(|&&family| family != Family::Integrated || problem.integrated.is_some())
         .flat_map(|family| {
             family
                 .settings()
@@ -87,6 +107,12 @@ pub fn measure(
                 .last()
                 .is_some_and(|&seconds| seconds > LONG);
             if turn > 0 && (long || measured.seconds.is_empty()) {
+                continue;
+            }
+            if started.elapsed().as_secs_f64() > budget {
+                if turn == 0 {
+                    measured.failure = Some("not run: the time was used up".to_owned());
+                }
                 continue;
             }
             match method::run(problem, measured.family, measured.setting, patience) {

@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use cpu_time::ThreadTime;
 use hertzian::flow::shooting::CycleBranch;
+use hertzian::system::System;
 use hertzian::{Aft, Branch, Complex, EventKind, FrequencyResponse, Shooting};
 
 use super::problem::Problem;
@@ -23,17 +25,20 @@ pub enum Family {
     Adaptive,
     /// Shooting, with a tolerance of the flow; closed forms have none.
     Shooting,
+    /// Shooting by integration, on problems of which shooting has closed forms.
+    Integrated,
 }
 
 impl Family {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Classical,
         Self::Primitive,
         Self::Switched,
         Self::Interpreted,
         Self::Adaptive,
         Self::Shooting,
+        Self::Integrated,
     ];
 
     /// Its name in legends and tables.
@@ -45,29 +50,31 @@ impl Family {
             Self::Interpreted => "switched, interpreted",
             Self::Adaptive => "switched, by tolerance",
             Self::Shooting => "shooting",
+            Self::Integrated => "shooting, integrated",
         }
+    }
+
+    /// Whether it samples.
+    pub fn is_sampled(self) -> bool {
+        matches!(self, Self::Classical | Self::Primitive)
     }
 
     /// The settings that are tried.
     pub fn settings(self) -> Vec<Setting> {
         match self {
-            Self::Classical | Self::Primitive => [
-                (5, 512),
-                (10, 512),
-                (10, 4096),
-                (20, 4096),
-                (40, 4096),
-                (40, 16384),
-            ]
-            .map(|(harmonics, samples)| Setting::Samples { harmonics, samples })
-            .to_vec(),
+            Self::Classical | Self::Primitive => [512, 4096, 16384]
+                .into_iter()
+                .flat_map(|samples| {
+                    [5, 10, 20, 40].map(|harmonics| Setting::Samples { harmonics, samples })
+                })
+                .collect(),
             Self::Switched | Self::Interpreted => {
                 [5, 10, 20, 40, 80].map(Setting::Harmonics).to_vec()
             }
             Self::Adaptive => [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
                 .map(Setting::Tolerance)
                 .to_vec(),
-            Self::Shooting => [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
+            Self::Shooting | Self::Integrated => [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
                 .map(Setting::Tolerance)
                 .to_vec(),
         }
@@ -103,7 +110,7 @@ impl std::fmt::Display for Setting {
 /// What one run gave.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// Time of the curve.
+    /// Time of the processor for the curve.
     pub seconds: f64,
     /// Folds, and turns that could not be confirmed as folds.
     pub folds: Vec<f64>,
@@ -124,7 +131,11 @@ pub fn run(
     patience: f64,
 ) -> Result<Run, hertzian::Error> {
     match family {
-        Family::Shooting => shoot(problem, setting, patience),
+        Family::Shooting => shoot(problem, &*problem.compiled, setting, patience),
+        Family::Integrated => match &problem.integrated {
+            Some(system) => shoot(problem, &**system, setting, patience),
+            None => shoot(problem, &*problem.compiled, setting, patience),
+        },
         _ => balance(problem, family, setting, patience),
     }
 }
@@ -152,31 +163,34 @@ fn balance(
         Setting::Harmonics(harmonics) => request.harmonics(harmonics),
         Setting::Tolerance(tolerance) => request.tolerance(tolerance),
     };
-    let started = Instant::now();
+    let (clock, started) = (ThreadTime::now(), Instant::now());
     let branch = request.run_with(|_| within(started, patience))?;
-    let seconds = started.elapsed().as_secs_f64();
+    let seconds = clock.elapsed().as_secs_f64();
     let reached = branch.stopped == hertzian::Stop::ReachedEnd;
     Ok(Run {
         seconds,
         folds: turns(&branch),
         peak_to_peak: largest(&branch, problem.at),
-        fault: (!reached).then(|| format!("ended early: {}", branch.stopped)),
+        fault: (!reached).then(|| ended(&branch.stopped, started, patience)),
     })
 }
 
-fn shoot(problem: &Problem, setting: Setting, patience: f64) -> Result<Run, hertzian::Error> {
+fn shoot(
+    problem: &Problem,
+    system: &dyn System,
+    setting: Setting,
+    patience: f64,
+) -> Result<Run, hertzian::Error> {
     let tolerance = match setting {
         Setting::Tolerance(tolerance) => tolerance,
         Setting::Samples { .. } | Setting::Harmonics(_) => 1e-10,
     };
     let [from, to] = problem.range;
-    let shooting = Shooting::of(&*problem.compiled)
-        .tolerance(tolerance)
-        .stability(false);
-    let started = Instant::now();
+    let shooting = Shooting::of(system).tolerance(tolerance).stability(false);
+    let (clock, started) = (ThreadTime::now(), Instant::now());
     let request = shooting.clone().from(from).to(to);
     let branch = request.run_with(|_| within(started, patience))?;
-    let seconds = started.elapsed().as_secs_f64();
+    let seconds = clock.elapsed().as_secs_f64();
     let folds = branch.folds().map(|fold| fold.cycle.value);
     let turns = branch.turns.iter();
     let others = turns.filter(|turn| turn.kind == EventKind::Fold);
@@ -189,8 +203,17 @@ fn shoot(problem: &Problem, setting: Setting, patience: f64) -> Result<Run, hert
         seconds,
         folds: folds.chain(others).collect(),
         peak_to_peak: largest_cycle(&shooting, &branch, problem.at),
-        fault: (!reached).then(|| format!("ended early: {}", branch.end)),
+        fault: (!reached).then(|| ended(&branch.end, started, patience)),
     })
+}
+
+/// Why a curve is not complete.
+fn ended(why: &dyn std::fmt::Display, started: Instant, patience: f64) -> String {
+    if within(started, patience).is_break() {
+        format!("no end within {patience} s")
+    } else {
+        format!("ended early: {why}")
+    }
 }
 
 fn within(started: Instant, patience: f64) -> ControlFlow<()> {

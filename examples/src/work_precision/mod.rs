@@ -9,6 +9,7 @@ pub mod method;
 pub mod multipliers;
 pub mod options;
 mod page;
+pub mod peer;
 pub mod problem;
 
 use std::fs;
@@ -22,11 +23,12 @@ use hertzian::chart::Page;
 
 use crate::program::{self, Ended};
 use crate::response::progress::Progress;
-use measure::{Measured, measure};
+use measure::{Limits, Measured, measure};
 use method::Reference;
 use multipliers::{Answer, NAMES};
 use options::Options;
-use problem::{POINTS, Problem};
+use peer::Peer;
+use problem::Problem;
 
 /// A problem, and what became of it.
 pub struct Section {
@@ -38,6 +40,8 @@ pub struct Section {
     pub measured: Vec<Measured>,
     /// Multipliers of the orbit of comparison.
     pub answers: Vec<Answer>,
+    /// Other programs.
+    pub peers: Vec<Peer>,
 }
 
 /// Why nothing came of it.
@@ -67,7 +71,11 @@ impl std::error::Error for Failure {}
 pub fn main() -> ExitCode {
     let options = Options::parse();
     program::run("work_precision", options.quiet, |interrupted, progress| {
-        let sections = run(&options, problem::all(), interrupted, progress)?;
+        let mut problems = problem::all();
+        problems.retain(|problem| {
+            options.only.is_empty() || options.only.iter().any(|id| id == problem.id)
+        });
+        let sections = run(&options, problems, interrupted, progress)?;
         Ok(Ended {
             summary: summary(&options, &sections),
             complaints: Vec::new(),
@@ -91,6 +99,12 @@ pub fn run(
         move |error| Failure::File(path, error)
     };
     fs::create_dir_all(&options.out).map_err(failed(&options.out))?;
+    let limits = Limits {
+        repeats: options.repeats.get(),
+        patience: options.patience,
+        budget: options.budget / problems.len().max(1) as f64,
+    };
+    let machine = machine();
     let mut sections = Vec::new();
     for problem in problems {
         if interrupted.load(Ordering::Relaxed) {
@@ -98,8 +112,7 @@ pub fn run(
         }
         let reference = method::reference(&problem).map_err(Failure::Reference)?;
         let reference = reference.ok_or(Failure::NoOrbit(problem.id))?;
-        let how = (options.repeats.get(), options.patience);
-        let measured = measure(&problem, &reference, how, &mut |done, all| {
+        let measured = measure(&problem, &reference, limits, &mut |done, all| {
             progress.update(|| format!("{}: {done} of {all} runs", problem.title));
             !interrupted.load(Ordering::Relaxed)
         });
@@ -120,10 +133,12 @@ pub fn run(
             .join(problem.id.replace('.', "_"))
             .with_extension("svg");
         let answers = multipliers::measure(&problem, &reference);
+        let peers = peer::on(&problem, &reference);
         let mut page = Page::new(1);
         if !reference.folds.is_empty() {
-            page = page.chart(chart::with_peers(fold, &problem));
+            page = page.chart(chart::with_peers(fold, &peers, |peer| peer.fold));
         }
+        let size = chart::with_peers(size, &peers, |peer| peer.peak_to_peak);
         let page = page
             .chart(size)
             .chart(chart::multipliers(&problem, &answers));
@@ -133,18 +148,19 @@ pub fn run(
             reference,
             measured,
             answers,
+            peers,
         });
         let csv = options.out.join("work_precision.csv");
-        write_csv(&csv, &sections).map_err(failed(&csv))?;
+        write_csv(&csv, &sections, &machine).map_err(failed(&csv))?;
         let csv = options.out.join("multipliers.csv");
         write_multipliers(&csv, &sections).map_err(failed(&csv))?;
         let html = options.out.join("index.html");
-        fs::write(&html, page::html(&sections, &machine())).map_err(failed(&html))?;
+        fs::write(&html, page::html(&sections, &machine)).map_err(failed(&html))?;
     }
     Ok(sections)
 }
 
-fn write_csv(path: &Path, sections: &[Section]) -> io::Result<()> {
+fn write_csv(path: &Path, sections: &[Section], machine: &str) -> io::Result<()> {
     let mut writer = csv::Writer::from_path(path)?;
     writer.write_record([
         "problem",
@@ -171,23 +187,22 @@ fn write_csv(path: &Path, sections: &[Section]) -> io::Result<()> {
                 number(one.fold),
                 number(one.peak_to_peak),
                 one.failure.clone().unwrap_or_default(),
-                machine(),
+                machine.to_owned(),
             ])?;
         }
-        for peer in section.problem.peers {
-            let time = |index: usize| number(Some(1e-3 * POINTS * peer.milliseconds[index]));
-            let failure = if peer.failed { peer.note } else { "" };
+        for peer in &section.peers {
+            let [median, least, most] = peer.seconds.map(|seconds| number(Some(seconds)));
             writer.write_record([
                 section.problem.id.to_owned(),
-                peer.name.to_owned(),
-                format!("time of a point, for {POINTS} of them"),
-                String::new(),
-                time(0),
-                time(1),
-                number(Some(peer.error)),
-                String::new(),
-                failure.to_owned(),
-                "as stated in 2026".to_owned(),
+                peer.name.clone(),
+                peer.setting.clone(),
+                median,
+                least,
+                most,
+                number(peer.fold),
+                number(peer.peak_to_peak),
+                peer.failure.clone().unwrap_or_default(),
+                format!("measured {}", peer.measured),
             ])?;
         }
     }
@@ -222,8 +237,20 @@ fn write_multipliers(path: &Path, sections: &[Section]) -> io::Result<()> {
     writer.flush()
 }
 
-/// Processor and version.
+/// Processor, versions and profile.
 fn machine() -> String {
+    let rustc = std::process::Command::new("rustc")
+        .arg("--version")
+        .output();
+    let rustc = rustc
+        .ok()
+        .and_then(|said| String::from_utf8(said.stdout).ok());
+    let rustc = rustc.as_deref().map_or("", str::trim);
+    let profile = if cfg!(debug_assertions) {
+        "with assertions"
+    } else {
+        "without assertions"
+    };
     let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = info
         .lines()
@@ -231,7 +258,7 @@ fn machine() -> String {
     let name = name.map_or(std::env::consts::ARCH, |(_, name)| name);
     let set = hertzian::power::Instructions::in_use().name();
     format!(
-        "{name}, {set}, one thread, hertzian {}",
+        "{name}, {set}, one thread, hertzian {} {profile}, {rustc}",
         env!("CARGO_PKG_VERSION")
     )
 }

@@ -1,7 +1,8 @@
 //! Multipliers of one orbit: by every method from balances of several sizes, and by shooting.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use cpu_time::ThreadTime;
 use hertzian::stability::{Method, Projection, Sorting};
 use hertzian::{Complex, FrequencyResponse, Point, Shooting};
 
@@ -99,7 +100,7 @@ fn shoot(problem: &Problem, reference: &Reference, tolerance: f64) -> Answer {
             method,
             setting,
             seconds: median(|| {
-                let started = Instant::now();
+                let started = ThreadTime::now();
                 let _ = orbit();
                 started.elapsed()
             }),

@@ -4,6 +4,9 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::Parser;
+use clap::builder::PossibleValuesParser;
+
+use super::problem;
 
 /// Charts error against time: sampled and exactly switched harmonic balance, and shooting, on the same curves.
 ///
@@ -16,6 +19,10 @@ pub struct Options {
     #[arg(long, value_name = "DIR", default_value = "work_precision")]
     pub out: PathBuf,
 
+    /// Only these problems
+    #[arg(long, value_name = "PROBLEM", num_args = 1.., value_parser = PossibleValuesParser::new(problem::IDS))]
+    pub only: Vec<String>,
+
     /// Measurements of each method, in turns with all others
     #[arg(long, value_name = "COUNT", default_value_t = NonZeroUsize::new(5).unwrap_or(NonZeroUsize::MIN))]
     pub repeats: NonZeroUsize,
@@ -23,6 +30,10 @@ pub struct Options {
     /// Seconds after which a method is given up
     #[arg(long, value_name = "SECONDS", default_value_t = 3.0)]
     pub patience: f64,
+
+    /// Seconds for all measurements; shared out evenly among the problems, of which none begins a run beyond its share
+    #[arg(long, value_name = "SECONDS", default_value_t = 540.0)]
+    pub budget: f64,
 
     /// Say nothing but errors
     #[arg(long)]

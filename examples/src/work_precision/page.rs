@@ -6,7 +6,7 @@ use super::Section;
 use super::measure::Measured;
 use super::method::Family;
 use super::multipliers::NAMES;
-use super::problem::{POINTS, Problem};
+use super::peer::Peer;
 
 const STYLE: &str = "\
 :root { color-scheme: light dark; --text: #1a1a1a; --ground: #ffffff; --line: #c8c8c8; }
@@ -23,8 +23,8 @@ pub fn html(sections: &[Section], machine: &str) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>Error against time</title>\n<style>\n{STYLE}\n</style>\n</head>\n<body>\n<h1>Error against time</h1>\n\
          <p>{machine}. Every method traces the same curve, without multipliers, which have a chart of their own. Errors are those of the fold of largest amplitude, and of \
-         peak-to-peak of one orbit on the branch to it, against exact values. Times are medians. A method that finds other folds than there are \
-         has failed, whatever the error of one of them.</p>\n"
+         peak-to-peak of one orbit on the branch to it, against exact values. Times are those of the processor, medians of repeats in turns. A method that finds other folds than there are, \
+         or does not end, has failed, whatever the error of one of its folds.</p>\n"
     );
     for section in sections {
         let problem = &section.problem;
@@ -36,7 +36,7 @@ pub fn html(sections: &[Section], machine: &str) -> String {
             problem.id.replace('.', "_"),
             verdict(section)
         );
-        peers(&mut text, problem);
+        peers(&mut text, &section.peers);
         table(&mut text, &section.measured);
     }
     text.push_str("</body>\n</html>\n");
@@ -83,7 +83,7 @@ pub fn verdict(section: &Section) -> String {
         "Interpreted laws take {:.2} times as long as generated ones.",
         times(Family::Interpreted) / times(Family::Switched)
     ));
-    let sampled = |one: &&Measured| matches!(one.family, Family::Classical | Family::Primitive);
+    let sampled = |one: &&Measured| one.family.is_sampled();
     let all = measured.iter().filter(sampled).count();
     let failed = measured.iter().filter(sampled);
     let failed = failed.filter(|one| one.failure.is_some()).count();
@@ -100,13 +100,15 @@ pub fn verdict(section: &Section) -> String {
     sentences.join(" ")
 }
 
-fn peers(text: &mut String, problem: &Problem) {
-    for peer in problem.peers {
-        let [least, most] = peer.milliseconds;
+fn peers(text: &mut String, peers: &[Peer]) {
+    for peer in peers {
+        let [median, least, most] = peer.seconds;
+        let failure = peer.failure.as_ref();
+        let failure = failure.map_or_else(String::new, |failure| format!(" {failure};"));
         let _ = writeln!(
             text,
-            "<p>{}, measured in 2026: {least} to {most} ms a point, drawn for {POINTS} points; {}.</p>",
-            peer.name, peer.note
+            "<p>{} {}, measured {}: {median} s for {} points (from {least} to {most});{failure} {}.</p>",
+            peer.name, peer.setting, peer.measured, peer.points, peer.note
         );
     }
 }

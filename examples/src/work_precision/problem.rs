@@ -4,7 +4,7 @@ use hertzian::generic::Declaration;
 use hertzian::system::System;
 
 use crate::model::ModelOptions;
-use crate::response::models::declared;
+use crate::response::models::{declared, of_any_exponent};
 
 /// A curve and what is known of it.
 pub struct Problem {
@@ -16,57 +16,16 @@ pub struct Problem {
     pub compiled: Box<dyn System>,
     /// The same, interpreted.
     pub interpreted: Box<dyn System>,
+    /// The same with an exponent that is a parameter, so that shooting has no closed form, where it has one otherwise.
+    pub integrated: Option<Box<dyn System>>,
     /// Frequencies at which the curve begins and ends.
     pub range: [f64; 2],
-    /// All folds in the range, that of largest amplitude first; `None` where shooting with closed forms tells.
+    /// All folds in the range, that of largest amplitude first; `None` where shooting with closed forms tells, whose own error is then
+    /// not known from elsewhere.
     pub folds: Option<&'static [f64]>,
     /// Frequency at which the largest orbit is compared.
     pub at: f64,
-    /// What other programs were measured to do.
-    pub peers: &'static [Peer],
 }
-
-/// A point of another program: measured by the authors on the machine of `docs/performance.md` in 2026, before this chart.
-pub struct Peer {
-    /// The program.
-    pub name: &'static str,
-    /// Time of a point of the curve, from least to most.
-    pub milliseconds: [f64; 2],
-    /// Error of its fold that comes nearest to the true one.
-    pub error: f64,
-    /// What it did.
-    pub note: &'static str,
-    /// Whether that is a failure.
-    pub failed: bool,
-}
-
-/// Points of a curve for which the time of a peer counts: as many as ours has.
-pub const POINTS: f64 = 125.0;
-
-/// What others made of the first problem.
-const PEERS: [Peer; 3] = [
-    Peer {
-        name: "AUTO-07p, smoothed",
-        milliseconds: [0.4, 1.0],
-        error: 6.4e-6,
-        note: "with tanh(x/0.01) instead of the switch; time with multipliers, of a smooth system; with the switch: false folds, or no convergence",
-        failed: false,
-    },
-    Peer {
-        name: "NLvib",
-        milliseconds: [37.0, 37.0],
-        error: 1.9e-3,
-        note: "stops at 0.81, or goes back and forth between 0.717 and 0.724",
-        failed: true,
-    },
-    Peer {
-        name: "SKHiPPR",
-        milliseconds: [2.0, 20.0],
-        error: 2.1e-3,
-        note: "two to six false folds, 0.713 to 0.728; time with multipliers",
-        failed: true,
-    },
-];
 
 hertzian::oscillator! {
     /// Two masses, the first with an elastic stop a hundred times as stiff as the springs. Stiffness and clearance as in example 03 of
@@ -74,6 +33,17 @@ hertzian::oscillator! {
     StiffStop(x1, x2) {
         param drive;
         law stop(gap) { gap > 1 => 100*(gap - 1), else => 0 }
+        ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop(x1) = 0;
+        ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// The same with an exponent.
+    StiffPower(x1, x2) {
+        param drive;
+        param alpha in 0.1..;
+        law stop(gap) { gap > 1 => 100*(gap - 1)^alpha, else => 0 }
         ddot(x1) + 0.03*(dot(x1) - dot(x2)) + x1 - x2 + stop(x1) = 0;
         ddot(x2) + 0.03*(2*dot(x2) - dot(x1)) + 2*x2 - x1 = drive*cos(omega*t);
     }
@@ -93,12 +63,24 @@ fn stiff_stop() -> Problem {
             Ok(model) => Box::new(model),
             Err(_) => compiled(),
         },
+        integrated: Some(Box::new(StiffPower {
+            drive: 0.1,
+            alpha: 1.0,
+        })),
         range: [0.5, 1.0],
         folds: None,
         at: 0.7,
-        peers: &[],
     }
 }
+
+/// Names of the problems.
+pub const IDS: [&str; 5] = [
+    "one-sided-1",
+    "one-sided-1.5",
+    "one-sided-0.6",
+    "continuous-1.5",
+    "stiff-stop",
+];
 
 /// Folds are from an independent computation: exponent one from the closed-form flow, the others by event-located integration, in
 /// 80-bit arithmetic, with errors below 1e-12.
@@ -162,10 +144,10 @@ fn problem(
         title,
         compiled: declared(&options),
         interpreted: interpreted(&options),
+        integrated: (alpha == 1.0).then(|| of_any_exponent(&options)),
         range,
         folds: Some(folds),
         at,
-        peers: if id == "one-sided-1" { &PEERS } else { &[] },
     }
 }
 

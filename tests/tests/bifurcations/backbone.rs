@@ -205,7 +205,7 @@ fn several_coordinates_in_any_units() {
     let follow = |s: f64, l: f64| {
         let model = Pair { s, l };
         let request = FreeOscillation::of(&model).from(0.5 * l).to(2.0 * l);
-        let found = request.near(&[0.5 * l, -0.5 * l], 1.7 * s).run();
+        let found = request.near_rest(&[0.5 * l, -0.5 * l], 1.7 * s).run();
         found.unwrap().points
     };
     let expected = follow(1.0, 1.0);
@@ -241,7 +241,7 @@ fn what_is_driven_is_not_free() {
         drive: 0.1,
     };
     let request = FreeOscillation::of(&model).from(0.5).to(1.0);
-    let error = request.near(&[0.5], 0.67).run().unwrap_err();
+    let error = request.near_rest(&[0.5], 0.67).run().unwrap_err();
     assert!(matches!(error, Error::NotFree { .. }), "{error}");
 }
 

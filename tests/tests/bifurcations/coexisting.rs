@@ -44,17 +44,8 @@ const AT_FREQUENCY_1: [Known; 3] = [
 ];
 
 fn basin() -> Basin {
-    let axis = |entry, from, to| Axis {
-        entry,
-        from,
-        to,
-        count: 48,
-    };
-    let grid = Grid {
-        start: vec![0.0, 0.0],
-        columns: axis(0, -150.0, 30.0),
-        rows: axis(1, -16.0, 16.0),
-    };
+    let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(48);
+    let grid = Grid::new(vec![0.0, 0.0], axis(0, -150.0, 30.0), axis(1, -16.0, 16.0));
     Basin {
         longest: 5,
         patience: 3000,
@@ -242,17 +233,12 @@ fn the_detached_branch_of_a_hertzian_contact() {
     };
     let (at, limit) = (0.2, 0.260);
     let height = |omega: f64| 0.5 * (PI / omega).powi(2);
-    let axis = |entry, from, to| Axis {
-        entry,
-        from,
-        to,
-        count: 32,
-    };
-    let grid = Grid {
-        start: vec![0.0, 0.0],
-        columns: axis(0, -1.2 * height(at), 0.0),
-        rows: axis(1, -PI / at, PI / at),
-    };
+    let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(32);
+    let grid = Grid::new(
+        vec![0.0, 0.0],
+        axis(0, -1.2 * height(at), 0.0),
+        axis(1, -PI / at, PI / at),
+    );
     let basin = Basin {
         longest: 1,
         patience: 3000,

@@ -11,6 +11,7 @@ mod curves;
 mod doubling;
 mod grazing;
 mod hidden;
+mod interrupted;
 mod mirrored;
 mod symmetry;
 mod table;

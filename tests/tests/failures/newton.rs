@@ -128,7 +128,8 @@ fn newton_wanders_where_sampled_damping_jumps() {
     let cycle = shooting.near(&[-0.33, 0.333]).orbit(drive).unwrap();
     println!(
         "by shooting: {} updates, error {:.0e}",
-        cycle.iterations, cycle.error
+        cycle.iterations,
+        cycle.error.unwrap()
     );
     for (multiplier, exact) in cycle
         .stability

@@ -174,7 +174,7 @@ fn folds_of_figure_5() {
 
 /// The state on which the motion from a state settles: a stable orbit.
 fn settled(system: &dyn System, omega: f64, state: [f64; 2]) -> [f64; 2] {
-    let options = Options { tolerance: 1e-7 };
+    let options = Options::default().tolerance(1e-7);
     let mut flow = flow::of(system, omega, options).unwrap();
     let mut state = state;
     for _ in 0..400 {

@@ -60,9 +60,7 @@ pub fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
 pub fn growth(system: &dyn System, cycle: &Cycle, random: &mut Random) -> Result<f64, FlowError> {
     let largest = cycle.stability.multipliers[0].norm();
     let periods = (FACTOR.ln() / largest.ln().abs()).ceil() as usize;
-    let options = Options {
-        tolerance: TOLERANCE,
-    };
+    let options = Options::default().tolerance(TOLERANCE);
     let mut flow = flow::of(system, cycle.omega, options).unwrap();
     let small = if largest < 1.0 { FACTOR * SMALL } else { SMALL };
     let [x, v] = [cycle.state()[0], cycle.state()[1]];

@@ -1,7 +1,18 @@
 //! The states that motions start from, and the order in which they are looked at.
 
 /// Initial states: two entries of the state vary, the others stay.
+///
+/// ```
+/// use hertzian::flow::basin::{Axis, Grid};
+///
+/// // One coordinate and its rate, 64 cells each.
+/// let position = Axis::of(0).from(-2.0).to(2.0).cells(64);
+/// let rate = Axis::of(1).from(-1.0).to(1.0).cells(64);
+/// let grid = Grid::new(vec![0.0, 0.0], position, rate);
+/// assert_eq!(grid.cells(), 4096);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Grid {
     /// The state whose two entries are varied.
     pub start: Vec<f64>,
@@ -13,6 +24,7 @@ pub struct Grid {
 
 /// One direction of a grid. Its cells divide the range evenly; motions start from their middles.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Axis {
     /// Which entry of the state: a coordinate, or with `entry >= n` its rate.
     pub entry: usize,
@@ -30,6 +42,37 @@ const COARSER: usize = 4;
 const FIRST: usize = 8;
 
 impl Axis {
+    /// An entry of the state, from -1 to 1 in 256 cells.
+    pub fn of(entry: usize) -> Self {
+        Self {
+            entry,
+            from: -1.0,
+            to: 1.0,
+            count: 256,
+        }
+    }
+
+    /// Where the first cell begins.
+    #[must_use]
+    pub fn from(mut self, value: f64) -> Self {
+        self.from = value;
+        self
+    }
+
+    /// Where the last cell ends.
+    #[must_use]
+    pub fn to(mut self, value: f64) -> Self {
+        self.to = value;
+        self
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn cells(mut self, count: usize) -> Self {
+        self.count = count;
+        self
+    }
+
     /// The middle of a cell.
     pub fn middle(&self, cell: usize) -> f64 {
         let part = (cell as f64 + 0.5) / self.count as f64;
@@ -38,6 +81,15 @@ impl Axis {
 }
 
 impl Grid {
+    /// States that differ from `start` in the entries of two axes.
+    pub fn new(start: Vec<f64>, columns: Axis, rows: Axis) -> Self {
+        Self {
+            start,
+            columns,
+            rows,
+        }
+    }
+
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.columns.count.saturating_mul(self.rows.count)
@@ -85,17 +137,8 @@ mod tests {
     use super::*;
 
     fn grid(columns: usize, rows: usize) -> Grid {
-        let axis = |entry, count| Axis {
-            entry,
-            from: -1.0,
-            to: 1.0,
-            count,
-        };
-        Grid {
-            start: vec![0.0; 2],
-            columns: axis(0, columns),
-            rows: axis(1, rows),
-        }
+        let axis = |entry, count| Axis::of(entry).from(-1.0).to(1.0).cells(count);
+        Grid::new(vec![0.0; 2], axis(0, columns), axis(1, rows))
     }
 
     #[test]

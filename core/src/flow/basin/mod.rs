@@ -40,8 +40,8 @@ use super::log::{Log, LogError};
 ///     }
 /// }
 ///
-/// let axis = |entry| Axis { entry, from: -1.6, to: 1.6, count: 8 };
-/// let grid = Grid { start: vec![0.0, 0.0], columns: axis(0), rows: axis(1) };
+/// let axis = |entry| Axis::of(entry).from(-1.6).to(1.6).cells(8);
+/// let grid = Grid::new(vec![0.0, 0.0], axis(0), axis(1));
 /// let model = TwoWells { drive: 0.05 };
 /// let flow = flow::of(&model, 1.0, Options::default())?;
 /// let basins = Basin { longest: 2, ..Basin::new(grid) }.compute(vec![flow], None, &|_| true)?;
@@ -89,7 +89,7 @@ pub struct Progress {
 }
 
 /// Why there are no basins.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BasinError {
     /// The request is at fault.
@@ -103,8 +103,8 @@ pub enum BasinError {
     Log(LogError),
     /// The threads could not be started.
     Threads {
-        /// What the system said.
-        reason: String,
+        /// How many were asked for.
+        count: usize,
     },
 }
 
@@ -200,7 +200,7 @@ impl std::fmt::Display for BasinError {
         match self {
             Self::Request { name, must } => write!(f, "{name} {must}"),
             Self::Log(error) => error.fmt(f),
-            Self::Threads { reason } => write!(f, "cannot start threads: {reason}"),
+            Self::Threads { count } => write!(f, "the system does not give {count} threads"),
         }
     }
 }

@@ -36,17 +36,12 @@ fn flows(model: &OneSided, count: usize) -> Vec<Box<dyn Flow + '_>> {
 }
 
 fn basin(count: usize) -> Basin {
-    let axis = |entry, from, to| Axis {
-        entry,
-        from,
-        to,
-        count,
-    };
-    Basin::new(Grid {
-        start: vec![0.0; 2],
-        columns: axis(0, -60.0, 10.0),
-        rows: axis(1, -12.0, 12.0),
-    })
+    let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(count);
+    Basin::new(Grid::new(
+        vec![0.0; 2],
+        axis(0, -60.0, 10.0),
+        axis(1, -12.0, 12.0),
+    ))
 }
 
 fn always(_: Progress) -> bool {
@@ -149,17 +144,13 @@ fn a_cell_does_not_depend_on_the_others() {
     for cell in (0..1600).step_by(97) {
         let mut state = [0.0; 2];
         basin.grid.state(cell, &mut state);
-        let tiny = |entry| Axis {
-            entry,
-            from: state[entry] - 1e-13,
-            to: state[entry] + 1e-13,
-            count: 1,
+        let tiny = |entry| {
+            Axis::of(entry)
+                .from(state[entry] - 1e-13)
+                .to(state[entry] + 1e-13)
+                .cells(1)
         };
-        let alone = Basin::new(Grid {
-            start: vec![0.0; 2],
-            columns: tiny(0),
-            rows: tiny(1),
-        });
+        let alone = Basin::new(Grid::new(vec![0.0; 2], tiny(0), tiny(1)));
         let alone = alone
             .compute(flows(&MODEL, 1), None, &always)
             .expect("basins");

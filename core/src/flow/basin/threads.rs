@@ -13,9 +13,7 @@ impl Threads {
     pub(super) fn new(count: usize) -> Result<Self, BasinError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
         pool.map(|pool| Self { pool })
-            .map_err(|error| BasinError::Threads {
-                reason: error.to_string(),
-            })
+            .map_err(|_| BasinError::Threads { count })
     }
 
     /// What a function gives for every item, in the order of the items.

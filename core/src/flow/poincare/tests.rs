@@ -137,7 +137,7 @@ fn a_moving_gap_is_crossed_where_it_closes() {
     let model = Moving { stiffness: 0.0 };
     let flow = Affine::new(&model, &[0.0], 1.0).expect("affine");
     let mut map = Stroboscope::new(Box::new(flow));
-    let section = Section::gap(&model, (&[0.0], 1.0), 0, (0.0, Direction::Both));
+    let section = Section::gap(&model, &[0.0], 1.0, 0, 0.0, Direction::Both);
     let mut phases = Vec::new();
     let mut state = [1.0, 0.0];
     section
@@ -155,7 +155,7 @@ fn a_moving_gap_is_crossed_where_it_closes() {
         assert!((found - expected).abs() < 1e-13, "{found} {expected}");
     }
     let of = |values, contact| {
-        let section = Section::gap(&model, (values, 1.0), contact, (0.0, Direction::Both));
+        let section = Section::gap(&model, values, 1.0, contact, 0.0, Direction::Both);
         section.map(|_| ()).expect_err("it cannot be")
     };
     assert!(matches!(of(&[0.0], 1), Error::Option { .. }));

@@ -185,7 +185,8 @@ impl<'a> Shooting<'a> {
         let exact = Affine::new(system, &parameters, omega).is_ok();
         Source {
             make: Box::new(move |tolerance| {
-                flow::at(system, &parameters, omega, Options { tolerance })
+                let options = Options::default().tolerance(tolerance);
+                flow::at(system, &parameters, omega, options)
             }),
             exact,
             tolerance: self.tolerance,

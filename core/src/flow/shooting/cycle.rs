@@ -35,8 +35,8 @@ pub struct Cycle {
     /// How often a gap crosses a level in the period.
     pub switches: usize,
     /// Estimated error of the state, of velocities in units of omega: from the tolerance of the flow and from rounding.
-    /// Not a number where no stability was asked for.
-    pub error: f64,
+    /// `None` where no stability was asked for, since it comes with that.
+    pub error: Option<f64>,
     /// Updates of Newton's method that it took from the guess; zero on a branch.
     pub iterations: usize,
 }

@@ -201,7 +201,7 @@ fn compared(
     let (mut cycle, map) = observe(setting, equations, u).ok()?;
     let by = (moved.point.parameter() - cycle.value).abs();
     let error = part * by + place.error + moved.error + ROUNDING * cycle.value.abs();
-    cycle.error = part * equations.apart(u, &moved.point.u);
+    cycle.error = Some(part * equations.apart(u, &moved.point.u));
     if let Some(map) = map {
         let found = multipliers(&map, half);
         let there = others.map(&moved.point.u, &mut |_| {}).ok()?;

@@ -109,7 +109,8 @@ impl<'a> Run<'_, 'a> {
         let change = (between.1.parameter() - between.0.parameter()).abs();
         let rate = change / equations.apart(&between.0.u, &between.1.u);
         let bracket = (behind.parameter() - before.parameter()).abs();
-        let error = bracket + self.cycles[after].error * rate + TOUCHED * cycle.value.abs();
+        let of_orbit = self.cycles[after].error.unwrap_or(f64::NAN);
+        let error = bracket + of_orbit * rate + TOUCHED * cycle.value.abs();
         self.events.push(CycleEvent {
             kind: EventKind::Grazing {
                 turns: before.parameter_slope() * behind.parameter_slope() < 0.0,

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::cycle::{Cycle, CycleBranch, CycleEvent};
 use super::start::Guess;
-use super::trace::{self, Track};
+use super::trace::{self, Track, TrackPoint};
 use super::{at, compute, series};
 use crate::branch::{EventKind, Orbit, Point};
 use crate::continuation::step::StepControl;
@@ -350,11 +350,21 @@ impl<'a> Shooting<'a> {
     ///
     /// # Errors
     /// If a parameter or an option is not usable, or there is no such curve.
-    pub fn track(
+    pub fn track(&self, event: &CycleEvent, second: &str, range: [f64; 2]) -> Result<Track, Error> {
+        self.track_with(event, second, range, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`track`](Self::track), and calls `visit` at every bifurcation as it is found: to show progress, or to stop. What was found
+    /// until then comes back.
+    ///
+    /// # Errors
+    /// As [`track`](Self::track).
+    pub fn track_with(
         &self,
         event: &CycleEvent,
         second: &str,
         [low, high]: [f64; 2],
+        mut visit: impl FnMut(&TrackPoint) -> ControlFlow<()>,
     ) -> Result<Track, Error> {
         self.belongs(&event.cycle)?;
         let facts = self.system.facts();
@@ -377,6 +387,6 @@ impl<'a> Shooting<'a> {
             name: second.to_owned(),
             ranges: [[from, to], [low, high]],
         };
-        trace::track(&setting, event, &plane)
+        trace::track(&setting, event, &plane, &mut visit)
     }
 }

@@ -273,15 +273,16 @@ impl<'r, 'a> Run<'r, 'a> {
         };
         let found = multipliers(&map, companion.equations.span.half);
         let (mut spread, relative) = companion.errors(&map, &found);
-        cycle.error = relative * self.size;
+        let mut error = relative * self.size;
         if let Some(corrected) = &corrected {
             let other = companion.multipliers_beside(corrected);
             spread += companion.part * distance(&found, &other);
-            cycle.error += companion.part * companion.equations.apart(u, &corrected.u);
+            error += companion.part * companion.equations.apart(u, &corrected.u);
         } else {
             spread = f64::INFINITY;
-            cycle.error = f64::INFINITY;
+            error = f64::INFINITY;
         }
+        cycle.error = Some(error);
         cycle.stability = if found.is_empty() {
             Stability::unknown()
         } else {
@@ -325,7 +326,7 @@ pub(super) fn observe(
         stability: Stability::unknown(),
         extremes,
         switches: switches * if half { 2 } else { 1 },
-        error: f64::NAN,
+        error: None,
         iterations: 0,
     };
     Ok((cycle, map))

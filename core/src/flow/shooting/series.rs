@@ -9,7 +9,7 @@ use crate::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::branch::{Orbit, Point};
 use crate::error::Error;
-use crate::flow::history;
+use crate::flow::history::{self, Span};
 use crate::flow::stroboscope::Stroboscope;
 use crate::fourier::sampled::SampledTransform;
 use crate::fourier::series;
@@ -80,7 +80,7 @@ pub(super) fn point(
         },
         stability: cycle.stability.clone(),
         observed,
-        error: (size > 0.0 && !cycle.error.is_nan()).then(|| cycle.error / size),
+        error: cycle.error.filter(|_| size > 0.0).map(|error| error / size),
     })
 }
 
@@ -107,6 +107,10 @@ fn sampled(setting: &Setting<'_>, cycle: &Cycle, each: usize) -> Result<Vec<f64>
     };
     let mut map = Stroboscope::new(flow);
     let mut state = cycle.state().to_vec();
-    history::record(&mut map, &mut state, (cycle.period, each), &mut keep).map_err(motion)?;
+    let span = Span {
+        periods: cycle.period,
+        samples: each,
+    };
+    history::record(&mut map, &mut state, span, &mut keep).map_err(motion)?;
     Ok(samples)
 }

@@ -2,6 +2,8 @@
 //!
 //! What is special is looked for by [`watch`](super::watch).
 
+use std::ops::ControlFlow;
+
 use nalgebra::Complex;
 
 use super::cycle::CycleEvent;
@@ -13,7 +15,9 @@ use super::touch::Touch;
 use super::track::{Condition, Curve};
 use super::watch::Watch;
 use crate::branch::EventKind;
-use crate::continuation::follow::{CurvePoint, FollowOptions, Outcome, Start, Stop, follow};
+use crate::continuation::follow::{
+    Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, follow,
+};
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::flow::FlowError;
@@ -138,6 +142,9 @@ pub(super) struct Plane<'a> {
 const POINTS: usize = 600;
 /// Shorter steps lead nowhere: where orbits graze, a determinant has the root of the distance in it, and no tangent.
 const SHORTEST: f64 = 1e-5;
+/// What is shown every bifurcation, and says whether to go on.
+pub(super) type See<'v> = &'v mut dyn FnMut(&TrackPoint) -> ControlFlow<()>;
+
 /// Half of a curve, as it is followed.
 struct Half {
     points: Vec<TrackPoint>,
@@ -153,6 +160,7 @@ pub(super) fn track<'a>(
     setting: &Setting<'a>,
     event: &CycleEvent,
     plane: &Plane<'a>,
+    visit: See<'_>,
 ) -> Result<Track, Error> {
     let at = [event.cycle.value, second_of(event, plane.second)];
     for ((value, range), name) in at.into_iter().zip(plane.ranges).zip(["from", "within"]) {
@@ -161,8 +169,17 @@ pub(super) fn track<'a>(
             return Err(Error::Option { name, value, must });
         }
     }
-    let [mut back, forth] = [-1.0, 1.0].map(|side| half(setting, event, plane, side));
-    let (back, mut forth) = (back.as_mut().map_err(|e| e.clone())?, forth?);
+    let mut back = half(setting, event, plane, -1.0, visit)?;
+    let interrupted = matches!(back.end, TrackEnd::Stopped(Stop::Interrupted));
+    // The other half is then the event alone.
+    let end: See<'_> = &mut |_| ControlFlow::Break(());
+    let mut forth = half(
+        setting,
+        event,
+        plane,
+        1.0,
+        if interrupted { end } else { visit },
+    )?;
     let count = back.points.len();
     back.points.reverse();
     back.special.reverse();
@@ -193,6 +210,7 @@ fn half<'a>(
     event: &CycleEvent,
     plane: &Plane<'a>,
     side: f64,
+    visit: See<'_>,
 ) -> Result<Half, Error> {
     let (mut curve, mut u) = curve(setting, event, plane)?;
     let mut newton = Newton::new(&curve);
@@ -227,15 +245,28 @@ fn half<'a>(
         &curve,
         event.cycle.symmetric,
     );
+    let mut interrupted = false;
     let outcome = follow(
         &mut curve,
         &mut newton,
         start,
         options,
-        &mut |curve, newton, seen| watch.visit(curve, newton, &seen),
+        &mut |curve, newton, seen| {
+            let known = watch.points.len();
+            watch.visit(curve, newton, &seen)?;
+            if watch.points[known..]
+                .iter()
+                .any(|point| visit(point).is_break())
+            {
+                interrupted = true;
+                return Continue::Break(Halt::Stop);
+            }
+            Continue::Continue(())
+        },
     );
     let failure = watch.failure.or(curve.equations.failure);
     let end = match (outcome, failure) {
+        _ if interrupted => TrackEnd::Stopped(Stop::Interrupted),
         _ if watch.left => TrackEnd::Left,
         (Err(reason), failure) => return Err(no_orbit(event.cycle.value, reason, failure)),
         (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {

@@ -57,6 +57,18 @@ fn unknown_function(declaration: &Declaration, name: &str) -> String {
     {
         return format!("`{name}` is not a function: write a star, `{name}*(...)`");
     }
+    // Functions of their own, not misspelt ones.
+    let instead = match name {
+        "sinh" => "write `(exp(x) - exp(-x))/2`",
+        "cosh" => "write `(exp(x) + exp(-x))/2`",
+        "tan" => "write `sin(x)/cos(x)`",
+        "cbrt" => "write `x^(1/3)`",
+        "pow" | "powf" | "powi" => "write `x^n`",
+        _ => "",
+    };
+    if !instead.is_empty() {
+        return format!("unknown function `{name}`: {instead}");
+    }
     let advice = match name {
         "sign" | "signum" => Some("sgn".to_owned()),
         "heaviside" | "step" | "Heaviside" => Some("H".to_owned()),

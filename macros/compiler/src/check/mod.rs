@@ -17,7 +17,7 @@ pub(crate) mod pieces;
 pub(crate) mod powers;
 pub(crate) mod rates;
 
-use crate::ast::{Declaration, Equation, Expr, Kind, Let, Statement};
+use crate::ast::{Declaration, Equation, Expr, Kind, Let, Parameter, Statement};
 use crate::errors::{Diagnostics, Extent};
 
 /// Applies the rules on what is written.
@@ -50,8 +50,7 @@ fn ranges_are_not_empty(declaration: &Declaration, diagnostics: &mut Diagnostics
         let (Some(minimum), Some(maximum)) = (parameter.minimum, parameter.maximum) else {
             continue;
         };
-        let touching = minimum.value == maximum.value && minimum.included && maximum.included;
-        if minimum.value >= maximum.value && !touching {
+        if is_empty(parameter) {
             let message = format!(
                 "no value of `{}` lies in this range: write the smaller end first, as in `{}..={}`",
                 parameter.name,
@@ -63,9 +62,17 @@ fn ranges_are_not_empty(declaration: &Declaration, diagnostics: &mut Diagnostics
     }
 }
 
-/// A default lies in its range.
+fn is_empty(parameter: &Parameter) -> bool {
+    let (Some(minimum), Some(maximum)) = (parameter.minimum, parameter.maximum) else {
+        return false;
+    };
+    let touching = minimum.value == maximum.value && minimum.included && maximum.included;
+    minimum.value >= maximum.value && !touching
+}
+
+/// A default lies in its range, where the range has values.
 fn defaults_are_in_range(declaration: &Declaration, diagnostics: &mut Diagnostics) {
-    for parameter in &declaration.parameters {
+    for parameter in declaration.parameters.iter().filter(|p| !is_empty(p)) {
         let Some((value, extent)) = parameter.default else {
             continue;
         };

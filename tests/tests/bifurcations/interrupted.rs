@@ -1,0 +1,57 @@
+//! Computations that their caller ends give back what they have.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use hertzian::bifurcation::{Bifurcations, Reason};
+use hertzian::flow::basin::{Axis, Basin, Grid, Progress};
+use hertzian::flow::shooting::TrackEnd;
+use hertzian::{Shooting, Stop};
+
+use crate::cascade::MODEL;
+
+#[test]
+fn a_search_for_coexisting_motions() {
+    let axis = |entry| Axis::of(entry).from(-20.0).to(20.0).cells(64);
+    let basin = Basin::new(Grid::new(vec![0.0, 0.0], axis(0), axis(1)));
+    let asked = AtomicUsize::new(0);
+    let watch = |_: Progress| {
+        asked.fetch_add(1, Ordering::Relaxed);
+        false
+    };
+    let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
+    let request = request.from(1.0).to(1.2).depth(0).watch(&watch);
+    let diagram = request.search(1.0, basin).run().unwrap();
+    assert_eq!(asked.load(Ordering::Relaxed), 1);
+    assert_eq!(diagram.branches.len(), 1);
+    assert_eq!(diagram.missed, [(1.0, Reason::Interrupted)]);
+}
+
+#[test]
+fn a_curve_in_two_parameters() {
+    let shooting = Shooting::of(&MODEL).from(0.6).to(1.1);
+    let branch = shooting.run().unwrap();
+    let fold = branch.folds().next().unwrap();
+    let mut seen = 0;
+    let track = shooting.track_with(fold, "drive", [0.03, 0.5], |_| {
+        seen += 1;
+        if seen < 5 {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    });
+    let track = track.unwrap();
+    assert_eq!(seen, 5);
+    assert_eq!(track.points.len(), 5);
+    let interrupted = TrackEnd::Stopped(Stop::Interrupted);
+    assert_eq!(track.ends, [interrupted, interrupted]);
+    // The points that it has are those of the whole curve.
+    let whole = shooting.track(fold, "drive", [0.03, 0.5]).unwrap();
+    let first = whole
+        .points
+        .iter()
+        .position(|point| *point == track.points[0]);
+    let first = first.expect("a point of the whole curve");
+    assert_eq!(whole.points[first..first + 5], track.points);
+}
