@@ -99,8 +99,8 @@ fn two_multipliers_are_minus_one_at_once() {
 }
 
 /// The doublings of period two at a frequency, near a drive.
-fn doubling_of_period_2(omega: f64, drive: f64) -> Option<(OneSided, CycleEvent)> {
-    let model = OneSided {
+fn doubling_of_period_2(omega: f64, drive: f64) -> Option<(OneSidedLinear, CycleEvent)> {
+    let model = OneSidedLinear {
         zeta: 0.032,
         load: 1.0,
         drive: 1.0,
