@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use super::effort::Effort;
 use super::fixed::{Fixed, spread};
 use super::{StartRequest, at_rest, near};
-use crate::balance::Balance;
+use crate::balance::{Balance, Resolution};
 use crate::continuation::follow::{FollowOptions, Halt, Start, Visit, follow};
 use crate::continuation::problem::Problem;
 use crate::continuation::step::StepControl;
@@ -31,6 +31,7 @@ pub(super) fn in_drive(
     rest: &[f64],
     effort: &mut Effort,
 ) -> Option<Vec<f64>> {
+    let request = coupled(request);
     let mut fixed = Fixed::new(request, request.resolution.harmonics);
     let mut u = spread(rest, &fixed);
     let last = u.len() - 1;
@@ -67,7 +68,7 @@ pub(super) fn in_frequency(request: StartRequest<'_>, effort: &mut Effort) -> Op
             omega: times * wanted,
             variable: Variable::Omega,
             value: times * wanted,
-            ..request
+            ..coupled(request)
         };
         if effort.is_spent() {
             return None;
@@ -85,6 +86,18 @@ pub(super) fn in_frequency(request: StartRequest<'_>, effort: &mut Effort) -> Op
         end[last] = request.value;
         Some(end)
     })
+}
+
+/// With all harmonics coupled: this is tried where a start is hard, and a step that the tail spoils costs more than it saves.
+fn coupled(request: StartRequest<'_>) -> StartRequest<'_> {
+    let resolution = Resolution {
+        core: request.resolution.harmonics,
+        ..request.resolution
+    };
+    StartRequest {
+        resolution,
+        ..request
+    }
 }
 
 /// The end of a branch, if it reaches the end of its range with the work allowed.

@@ -2,6 +2,7 @@
 
 use hertzian::error::NewtonError;
 use hertzian::{Error, FrequencyResponse, System, Verdict};
+use hertzian_tests::TwoMasses;
 
 use crate::{CONTACT, Continuous, Duffing, Linear, OneSided, Pair};
 
@@ -170,4 +171,24 @@ fn a_start_beside_a_resonance_is_cheap() {
     }
     let branch = request.from(1.0).run().unwrap();
     assert_eq!(branch.points.last().unwrap().orbit.harmonics(), 5);
+}
+
+/// A stop a thousand times stiffer than the springs couples all harmonics: the homotopy in the drive must not leave any out.
+#[test]
+fn an_orbit_against_a_stiff_stop_is_found() {
+    let model = TwoMasses {
+        stop: 1000.0,
+        drive: 1.0,
+    };
+    for omega in [0.3, 0.5] {
+        let request = FrequencyResponse::of(&model).harmonics(60);
+        let request = request.stability(false).from(omega).to(omega + 0.1);
+        let first = request.run_with(|_| std::ops::ControlFlow::Break(()));
+        let first = first.unwrap();
+        assert!(first.statistics.jacobians < 500);
+        let observed = &first.points[0].observed;
+        assert!(observed.motions[0].maximum > 1.0);
+        let power = observed.input_power - observed.dissipated_power;
+        assert!(power.abs() < 1e-11, "{power}");
+    }
 }
