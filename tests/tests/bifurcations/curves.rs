@@ -101,6 +101,16 @@ fn folds_of_a_hertzian_contact() {
             let range = ends[0].min(ends[1])..=ends[0].max(ends[1]);
             assert!(range.contains(&special.values[k]), "{special:?} {ends:?}");
         }
+        // A branch at that drive touches the level there.
+        let [omega, drive] = special.values;
+        let model = model(true, drive);
+        let branch = Shooting::of(&*model).from(0.6).to(1.6).run().unwrap();
+        let touches = |kind| matches!(kind, EventKind::Grazing { .. });
+        let events = branch.events.iter().filter(|event| touches(event.kind));
+        let nearest = events.map(|event| (event.cycle.value - omega).abs());
+        let error = nearest.fold(f64::INFINITY, f64::min);
+        assert!(special.error < 1e-4, "{special:?}");
+        assert!(error <= special.error, "{special:?} {error:e}");
     }
 }
 
