@@ -4,9 +4,7 @@ use crate::system::SystemFacts;
 
 /// Title and axes.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct Labels {
+pub(crate) struct Labels {
     /// The system, and everything that is the same all along the branch.
     pub title: String,
     /// What is varied: a parameter by its name and the first line of its documentation.

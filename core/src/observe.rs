@@ -46,11 +46,9 @@ impl Motion {
         self.maximum - self.minimum
     }
 
-    /// Reads the motion off a series.
-    ///
-    /// # Panics
-    /// If the series is empty.
+    /// Reads the motion off a series; rest off an empty one.
     pub fn of(series: &[f64]) -> Self {
+        let series = if series.is_empty() { &[0.0] } else { series };
         Self::read(&mut Reader::default(), series)
     }
 
@@ -88,25 +86,24 @@ impl ContactMotion {
     };
 }
 
-/// Amplitude of each harmonic, the mean (with its sign) first.
-///
-/// # Panics
-/// If the series is empty.
+/// Amplitude of each harmonic, the mean (with its sign) first; none of an empty series.
 pub fn amplitudes(series: &[f64]) -> Vec<f64> {
-    let oscillating = series[1..]
-        .chunks_exact(2)
-        .map(|pair| pair[0].hypot(pair[1]));
-    std::iter::once(series[0]).chain(oscillating).collect()
+    let Some((&mean, oscillating)) = series.split_first() else {
+        return Vec::new();
+    };
+    let oscillating = oscillating.chunks_exact(2);
+    let oscillating = oscillating.map(|pair| pair[0].hypot(pair[1]));
+    std::iter::once(mean).chain(oscillating).collect()
 }
 
-/// Phase lag of each harmonic, in radians, the mean's zero first: harmonic `k` is `amplitude cos(k tau - phase)`.
-///
-/// # Panics
-/// If the series is empty.
+/// Phase lag of each harmonic, in radians, the mean's zero first: harmonic `k` is `amplitude cos(k tau - phase)`. None of an empty
+/// series.
 pub fn phases(series: &[f64]) -> Vec<f64> {
-    let oscillating = series[1..]
-        .chunks_exact(2)
-        .map(|pair| pair[1].atan2(pair[0]));
+    let Some((_, oscillating)) = series.split_first() else {
+        return Vec::new();
+    };
+    let oscillating = oscillating.chunks_exact(2);
+    let oscillating = oscillating.map(|pair| pair[1].atan2(pair[0]));
     std::iter::once(0.0).chain(oscillating).collect()
 }
 

@@ -47,6 +47,8 @@ pub(crate) struct Run<'f, 'a> {
     wanted: Resolution,
     /// The point before the last step.
     earlier: Option<CurvePoint>,
+    /// Number of points before the last step in which two folds were hidden.
+    split: Option<usize>,
     /// The last point was refused and is to be read again.
     refused: bool,
     slow: usize,
@@ -73,6 +75,7 @@ impl<'f, 'a> Run<'f, 'a> {
             chooser: follower.chooser.clone(),
             wanted: resolution,
             earlier: None,
+            split: None,
             refused: false,
             slow: 0,
             ended: None,

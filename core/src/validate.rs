@@ -117,6 +117,15 @@ pub(crate) fn described(minimum: Bound, maximum: Bound) -> String {
     format!("{lower}, {upper}")
 }
 
+/// Values for a difference over a step to both sides, but where the variable may not have them.
+pub(crate) fn around(facts: &SystemFacts, variable: Variable, value: f64, step: f64) -> [f64; 2] {
+    let admitted = |other: f64| match variable {
+        Variable::Omega => other > 0.0,
+        Variable::Parameter(index) => facts.parameters[index].admits(other),
+    };
+    [value - step, value + step].map(|other| if admitted(other) { other } else { value })
+}
+
 /// An option is a number in its range.
 pub(crate) fn option(
     name: &'static str,

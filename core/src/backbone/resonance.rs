@@ -44,7 +44,7 @@ mod tests;
 
 const HARMONICS: usize = 20;
 const POINTS: usize = 5000;
-/// Step of the difference by what is varied, relative to its value.
+/// Step of the difference by what is varied, relative to its value or its range, whichever is larger.
 const STEP: f64 = 1e-6;
 
 /// Where the first coordinate is in phase resonance with its load, as a parameter varies from the value that it has: set up step by
@@ -367,13 +367,16 @@ impl Problem for Resonance<'_> {
         let value = u[n + 1];
         if jacobian.is_some() {
             let step = STEP * value.abs().max(self.range);
-            for (sign, to) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
-                self.balance.set_parameter(self.index, value + sign * step);
+            let varied = Variable::Parameter(self.index);
+            let facts = self.balance.system().facts();
+            let [below, above] = validate::around(facts, varied, value, step);
+            for (at, to) in [(above, &mut self.ahead), (below, &mut self.behind)] {
+                self.balance.set_parameter(self.index, at);
                 self.balance.evaluate(&u[..=n], to, None);
             }
             let pairs = self.ahead.iter().zip(&self.behind);
             for (to, (a, b)) in self.column.iter_mut().zip(pairs) {
-                *to = (a - b) / (2.0 * step);
+                *to = (a - b) / (above - below);
             }
         }
         self.balance.set_parameter(self.index, value);

@@ -149,6 +149,11 @@ impl<'a> Balance<'a> {
         self.omega / self.base_divisor()
     }
 
+    /// What a continuation varies.
+    pub(crate) fn variable(&self) -> Variable {
+        self.variable
+    }
+
     pub(crate) fn system(&self) -> &'a dyn System {
         self.system
     }

@@ -214,7 +214,7 @@ impl<'a> Bifurcations<'a> {
         let to = self.to.ok_or(Error::Missing { name: "to" })?;
         self.check()?;
         for &(value, _) in &self.searched {
-            if value < from.min(to) || value > from.max(to) {
+            if !(from.min(to)..=from.max(to)).contains(&value) {
                 let must = "must be in the range of the first branch";
                 let name = "search";
                 return Err(Error::Option { name, value, must });

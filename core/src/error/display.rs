@@ -15,7 +15,14 @@ impl Error {
                 };
                 write!(f, "there is no parameter {name}; there are {known}")
             }
-            Self::Option { name, value, must } => write!(f, "{name} = {value}: {must}"),
+            Self::Option { name, value, must } => {
+                let size = value.abs();
+                if size == 0.0 || (1e-6..1e15).contains(&size) || !size.is_finite() {
+                    write!(f, "{name} = {value}: {must}")
+                } else {
+                    write!(f, "{name} = {value:e}: {must}")
+                }
+            }
             Self::Missing { name: "omega" } => write!(
                 f,
                 "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`"

@@ -8,4 +8,4 @@ mod table;
 #[cfg(feature = "serde")]
 pub(crate) use json::{pairs, seconds, text};
 pub use npy::{Npy, Number};
-pub use table::{COLUMNS, Table, row};
+pub use table::{COLUMNS, Table, cells};

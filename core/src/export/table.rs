@@ -101,7 +101,7 @@ impl Table {
     pub fn add(&mut self, branch: usize, point: &Point) {
         let parameters = point.parameters.iter().take(self.parameters);
         let parameters: Vec<String> = parameters.map(|&value| number(value)).collect();
-        let cells = row(branch, point);
+        let cells = cells(branch, point);
         self.line(cells.iter().chain(&parameters).map(String::as_str));
     }
 
@@ -124,8 +124,8 @@ impl Table {
     }
 }
 
-/// An orbit as the texts of [`COLUMNS`].
-pub fn row(branch: usize, point: &Point) -> [String; 20] {
+/// An orbit of a branch with a number as the texts of [`COLUMNS`]: a row of a [`Table`] without its parameters.
+pub fn cells(branch: usize, point: &Point) -> [String; 20] {
     let motion = point.motion();
     let part = |index: usize, imaginary: bool| {
         let multiplier = point.stability.multipliers.get(index);

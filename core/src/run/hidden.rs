@@ -53,7 +53,12 @@ impl Run<'_, '_> {
             let shifted = known.map(|(s, slope)| (s + lengths[0], slope));
             ((&earlier, before), after - 1, shifted)
         };
+        if self.split == Some(after) {
+            // Found as the last step, when it was that.
+            return;
+        }
         if let Some(inner) = self.turned_inside(balance, newton, between, (known, sign)) {
+            self.split = Some(after);
             self.turn(balance, newton, (between.0, &inner), after);
             self.turn(balance, newton, (&inner, between.1), after);
         }

@@ -11,6 +11,7 @@ use crate::balance::{Balance, gap_series};
 use crate::fourier::crossings::{Crossing, CrossingFinder};
 use crate::fourier::series;
 use crate::system::Part;
+use crate::validate;
 
 /// An extreme of a gap is followed from one orbit to the next as long as it moves by less than this phase.
 const FAR: f64 = 1.0;
@@ -63,9 +64,10 @@ impl<'a> Touches<'a> {
         let last = u.len() - 1;
         let step = DIFFERENCE * range;
         row.fill(0.0);
-        row[last] = (self.height(u, u[last] + step, extreme)
-            - self.height(u, u[last] - step, extreme))
-            / (2.0 * step * extreme.size);
+        let (facts, varied) = (self.balance.system().facts(), self.balance.variable());
+        let [below, above] = validate::around(facts, varied, u[last], step);
+        row[last] = (self.height(u, above, extreme) - self.height(u, below, extreme))
+            / ((above - below) * extreme.size);
         self.balance.set(u[last]);
         let (length, period) = (self.balance.length(), self.balance.resolution().period);
         let coefficients = self.balance.coefficients();

@@ -210,7 +210,7 @@ impl<'t> Curves<'t> {
         }
         for point in &branch.points {
             let mut row = vec![label.to_owned()];
-            row.extend(export::row(0, point));
+            row.extend(export::cells(0, point));
             self.drawing.data.rows.push(row);
         }
         let joined = matches!(branch.stopped, Stop::Joined { .. });

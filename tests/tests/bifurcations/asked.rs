@@ -81,11 +81,21 @@ fn an_event_belongs_to_what_is_varied() {
         )
     };
     assert!(state(another.switch(event, Side::One).unwrap_err()));
+    assert!(state(another.at(&branch, 1.2).unwrap_err()));
+    let faster = Shooting::of(&MODEL).vary("drive").omega(1.1);
+    let faster = faster.from(1.0).to(1.4);
+    let omega = |error| matches!(error, Error::Option { name: "omega", .. });
+    assert!(omega(faster.at(&branch, 1.2).unwrap_err()));
+    let heavier = hertzian_tests::OneSidedLinear { load: 1.1, ..MODEL };
+    let heavier = Shooting::of(&heavier).vary("drive").omega(1.0);
+    let load = |error| matches!(&error, Error::Parameter { name, .. } if name == "load");
+    assert!(load(heavier.at(&branch, 1.2).unwrap_err()));
     let contact = Contact { drive: 1.0 };
     let another = Shooting::of(&contact).vary("drive").omega(1.0);
     let another = another.from(1.0).to(1.4);
     let values = |error| matches!(error, Error::Values { expected: 1, .. });
     assert!(values(another.switch(event, Side::One).unwrap_err()));
+    assert!(values(another.at(&branch, 1.2).unwrap_err()));
     assert!(values(
         another.track(event, "omega", [0.9, 1.1]).unwrap_err()
     ));

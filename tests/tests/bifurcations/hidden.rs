@@ -189,3 +189,43 @@ fn no_branch_is_followed_twice() {
         assert!(apart <= joint.error + doubling.error, "{joint} {doubling}");
     }
 }
+
+hertzian::oscillator! {
+    /// A linear oscillator, beside one that rests on a curve with a short fall: its two folds lie within a step.
+    ShortFall(x, y) {
+        param p;
+        param a;
+        param w > 0;
+        param c;
+        param f;
+        ddot(x) + 0.1*dot(x) + 4*x = f*cos(omega*t);
+        ddot(y) + 2*dot(y) + y - a*(y - c)/(1 + (y - c)^2/w^2) = p + 0.000001*cos(omega*t);
+    }
+}
+
+/// The load `p = y - a z / (1 + z^2/w^2)` with `z = y - c` turns where `1 = a (1 - s) / (1 + s)^2`, `s = z^2/w^2`. The steps that follow
+/// look at the one with the folds again, and find no further ones.
+#[test]
+fn two_folds_within_a_step_are_two() {
+    let (a, w, c) = (1.000_173_8, 0.018_271, 0.534_954);
+    let model = ShortFall {
+        p: 0.5,
+        a,
+        w,
+        c,
+        f: 0.241_08,
+    };
+    let request = hertzian::FrequencyResponse::of(&model).vary("p").omega(1.0);
+    let branch = request.from(0.0).to(1.0).harmonics(7).run().unwrap();
+    let found: Vec<f64> = branch.folds().map(|fold| fold.point.value).collect();
+    // s^2 + (2 + a) s + 1 - a = 0
+    let s = 0.5 * ((a + 2.0).powi(2) + 4.0 * (a - 1.0)).sqrt() - 0.5 * (a + 2.0);
+    let z = w * s.sqrt();
+    let load = |z: f64| c + z - a * z / (1.0 + s);
+    let [first, second] = found[..] else {
+        panic!("{found:?}");
+    };
+    // Rising, the load is passed below the fall first.
+    assert!((first - load(-z)).abs() < 1e-9, "{first} {}", load(-z));
+    assert!((second - load(z)).abs() < 1e-9, "{second} {}", load(z));
+}

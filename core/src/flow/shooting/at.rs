@@ -7,7 +7,6 @@ use super::cycle::{Cycle, CycleBranch};
 use super::setting::Setting;
 use super::start::{self, First};
 use super::{compute, solve};
-use crate::branch::EventKind;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::error::Error;
@@ -50,10 +49,9 @@ pub(super) fn at(
 
 /// Orbits and turns of a branch in their order along it.
 fn chain(branch: &CycleBranch) -> Vec<&Cycle> {
-    let turns = |kind| matches!(kind, EventKind::Fold | EventKind::Grazing { turns: true });
     let turns_after = |index| {
         let events = branch.events.iter();
-        let events = events.filter(move |event| event.after == index && turns(event.kind));
+        let events = events.filter(move |event| event.after == index && event.kind.turns());
         events.map(|event| &event.cycle)
     };
     let cycles = branch.cycles.iter().enumerate();

@@ -31,16 +31,36 @@ impl<'a> Shooting<'a> {
         if values != expected {
             return Err(Error::Values { values, expected });
         }
-        let varied = match validate::variable(facts, self.vary.as_deref())? {
+        let variable = validate::variable(facts, self.vary.as_deref())?;
+        let varied = match variable {
             Variable::Omega => cycle.omega,
             Variable::Parameter(index) => cycle.parameters[index],
         };
-        if varied == cycle.value {
-            return Ok(());
+        if varied != cycle.value {
+            let name = self.vary.clone().unwrap_or_else(|| "omega".to_owned());
+            let must = "must be what the branch of the event or orbit varies";
+            return Err(Error::Varied { name, must });
         }
-        let name = self.vary.clone().unwrap_or_else(|| "omega".to_owned());
-        let must = "must be what the branch of the event or orbit varies";
-        Err(Error::Varied { name, must })
+        let mut held = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut held);
+        let pairs = held.iter().zip(&cycle.parameters).enumerate();
+        for (index, (value, of_cycle)) in pairs {
+            if value != of_cycle && variable != Variable::Parameter(index) {
+                return Err(Error::Parameter {
+                    name: facts.parameters[index].name.to_string(),
+                    value: *value,
+                    range: format!("[{of_cycle}, {of_cycle}], that of the event or orbit"),
+                });
+            }
+        }
+        match self.omega.filter(|omega| *omega != cycle.omega) {
+            Some(value) if variable != Variable::Omega => Err(Error::Option {
+                name: "omega",
+                value,
+                must: "must be that of the event or orbit",
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// The states of an orbit at the beginnings of its periods of the declaration, the first of which it is given by.

@@ -148,7 +148,8 @@ pub struct CycleBranch {
     /// Name of what it varies.
     pub varied: String,
     /// What a chart says of it.
-    pub labels: Labels,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) labels: Labels,
     /// The orbits.
     pub cycles: Vec<Cycle>,
     /// Special orbits.

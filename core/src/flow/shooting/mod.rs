@@ -33,7 +33,6 @@ mod trace;
 mod track;
 mod watch;
 
-pub use crate::labels::Labels;
 pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
 pub use extremes::Extremes;
 pub use request::{Shooting, Side};

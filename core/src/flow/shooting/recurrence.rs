@@ -25,17 +25,6 @@ pub(super) struct Recurrence {
 }
 
 impl Recurrence {
-    /// Of the orbit `u` of some size, two states of which are one if they differ by this part of it; whether it has odd symmetry only
-    /// where that is possible.
-    pub(super) fn of(
-        equations: &mut Equations<'_>,
-        u: &[f64],
-        (size, same): (f64, f64),
-        odd: bool,
-    ) -> Result<Self, FlowError> {
-        Self::within(equations, u, (size, same), odd)
-    }
-
     /// The same at a branch point.
     pub(super) fn at_point(
         equations: &mut Equations<'_>,
@@ -43,10 +32,12 @@ impl Recurrence {
         (size, same): (f64, f64),
         odd: bool,
     ) -> Result<Self, FlowError> {
-        Self::within(equations, u, (size, same.max(SAME_AT_POINT)), odd)
+        Self::of(equations, u, (size, same.max(SAME_AT_POINT)), odd)
     }
 
-    fn within(
+    /// Of the orbit `u` of some size, two states of which are one if they differ by this part of it; whether it has odd symmetry only
+    /// where that is possible.
+    pub(super) fn of(
         equations: &mut Equations<'_>,
         u: &[f64],
         (size, same): (f64, f64),

@@ -314,6 +314,7 @@ impl<'a> Shooting<'a> {
         let Some(cycle) = branch.cycles.first() else {
             return Ok(Vec::new());
         };
+        self.belongs(cycle)?;
         let request = Self {
             period: cycle.period,
             segments: None,
