@@ -84,8 +84,9 @@ impl<'a> Finer<'a> {
         coarse: Resolution,
     ) -> Self {
         let fine = Resolution {
-            // An orbit of one odd harmonic has its next one at three.
-            harmonics: 2 * coarse.harmonics + usize::from(coarse.parity == Parity::Odd),
+            // An orbit of one odd harmonic has its next one at three, whether the system is odd or the orbit alone.
+            harmonics: (2 * coarse.harmonics + usize::from(coarse.parity == Parity::Odd))
+                .max(coarse.harmonics + 2 * coarse.period),
             core: 0,
             samples: 2 * coarse.samples,
             ..coarse

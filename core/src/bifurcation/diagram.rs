@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use super::known;
 use crate::branch::EventKind;
+use crate::continuation::follow::Stop;
 use crate::error::Error;
 use crate::flow::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
 
@@ -79,6 +80,17 @@ pub struct Omitted {
     pub event: usize,
     /// Why.
     pub reason: Reason,
+}
+
+impl fmt::Display for Omitted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            branch,
+            event,
+            reason,
+        } = self;
+        write!(f, "event {event} of branch {branch}: {reason}")
+    }
 }
 
 /// Why a branch was not followed.
@@ -311,7 +323,12 @@ impl<'a, 'v> Search<'a, 'v> {
                 event: index,
                 side,
             };
+            let closed = branch.end == End::Stopped(Stop::Closed);
             self.add(origin, depth, branch);
+            if closed {
+                // It came back on the other side.
+                break;
+            }
         }
         failed.map_or(Ok(()), |error| Err(Reason::Failed(error)))
     }

@@ -33,7 +33,7 @@ fn a_linear_contact_is_lost_on_a_known_curve() {
 hertzian::oscillator! {
     /// Beside a driven oscillator, one whose stiffness varies. The tongue of the linear part does not know of `bend`, and the branch
     /// that begins at its edge bends with the sign of it.
-    Bending(x, y) {
+    pub Bending(x, y) {
         param k;
         param bend;
         ddot(x) + 0.1*dot(x) + x = 0.1*cos(omega*t);

@@ -10,6 +10,7 @@ mod crossing;
 mod curves;
 mod doubling;
 mod grazing;
+mod halved;
 mod hidden;
 mod interrupted;
 mod mirrored;

@@ -17,6 +17,7 @@ mod equations;
 mod events;
 mod extremes;
 mod grazing;
+mod halved;
 mod recurrence;
 mod request;
 mod run;

@@ -75,6 +75,17 @@ pub struct Special {
     pub after: usize,
 }
 
+impl std::fmt::Display for Special {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [a, b] = self.values;
+        write!(
+            f,
+            "{} at {a:.12}, {b:.12} (error {:.0e})",
+            self.kind, self.error
+        )
+    }
+}
+
 /// What is special about a point of a curve of bifurcations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -101,6 +112,8 @@ pub enum TrackEnd {
     Left,
     /// The curve closed upon itself.
     Closed,
+    /// A curve of folds met the curve of doublings at which its orbits begin, at the degenerate point that is the special one there.
+    Joined,
     /// The motion at the next point, or its derivatives, cannot be computed: beside a touch, a power below one half has none.
     Motion(FlowError),
     /// Following it ended otherwise.
@@ -112,6 +125,7 @@ impl std::fmt::Display for TrackEnd {
         match self {
             Self::Left => f.write_str("left the range"),
             Self::Closed => f.write_str("closed"),
+            Self::Joined => f.write_str("met the doublings at which its orbits begin"),
             Self::Motion(reason) => write!(f, "no further motion computed: {reason}"),
             Self::Stopped(stop) => stop.fmt(f),
         }
@@ -170,6 +184,19 @@ pub(super) fn track<'a>(
         }
     }
     let mut back = half(setting, event, plane, -1.0, visit)?;
+    if back.end == TrackEnd::Closed {
+        // The other way leads through the same points.
+        let first = back.points.first().cloned();
+        back.points.extend(first);
+        return Ok(Track {
+            kind: event.kind,
+            names: [setting.varied.clone(), plane.name.clone()],
+            period: event.cycle.period,
+            points: back.points,
+            special: back.special,
+            ends: [TrackEnd::Closed; 2],
+        });
+    }
     let interrupted = matches!(back.end, TrackEnd::Stopped(Stop::Interrupted));
     // The other half is then the event alone.
     let end: See<'_> = &mut |_| ControlFlow::Break(());
@@ -264,10 +291,15 @@ fn half<'a>(
             Continue::Continue(())
         },
     );
+    let stuck = matches!(outcome, Ok(Outcome::Stopped(Stop::StepTooShort { .. })));
+    if stuck && watch.is_at_half_the_period(&curve) {
+        watch.joined = true;
+    }
     let failure = watch.failure.or(curve.equations.failure);
     let end = match (outcome, failure) {
         _ if interrupted => TrackEnd::Stopped(Stop::Interrupted),
         _ if watch.left => TrackEnd::Left,
+        _ if watch.joined => TrackEnd::Joined,
         (Err(reason), failure) => return Err(no_orbit(event.cycle.value, reason, failure)),
         (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {
             TrackEnd::Motion(reason)

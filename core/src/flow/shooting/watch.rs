@@ -18,6 +18,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::bend::Bend;
 use super::companion::Companion;
+use super::halved::Halved;
 use super::setting::Setting;
 use super::trace::{Plane, Special, SpecialKind, TrackPoint};
 use super::track::{Condition, Curve, determinant};
@@ -35,7 +36,7 @@ const BENT: f64 = 3.0;
 /// A coefficient that is larger than this part of what it is at both ends of a step has not vanished, but jumps.
 const JUMPS: f64 = 1e-3;
 /// What rounding leaves in the values of a special point, as a part of them.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 /// A step over a grazing is divided so many times, at the first of these parts where there is a solution: beside it the equations have the
 /// root of the distance in them.
 const HALVINGS: usize = 60;
@@ -48,12 +49,19 @@ pub(super) struct Watch<'p, 'a> {
     options: NewtonOptions,
     symmetric: bool,
     /// `-1` or `1`; `None` on a curve of grazing.
-    shift: Option<f64>,
+    pub(super) shift: Option<f64>,
     bend: Option<RefCell<Bend<'a>>>,
     /// The last two points.
     seen: [Option<At>; 2],
     pub(super) points: Vec<TrackPoint>,
     pub(super) special: Vec<Special>,
+    /// What the last orbit has that one of half the period has not, on a curve of folds.
+    pub(super) halved: Option<Halved>,
+    /// The largest of these, and the last point.
+    pub(super) largest: f64,
+    pub(super) last: Option<CurvePoint>,
+    /// The orbits have become those of half the period.
+    pub(super) joined: bool,
     /// The first parameter left its range.
     pub(super) left: bool,
     /// Why a point that was found could not be read.
@@ -95,6 +103,10 @@ impl<'p, 'a> Watch<'p, 'a> {
             seen: [None, None],
             points: Vec::new(),
             special: Vec::new(),
+            halved: None,
+            largest: 0.0,
+            last: None,
+            joined: false,
             left: false,
             failure: None,
         }
@@ -121,10 +133,19 @@ impl<'p, 'a> Watch<'p, 'a> {
                     return Continue::Break(Halt::Stop);
                 };
                 curve.follow(&at.u);
+                if self.passes_half_the_period(curve, at) {
+                    // It belongs to what would follow again.
+                    self.joined = true;
+                    return Continue::Continue(());
+                }
                 let point = self.point(curve, &at.u, &map, switches);
                 self.points.push(point);
                 let tests = self.tests(curve, at, (&map, switches), self.bend.as_ref());
                 self.seen = [self.seen[1], tests];
+            }
+            Visit::Between(before, behind) if self.joined => {
+                self.end(curve, before, behind);
+                return Continue::Break(Halt::Stop);
             }
             Visit::Between(before, behind) => self.between(curve, newton, (before, behind)),
         }
@@ -404,7 +425,7 @@ fn values(point: &CurvePoint) -> [f64; 2] {
     [point.u[last - 1], point.u[last]]
 }
 
-fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).abs().max((a[1] - b[1]).abs())
 }
 
