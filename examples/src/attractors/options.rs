@@ -130,11 +130,11 @@ pub struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 512, value_parser = count)]
     pub grid: usize,
 
-    /// --basin, --phase: range of x on the grid
+    /// --basin, --phase: range of x on the grid; to be given with --model
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], default_values_t = [-110.0, 15.0])]
     pub x_range: Vec<f64>,
 
-    /// --basin, --phase: range of x' on the grid
+    /// --basin, --phase: range of x' on the grid; to be given with --model
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], default_values_t = [-16.0, 16.0])]
     pub v_range: Vec<f64>,
 
@@ -207,7 +207,13 @@ impl Options {
             let taken = swept.filter(|name| given.has(name)).map(|name| {
                 format!("--sweep {name} takes the place of --{name}: --from and --to say where it begins and ends")
             });
-            taken.or_else(|| given.misplaced(&BELONGS))
+            // What motions of a model may reach, its file does not say.
+            let looked = options.basin || options.phase && options.starts > 0;
+            let ranges = given.has("x_range") && given.has("v_range");
+            let missing = (looked && options.model.file.is_some() && !ranges).then(|| {
+                "--model needs --x-range and --v-range here: their defaults are those of the loaded contact".to_owned()
+            });
+            taken.or_else(|| given.misplaced(&BELONGS)).or(missing)
         })
     }
 }

@@ -122,7 +122,7 @@ fn bad_input_gives_one_message() {
             &["--basin", "--checkpoint", &nowhere],
             "cannot use the checkpoint",
         ),
-        (&["--basin", "--model", &nowhere], "cannot read"),
+        (&["--history", "--model", &nowhere], "cannot read"),
     ] {
         let failure = run_in(&folder, "bad", arguments).expect_err("a refusal");
         let text = failure.to_string();
@@ -164,6 +164,10 @@ fn options_that_would_do_nothing_are_refused() {
         (
             &["--basin", "--longest", "-1"],
             "must be a whole number, zero or more",
+        ),
+        (
+            &["--basin", "--model", "some.txt", "--x-range", "-2", "2"],
+            "--model needs --x-range and --v-range",
         ),
     ] {
         let arguments = std::iter::once("attractors").chain(arguments.iter().copied());
