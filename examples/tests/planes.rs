@@ -1,6 +1,7 @@
 //! The program `response`: curves in two parameters, and where attractors are looked for.
 
-use std::path::{Path, PathBuf};
+mod folder;
+
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
@@ -12,21 +13,9 @@ use hertzian_examples::response::run::{Failure, Outcome, run};
 use hertzian_examples::response::search::basin;
 use serde_json::Value;
 
-/// A folder of its own, removed with everything in it.
-struct Folder(PathBuf);
+use folder::Folder;
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("planes-{name}"));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-
-    fn file(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
     /// A file with this text.
     fn with(&self, name: &str, text: &str) -> String {
         std::fs::write(self.0.join(name), text).expect("written");
@@ -48,12 +37,6 @@ impl Folder {
     fn json(&self, name: &str) -> Value {
         let text = std::fs::read_to_string(self.0.join(name).with_extension("json"));
         serde_json::from_str(&text.expect("a file")).expect("JSON")
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

@@ -1,6 +1,8 @@
 //! The programs `response` and `attractors`: what does not go together is refused, and what takes long can be ended.
 
-use std::path::{Path, PathBuf};
+mod folder;
+
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
@@ -9,27 +11,7 @@ use hertzian_examples::attractors;
 use hertzian_examples::response;
 use hertzian_examples::response::progress::Progress;
 
-/// A folder of its own, removed with everything in it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("refusals-{name}"));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-
-    fn file(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use folder::Folder;
 
 fn response_options(command: &str) -> Result<response::options::Options, clap::Error> {
     let words = std::iter::once("response").chain(command.split_whitespace());

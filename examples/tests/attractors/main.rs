@@ -1,31 +1,20 @@
 //! The program `attractors`: what it accepts, what it writes, and how it goes on after it was ended.
 
 mod accepted;
+#[path = "../folder/mod.rs"]
+mod folder;
 mod resumed;
 mod written;
 
-use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use hertzian_examples::attractors::options::Options;
 use hertzian_examples::attractors::run::{Failure, Outcome, run};
 use hertzian_examples::response::progress::Progress;
 
-/// A folder of its own, removed with everything in it.
-struct Folder(PathBuf);
+use folder::Folder;
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("attractors-{name}"));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-
-    fn file(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
     fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.0.join(name)).expect(name)
     }
@@ -37,12 +26,6 @@ impl Folder {
     /// The bytes of all three results.
     fn results(&self, prefix: &str) -> [Vec<u8>; 3] {
         ["csv", "npy", "svg"].map(|extension| self.read(&format!("{prefix}.{extension}")))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

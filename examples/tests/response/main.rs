@@ -1,9 +1,10 @@
 //! The program `response`: what it accepts, and what it writes and says.
 
 mod accepted;
+#[path = "../folder/mod.rs"]
+mod folder;
 mod written;
 
-use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use hertzian::export::COLUMNS;
@@ -12,27 +13,7 @@ use hertzian_examples::response::progress::Progress;
 use hertzian_examples::response::run::{Failure, Outcome, run};
 use serde_json::Value;
 
-/// A folder of its own, removed with everything in it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("response-{name}"));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-
-    fn file(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use folder::Folder;
 
 fn options(arguments: &[&str]) -> Options {
     let arguments = std::iter::once("response").chain(arguments.iter().copied());
