@@ -1,5 +1,7 @@
 //! Tests of hertzian across its crates, and what several of them need.
 
+pub mod random;
+
 use hertzian::Complex;
 
 hertzian::oscillator! {

@@ -1,0 +1,311 @@
+//! Motions of a drawn model, by a method that shares no code with the library.
+//!
+//! Dormand and Prince's formulas of order eight with an error of order seven (Prince and Dormand 1981, J. Comput. Appl. Math. 7, 67,
+//! table 2: RK8(7)13M). A step ends where a gap meets a level: it is taken again, shorter, until it ends there to rounding, so
+//! that nothing is interpolated. Within a step every contact keeps the force of its piece.
+
+use crate::model::{CONTACTS, COORDINATES, Model, Pieces, State};
+use crate::tableau::{A, B, C, LOWER, STAGES};
+
+/// Steps of one motion at most.
+const STEPS: usize = 400_000;
+/// Steps in a period at least.
+const LEAST: f64 = 24.0;
+
+/// How motions are computed.
+pub struct Motions<'a> {
+    pub model: &'a Model,
+    values: Vec<f64>,
+    omega: f64,
+    /// Sizes of positions and velocities, which the tolerance is relative to.
+    pub sizes: State,
+    pub tolerance: f64,
+    levels: Vec<Vec<f64>>,
+}
+
+/// Where a motion went.
+#[derive(Debug, Clone)]
+pub struct Course {
+    pub state: State,
+    /// Smallest and largest value of every coordinate.
+    pub extremes: [[f64; 2]; COORDINATES],
+    /// Number of times a gap passed a level.
+    pub switches: usize,
+    /// Smallest rate of a gap at a level, relative to the sizes.
+    pub slowest: f64,
+}
+
+/// Why there is none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lost {
+    /// It grew without bound, or was no number.
+    Diverged,
+    /// It took too many steps.
+    Long,
+}
+
+/// A step from a state at a time.
+struct Step {
+    time: f64,
+    from: State,
+    pieces: Pieces,
+    slope: State,
+}
+
+impl<'a> Motions<'a> {
+    pub fn of(model: &'a Model, omega: f64, sizes: State, tolerance: f64) -> Self {
+        let values = model.values();
+        let levels = (0..model.contacts.len()).map(|contact| {
+            let mut levels = Vec::new();
+            model.levels(contact, &values, &mut levels);
+            levels
+        });
+        Self {
+            model,
+            levels: levels.collect(),
+            values,
+            omega,
+            sizes,
+            tolerance,
+        }
+    }
+
+    /// The motion from a state at time zero until a time.
+    pub fn course(&self, state: &State, end: f64) -> Result<Course, Lost> {
+        let count = self.model.coordinates;
+        let mut course = Course {
+            state: *state,
+            extremes: std::array::from_fn(|i| [state[i]; 2]),
+            switches: 0,
+            slowest: f64::INFINITY,
+        };
+        let largest = end / LEAST / self.turns(end);
+        let (mut time, mut step) = (0.0, 0.1 * largest);
+        let mut pieces = self.pieces(state);
+        for _ in 0..STEPS {
+            let left = end - time;
+            if left <= 1e-14 * end {
+                return Ok(course);
+            }
+            let last = step >= left;
+            let length = if last { left } else { step };
+            let here = Step {
+                time,
+                from: course.state,
+                pieces,
+                slope: self.slope(time, &course.state, &pieces),
+            };
+            let (mut to, error) = self.step(&here, length);
+            if !(error <= 1.0 || length < 1e-14 * end && error.is_finite()) {
+                if !error.is_finite() && length < 1e-14 * end {
+                    return Err(Lost::Diverged);
+                }
+                step = length * (0.9 * error.powf(-0.125)).clamp(0.1, 0.8);
+                if !error.is_finite() {
+                    step = 0.1 * length;
+                }
+                continue;
+            }
+            let grown = (0.9 * error.max(1e-10).powf(-0.125)).clamp(0.3, 4.0);
+            let mut taken = length;
+            let switch = self.switch(&here, &to, length);
+            if let Some((contact, piece, at)) = switch {
+                taken = at;
+                to = self.step(&here, at).0;
+                pieces[contact] = piece;
+                let gap = self.gap(contact, time + at, &to);
+                course.slowest = course.slowest.min(gap[1].abs() / self.rate_size(contact));
+                course.switches += 1;
+            } else {
+                step = (length * grown).min(largest);
+                if last {
+                    step = step.min(largest);
+                }
+            }
+            self.widen(&here, &to, taken, &mut course.extremes[..count]);
+            time = if last && switch.is_none() {
+                end
+            } else {
+                time + taken
+            };
+            course.state = to;
+        }
+        Err(Lost::Long)
+    }
+
+    /// Periods of omega in a time.
+    fn turns(&self, time: f64) -> f64 {
+        (time * self.omega / std::f64::consts::TAU).max(1.0)
+    }
+
+    fn slope(&self, time: f64, state: &State, pieces: &Pieces) -> State {
+        self.model
+            .derivative(&self.values, self.omega, time, (state, pieces))
+    }
+
+    /// A gap and its rate.
+    fn gap(&self, contact: usize, time: f64, state: &State) -> [f64; 2] {
+        let gap = self
+            .model
+            .gap(contact, &self.values, self.omega, time, state);
+        [gap.value, gap.rate]
+    }
+
+    /// What a rate of the gap is compared with.
+    fn rate_size(&self, contact: usize) -> f64 {
+        let terms = self.model.contacts[contact].terms.iter();
+        terms.fold(f64::MIN_POSITIVE, |size, term| {
+            size.max(self.sizes[COORDINATES + term.coordinate])
+        })
+    }
+
+    /// The piece of every contact at time zero; on a level the one that the gap moves to.
+    fn pieces(&self, state: &State) -> Pieces {
+        let mut pieces = [0; CONTACTS];
+        for (contact, levels) in self.levels.iter().enumerate() {
+            let [value, rate] = self.gap(contact, 0.0, state);
+            let above = |level: &&f64| value > **level || value == **level && rate > 0.0;
+            pieces[contact] = levels.iter().filter(above).count();
+        }
+        pieces
+    }
+
+    /// One step, and its error over the tolerance.
+    fn step(&self, here: &Step, length: f64) -> (State, f64) {
+        let size = 2 * COORDINATES;
+        let mut slopes = [State::default(); STAGES];
+        slopes[0] = here.slope;
+        for stage in 1..STAGES {
+            let mut state = here.from;
+            for (earlier, slope) in slopes[..stage].iter().enumerate() {
+                let weight = length * A[stage][earlier];
+                if weight != 0.0 {
+                    for i in 0..size {
+                        state[i] += weight * slope[i];
+                    }
+                }
+            }
+            let time = here.time + C[stage] * length;
+            slopes[stage] = self.slope(time, &state, &here.pieces);
+        }
+        let (mut to, mut worst) = (here.from, 0.0_f64);
+        for i in 0..size {
+            let (mut sum, mut error) = (0.0, 0.0);
+            for stage in 0..STAGES {
+                sum += B[stage] * slopes[stage][i];
+                error += (B[stage] - LOWER[stage]) * slopes[stage][i];
+            }
+            to[i] += length * sum;
+            let error = (length * error / (self.tolerance * self.sizes[i])).abs();
+            // A number that is none is not lost.
+            worst = if error <= worst { worst } else { error };
+        }
+        (to, worst)
+    }
+
+    /// The first level that a gap meets in a step: contact, the piece after it, and the time from the beginning.
+    fn switch(&self, here: &Step, to: &State, length: f64) -> Option<(usize, usize, f64)> {
+        let mut first: Option<(usize, usize, f64)> = None;
+        for (contact, levels) in self.levels.iter().enumerate() {
+            let piece = here.pieces[contact];
+            let low = piece
+                .checked_sub(1)
+                .map(|index| (levels[index], 1.0, piece - 1));
+            let high = levels.get(piece).map(|level| (*level, -1.0, piece + 1));
+            for (level, sign, after) in low.into_iter().chain(high) {
+                let until = first.map_or(length, |(_, _, at)| at);
+                let (end, state) = if until < length {
+                    (until, self.step(here, until).0)
+                } else {
+                    (length, *to)
+                };
+                let border = (contact, level, sign);
+                if let Some(at) = self.met(here, border, (end, &state)) {
+                    first = Some((contact, after, at));
+                }
+            }
+        }
+        first
+    }
+
+    /// Where a gap leaves its piece through a border, within so much of a step.
+    fn met(
+        &self,
+        here: &Step,
+        (contact, level, sign): (usize, f64, f64),
+        (length, to): (f64, &State),
+    ) -> Option<f64> {
+        let inside = |[value, rate]: [f64; 2]| [sign * (value - level), sign * rate];
+        let after = |time: f64| {
+            let state = self.step(here, time).0;
+            inside(self.gap(contact, here.time + time, &state))
+        };
+        let begin = inside(self.gap(contact, here.time, &here.from));
+        let end = inside(self.gap(contact, here.time + length, to));
+        let (mut low, mut high) = ((0.0, begin[0]), (length, end[0]));
+        if begin[1] * end[1] < 0.0 {
+            // It has an extremum within.
+            let at = root((0.0, begin[1]), (length, end[1]), |time| after(time)[1]);
+            let extremum = after(at)[0];
+            if extremum < 0.0 && begin[0] > 0.0 {
+                high = (at, extremum);
+            } else if extremum > 0.0 {
+                low = (at, extremum);
+            } else if end[0] >= 0.0 {
+                return None;
+            }
+        }
+        if high.1 >= 0.0 {
+            return None;
+        }
+        if low.1 <= 0.0 {
+            // It begins on the border and leaves at once.
+            return (begin[1] < 0.0).then_some(0.0).or(Some(low.0));
+        }
+        Some(root(low, high, |time| after(time)[0]))
+    }
+
+    /// Takes the extremes within a step and at its end in.
+    fn widen(&self, here: &Step, to: &State, length: f64, extremes: &mut [[f64; 2]]) {
+        for (i, [least, most]) in extremes.iter_mut().enumerate() {
+            let mut include = |x: f64| {
+                *least = least.min(x);
+                *most = most.max(x);
+            };
+            include(to[i]);
+            let velocity = COORDINATES + i;
+            if here.from[velocity] * to[velocity] < 0.0 {
+                let ends = [(0.0, here.from[velocity]), (length, to[velocity])];
+                let at = root(ends[0], ends[1], |time| self.step(here, time).0[velocity]);
+                include(self.step(here, at).0[i]);
+            }
+        }
+    }
+}
+
+/// A zero between two places of different sign: the Illinois method of Dowell and Jarratt (1971), BIT 11, 168.
+fn root(
+    (mut a, mut at_a): (f64, f64),
+    (mut b, mut at_b): (f64, f64),
+    f: impl Fn(f64) -> f64,
+) -> f64 {
+    for _ in 0..60 {
+        let middle = (a * at_b - b * at_a) / (at_b - at_a);
+        let middle = if middle > a.min(b) && middle < a.max(b) {
+            middle
+        } else {
+            0.5 * (a + b)
+        };
+        let at_middle = f(middle);
+        if at_middle == 0.0 || (b - a).abs() <= 4.0 * f64::EPSILON * b.abs().max(a.abs()) {
+            return middle;
+        }
+        if at_middle * at_b < 0.0 {
+            (a, at_a) = (b, at_b);
+        } else {
+            at_a *= 0.5;
+        }
+        (b, at_b) = (middle, at_middle);
+    }
+    b
+}

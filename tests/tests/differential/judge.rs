@@ -1,0 +1,344 @@
+//! One model: its branches by both methods in both directions, compared with each other and with what is true of some orbits.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use hertzian::generic::Declaration;
+use hertzian::{Error, FrequencyResponse, Shooting};
+use hertzian_tests::random::Random;
+
+use crate::draw;
+use crate::model::Model;
+use crate::passage::{Passage, matched};
+use crate::report::{Kind, Report};
+use crate::truth::{Question, settles};
+
+/// Points of a branch by the balance and by shooting at most.
+const POINTS: [usize; 2] = [120, 80];
+/// Time of the processor that a model may take. What is begun is ended, so that some take longer.
+const BUDGET: Duration = Duration::from_secs(4);
+/// Units of time and length of the other declaration of a model.
+const UNITS: [f64; 2] = [1e5, 1e5];
+/// Periods in which a motion from rest has to settle where no orbit was found.
+const SETTLING: usize = 1000;
+
+/// One model at work.
+pub struct Case {
+    index: u64,
+    pub model: Rc<Model>,
+    pub random: Random,
+    pub clock: Clock,
+    pub report: Report,
+}
+
+/// Time of the processor, and whether what is at work was cut short.
+pub struct Clock {
+    begun: Duration,
+    out: Cell<bool>,
+}
+
+impl Clock {
+    fn spent(&self) -> Duration {
+        now().saturating_sub(self.begun)
+    }
+
+    /// To go on, or not.
+    pub fn flow(&self) -> ControlFlow<()> {
+        if self.spent() > BUDGET {
+            self.out.set(true);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// What this thread has worked, where the system tells (Linux does), or the time.
+fn now() -> Duration {
+    thread_local! {
+        static STARTED: Instant = Instant::now();
+    }
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let spent = text.split_whitespace().next().and_then(|t| t.parse().ok());
+    spent.map_or_else(|| STARTED.with(Instant::elapsed), Duration::from_nanos)
+}
+
+impl Case {
+    pub fn of(index: u64) -> Self {
+        Self {
+            index,
+            model: Rc::new(draw::model(index, [1.0; 2])),
+            random: Random::of(!index),
+            clock: Clock {
+                begun: now(),
+                out: Cell::new(false),
+            },
+            report: Report::default(),
+        }
+    }
+
+    /// What it comes to.
+    pub fn judged(mut self) -> Report {
+        self.report.count("models");
+        match self.model.declared() {
+            Ok(system) => self.compare(&system),
+            Err(error) => self.find(Kind::Refused, error.to_string()),
+        }
+        if self.clock.out.get() {
+            self.report.count("models that ran out of time");
+        }
+        if !self.report.findings.is_empty() {
+            self.report.texts.insert(self.index, self.text());
+        }
+        let spent = self.clock.spent().as_secs_f64();
+        self.report.times.push((spent, self.index));
+        self.report
+    }
+
+    /// The declaration and the range.
+    pub fn text(&self) -> String {
+        let [from, to] = self.model.range;
+        format!("{}from {from:?} to {to:?}\n", self.model.text())
+    }
+
+    pub fn find(&mut self, kind: Kind, text: String) {
+        self.report.find(kind, self.index, text);
+    }
+
+    fn compare(&mut self, system: &Declaration) {
+        let [from, to] = self.model.range;
+        let Some(forth) = self.balance("balance", system, [from, to], true) else {
+            return;
+        };
+        let back = self.balance("balance, backwards", system, [to, from], false);
+        if let Some(back) = &back {
+            self.directions(&forth, back);
+        }
+        let shot = self.shooting("shooting", system, [from, to], true);
+        if let Some(shot) = &shot {
+            self.methods(&forth, shot);
+        }
+        self.other_units(&forth);
+        if let Some(shot) = &shot
+            && let Some(back) = self.shooting("shooting, backwards", system, [to, from], false)
+        {
+            self.directions(shot, &back);
+        }
+    }
+
+    /// A branch by the balance, its orbits judged.
+    fn balance(
+        &mut self,
+        name: &'static str,
+        system: &Declaration,
+        [from, to]: [f64; 2],
+        judge: bool,
+    ) -> Option<Passage> {
+        if self.clock.flow().is_break() {
+            return None;
+        }
+        let request = FrequencyResponse::of(system)
+            .from(from)
+            .to(to)
+            .bifurcations(true)
+            .max_points(POINTS[0]);
+        let branch = match request.run_with(|_| self.clock.flow()) {
+            Ok(branch) => branch,
+            Err(error) => {
+                self.no_branch(name, from, &error);
+                return None;
+            }
+        };
+        self.report.count("branches by the balance");
+        let passage = Passage::of_balance(name, &branch);
+        if judge {
+            self.orbits(&branch);
+        }
+        self.passed(&passage).then_some(passage)
+    }
+
+    fn shooting(
+        &mut self,
+        name: &'static str,
+        system: &Declaration,
+        [from, to]: [f64; 2],
+        judge: bool,
+    ) -> Option<Passage> {
+        if self.clock.flow().is_break() {
+            return None;
+        }
+        let request = Shooting::of(system).from(from).to(to).max_points(POINTS[1]);
+        let branch = match request.run_with(|_| self.clock.flow()) {
+            Ok(branch) => branch,
+            Err(error) => {
+                self.no_branch(name, from, &error);
+                return None;
+            }
+        };
+        self.report.count("branches by shooting");
+        let passage = Passage::of_shooting(name, &branch);
+        if judge {
+            self.cycles(&branch);
+        }
+        self.passed(&passage).then_some(passage)
+    }
+
+    /// Whether a branch has points, and all of them are numbers; changes of the verdict.
+    fn passed(&mut self, passage: &Passage) -> bool {
+        let mut places = passage.places.iter();
+        if let Some(place) = places.find(|place| !place.peak_to_peak.is_finite()) {
+            self.find(Kind::NotFinite, format!("{}: {place:?}", passage.name));
+            return false;
+        }
+        for text in passage.unexplained() {
+            self.find(Kind::ChangeWithoutEvent, text);
+        }
+        if !passage.whole {
+            self.report
+                .count("branches that ended before the end of the range");
+        }
+        !passage.places.is_empty()
+    }
+
+    fn no_branch(&mut self, name: &str, value: f64, error: &Error) {
+        match error {
+            Error::NoStart { .. } | Error::SearchLimit { .. } | Error::NoSuchPeriod { .. } => {}
+            Error::Motion { .. } | Error::Flow(_) => {
+                self.report
+                    .count("branches that did not begin: a motion was lost");
+                return;
+            }
+            other => {
+                self.find(Kind::Refused, format!("{name} from {value:?}: {other}"));
+                return;
+            }
+        }
+        self.report.count("branches without a start");
+        let model = Rc::clone(&self.model);
+        let question = Question::of(&model, value, 1, model.size);
+        let settled = settles(&question, SETTLING, || self.clock.flow().is_break());
+        match settled {
+            Some(true) => self.find(Kind::NoStart, format!("{name} from {value:?}: {error}")),
+            Some(false) => self
+                .report
+                .count("branches without a start where motion from rest does not settle"),
+            None => self
+                .report
+                .count("branches without a start, and no time to see whether motion settles"),
+        }
+    }
+
+    /// Events of a branch against those of the same branch backwards.
+    fn directions(&mut self, forth: &Passage, back: &Passage) {
+        if !(forth.whole && back.whole) {
+            return self
+                .report
+                .count("pairs of directions with a branch that ends early");
+        }
+        if !forth.shares_ends(back) {
+            return self.report.count("pairs of directions on two branches");
+        }
+        self.report.count("pairs of directions");
+        let matched = matched(forth, back, self.model.range);
+        for (alone, missing) in matched.alone.iter().zip([back, forth]) {
+            for event in alone {
+                let text = format!("{event} is missing by {}", missing.name);
+                self.find(Kind::OneDirection, text);
+            }
+        }
+        for (ratio, event, other) in matched.both {
+            self.event(
+                "events, forth and back",
+                ratio,
+                &format!("{event}, backwards {other}"),
+            );
+        }
+    }
+
+    /// Events by the balance against those by shooting.
+    fn methods(&mut self, balance: &Passage, shooting: &Passage) {
+        if !(balance.whole && shooting.whole) {
+            return self
+                .report
+                .count("pairs of methods with a branch that ends early");
+        }
+        if !balance.shares_ends(shooting) {
+            return self.report.count("pairs of methods on two branches");
+        }
+        self.report.count("pairs of methods");
+        let matched = matched(balance, shooting, self.model.range);
+        for (alone, missing) in matched.alone.iter().zip([shooting, balance]) {
+            for event in alone {
+                let text = format!("{event} is missing by {}", missing.name);
+                self.find(Kind::OneMethod, text);
+            }
+        }
+        for (ratio, event, other) in matched.both {
+            self.event(
+                "events, balance and shooting",
+                ratio,
+                &format!("{event}, by shooting {other}"),
+            );
+        }
+    }
+
+    fn event(&mut self, name: &'static str, ratio: f64, text: &str) {
+        if ratio > 3.0 {
+            self.find(Kind::EventValue, text.to_owned());
+        }
+        self.report.ratio(name, ratio);
+    }
+
+    /// The same model in other units.
+    fn other_units(&mut self, passage: &Passage) {
+        let model = draw::model(self.index, UNITS);
+        let [from, to] = model.range;
+        let system = match model.declared() {
+            Ok(system) => system,
+            Err(error) => return self.find(Kind::Refused, format!("in other units: {error}")),
+        };
+        let Some(mut other) = self.balance("balance in other units", &system, [from, to], false)
+        else {
+            return;
+        };
+        // Back to the units of the passage.
+        for place in &mut other.places {
+            place.value *= UNITS[0];
+            place.peak_to_peak /= UNITS[1];
+        }
+        for event in &mut other.events {
+            event.value *= UNITS[0];
+            event.error *= UNITS[0];
+            event.peak_to_peak /= UNITS[1];
+        }
+        if passage.whole != other.whole || !passage.shares_ends(&other) {
+            if self.clock.out.get() {
+                return;
+            }
+            let text = format!(
+                "{} points, then {}; in other units {} points, then {}",
+                passage.places.len(),
+                passage.ended,
+                other.places.len(),
+                other.ended
+            );
+            return self.find(Kind::OtherUnits, text);
+        }
+        self.report.count("pairs of units");
+        let matched = matched(passage, &other, self.model.range);
+        for (alone, missing) in matched.alone.iter().zip([&other, passage]) {
+            for event in alone {
+                let text = format!("{event} is missing by {}", missing.name);
+                self.find(Kind::OtherUnits, text);
+            }
+        }
+        for (ratio, event, other) in matched.both {
+            self.event(
+                "events, in two units",
+                ratio,
+                &format!("{event}, in other units {other}"),
+            );
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! A branch as either method gives it, as far as branches are compared.
+
+use std::fmt::Write as _;
+
+use hertzian::{Branch, CycleBranch, End, EventKind, Stop, Turn, Verdict};
+
+/// An event of a branch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Seen {
+    pub kind: EventKind,
+    pub value: f64,
+    pub error: f64,
+    pub peak_to_peak: f64,
+    /// Number of points before it.
+    pub after: usize,
+}
+
+/// A point of a branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    pub value: f64,
+    pub peak_to_peak: f64,
+    pub verdict: Verdict,
+    /// Largest modulus of a multiplier and its error.
+    pub modulus: [f64; 2],
+}
+
+/// A branch from one end of the range on.
+#[derive(Debug, Clone)]
+pub struct Passage {
+    pub name: &'static str,
+    pub places: Vec<Place>,
+    pub events: Vec<Seen>,
+    pub turns: Vec<Turn>,
+    /// Whether it came to the other end.
+    pub whole: bool,
+    /// Why it ended.
+    pub ended: String,
+}
+
+impl Passage {
+    pub fn of_balance(name: &'static str, branch: &Branch<'_>) -> Self {
+        let places = branch.points.iter().map(|point| Place {
+            value: point.value,
+            peak_to_peak: point.peak_to_peak(),
+            verdict: point.stability.verdict,
+            modulus: [
+                point
+                    .stability
+                    .multipliers
+                    .first()
+                    .map_or(f64::NAN, |m| m.norm()),
+                point.stability.error,
+            ],
+        });
+        let events = branch.events.iter().map(|event| Seen {
+            kind: event.kind,
+            value: event.point.value,
+            error: event.error,
+            peak_to_peak: event.point.peak_to_peak(),
+            after: event.after,
+        });
+        Self {
+            name,
+            places: places.collect(),
+            events: events.collect(),
+            turns: branch.turns.clone(),
+            whole: branch.stopped == Stop::ReachedEnd,
+            ended: branch.stopped.to_string(),
+        }
+    }
+
+    pub fn of_shooting(name: &'static str, branch: &CycleBranch) -> Self {
+        let places = branch.cycles.iter().map(|cycle| Place {
+            value: cycle.value,
+            peak_to_peak: cycle.peak_to_peak(),
+            verdict: cycle.stability.verdict,
+            modulus: [
+                cycle
+                    .stability
+                    .multipliers
+                    .first()
+                    .map_or(f64::NAN, |m| m.norm()),
+                cycle.stability.error,
+            ],
+        });
+        let events = branch.events.iter().map(|event| Seen {
+            kind: event.kind,
+            value: event.cycle.value,
+            error: event.error,
+            peak_to_peak: event.cycle.peak_to_peak(),
+            after: event.after,
+        });
+        Self {
+            name,
+            places: places.collect(),
+            events: events.collect(),
+            turns: branch.turns.clone(),
+            whole: branch.end == End::Stopped(Stop::ReachedEnd),
+            ended: branch.end.to_string(),
+        }
+    }
+
+    /// Changes of the verdict between neighbours, points that are undecided left out, with nothing between that explains them.
+    pub fn unexplained(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        let decided = |index: &usize| self.places[*index].verdict != Verdict::Undecided;
+        let decided: Vec<usize> = (0..self.places.len()).filter(decided).collect();
+        for pair in decided.windows(2) {
+            let [before, after] = [pair[0], pair[1]].map(|index| self.places[index]);
+            if before.verdict == after.verdict {
+                continue;
+            }
+            let between = pair[0] + 1..=pair[1];
+            let event = self
+                .events
+                .iter()
+                .any(|event| between.contains(&event.after));
+            let turn = self.turns.iter().any(|turn| between.contains(&turn.after));
+            if !event && !turn {
+                let mut text = format!("{}: ", self.name);
+                for place in [before, after] {
+                    let _ = write!(
+                        text,
+                        "{} at {:?} (|mu| {:.9} +- {:.0e}) ",
+                        place.verdict, place.value, place.modulus[0], place.modulus[1]
+                    );
+                }
+                found.push(text);
+            }
+        }
+        found
+    }
+
+    /// Whether both begin and end at the same orbits, one followed from one end, the other from the same or the other one.
+    pub fn shares_ends(&self, other: &Self) -> bool {
+        let ends = |passage: &Self| {
+            let mut ends = [passage.places[0], passage.places[passage.places.len() - 1]];
+            ends.sort_by(|a, b| a.value.total_cmp(&b.value));
+            ends
+        };
+        let alike = |(a, b): (&Place, &Place)| {
+            let size = a.peak_to_peak.max(b.peak_to_peak);
+            (a.peak_to_peak - b.peak_to_peak).abs() < 1e-4 * size
+        };
+        ends(self).iter().zip(&ends(other)).all(alike)
+    }
+}
+
+/// Events of two passages, put together.
+#[derive(Debug, Default)]
+pub struct Matched {
+    /// Difference of the values over the sum of the errors, with both.
+    pub both: Vec<(f64, Seen, Seen)>,
+    /// Of the first passage alone, and of the second.
+    pub alone: [Vec<Seen>; 2],
+}
+
+/// Puts events of the same kind with nearly the same value and size together; those beside the ends of the range are left out.
+pub fn matched(a: &Passage, b: &Passage, range: [f64; 2]) -> Matched {
+    let width = (range[1] - range[0]).abs();
+    let inside = |seen: &&Seen| {
+        range
+            .iter()
+            .all(|end| (seen.value - end).abs() > 1e-5 * width)
+    };
+    let mut free: Vec<Seen> = b.events.iter().filter(inside).cloned().collect();
+    let mut matched = Matched::default();
+    for event in a.events.iter().filter(inside) {
+        let near = |other: &Seen| {
+            let kind = std::mem::discriminant(&event.kind) == std::mem::discriminant(&other.kind);
+            let apart = (event.value - other.value).abs();
+            let known = [event.error, other.error].iter().sum::<f64>();
+            let window = (1e-5 * width).max(if known.is_finite() { 5.0 * known } else { 0.0 });
+            let size = (event.peak_to_peak - other.peak_to_peak).abs();
+            (kind && apart <= window.min(0.02 * width) && size <= 0.02 * event.peak_to_peak)
+                .then_some(apart)
+        };
+        let best = (0..free.len())
+            .filter_map(|index| Some((near(&free[index])?, index)))
+            .min_by(|x, y| x.0.total_cmp(&y.0));
+        match best {
+            Some((apart, index)) => {
+                let other = free.swap_remove(index);
+                let rounding = 1e-13 * event.value.abs();
+                let ratio = apart / (event.error + other.error + rounding);
+                matched.both.push((ratio, event.clone(), other));
+            }
+            None => matched.alone[0].push(event.clone()),
+        }
+    }
+    matched.alone[1] = free;
+    matched
+}
+
+impl std::fmt::Display for Seen {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self {
+            kind,
+            value,
+            error,
+            peak_to_peak,
+            ..
+        } = self;
+        write!(
+            f,
+            "{kind} at {value:?} (error {error:.0e}, peak-to-peak {peak_to_peak:.6e})"
+        )
+    }
+}
