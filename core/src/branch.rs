@@ -159,6 +159,9 @@ pub struct Event {
     pub test: f64,
     /// Number of points of the branch before it.
     pub after: usize,
+    /// Where an orbit grazes, the number of contacts that touch a level there; several at once where they are copies of each other,
+    /// as the balls of a bearing. Zero otherwise.
+    pub contacts: usize,
     /// At a branch point the tangent of the branch, in extended unknowns; otherwise nothing.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) tangent: Vec<f64>,
@@ -167,13 +170,21 @@ pub struct Event {
 impl fmt::Display for Event {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            kind, point, error, ..
+            kind,
+            point,
+            error,
+            contacts,
+            ..
         } = self;
         let (value, size) = (point.value, point.peak_to_peak());
         write!(
             f,
             "{kind} at {value:.9} (error {error:.0e}), peak-to-peak {size:.6}"
-        )
+        )?;
+        if *contacts > 1 {
+            write!(f, ", {contacts} contacts at once")?;
+        }
+        Ok(())
     }
 }
 

@@ -59,7 +59,7 @@ impl<'a> Reader<'a> {
         let observed = self.observer.observe(balance, u);
         let error = wanted.then(|| {
             if corrected {
-                self.error(&observed, u) + newton.left()
+                self.error(&observed, u, newton) + newton.left()
             } else {
                 f64::INFINITY
             }
@@ -75,11 +75,9 @@ impl<'a> Reader<'a> {
     }
 
     /// Largest change of a coordinate's peak-to-peak by the correction, relative to the largest peak-to-peak.
-    fn error(&self, observed: &Observed, u: &[f64]) -> f64 {
-        let phases = self.observer.phases().iter().enumerate();
-        let changes = phases
-            .map(|(coordinate, &phases)| self.finer.peak_to_peak_change(u, coordinate, phases));
-        let change = changes.fold(0.0, f64::max);
+    fn error(&mut self, observed: &Observed, u: &[f64], newton: &mut Newton) -> f64 {
+        let phases = self.observer.phases();
+        let change = self.finer.peak_to_peak_error(u, phases, newton);
         let sizes = observed.motions.iter().map(Motion::peak_to_peak);
         let size = sizes.fold(0.0, f64::max);
         if size > 0.0 {

@@ -25,9 +25,14 @@
 //! which do not vanish together. To second order the extremes move as well: with the slope `d` of the change and the curvature `c`
 //! of the orbit there, each adds `d^2 / 2 c`, which counts where a harmonic meets a resonance and is a quarter of its period late.
 //!
+//! A contact that is stiffer than the inertia of the tail, and a Jacobian that changes with the orbit, as beside a resonance that is
+//! not resolved, make (1) a first step only. Where it is not small, more such steps are made with the residual of the finer balance,
+//! and what they do not settle is bounded by how fast they fall ([`again`]).
+//!
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
 
+mod again;
 mod modes;
 
 use nalgebra::{DMatrix, DVector};
@@ -72,6 +77,9 @@ pub(crate) struct Finer<'a> {
     short: usize,
     /// The tail alone.
     without_core: Vec<f64>,
+    /// The last orbit corrected further, and before its last step.
+    further: Vec<f64>,
+    before: Vec<f64>,
     change: f64,
 }
 
@@ -107,6 +115,8 @@ impl<'a> Finer<'a> {
             short: series::length(plain.force_harmonics()),
             plain: (coarse.aft == Aft::Switched).then_some(plain),
             without_core: Vec::new(),
+            further: Vec::new(),
+            before: Vec::new(),
             change: f64::INFINITY,
             balance,
         }
@@ -222,12 +232,9 @@ impl<'a> Finer<'a> {
         }
     }
 
-    /// `v` of (1), from the residual; `None` where a matrix is singular.
+    /// Adds `v` of (1), from the residual, and bounds what is beyond it; `None` where a matrix is singular.
     fn solve_tail(&mut self) -> Option<()> {
-        let fine = self.balance.length();
         self.write_linear();
-        let n = self.balance.layout().coordinates;
-        let base = self.balance.base();
         self.beyond.fill(0.0);
         self.modes.add_bounds(
             &self.balance,
@@ -235,6 +242,14 @@ impl<'a> Finer<'a> {
             &self.residual,
             &mut self.beyond,
         );
+        self.move_tail()
+    }
+
+    /// Adds `v` of (1) to the harmonics of the tail, with the matrices written last.
+    fn move_tail(&mut self) -> Option<()> {
+        let fine = self.balance.length();
+        let n = self.balance.layout().coordinates;
+        let base = self.balance.base();
         let [mass, damping, stiffness] = &self.linear;
         for k in self.coarse.harmonics + 1..=self.balance.resolution().harmonics {
             let frequency = base * k as f64;
@@ -248,15 +263,15 @@ impl<'a> Finer<'a> {
                     return None;
                 }
                 let (c, s) = (self.residual[at(0)], self.residual[at(0) + 1]);
-                self.orbit[at(0)] = (b * s - a * c) / square;
-                self.orbit[at(0) + 1] = -(b * c + a * s) / square;
+                self.orbit[at(0)] += (b * s - a * c) / square;
+                self.orbit[at(0) + 1] -= (b * c + a * s) / square;
                 continue;
             }
             let matrix = dynamic_stiffness(n, real, imaginary);
             let residual = DVector::from_fn(2 * n, |row, _| -self.residual[at(row % n) + row / n]);
             let tail = matrix.lu().solve(&residual)?;
             for (row, &value) in tail.iter().enumerate() {
-                self.orbit[at(row % n) + row / n] = value;
+                self.orbit[at(row % n) + row / n] += value;
             }
         }
         Some(())
@@ -284,22 +299,27 @@ impl<'a> Finer<'a> {
 
     /// Adds the tail and the change of the coarse harmonics, (1); false if that fails.
     pub(crate) fn correct(&mut self, u: &[f64], newton: &mut Newton) -> bool {
-        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
-        let coordinates = self.balance.layout().coordinates;
         if self.add_tail(u, newton).is_none() {
             return false;
         }
+        self.move_core(newton);
+        let last = self.orbit.len() - 1;
+        self.balance.set(self.orbit[last]);
+        self.measure(u);
+        self.orbit.iter().all(|x| x.is_finite())
+    }
+
+    /// Adds `du` of (1), from the residual in the coarse harmonics.
+    fn move_core(&mut self, newton: &mut Newton) {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
         newton.solve(&mut self.core);
-        for i in 0..coordinates {
+        for i in 0..self.balance.layout().coordinates {
             for index in 0..coarse {
                 self.orbit[i * fine + index] -= self.core[i * coarse + index];
             }
         }
         let last = self.orbit.len() - 1;
         self.orbit[last] -= self.core[self.core.len() - 1];
-        self.balance.set(self.orbit[last]);
-        self.measure(u);
-        self.orbit.iter().all(|x| x.is_finite())
     }
 
     /// Compares the corrected orbit with the other one.

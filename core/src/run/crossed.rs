@@ -39,6 +39,7 @@ impl<'a> Run<'_, 'a> {
             error: known(error),
             test: found.test,
             after: self.points.len() - 1,
+            contacts: 0,
             tangent: found.point.tangent,
         });
     }

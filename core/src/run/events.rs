@@ -137,6 +137,7 @@ impl Run<'_, '_> {
             error,
             test: located.test,
             after,
+            contacts: 0,
             tangent: Vec::new(),
         });
     }

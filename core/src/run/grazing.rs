@@ -16,7 +16,7 @@
 
 use super::Run;
 use super::events::FOLD_TOLERANCE;
-use super::touch::{Extreme, Touches, crossings, passed};
+use super::touch::{Extreme, Touches, crossings, distinct, is_copy, passed};
 use super::watch::{Between, Test};
 use crate::balance::{Balance, Resolution};
 use crate::branch::{Event, EventKind, Turn};
@@ -26,6 +26,9 @@ use crate::newton::{Border, Newton, NewtonOptions};
 
 /// Values that differ by this part of the range are one.
 const SAME: f64 = 1e-9;
+/// Extremes that are so near to their levels, in units of the gap, at an orbit that touches one, touch as well: Newton's method leaves
+/// less between copies.
+const AT_ONCE: f64 = 1e-8;
 /// A slope that is smaller where the branch turns does not jump there.
 const STEEP: f64 = 1e-6;
 /// The extreme is brought so close to its level, in units of the gap, from its side of it.
@@ -52,22 +55,32 @@ impl<'a> Run<'_, 'a> {
         let kind = EventKind::Grazing { turns: false };
         let range = (self.options.to - self.options.from).abs();
         let (first, after) = (self.events.len(), self.points.len() - 1);
-        let found = passed(before, behind);
-        for (extreme, there) in &found {
-            let known = self.events.len();
-            self.touch(balance, newton, between, touches, [extreme, there]);
-            // Orbits with a symmetry touch in several places at once, which is one event.
-            let again = self.events.get(known).is_some_and(|new| {
-                let apart = |other: &Event| (other.point.value - new.point.value).abs();
-                let mut others = self.events[first..known].iter();
-                others.any(|other| apart(other) <= SAME * range)
-            });
-            if again {
-                self.events.truncate(known);
-            }
-        }
+        let mut found = passed(before, behind);
         if found.is_empty() && crossings(before) != crossings(behind) {
             self.omit(kind, between, f64::NAN);
+        }
+        while let Some(&next) = found.first() {
+            let known = self.events.len();
+            self.touch(balance, newton, between, touches, [&next.0, &next.1]);
+            // Contacts that are copies of each other, and orbits with a symmetry, touch in several places at once: one event.
+            let Some(event) = self.events.get_mut(known) else {
+                found.retain(|other| !is_copy(&next, other));
+                continue;
+            };
+            let mut u = event.point.orbit.series.clone();
+            u.push(event.point.value);
+            touches.read(&u, before);
+            let (at_once, later): (Vec<_>, Vec<_>) = found.into_iter().partition(|other| {
+                let there = other.0.nearest(before).or(other.1.nearest(before));
+                *other == next || there.is_some_and(|there| there.above.abs() <= AT_ONCE)
+            });
+            event.contacts = distinct(&at_once);
+            found = later;
+            let value = event.point.value;
+            let is_known = |other: &Event| (other.point.value - value).abs() <= SAME * range;
+            if self.events[first..known].iter().any(is_known) {
+                self.events.truncate(known);
+            }
         }
         // What was located nowhere may be where the branch turned.
         let omitted = self.turns.iter_mut().filter(|turn| turn.after == after);

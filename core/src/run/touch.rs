@@ -15,6 +15,8 @@ use crate::validate;
 
 /// An extreme of a gap is followed from one orbit to the next as long as it moves by less than this phase.
 const FAR: f64 = 1.0;
+/// Distances of copies differ by less than this, in units of the gap.
+const COPIES: f64 = 1e-8;
 /// Derivatives by the parameter are differences over this part of its range.
 const DIFFERENCE: f64 = 1e-6;
 
@@ -180,6 +182,19 @@ pub(super) fn passed(before: &[Extreme], behind: &[Extreme]) -> Vec<(Extreme, Ex
     before.iter().filter_map(through).collect()
 }
 
+/// Whether two extremes that have gone through their levels are as far from them before and behind: those of contacts that are copies
+/// of each other, shifted in phase or with the opposite sign.
+pub(super) fn is_copy(one: &(Extreme, Extreme), other: &(Extreme, Extreme)) -> bool {
+    let alike = |a: &Extreme, b: &Extreme| (a.above.abs() - b.above.abs()).abs() <= COPIES;
+    alike(&one.0, &other.0) && alike(&one.1, &other.1)
+}
+
+/// The number of contacts that extremes belong to.
+pub(super) fn distinct(found: &[(Extreme, Extreme)]) -> usize {
+    // They are in order of contacts.
+    found.chunk_by(|a, b| a.0.contact == b.0.contact).count()
+}
+
 /// How often levels are crossed in a period: between two successive extremes on different sides, once.
 pub(super) fn crossings(extremes: &[Extreme]) -> usize {
     let same = |a: &Extreme, b: &Extreme| (a.contact, a.level) == (b.contact, b.level);
@@ -227,5 +242,30 @@ mod tests {
             at(3.0, true, 1.0),
         ];
         assert!(passed(&before, &born).is_empty());
+    }
+
+    #[test]
+    fn copies_are_as_far_from_their_levels() {
+        let pair = |contact: usize, tau: f64, above: f64, there: f64| {
+            let of = |above: f64| Extreme {
+                contact,
+                ..at(tau, true, above)
+            };
+            (of(above), of(there))
+        };
+        let found = [
+            pair(0, 0.1, -0.05, 0.02),
+            pair(0, 3.2, -0.05, 0.02),
+            pair(1, 0.9, -0.05, 0.02 + 1e-12),
+            pair(2, 1.7, -0.05, 0.021),
+        ];
+        assert_eq!(
+            found.map(|other| is_copy(&found[0], &other)),
+            [true, true, true, false]
+        );
+        // The opposite sign is the other side.
+        assert!(is_copy(&found[0], &pair(0, 2.0, 0.05, -0.02)));
+        assert_eq!(distinct(&found), 3);
+        assert_eq!(distinct(&found[..2]), 1);
     }
 }

@@ -249,6 +249,7 @@ impl<'a> Run<'_, 'a> {
             error,
             test: located.test,
             after: self.points.len() - 1,
+            contacts: usize::from(matches!(kind, EventKind::Grazing { .. })),
             tangent: Vec::new(),
         });
     }

@@ -238,3 +238,31 @@ fn the_orbit_in_a_well_is_found() {
     let again = again.from(0.8).to(0.81).run().unwrap();
     assert!((again.points[0].motion().mean - first.motion().mean).abs() < 1e-9);
 }
+
+hertzian::oscillator! {
+    /// Two oscillators that are driven a quarter of a period apart, each before a stop of its own.
+    Copies(x, y) {
+        law stop(gap) { gap > 1 => (gap - 1)^1.5, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x) = 0.3*cos(omega*t);
+        ddot(y) + 0.1*dot(y) + y + stop(y) = 0.3*sin(omega*t);
+    }
+}
+
+/// Up to the touch both are linear: `(1 - w^2)^2 + (0.1 w)^2 = 0.3^2`.
+#[test]
+fn contacts_that_are_copies_of_each_other_touch_at_once() {
+    let square = 0.5 * (1.99 - f64::sqrt(1.99_f64.powi(2) - 4.0 * 0.91));
+    let branch = FrequencyResponse::of(&Copies {})
+        .from(0.7)
+        .to(0.9)
+        .bifurcations(true)
+        .run()
+        .unwrap();
+    let [event] = grazings(&branch)[..] else {
+        panic!("{:?}", branch.events);
+    };
+    assert!((event.point.value - square.sqrt()).abs() < 1e-10);
+    assert_eq!(event.contacts, 2);
+    assert!(event.to_string().ends_with("2 contacts at once"), "{event}");
+    assert!(branch.turns.is_empty(), "{:?}", branch.turns);
+}

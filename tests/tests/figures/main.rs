@@ -7,4 +7,5 @@ mod folds;
 mod methods;
 mod models;
 mod orbits;
+mod peaks;
 mod stated;

@@ -3,4 +3,5 @@
 mod affine;
 mod coupled;
 mod integrated;
+mod powers;
 mod stated;

@@ -85,6 +85,16 @@ pub(super) fn compute<'a>(
     if let Some(error) = shared.error.into_inner().ok().flatten() {
         return Err(error.into());
     }
+    if basins.fates.iter().all(|&fate| fate == Fate::Failed) {
+        let mut start = basin.grid.start.clone();
+        basin.grid.state(0, &mut start);
+        let idle = shared.idle.into_inner().ok();
+        let recogniser = idle.and_then(|mut idle| idle.pop());
+        let fault = recogniser.and_then(|mut recogniser| recogniser.fault(basin, &start));
+        if let Some(reason) = fault {
+            return Err(BasinError::Motion { reason });
+        }
+    }
     basins.attractors = catalogue.0;
     basins.number();
     Ok(basins)

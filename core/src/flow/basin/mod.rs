@@ -24,8 +24,8 @@ mod threads;
 pub use attractor::{Attractor, Fate};
 pub use grid::{Axis, Grid};
 
-use super::Flow;
 use super::log::{Log, LogError};
+use super::{Flow, FlowError};
 
 /// Which basins to compute.
 ///
@@ -89,7 +89,7 @@ pub struct Progress {
 }
 
 /// Why there are no basins.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum BasinError {
     /// The request is at fault.
@@ -105,6 +105,11 @@ pub enum BasinError {
     Threads {
         /// How many were asked for.
         count: usize,
+    },
+    /// No motion of the grid can be computed.
+    Motion {
+        /// Why the first one cannot.
+        reason: FlowError,
     },
 }
 
@@ -127,7 +132,7 @@ impl Basin {
     /// Without the feature `parallel` only the first flow is used.
     ///
     /// # Errors
-    /// If the request cannot be used, the log cannot be written, or threads cannot be started.
+    /// If the request cannot be used, the log cannot be written, threads cannot be started, or no motion of the grid can be computed.
     pub fn compute<'a>(
         &self,
         flows: Vec<Box<dyn Flow + 'a>>,
@@ -201,6 +206,9 @@ impl std::fmt::Display for BasinError {
             Self::Request { name, must } => write!(f, "{name} {must}"),
             Self::Log(error) => error.fmt(f),
             Self::Threads { count } => write!(f, "the system does not give {count} threads"),
+            Self::Motion { reason } => {
+                write!(f, "no motion of the grid can be computed: {reason}")
+            }
         }
     }
 }
@@ -209,6 +217,7 @@ impl std::error::Error for BasinError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Log(error) => Some(error),
+            Self::Motion { reason } => Some(reason),
             Self::Request { .. } | Self::Threads { .. } => None,
         }
     }

@@ -78,6 +78,14 @@ impl<'a> Recogniser<'a> {
         self.judge(basin.patience / BATCHES)
     }
 
+    /// Why the motion from a state cannot be followed; `None` if it can.
+    pub(super) fn fault(&mut self, basin: &Basin, start: &[f64]) -> Option<FlowError> {
+        self.state.copy_from_slice(start);
+        let followed = (0..basin.patience).try_for_each(|_| self.map.map(&mut self.state));
+        let long = BATCH.max(basin.patience / BATCHES);
+        followed.err().or_else(|| self.exponent(long).err())
+    }
+
     fn refine(&mut self, period: usize, known: [&Catalogue; 2]) -> Option<Attractor> {
         match self
             .finder

@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::*;
 use crate::flow::affine::Affine;
 use crate::flow::stroboscope::Stroboscope;
+use crate::flow::{See, Tangent, Work};
+use crate::system::Variable;
 
 crate::oscillator! {
     /// Wang et al. (2021), Eq. (1), one-sided, exponent one.
@@ -297,4 +299,48 @@ fn a_request_that_cannot_be_used_is_refused() {
         .compute(Vec::new(), None, &always)
         .expect_err("no flow");
     assert!(error.to_string().contains("flows"));
+}
+
+/// A flow none of whose motions can be computed.
+struct Stuck;
+
+impl Flow for Stuck {
+    fn coordinates(&self) -> usize {
+        1
+    }
+
+    fn admits(&self, _: Variable, _: f64) -> bool {
+        true
+    }
+
+    fn set(&mut self, _: Variable, _: f64) -> Result<(), FlowError> {
+        Ok(())
+    }
+
+    fn advance(
+        &mut self,
+        from: f64,
+        _: f64,
+        _: &mut [f64],
+        _: Option<&mut Tangent>,
+        _: Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        Err(FlowError::Rests { phase: from })
+    }
+
+    fn work(&self) -> Work {
+        Work::default()
+    }
+}
+
+#[test]
+fn a_basin_without_a_motion_is_an_error() {
+    let axis = |entry| Axis::of(entry).from(-1.0).to(1.0).cells(4);
+    let grid = Grid::new(vec![0.0; 2], axis(0), axis(1));
+    let flows: Vec<Box<dyn Flow>> = vec![Box::new(Stuck)];
+    let found = Basin::new(grid).compute(flows, None, &|_| true);
+    let reason = FlowError::Rests { phase: 0.0 };
+    assert_eq!(found, Err(BasinError::Motion { reason }));
+    let said = BasinError::Motion { reason }.to_string();
+    assert!(said.starts_with("no motion of the grid can be computed: the motion rests"));
 }

@@ -25,6 +25,8 @@ const WIDER: f64 = 1.1;
 /// Attempts at landing on a level in one step. Where a gap nearly touches it, a landing may find the second of two crossings
 /// again and again.
 const MOST_LANDINGS: usize = 6;
+/// A crossing before this part of a step is believed only of a step that is solved.
+const EARLY: f64 = 0.01;
 /// The factor of a step that could not be solved.
 const SHORTEN: f64 = 0.4;
 /// A step is not tried if it is shorter than this, in parts of the phase and in radians.
@@ -243,6 +245,10 @@ impl<const S: usize> Engine<'_, S> {
                 self.work.rejected += 1;
                 Tried::Instead(Plan::Span(SHORTEN * width))
             }
+            Some(found) if solved != Solved::Yes && self.is_early(found) => {
+                self.work.rejected += 1;
+                Tried::Instead(Plan::Span(SHORTEN * width))
+            }
             Some(found) if found.at_once => {
                 *turned += 1;
                 if *turned > 2 {
@@ -255,6 +261,14 @@ impl<const S: usize> Engine<'_, S> {
             }
             Some(found) => Tried::Instead(self.towards(found)),
         })
+    }
+
+    /// Whether a crossing is too close to the start of the trial to be believed of an iterate that is not solved to the end. Beyond its
+    /// piece a law may grow without bound, as an even power does, and the iterate with it: where that one crosses, even at once, says
+    /// nothing then.
+    fn is_early(&self, found: Found) -> bool {
+        let map = self.tables[self.trial.table].map;
+        found.at_once || map.place(found.u) < EARLY
     }
 
     /// To a level that the trial crosses. If both ends are to be graded, half of the way first; if the end is, first to
