@@ -327,9 +327,8 @@ fn other_programs_refuse_before_any_work_too() {
         (["--patience", "0"], "--patience 0: must be positive"),
         (["--budget", "inf"], "--budget inf: must be positive"),
     ] {
-        let words = ["work_precision", "--out", &folder.file("a")]
-            .into_iter()
-            .chain(words);
+        let out = folder.file("a");
+        let words = ["work_precision", "--out", &out].into_iter().chain(words);
         let options = work_precision::options::Options::try_parse_from(words).expect("a command");
         let quiet = &mut Progress::new(false);
         let failure = work_precision::run(&options, Vec::new(), &never, quiet);

@@ -88,6 +88,9 @@ impl ContactReader {
             before = now;
         }
         // The panels of contact that is never lost add up to the period but for rounding.
+        if before && self.panels.iter().all(touches) {
+            motion.fraction = 1.0;
+        }
         motion.fraction = motion.fraction.min(1.0);
         for part in on_pieces {
             *part = part.min(1.0);

@@ -132,6 +132,7 @@ fn numbers_of_a_request() {
     refused(|&n| shooting().period(n).run().map(drop), &counts);
     refused(|&n| response().max_points(n).run().map(drop), &counts);
     refused(|&n| response().harmonics(n).run().map(drop), &counts);
+    let counts = [(0, "must be at least 1"), (usize::MAX, "3000 at most")];
     refused(|&n| shooting().segments(n).run().map(drop), &counts);
     let names = [("omego", "no parameter omego; there are bend, drive")];
     let vary = |&name: &&str| response().vary(name).run().map(drop);
