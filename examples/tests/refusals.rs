@@ -153,7 +153,7 @@ fn transients_can_be_ended() {
 
 /// One row for each class of what cannot be used. Nothing is computed or written before it is refused.
 #[test]
-fn what_cannot_be_used_is_refused_before_any_work() {
+fn branches_that_cannot_be_followed_are_refused_before_any_work() {
     let folder = Folder::new("table");
     let svg = folder.file("a.svg");
     let track = "--bifurcations --track fold --in";
@@ -220,6 +220,17 @@ fn what_cannot_be_used_is_refused_before_any_work() {
         assert!(text.contains(message), "{command}: {text}");
         assert!(text.lines().count() == 1 && text.len() < 250, "{text}");
     }
+    assert_empty(&folder);
+}
+
+fn assert_empty(folder: &Folder) {
+    let left = std::fs::read_dir(&folder.0).expect("a folder").count();
+    assert_eq!(left, 0, "nothing is written");
+}
+
+#[test]
+fn motions_that_cannot_be_followed_are_refused_before_any_work() {
+    let folder = Folder::new("motions");
     let (out, start) = (folder.file("a"), "--phase --starts 2");
     for (command, message) in [
         ("--basin --escape nan", "--escape NaN: must be positive"),
@@ -278,8 +289,7 @@ fn what_cannot_be_used_is_refused_before_any_work() {
     }
     let failure = run_attractors(&format!("--history --out {}/", folder.0.display()), false);
     assert!(failure.expect_err("a folder").to_string().contains("--out"));
-    let left = std::fs::read_dir(&folder.0).expect("a folder").count();
-    assert_eq!(left, 0, "nothing is written");
+    assert_empty(&folder);
 }
 
 /// A device without end, and a text that is too long to be a declaration.

@@ -198,8 +198,8 @@ fn basins() {
             .map_err(|reason| Error::Search { value, reason })
     };
     let basin = |escape, longest| Basin {
-        escape,
         longest,
+        escape,
         ..Basin::new(grid(1.0))
     };
     let rows = [
