@@ -33,11 +33,14 @@ use super::orbit::Orbit;
 use super::path::Path;
 use super::walk::{Walk, WalkOfFactors, WalkOfMany, WalkOfTwo};
 use crate::fourier::grading::Grading;
+use crate::generic::scales::Sight;
 
 /// Steps per period at first.
 const FIRST_DENSITY: f64 = 8.0;
 /// Steps per period at most.
 const LARGEST_DENSITY: f64 = 2048.0;
+/// Steps per period up to which a law that is sharp may ask for more.
+const SHARPEST: f64 = 64.0;
 /// Steps for each wave of a stiffness or a direction that varies in time, at least.
 const STEPS_PER_WAVE: f64 = 2.0;
 /// Numbers of steps on a panel; above, powers of two and half as many more.
@@ -58,6 +61,8 @@ pub(crate) struct Monodromy {
     linearised: Linearised,
     /// Multipliers over many decades are wanted whatever it costs.
     complete: bool,
+    /// The nodes of the last orbit do not see its laws.
+    overlooks: bool,
     /// Of the last system of several coordinates.
     many: Option<WalkOfMany>,
     cost: Cost,
@@ -68,6 +73,7 @@ impl Monodromy {
     pub(crate) fn new(complete: bool) -> Self {
         Self {
             complete,
+            overlooks: false,
             density: FIRST_DENSITY,
             path: Path::default(),
             linearised: Linearised::default(),
@@ -213,6 +219,16 @@ impl Floquet for Monodromy {
         let mut density = self.density.max(STEPS_PER_WAVE * waves as f64);
         loop {
             let (found, error) = self.at_density(orbit, density);
+            let sight = self.linearised.look();
+            if sight == Sight::Missed && density < SHARPEST {
+                density = (2.0 * density).min(SHARPEST);
+                continue;
+            }
+            self.overlooks = sight != Sight::Clear;
+            if self.overlooks {
+                self.density = density.min(SHARPEST);
+                return found;
+            }
             let factor = (error / (TARGET * aim)).powf(1.0 / 6.0);
             // Steps that are far too long leave nothing finite: an infinite factor.
             let factor = if factor.is_nan() {
@@ -231,6 +247,10 @@ impl Floquet for Monodromy {
 
     fn knows_its_error(&self) -> bool {
         true
+    }
+
+    fn overlooks(&self) -> bool {
+        self.overlooks
     }
 
     fn cost(&self) -> Cost {
