@@ -45,7 +45,7 @@ pub(super) struct Linearised {
     single: bool,
     stiffness: Vec<f64>,
     damping: Vec<f64>,
-    /// The worst that nodes saw of a law since [`Linearised::look`].
+    /// What [`Linearised::look`] says.
     sight: Option<Sight>,
 }
 
@@ -158,9 +158,9 @@ impl Linearised {
         count
     }
 
-    /// What nodes saw of laws since this was asked last.
-    pub(super) fn look(&mut self) -> Sight {
-        self.sight.take().unwrap_or(Sight::Clear)
+    /// The worst that nodes saw of laws since this was asked last; `None` if none of them may be sharp.
+    pub(super) fn look(&mut self) -> Option<Sight> {
+        self.sight.take()
     }
 
     /// Puts nodes on a panel and evaluates the slopes there. Returns how many evaluations that took.
@@ -197,7 +197,7 @@ impl Linearised {
             let ends = [own(start, start.last()), own(end, end.first())];
             self.nodes.motion(contact, panel, ends);
             let sight = pair.evaluate(orbit, contact, layout, &mut self.nodes);
-            self.sight = self.sight.max(Some(sight));
+            self.sight = self.sight.max(sight);
             count += self.nodes.taus.len();
         }
         if self.single {

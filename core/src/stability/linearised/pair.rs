@@ -96,14 +96,14 @@ impl Pair {
         true
     }
 
-    /// The slopes at the nodes, and what these see of the law.
+    /// The slopes at the nodes, and what these see of a law that may be sharp.
     pub(super) fn evaluate(
         &mut self,
         orbit: &Orbit<'_>,
         contact: &Contact,
         layout: &ContactLayout,
         nodes: &mut Nodes,
-    ) -> Sight {
+    ) -> Option<Sight> {
         self.present = true;
         self.by_gap.resize(nodes.gap.len(), 0.0);
         self.by_rate.resize(nodes.gap.len(), 0.0);
@@ -118,16 +118,14 @@ impl Pair {
         if !self.asked {
             (self.scales, self.asked) = (Scales::of(law), true);
         }
-        let Some(scales) = &mut self.scales else {
-            return Sight::Clear;
-        };
+        let scales = self.scales.as_mut()?;
         scales.set(&contact.arguments, &contact.levels);
         if !scales.any(contact.piece) {
-            return Sight::Clear;
+            return None;
         }
         let count = nodes.taus.len();
         let (gap, rate) = (&nodes.gap[..count], &nodes.rate[..count]);
-        scales.look(contact.piece, gap, rate, PART)
+        Some(scales.look(contact.piece, gap, rate, PART))
     }
 }
 
