@@ -250,9 +250,8 @@ impl<'a> Branch<'a> {
     /// follow the tolerance as along the branch.
     ///
     /// # Errors
-    /// If the value is not finite, or an orbit between two points cannot be computed.
+    /// If an orbit between two points cannot be computed.
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
-        crate::validate::finite("at", value)?;
         self.follower.at(&self.points, &self.events, value)
     }
 
@@ -271,7 +270,7 @@ impl<'a> Branch<'a> {
     /// If the file cannot be written.
     pub fn write_csv(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        crate::export::write(path, self.to_csv()).map_err(|source| Error::File {
+        std::fs::write(path, self.to_csv()).map_err(|source| Error::File {
             path: path.to_path_buf(),
             kind: source.kind(),
         })

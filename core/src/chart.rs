@@ -139,6 +139,7 @@ pub struct Note {
 }
 
 /// Why a chart was not written.
+#[derive(Debug)]
 #[non_exhaustive]
 pub enum ChartError {
     /// The file could not be written.
@@ -148,12 +149,6 @@ pub enum ChartError {
         /// What the system said.
         source: std::io::Error,
     },
-}
-
-crate::error::sentence_as_debug! {
-    ChartError:
-    Write { path, source }
-    ;
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -262,7 +257,7 @@ impl Chart {
     /// If the file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ChartError> {
         let path = path.as_ref();
-        crate::export::write(path, self.to_svg()).map_err(|source| ChartError::Write {
+        std::fs::write(path, self.to_svg()).map_err(|source| ChartError::Write {
             path: path.to_path_buf(),
             source,
         })

@@ -13,7 +13,7 @@ use crate::jacobian::Jacobian;
 use crate::newton::{Newton, NewtonOptions};
 use crate::reader::Reader;
 use crate::stability::Method;
-use crate::start::{Motion, StartRequest};
+use crate::start::StartRequest;
 use crate::system::{System, Variable};
 use crate::truncation::Finer;
 
@@ -150,12 +150,7 @@ impl<'a> Follower<'a> {
         balance.core_size(COUPLING).max(least)
     }
 
-    /// What a start is asked for; `motion` moves states of the system in time.
-    pub(crate) fn start_request<'s>(
-        &'s self,
-        options: FollowOptions,
-        motion: &'s Motion<'s>,
-    ) -> StartRequest<'s> {
+    pub(crate) fn start_request(&self, options: FollowOptions) -> StartRequest<'_> {
         StartRequest {
             system: self.system,
             parameters: &self.parameters,
@@ -164,7 +159,6 @@ impl<'a> Follower<'a> {
             value: options.from,
             resolution: self.resolution,
             newton: options.newton,
-            motion: Some(motion),
         }
     }
 

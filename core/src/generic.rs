@@ -5,7 +5,6 @@
 
 mod law;
 mod program;
-pub(crate) mod scales;
 #[cfg(test)]
 mod tests;
 #[cfg(feature = "text")]

@@ -10,5 +10,4 @@ pub mod multipliers;
 pub mod paper;
 pub mod program;
 pub mod response;
-pub mod values;
 pub mod work_precision;

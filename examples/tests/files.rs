@@ -122,14 +122,7 @@ fn fields_are_those_of_the_chapter() {
     let rows = table("response --json");
     let fields: BTreeSet<String> = rows.iter().flat_map(|(names, _)| quoted(names)).collect();
     assert_eq!(names(&all), fields);
-    let lists = set(&[
-        "drive",
-        "multipliers",
-        "amplitudes",
-        "phases",
-        "contact_forces",
-        "contact_pieces",
-    ]);
+    let lists = set(&["drive", "multipliers", "amplitudes", "phases"]);
     assert_eq!(described("points"), lists);
     let point: BTreeSet<String> = columns().union(&lists).cloned().collect();
     assert_fields(&all["points"], &point);

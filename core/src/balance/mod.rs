@@ -28,7 +28,6 @@ mod blocks;
 mod contacts;
 mod harmonics;
 mod linear;
-mod sizes;
 #[cfg(test)]
 mod switched_tests;
 mod terms;

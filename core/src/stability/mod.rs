@@ -33,7 +33,6 @@ mod orbit;
 pub(crate) mod pairs;
 mod path;
 mod product;
-mod refined;
 mod rest;
 mod spectrum;
 mod triangular;

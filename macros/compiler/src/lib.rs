@@ -22,11 +22,10 @@ mod index;
 mod law_alone;
 mod lower;
 mod parse;
-mod sketch;
 
 use proc_macro2::TokenStream;
 
-use crate::ast::Form;
+use crate::ast::{Declaration, Form};
 use crate::errors::{Diagnostics, Errors};
 use crate::ir::Model;
 
@@ -34,21 +33,36 @@ pub use crate::law_alone::law;
 
 /// Expands a declaration. After errors the expansion holds all of them, and a stub of the type.
 pub fn oscillator(declaration: TokenStream) -> TokenStream {
-    let written = declaration.clone();
-    match read(declaration, Form::Model) {
+    let (declaration, model) = read(declaration, Form::Model);
+    match model {
         Ok(model) => emit::emit(&model),
         Err(errors) => {
             let mut expansion = errors.into_compile_error();
-            for sketch in sketch::of(written) {
-                expansion.extend(emit::stub(
-                    &sketch.name,
-                    &sketch.visibility,
-                    &sketch.parameters,
-                ));
-            }
+            expansion.extend(declaration.as_ref().map(stub));
             expansion
         }
     }
+}
+
+/// The type without its meaning, so that the code which uses it does not fail too.
+fn stub(declaration: &Declaration) -> TokenStream {
+    let mut fields = Vec::new();
+    for parameter in &declaration.parameters {
+        if !fields.contains(&parameter.name) {
+            fields.push(parameter.name.clone());
+        }
+    }
+    let parameters = &declaration.parameters;
+    let has_defaults = !parameters.is_empty()
+        && parameters
+            .iter()
+            .all(|parameter| parameter.default.is_some());
+    emit::stub(
+        &declaration.name,
+        &declaration.visibility,
+        &fields,
+        has_defaults,
+    )
 }
 
 /// Compiles a declaration as far as the checked model.
@@ -56,11 +70,11 @@ pub fn oscillator(declaration: TokenStream) -> TokenStream {
 /// # Errors
 /// Everything that is wrong with the declaration.
 pub fn compile(declaration: TokenStream) -> Result<Model, Errors> {
-    read(declaration, Form::Model)
+    read(declaration, Form::Model).1
 }
 
 /// Parses, checks and lowers. Each stage runs only if the one before found nothing, so that no fault is reported twice.
-fn read(tokens: TokenStream, form: Form) -> Result<Model, Errors> {
+fn read(tokens: TokenStream, form: Form) -> (Option<Declaration>, Result<Model, Errors>) {
     let mut diagnostics = Diagnostics::default();
     let declaration = parse::parse(tokens, form, &mut diagnostics);
     let mut model = None;
@@ -72,7 +86,8 @@ fn read(tokens: TokenStream, form: Form) -> Result<Model, Errors> {
             model = lower::lower(declaration, &mut diagnostics);
         }
     }
-    diagnostics
+    let model = diagnostics
         .finish()
-        .and_then(|()| model.ok_or_else(Errors::internal))
+        .and_then(|()| model.ok_or_else(Errors::internal));
+    (declaration, model)
 }

@@ -18,7 +18,7 @@ use crate::truth::{Question, settles};
 /// Points of a branch by the balance and by shooting at most.
 const POINTS: [usize; 2] = [120, 80];
 /// Time of the processor that a model may take. What is begun is ended, so that some take longer.
-const BUDGET: Duration = Duration::from_secs(4);
+const BUDGET: Duration = Duration::from_secs(3);
 /// Units of time and length of the other declaration of a model.
 const UNITS: [f64; 2] = [1e5, 1e5];
 /// Periods in which a motion from rest has to settle where no orbit was found.

@@ -2,9 +2,10 @@
 //!
 //! The events are from event-driven shooting with an exact flow or DOP853 in extended precision, confirmed each by a second method
 //! as said beside it (harmonic balance with Hill's determinant, Chebyshev collocation); none of them knows this library. Digits
-//! are those that both agree in. One run over the range, from one of its ends, finds every event, and each is within its stated
-//! error.
+//! are those that both agree in. One run over the range finds every event, and each is within its stated error.
 
+mod bearing;
+mod gears;
 mod two_masses;
 
 use hertzian::{CycleBranch, EventKind};

@@ -3,7 +3,6 @@
 mod draw;
 mod exact;
 mod orbits;
-mod sharp;
 mod truncation;
 mod truth;
 mod two_masses;

@@ -4,11 +4,10 @@
 //! exponentially (Trefethen and Weideman (2014), The exponentially convergent trapezoidal rule). The samples are doubled until
 //! the upper end of the spectrum has fallen to rounding, or to the largest number.
 
-use super::{Changing, Sums, Wanted, overlooks};
+use super::{Changing, Sums, Wanted};
 use crate::aft::{ContactInput, PER_SAMPLE};
 use crate::fourier::sampled::SampledTransform;
 use crate::fourier::series;
-use crate::generic::scales::Scales;
 use crate::law::{Derivatives, On, Variation};
 
 /// The upper end of the spectrum, relative to the largest coefficient, at which samples suffice: aliases of the harmonics
@@ -43,13 +42,7 @@ struct Grid {
 
 impl Whole {
     /// Adds a period on one piece.
-    pub(super) fn add(
-        &mut self,
-        input: ContactInput<'_>,
-        piece: usize,
-        sums: &mut Sums<'_>,
-        scales: &mut Option<Scales>,
-    ) {
+    pub(super) fn add(&mut self, input: ContactInput<'_>, piece: usize, sums: &mut Sums<'_>) {
         let slopes = sums.slopes.as_ref().map_or(0, |s| s.by_gap.len() / 2);
         let top = (sums.force.len() / 2).max(slopes);
         let least = (top + series::harmonics(input.gap) + 8).next_power_of_two();
@@ -60,8 +53,7 @@ impl Whole {
             let grid = &mut self.grids[index];
             grid.window = (samples / 16 + 1).max(2 * spacing);
             self.operations += PER_SAMPLE * samples as u64;
-            let resolved = grid.evaluate(input, piece, Wanted::of(sums), scales);
-            if resolved || samples >= MOST.max(least) {
+            if grid.evaluate(input, piece, Wanted::of(sums)) || samples >= MOST.max(least) {
                 grid.add(sums);
                 return;
             }
@@ -99,26 +91,18 @@ impl Grid {
     }
 
     /// The law at all samples. Returns whether the samples suffice.
-    fn evaluate(
-        &mut self,
-        input: ContactInput<'_>,
-        piece: usize,
-        wanted: Wanted<'_>,
-        scales: &mut Option<Scales>,
-    ) -> bool {
+    fn evaluate(&mut self, input: ContactInput<'_>, piece: usize, wanted: Wanted<'_>) -> bool {
         self.transform.sample(input.gap, &mut self.gap);
         self.transform.sample(input.rate, &mut self.rate);
-        let seen = !overlooks(scales, piece, [&self.gap, &self.rate]);
         let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
         let changing = match wanted {
             Wanted::Force => {
                 input
                     .law
                     .force(on, input.arguments, gap, rate, &mut self.force);
-                return seen
-                    && self
-                        .transform
-                        .is_resolved(&self.force, RESOLVED, self.window);
+                return self
+                    .transform
+                    .is_resolved(&self.force, RESOLVED, self.window);
             }
             Wanted::Slopes => None,
             Wanted::Changes(changing) => Some(changing),
@@ -132,8 +116,7 @@ impl Grid {
         let facts = &input.law.facts().pieces[piece];
         let varying = |variation| variation == Variation::Varying;
         self.by_parameter(input, piece, changing);
-        seen && self
-            .transform
+        self.transform
             .is_resolved(&self.force, RESOLVED, self.window)
             && (!varying(facts.by_gap)
                 || self

@@ -12,7 +12,6 @@ impl Dag {
         while let Some(id) = pending.pop() {
             if found.insert(id) {
                 pending.extend(self.operands(id));
-                self.charge(1);
             }
         }
         found.into_iter().collect()

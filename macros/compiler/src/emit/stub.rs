@@ -5,8 +5,15 @@ use quote::quote;
 
 use super::wrap;
 
-/// The type with its fields, defaults and an implementation that is never run: the declaration has already been refused.
-pub fn stub(name: &Ident, visibility: &syn::Visibility, fields: &[Ident]) -> TokenStream {
+/// The type with its fields and an implementation that is never run: the declaration has already been refused. It has
+/// defaults if the declaration gives one to every parameter.
+pub fn stub(
+    name: &Ident,
+    visibility: &syn::Visibility,
+    fields: &[Ident],
+    has_defaults: bool,
+) -> TokenStream {
+    let default = has_defaults.then(|| quote!(, ::core::default::Default));
     let implementation = wrap(
         name,
         &quote! {
@@ -22,7 +29,7 @@ pub fn stub(name: &Ident, visibility: &syn::Visibility, fields: &[Ident]) -> Tok
     );
     quote! {
         #[allow(missing_docs)]
-        #[derive(::core::fmt::Debug, ::core::clone::Clone, ::core::cmp::PartialEq, ::core::default::Default)]
+        #[derive(::core::fmt::Debug, ::core::clone::Clone, ::core::cmp::PartialEq #default)]
         #visibility struct #name { #(pub #fields: ::core::primitive::f64),* }
         #implementation
     }

@@ -3,20 +3,19 @@
 use super::Parser;
 use crate::ast::{Expr, Kind};
 use crate::dag::Rational;
-use crate::errors::{Extent, shortened};
+use crate::errors::Extent;
 
 impl Parser<'_> {
     /// The number a literal stands for. What is glued to it is reported, and the number still returned.
     pub(super) fn number(&mut self, literal: &str, extent: Extent) -> syn::Result<Expr> {
         let (text, suffix) = split_suffix(literal);
-        let shown = shortened(literal);
         let Some(value) = Rational::from_decimal(text) else {
             let message = if text.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
                 format!(
-                    "`{shown}` is out of range: numbers are exact, with at most 38 digits before and after the point"
+                    "`{literal}` is out of range: numbers are exact, with at most 38 digits before and after the point"
                 )
             } else {
-                format!("`{shown}` is not a number")
+                format!("`{literal}` is not a number")
             };
             return Err(extent.fault(message));
         };
@@ -35,13 +34,11 @@ impl Parser<'_> {
         {
             self.diagnostics.report(
                 extent,
-                format!("write `{shown}` as a plain decimal number, such as `1.5e-3`"),
+                format!("write `{literal}` as a plain decimal number, such as `1.5e-3`"),
             );
         } else if !suffix.is_empty() {
             let message = format!(
-                "`{shown}` is read as one number with a suffix: write a star, `{}*{}`",
-                shortened(text),
-                shortened(suffix)
+                "`{literal}` is read as one number with a suffix: write a star, `{text}*{suffix}`"
             );
             self.diagnostics.report(extent, message);
         }

@@ -19,7 +19,7 @@ impl Parser<'_> {
         Ok(Some((unit, start.to(self.tokens.before()))))
     }
 
-    pub(super) fn product_of_units(&mut self) -> syn::Result<Unit> {
+    fn product_of_units(&mut self) -> syn::Result<Unit> {
         let mut unit = self.power_of_unit()?;
         loop {
             let divided = self.tokens.is("/");

@@ -1,8 +1,0 @@
-hertzian::oscillator! {
-    pub Model(x) {
-        param drive;
-        ddot(x) + x + x^3 = drive*cos(omega);
-    }
-}
-
-fn main() {}
