@@ -250,8 +250,9 @@ impl<'a> Branch<'a> {
     /// follow the tolerance as along the branch.
     ///
     /// # Errors
-    /// If an orbit between two points cannot be computed.
+    /// If the value is not finite, or an orbit between two points cannot be computed.
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
+        crate::validate::finite("at", value)?;
         self.follower.at(&self.points, &self.events, value)
     }
 
@@ -270,7 +271,7 @@ impl<'a> Branch<'a> {
     /// If the file cannot be written.
     pub fn write_csv(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        std::fs::write(path, self.to_csv()).map_err(|source| Error::File {
+        crate::export::write(path, self.to_csv()).map_err(|source| Error::File {
             path: path.to_path_buf(),
             kind: source.kind(),
         })

@@ -139,7 +139,6 @@ pub struct Note {
 }
 
 /// Why a chart was not written.
-#[derive(Debug)]
 #[non_exhaustive]
 pub enum ChartError {
     /// The file could not be written.
@@ -149,6 +148,12 @@ pub enum ChartError {
         /// What the system said.
         source: std::io::Error,
     },
+}
+
+crate::error::sentence_as_debug! {
+    ChartError:
+    Write { path, source }
+    ;
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -257,7 +262,7 @@ impl Chart {
     /// If the file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ChartError> {
         let path = path.as_ref();
-        std::fs::write(path, self.to_svg()).map_err(|source| ChartError::Write {
+        crate::export::write(path, self.to_svg()).map_err(|source| ChartError::Write {
             path: path.to_path_buf(),
             source,
         })

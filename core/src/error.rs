@@ -1,5 +1,6 @@
 //! What can be wrong with a request, and why a computation has no answer.
 
+mod debug;
 mod display;
 
 use std::io::ErrorKind;
@@ -10,15 +11,18 @@ use crate::branch::EventKind;
 use crate::chart::ChartError;
 use crate::flow::FlowError;
 use crate::flow::basin::BasinError;
+use crate::flow::log::LogError;
 #[cfg(feature = "text")]
 use crate::generic::DeclarationError;
 use crate::structure::StructureError;
+
+pub(crate) use debug::sentence_as_debug;
 
 pub use crate::linear::Singular;
 pub use crate::newton::NewtonError;
 
 /// Why there is no result.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
     /// A parameter is outside its declared range, or not finite.
@@ -208,6 +212,8 @@ pub enum Error {
     },
     /// A motion cannot be continued.
     Flow(FlowError),
+    /// What a long computation has done cannot be kept.
+    Log(LogError),
     /// A structure cannot be built.
     Structure(StructureError),
     /// A declaration cannot be read.
@@ -215,9 +221,53 @@ pub enum Error {
     Declaration(DeclarationError),
 }
 
+sentence_as_debug! {
+    Error:
+    Parameter { name, value, range }
+    UnknownParameter { name, known }
+    Option { name, value, must }
+    Missing { name }
+    Varied { name, must }
+    EmptyRange { value }
+    Samples { samples, least, harmonics }
+    Unknowns { unknowns, most }
+    Levels { law, levels }
+    Harmonics { harmonics, highest }
+    NoCoordinates {}
+    SingularMass { determinant }
+    Lost { value, from, to }
+    NoStart { value, reason }
+    State { entries, expected }
+    Values { values, expected }
+    NotAffine {}
+    Beyond { value, fold }
+    Motion { value, reason }
+    SearchLimit { value, evaluations, multiplications, reason }
+    NoSuchPeriod { period, value, attempts }
+    NeverAtRest { position }
+    NotFree { apart }
+    NoLoad {}
+    NoResonance { value, between }
+    Search { value, reason }
+    NoBranch { kind, value }
+    File { path, kind }
+    ;
+    Flow
+    Log
+    Structure
+    #[cfg(feature = "text")]
+    Declaration
+}
+
 impl From<FlowError> for Error {
     fn from(error: FlowError) -> Self {
         Self::Flow(error)
+    }
+}
+
+impl From<LogError> for Error {
+    fn from(error: LogError) -> Self {
+        Self::Log(error)
     }
 }
 

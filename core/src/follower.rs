@@ -13,7 +13,7 @@ use crate::jacobian::Jacobian;
 use crate::newton::{Newton, NewtonOptions};
 use crate::reader::Reader;
 use crate::stability::Method;
-use crate::start::StartRequest;
+use crate::start::{Motion, StartRequest};
 use crate::system::{System, Variable};
 use crate::truncation::Finer;
 
@@ -150,7 +150,12 @@ impl<'a> Follower<'a> {
         balance.core_size(COUPLING).max(least)
     }
 
-    pub(crate) fn start_request(&self, options: FollowOptions) -> StartRequest<'_> {
+    /// What a start is asked for; `motion` moves states of the system in time.
+    pub(crate) fn start_request<'s>(
+        &'s self,
+        options: FollowOptions,
+        motion: &'s Motion<'s>,
+    ) -> StartRequest<'s> {
         StartRequest {
             system: self.system,
             parameters: &self.parameters,
@@ -159,6 +164,7 @@ impl<'a> Follower<'a> {
             value: options.from,
             resolution: self.resolution,
             newton: options.newton,
+            motion: Some(motion),
         }
     }
 

@@ -5,6 +5,7 @@
 
 mod law;
 mod program;
+pub(crate) mod scales;
 #[cfg(test)]
 mod tests;
 #[cfg(feature = "text")]

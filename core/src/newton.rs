@@ -12,6 +12,7 @@
 
 mod broyden;
 mod error;
+mod rounding;
 mod tangent;
 #[cfg(test)]
 mod tests;
@@ -67,6 +68,8 @@ pub struct Newton {
     contraction: f64,
     /// What the last correction left, estimated, in units of the scale.
     left: f64,
+    /// What rounding of the residual makes of an update, where the last correction ended there; zero otherwise.
+    rounding: f64,
     /// Work done so far.
     pub statistics: Statistics,
     /// The same in multiplications, estimated.
@@ -85,6 +88,8 @@ const CHORD_PATIENCE: usize = 2;
 const LASTING: f64 = 0.5;
 /// Updates that shrink by less than this do not shrink: that is rounding.
 const STAGNANT: f64 = 0.9;
+/// Where an update above the tolerance is more than this part of the one before, the residual may be nothing but rounding.
+const STEADY: f64 = 0.1;
 /// The last row of (1).
 #[derive(Debug, Clone, Copy)]
 pub struct Border<'a> {
@@ -111,6 +116,7 @@ impl Newton {
             drift: f64::INFINITY,
             contraction: 0.0,
             left: 0.0,
+            rounding: 0.0,
             statistics: Statistics::default(),
             operations: 0,
         }
@@ -152,6 +158,7 @@ impl Newton {
         self.scale = scale;
         self.norm.write_units(scale, &mut self.units);
         self.memory.clear();
+        self.rounding = 0.0;
         // Until this correction shows its own, what is left out contracts as it did last.
         let usual = self.contraction;
         self.contraction = 0.0;
@@ -185,6 +192,17 @@ impl Newton {
                 subtract(u, &self.update, 1.0);
                 self.drift += size;
                 self.left = left(size, previous);
+                return Ok(Converged {
+                    iterations: iteration + 1,
+                    first: first.unwrap_or(size),
+                    update: size,
+                });
+            }
+            let stagnates = size > options.tolerance && size > STEADY * previous;
+            if stagnates && self.is_rounding(problem, u) {
+                subtract(u, &self.update, 1.0);
+                self.drift += size;
+                self.left = size.max(self.rounding);
                 return Ok(Converged {
                     iterations: iteration + 1,
                     first: first.unwrap_or(size),
@@ -277,6 +295,11 @@ impl Newton {
     /// How far from the solution the last correction ended, estimated, in units of the scale.
     pub fn left(&self) -> f64 {
         self.left
+    }
+
+    /// The same in the units of what oscillates: a mean over coordinates and time.
+    pub fn left_in_oscillation(&self) -> f64 {
+        self.left * self.scale.oscillation
     }
 
     /// The same as a change of the parameter.

@@ -18,6 +18,9 @@ pub struct Observed {
     pub motions: Vec<Motion>,
     /// One entry per contact.
     pub contacts: Vec<ContactMotion>,
+    /// For each contact, the part of the period that its gap spends on each piece of its law, from the piece of the lowest gaps to
+    /// that of the highest: `gap > 0 => ..., else => ...` has the time without contact first. They add up to one.
+    pub on_pieces: Vec<Vec<f64>>,
     /// Mean power of the load: `<f . q'>`.
     pub input_power: f64,
     /// Mean power that damping, stiffness and contacts take up. In the discrete balance it equals the input power
@@ -72,7 +75,14 @@ pub struct ContactMotion {
     /// equation is not in it: of `2*stop(x - 1)` this is the largest `stop(x - 1)`. The factor belongs to the place where the force
     /// acts, and one law may act on several equations with a different factor in each.
     pub peak_force: f64,
-    /// Fraction of the period spent on pieces whose force is not identically zero.
+    /// Smallest value of the law, with its sign: the largest pull where a positive force pushes. One-sided limits at switches count,
+    /// and a piece without force counts as zero.
+    pub minimum_force: f64,
+    /// Largest value of the law, with its sign.
+    pub maximum_force: f64,
+    /// Fraction of the period spent on pieces whose force is not identically zero. So it is one for a law that acts everywhere, as
+    /// the attraction beyond the surface under a tip, or a bolt that holds two parts together: time on each side of a level is in
+    /// [`Observed::on_pieces`].
     pub fraction: f64,
     /// Number of separate intervals of contact: zero without contact, one for contact that is never lost.
     pub count: usize,
@@ -81,6 +91,8 @@ pub struct ContactMotion {
 impl ContactMotion {
     const NONE: Self = Self {
         peak_force: 0.0,
+        minimum_force: 0.0,
+        maximum_force: 0.0,
         fraction: 0.0,
         count: 0,
     };
@@ -132,8 +144,17 @@ impl Observer {
         let u = &u[..balance.layout().coordinates * length];
         let (input_power, dissipated_power) = self.powers(balance, u);
         // Contacts first: a coordinate that moves as a gap does is not searched again.
-        let contacts = (0..balance.layout().contacts.len())
-            .map(|contact| self.contact_motion(balance, contact, u))
+        let count = balance.layout().contacts.len();
+        let mut on_pieces: Vec<Vec<f64>> = (0..count)
+            .map(|contact| {
+                let law = balance.layout().contacts[contact].law;
+                vec![0.0; balance.system().law(law).facts().pieces.len()]
+            })
+            .collect();
+        let contacts = on_pieces
+            .iter_mut()
+            .enumerate()
+            .map(|(contact, on_pieces)| self.contact_motion(balance, contact, u, on_pieces))
             .collect();
         self.phases.clear();
         let motions = u
@@ -147,6 +168,7 @@ impl Observer {
         Observed {
             motions,
             contacts,
+            on_pieces,
             input_power,
             dissipated_power,
         }
@@ -188,10 +210,8 @@ impl Observer {
         balance: &Balance<'_>,
         contact: usize,
         u: &[f64],
+        on_pieces: &mut [f64],
     ) -> ContactMotion {
-        if contact::is_idle(balance, contact) {
-            return ContactMotion::NONE;
-        }
         let layout = &balance.layout().contacts[contact];
         let coefficients = balance.coefficients();
         self.gap
@@ -207,7 +227,8 @@ impl Observer {
         self.reader.load(&self.gap);
         let law = balance.system().law(layout.law);
         self.contact.take_arguments(layout, coefficients);
-        self.contact.read(law, &mut self.reader, balance.base())
+        let base = balance.base();
+        self.contact.read(law, &mut self.reader, base, on_pieces)
     }
 }
 
@@ -317,7 +338,8 @@ mod tests {
         let first = observer.observe(&mut balance, &u);
         let mut second = None;
         let allocations = count(|| second = Some(observer.observe(&mut balance, &u)));
-        assert_eq!(allocations, 2);
+        // Motions, contacts, and the time of the one contact on its pieces.
+        assert_eq!(allocations, 4);
         assert_eq!(second, Some(first));
     }
 

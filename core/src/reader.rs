@@ -11,6 +11,8 @@ use crate::truncation::{BEYOND, Finer};
 
 /// Relative error of peak-to-peak that rounding leaves.
 const ROUNDING: f64 = 1e-14;
+/// Roundings of the two extremes.
+const EXTREMES: f64 = 4.0;
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
@@ -20,6 +22,9 @@ pub(crate) struct Reader<'a> {
     observer: Observer,
     /// The error is wanted, whether or not the stability is.
     estimate: bool,
+    /// What rounding of the equations makes of the last orbit, relative to its peak-to-peak, where that exceeds the tolerance of Newton's
+    /// method; zero otherwise.
+    pub(crate) rounding: f64,
 }
 
 impl<'a> Reader<'a> {
@@ -29,6 +34,7 @@ impl<'a> Reader<'a> {
             judge: stability.map(Judge::new),
             observer: Observer::default(),
             estimate,
+            rounding: 0.0,
         }
     }
 
@@ -59,7 +65,7 @@ impl<'a> Reader<'a> {
         let observed = self.observer.observe(balance, u);
         let error = wanted.then(|| {
             if corrected {
-                self.error(&observed, u, newton) + newton.left()
+                self.error(&observed, u, newton)
             } else {
                 f64::INFINITY
             }
@@ -74,16 +80,24 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Largest change of a coordinate's peak-to-peak by the correction, relative to the largest peak-to-peak.
+    /// Largest change of a coordinate's peak-to-peak by the correction, by what Newton's method left, and by rounding of its extremes,
+    /// relative to the largest peak-to-peak.
     fn error(&mut self, observed: &Observed, u: &[f64], newton: &mut Newton) -> f64 {
-        let phases = self.observer.phases();
-        let change = self.finer.peak_to_peak_error(u, phases, newton);
-        let sizes = observed.motions.iter().map(Motion::peak_to_peak);
-        let size = sizes.fold(0.0, f64::max);
-        if size > 0.0 {
-            BEYOND * change / size + ROUNDING
-        } else {
-            BEYOND * change
+        // Of the orbit itself, before the correction is computed.
+        let (left, rounding) = (newton.left_in_oscillation(), newton.rounding_size());
+        let change = self
+            .finer
+            .peak_to_peak_error(u, self.observer.phases(), newton);
+        let largest = |of: fn(&Motion) -> f64| observed.motions.iter().map(of).fold(0.0, f64::max);
+        let size = largest(Motion::peak_to_peak);
+        if size == 0.0 {
+            return BEYOND * change + left;
         }
+        // From a mean square over coordinates to the peak-to-peak of one of them.
+        let peak = 2.0 * (2.0 * observed.motions.len() as f64).sqrt();
+        self.rounding = peak * rounding / size;
+        let farthest = largest(|motion| motion.maximum.abs().max(motion.minimum.abs()));
+        let extremes = EXTREMES * f64::EPSILON * farthest;
+        (BEYOND * change + peak * left + extremes) / size + ROUNDING
     }
 }

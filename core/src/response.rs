@@ -1,6 +1,7 @@
 //! Frequency response: what a user asks for, checked before any work.
 
 mod check;
+mod motion;
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -16,7 +17,7 @@ use crate::flow::shooting::Side;
 use crate::follower::Sought;
 use crate::run::Run;
 use crate::stability::Method;
-use crate::start::{start, without_symmetry};
+use crate::start::{Moving, start, without_symmetry};
 use crate::statistics::Statistics;
 use crate::system::System;
 
@@ -276,7 +277,8 @@ impl<'a> FrequencyResponse<'a> {
         let mut statistics = Statistics::default();
         let first = match &self.near {
             None => {
-                let request = follower.start_request(options);
+                let motion = |moving: Moving<'_>| motion::moved(&follower, moving);
+                let request = follower.start_request(options, &motion);
                 let found = start(request, &mut statistics)?;
                 let broken = follower.asymmetric;
                 let broken = broken.then(|| without_symmetry(request, &found, &mut statistics));

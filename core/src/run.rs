@@ -28,6 +28,8 @@ use watch::Watch;
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;
 const SLOW_POINTS: usize = 2;
+/// An error of so many times what rounding makes of an update is due to it.
+const ROUNDINGS: f64 = 100.0;
 /// A core that no number of harmonics exceeds.
 const ALL: usize = 1 << 24;
 
@@ -307,6 +309,12 @@ impl<'f, 'a> Run<'f, 'a> {
         }
         let chosen = self.chooser.as_mut().and_then(|chooser| {
             let error = point.error.unwrap_or(f64::INFINITY);
+            // What rounding leaves, no harmonics take away.
+            let error = if error <= ROUNDINGS * self.reader.rounding {
+                0.0
+            } else {
+                error
+            };
             chooser.decide(harmonics, error)
         });
         self.wanted = self

@@ -6,6 +6,7 @@
 //! 3. *Equivalent linearisation* ([`equivalent`]): where the stiffness at rest is zero or unbounded, the balance in the
 //!    harmonics of the load alone.
 //! 4. *Homotopy* ([`homotopy`]): in the drive, from the state at rest; then in the frequency, from higher ones.
+//! 5. *Motions* ([`motion`]): what motions from rest settle to.
 //!
 //! An orbit of period `n` is found from the one of period one, disturbed in its lowest subharmonic ([`longer`]).
 //!
@@ -19,10 +20,12 @@ mod equivalent;
 mod fixed;
 mod homotopy;
 mod longer;
+mod motion;
 mod rest;
 
 use crate::balance::Resolution;
 use crate::error::Error;
+use crate::layout::Layout;
 use crate::newton::{NewtonError, NewtonOptions};
 use crate::statistics::Statistics;
 use crate::system::{System, Variable};
@@ -41,6 +44,36 @@ pub(crate) struct StartRequest<'a> {
     pub(crate) value: f64,
     pub(crate) resolution: Resolution,
     pub(crate) newton: NewtonOptions,
+    /// How motions are computed, where they can be.
+    pub(crate) motion: Option<&'a Motion<'a>>,
+}
+
+/// Moves a state in time.
+pub(crate) type Motion<'a> = dyn Fn(Moving<'_>) -> Moved + 'a;
+
+/// A state at phase zero, and how far it is to move.
+pub(crate) struct Moving<'s> {
+    /// Where what is varied has this value.
+    pub(crate) value: f64,
+    pub(crate) variable: Variable,
+    pub(crate) omega: f64,
+    /// Positions, then velocities.
+    pub(crate) state: &'s mut [f64],
+    /// Periods of the declaration that are passed, and those that are recorded after them.
+    pub(crate) skipped: usize,
+    pub(crate) recorded: usize,
+    /// Positions in each of those.
+    pub(crate) samples: usize,
+    /// Multiplications that it may take.
+    pub(crate) most: u64,
+}
+
+/// What came of it.
+pub(crate) struct Moved {
+    /// Positions at equal distances over the periods recorded, coordinate by coordinate, unless the motion could not be continued.
+    pub(crate) positions: Option<Vec<f64>>,
+    /// Multiplications that it took, about.
+    pub(crate) operations: u64,
 }
 
 impl StartRequest<'_> {
@@ -113,7 +146,31 @@ fn orbit_of_period_one(
     {
         return Ok(found);
     }
-    homotopy::in_frequency(request, effort).ok_or(met)
+    if let Some(found) = homotopy::in_frequency(request, effort) {
+        return Ok(found);
+    }
+    let mut further = Effort::of(effort::LIMIT_OF_MOTIONS);
+    let found = settled(request, rest.ok(), &mut further);
+    effort.statistics += further.statistics;
+    found.ok_or(met)
+}
+
+/// An orbit that motions from the state at rest and from the origin lead to.
+fn settled(
+    request: StartRequest<'_>,
+    rest: Option<Vec<f64>>,
+    effort: &mut Effort,
+) -> Option<Vec<f64>> {
+    let origin = vec![0.0; Layout::of(request.system).coordinates];
+    let mut from = vec![origin];
+    let rest = rest.map(|mut rest| {
+        rest.truncate(from[0].len());
+        rest
+    });
+    if let Some(rest) = rest.filter(|rest| *rest != from[0]) {
+        from.insert(0, rest);
+    }
+    motion::orbit(request, &from, effort)
 }
 
 /// An orbit near the state at rest, or near those of the equivalent linearisation.
@@ -178,6 +235,7 @@ mod tests {
                 iterations: 12,
                 damped: false,
             },
+            motion: None,
         }
     }
 

@@ -26,7 +26,7 @@
 //! of the orbit there, each adds `d^2 / 2 c`, which counts where a harmonic meets a resonance and is a quarter of its period late.
 //!
 //! A contact that is stiffer than the inertia of the tail, and a Jacobian that changes with the orbit, as beside a resonance that is
-//! not resolved, make (1) a first step only. Where it is not small, more such steps are made with the residual of the finer balance,
+//! not resolved, make (1) a first step only. Where it is not small, or harmonics are few, more such steps are made with the residual of the finer balance,
 //! and what they do not settle is bounded by how fast they fall ([`again`]).
 //!
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic

@@ -1,5 +1,8 @@
 //! Checks of what a user asks for, before any work.
 
+#[cfg(test)]
+mod tests;
+
 use std::ops::RangeInclusive;
 
 use nalgebra::DMatrix;
@@ -140,6 +143,17 @@ pub(crate) fn option(
     }
 }
 
+/// A number is neither infinite nor NaN.
+pub(crate) fn finite(name: &'static str, value: f64) -> Result<(), Error> {
+    option(name, value, f64::MIN..=f64::MAX, "must be finite")
+}
+
+/// A number is more than zero.
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
+    let range = f64::MIN_POSITIVE..=f64::INFINITY;
+    option(name, value, range, "must be positive")
+}
+
 /// Levels are finite and none is below the one before it.
 pub(crate) fn in_order(levels: &[f64]) -> bool {
     let finite = levels.iter().all(|level| level.is_finite());
@@ -148,7 +162,12 @@ pub(crate) fn in_order(levels: &[f64]) -> bool {
 
 /// A branch may have so many points.
 pub(crate) fn max_points(points: usize) -> Result<usize, Error> {
-    option("max_points", points as f64, 2.0..=1e9, "must be 2 or more")?;
+    option(
+        "max_points",
+        points as f64,
+        2.0..=1e9,
+        "must be from 2 to 1e9",
+    )?;
     Ok(points)
 }
 

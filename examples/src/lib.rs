@@ -10,4 +10,5 @@ pub mod multipliers;
 pub mod paper;
 pub mod program;
 pub mod response;
+pub mod values;
 pub mod work_precision;

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::values;
+
 /// An oscillator on a power-law contact, or one from a file.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct ModelOptions {
@@ -72,6 +74,22 @@ pub struct ModelOptions {
 pub const FREQUENCY_VARIES: &str = "--omega cannot be used where omega varies: the range gives it";
 
 impl ModelOptions {
+    /// Whether every parameter is set once, to a number, and of an oscillator that has it.
+    ///
+    /// # Errors
+    /// If one is not.
+    pub fn check(&self) -> Result<(), String> {
+        if let (Some((name, _)), None) = (self.set.first(), &self.file) {
+            return Err(format!(
+                "--set {name} belongs to --model and would do nothing here"
+            ));
+        }
+        for (name, value) in &self.set {
+            values::finite(&format!("--set {name}"), *value)?;
+        }
+        values::once("--set", self.set.iter().map(|(name, _)| name.as_str()))
+    }
+
     /// Whether contact can be lost.
     pub fn loses_contact(&self) -> bool {
         self.file.is_none() && !self.continuous

@@ -37,6 +37,46 @@ impl<E: Error> From<E> for Failed {
     }
 }
 
+/// The options of a command line. Where there are none to work with, as with `--help`, what the parser says is printed, and the
+/// exit code is in the error: 0 if it was asked for, 2 otherwise.
+///
+/// # Errors
+/// If there is nothing to work with.
+pub fn options<O>(name: &str, parsed: Result<O, clap::Error>) -> Result<O, ExitCode> {
+    parsed.map_err(|error| {
+        // The parser says it in colour where that can be seen.
+        if error.use_stderr() {
+            let _ = error.print();
+            return ExitCode::from(2);
+        }
+        let printed = error.print().and_then(|()| io::stdout().flush());
+        match unless_closed(printed) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                let _ = writeln!(
+                    io::stderr(),
+                    "{name}: cannot write to standard output: {error}"
+                );
+                ExitCode::from(2)
+            }
+        }
+    })
+}
+
+/// Prints a text, all of it.
+fn print(text: &str) -> io::Result<()> {
+    let mut out = io::stdout();
+    unless_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Whoever reads the output may have stopped reading: not an error.
+fn unless_closed(written: io::Result<()>) -> io::Result<()> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written,
+    }
+}
+
 /// Works, prints, and says by the exit code how it went: 0 done, 2 failed or what the failure says, 3 not complete. A first
 /// Ctrl-C sets the flag, a second one ends the program at once.
 pub fn run(
@@ -55,7 +95,6 @@ pub fn run(
     let mut progress = Progress::new(!quiet && io::stderr().is_terminal());
     let outcome = work(&interrupted, &mut progress);
     progress.end();
-    // Whoever reads the output may have stopped reading: not an error.
     let complain = |message: &str| {
         let _ = writeln!(io::stderr(), "{name}: {message}");
     };
@@ -64,8 +103,10 @@ pub fn run(
             for complaint in &ended.complaints {
                 complain(complaint);
             }
-            if !quiet {
-                let _ = io::stdout().write_all(ended.summary.as_bytes());
+            let printed = if quiet { Ok(()) } else { print(&ended.summary) };
+            if let Err(error) = printed {
+                complain(&format!("cannot write to standard output: {error}"));
+                return ExitCode::from(2);
             }
             ExitCode::from(if ended.complete { 0 } else { 3 })
         }

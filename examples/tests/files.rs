@@ -122,7 +122,14 @@ fn fields_are_those_of_the_chapter() {
     let rows = table("response --json");
     let fields: BTreeSet<String> = rows.iter().flat_map(|(names, _)| quoted(names)).collect();
     assert_eq!(names(&all), fields);
-    let lists = set(&["drive", "multipliers", "amplitudes", "phases"]);
+    let lists = set(&[
+        "drive",
+        "multipliers",
+        "amplitudes",
+        "phases",
+        "contact_forces",
+        "contact_pieces",
+    ]);
     assert_eq!(described("points"), lists);
     let point: BTreeSet<String> = columns().union(&lists).cloned().collect();
     assert_fields(&all["points"], &point);

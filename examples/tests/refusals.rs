@@ -150,3 +150,218 @@ fn transients_can_be_ended() {
     let ended = task.settle(&mut map, &mut state, usize::MAX);
     assert_eq!((ended, state), (Ok(false), [0.0, 0.0]));
 }
+
+/// One row for each class of what cannot be used. Nothing is computed or written before it is refused.
+#[test]
+fn branches_that_cannot_be_followed_are_refused_before_any_work() {
+    let folder = Folder::new("table");
+    let svg = folder.file("a.svg");
+    let track = "--bifurcations --track fold --in";
+    for (command, message) in [
+        (
+            format!("{track} omega,drive --within nan,1"),
+            "--within NaN: must be finite",
+        ),
+        (
+            format!("{track} omega,drive --within 0.1,inf"),
+            "--within inf: must be finite",
+        ),
+        (
+            format!("{track} omega,drive --within 1,1"),
+            "--within: the range from 1 to 1 is empty",
+        ),
+        (
+            format!("{track} omega,drive --within 2,1"),
+            "--within: the range from 2 to 1 is empty",
+        ),
+        (
+            format!("{track} omega,drive --within 0.2,1"),
+            "--within must hold drive = 0.1",
+        ),
+        (
+            format!("{track} omega,zeta --within=-1,1"),
+            "zeta cannot vary from -1 to 1",
+        ),
+        (
+            format!("{track} omega,load --load 0"),
+            "load cannot vary from 0 to 0",
+        ),
+        (format!("{track} omega,amplitude"), "no parameter amplitude"),
+        (
+            format!("{track} omega,omega"),
+            "--in names omega more than once",
+        ),
+        (format!("{track} load,drive"), "load,drive"),
+        (
+            "--bifurcations --search nan".to_owned(),
+            "--search NaN: must be between",
+        ),
+        (
+            "--bifurcations --search 9".to_owned(),
+            "--search 9: must be between",
+        ),
+        (
+            "--max-points 18446744073709551615".to_owned(),
+            "must be from 2 to 1e9",
+        ),
+        (
+            "--set k=1 --alpha 2".to_owned(),
+            "--set k belongs to --model",
+        ),
+        (
+            format!("--json {}", folder.file("none/a")),
+            "its folder does not exist",
+        ),
+        (format!("--csv {}", folder.0.display()), "is a directory"),
+        (format!("--model {}", folder.0.display()), "cannot read"),
+        (format!("--model {}", folder.file("none")), "none: "),
+    ] {
+        let text = refused_by_response(&format!("{command} --svg {svg}"));
+        assert!(text.contains(message), "{command}: {text}");
+        assert!(text.lines().count() == 1 && text.len() < 250, "{text}");
+    }
+    assert_empty(&folder);
+}
+
+fn assert_empty(folder: &Folder) {
+    let left = std::fs::read_dir(&folder.0).expect("a folder").count();
+    assert_eq!(left, 0, "nothing is written");
+}
+
+#[test]
+fn motions_that_cannot_be_followed_are_refused_before_any_work() {
+    let folder = Folder::new("motions");
+    let (out, start) = (folder.file("a"), "--phase --starts 2");
+    for (command, message) in [
+        ("--basin --escape nan", "--escape NaN: must be positive"),
+        ("--basin --escape -1", "--escape -1: must be positive"),
+        (
+            "--sweep drive --escape inf",
+            "--escape inf: must be positive",
+        ),
+        (
+            "--sweep drive --section nan",
+            "--section NaN: must be finite",
+        ),
+        ("START --zoom nan 1 1 1", "--zoom NaN: must be finite"),
+        (
+            "START --zoom 1 1 1 1",
+            "--zoom: the range from 1 to 1 is empty",
+        ),
+        (
+            "START --zoom 0 1 2 1",
+            "--zoom: the range from 2 to 1 is empty",
+        ),
+        ("START --mark inf", "--mark inf: must be finite"),
+        ("START --drives 1 nan", "--drives NaN: must be finite"),
+        ("--lyapunov --drives 1 nan", "--drives NaN: must be finite"),
+        ("--basin --x-range nan 1", "--x-range NaN: must be finite"),
+        (
+            "--basin --v-range 2 1",
+            "--v-range: the range from 2 to 1 is empty",
+        ),
+        ("--basin --start 1 2", "--start would do nothing"),
+        (
+            "--basin --threads 1000000",
+            "--threads 1000000: must be from 1 to 1024",
+        ),
+        (
+            "--history --periods 100000000000",
+            "--periods 100000000000: must be from 0 to",
+        ),
+        (
+            "--sweep drive --values 1000 --periods 100000",
+            "must be from 0 to 10000",
+        ),
+        (
+            "--lyapunov --batches 1000000000000",
+            "--batches 1000000000000: must be from 2 to",
+        ),
+        ("--basin --checkpoint FOLDER", "is no checkpoint"),
+        ("--basin --set k=1 --alpha 2", "--set k belongs to --model"),
+    ] {
+        let command = command.replace("START", start);
+        let command = command.replace("FOLDER", &folder.0.display().to_string());
+        let failure = run_attractors(&format!("{command} --out {out}"), false);
+        let text = failure.expect_err(&command).to_string();
+        assert!(text.contains(message), "{command}: {text}");
+        assert!(text.lines().count() == 1 && text.len() < 250, "{text}");
+    }
+    let failure = run_attractors(&format!("--history --out {}/", folder.0.display()), false);
+    assert!(failure.expect_err("a folder").to_string().contains("--out"));
+    assert_empty(&folder);
+}
+
+/// A device without end, and a text that is too long to be a declaration.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_has_no_end_is_not_read_to_it() {
+    let folder = Folder::new("endless");
+    let (svg, out) = (folder.file("a.svg"), folder.file("a"));
+    let text = refused_by_response(&format!("--model /dev/zero --svg {svg}"));
+    assert!(text.contains("/dev/zero: it is longer than"), "{text}");
+    let failure = run_attractors(
+        &format!("--basin --checkpoint /dev/zero --out {out}"),
+        false,
+    );
+    let text = failure.expect_err("a refusal").to_string();
+    assert!(text.contains("/dev/zero is no checkpoint"), "{text}");
+    let text = "A(x) { ddot(x) + 0.1*dot(x) + x = cos(omega*t); }";
+    let long = folder.file("long.txt");
+    std::fs::write(&long, text.to_owned() + &" ".repeat(4_000_000)).expect("written");
+    let text = refused_by_response(&format!("--model {long} --svg {svg}"));
+    assert!(text.contains("long.txt: it is longer than"), "{text}");
+}
+
+/// Without room the pictures and tables that were there stay, and nothing of new ones is left.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_without_room_is_an_error() {
+    let folder = Folder::new("full");
+    let svg = folder.file("a.svg");
+    let text = refused_by_response(&format!("--to 0.65 --svg {svg} --json /dev/full"));
+    assert!(
+        text.contains("cannot write /dev/full: No space left"),
+        "{text}"
+    );
+}
+
+/// Numbers of the other programs.
+#[test]
+fn other_programs_refuse_before_any_work_too() {
+    use hertzian_examples::{multipliers, work_precision};
+    let never = AtomicBool::new(false);
+    let folder = Folder::new("others");
+    for (words, message) in [
+        (["--patience", "nan"], "--patience NaN: must be positive"),
+        (["--patience", "0"], "--patience 0: must be positive"),
+        (["--budget", "inf"], "--budget inf: must be positive"),
+    ] {
+        let out = folder.file("a");
+        let words = ["work_precision", "--out", &out].into_iter().chain(words);
+        let options = work_precision::options::Options::try_parse_from(words).expect("a command");
+        let quiet = &mut Progress::new(false);
+        let failure = work_precision::run(&options, Vec::new(), &never, quiet);
+        let text = failure.err().expect("a refusal").to_string();
+        assert!(text.contains(message), "{text}");
+    }
+    std::fs::write(folder.file("file"), "").expect("written");
+    for (words, message) in [
+        (["--harmonics", "0"], "--harmonics 0: must be from 1"),
+        (
+            ["--harmonics", "1000000"],
+            "--harmonics 1000000: must be from 1",
+        ),
+        (["--folder", "FILE"], "cannot write"),
+    ] {
+        let file = folder.file("file");
+        let words = words.map(|word| if word == "FILE" { &file } else { word });
+        let words = ["multipliers"].into_iter().chain(words);
+        let options = multipliers::Options::try_parse_from(words).expect("a command");
+        let failure = multipliers::run(&options, &never, &mut Progress::new(false));
+        let text = failure.expect_err("a refusal").to_string();
+        assert!(text.contains(message), "{text}");
+    }
+    let left = std::fs::read_dir(&folder.0).expect("a folder").count();
+    assert_eq!(left, 1, "only what was there");
+}

@@ -134,6 +134,12 @@ impl Problem for Balance<'_> {
         }
     }
 
+    fn terms(&mut self, u: &[f64], terms: &mut [f64]) -> bool {
+        self.set(u[self.unknowns()]);
+        self.sizes_of_terms(&u[..self.unknowns()], terms);
+        true
+    }
+
     fn is_mean(&self, unknown: usize) -> bool {
         unknown.is_multiple_of(self.length())
     }

@@ -28,6 +28,7 @@ mod blocks;
 mod contacts;
 mod harmonics;
 mod linear;
+mod sizes;
 #[cfg(test)]
 mod switched_tests;
 mod terms;

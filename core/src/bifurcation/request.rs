@@ -213,12 +213,16 @@ impl<'a> Bifurcations<'a> {
         let from = self.from.ok_or(Error::Missing { name: "from" })?;
         let to = self.to.ok_or(Error::Missing { name: "to" })?;
         self.check()?;
-        for &(value, _) in &self.searched {
+        for &(value, ref basin) in &self.searched {
             if !(from.min(to)..=from.max(to)).contains(&value) {
                 let must = "must be in the range of the first branch";
                 let name = "search";
                 return Err(Error::Option { name, value, must });
             }
+            let order = 2 * self.system.facts().coordinates.len();
+            basin
+                .check(Some(order))
+                .map_err(|reason| Error::Search { value, reason })?;
         }
         let first = self.shooting.clone().from(from).to(to);
         let mut watch = Watch::new(&mut visit);

@@ -26,6 +26,12 @@ pub trait Problem {
         derivative.fill(f64::NAN);
     }
 
+    /// Writes the size of the terms that each residual is summed from, to which its rounding is relative. Returns whether that is known.
+    fn terms(&mut self, u: &[f64], terms: &mut [f64]) -> bool {
+        let _ = (u, terms);
+        false
+    }
+
     /// Writes the weights `w` of the norm `|u|^2 = sum w_i u_i^2` over the `n` unknowns: a mean square that does not
     /// change when unknowns are added that are zero.
     fn weights(&self, weights: &mut [f64]);

@@ -6,6 +6,9 @@ use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Sto
 use super::problem::{Norm, Problem, Scale};
 use crate::newton::{Border, Newton, NewtonError};
 
+/// Least scale of what oscillates, in sizes of what rounding makes of an update.
+const ROUNDINGS: f64 = 1e3;
+
 /// A walk that has its first point.
 pub(super) struct Begun {
     pub(super) walk: Walk,
@@ -253,10 +256,16 @@ impl Walk {
         }
     }
 
+    /// Rounding must not look like a turn of the curve.
     fn scale_at_trial(&mut self, newton: &Newton) -> Scale {
-        newton
-            .norm()
-            .scale_at(&self.trial, self.scale.parameter, &mut self.largest)
+        let norm = newton.norm();
+        let scale = norm.scale_at(&self.trial, self.scale.parameter, &mut self.largest);
+        let oscillation = scale.oscillation.max(ROUNDINGS * newton.rounding_size());
+        Scale {
+            oscillation,
+            mean: scale.mean.max(oscillation),
+            ..scale
+        }
     }
 
     /// One step, shortened until it succeeds.

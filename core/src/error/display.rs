@@ -179,6 +179,7 @@ impl fmt::Display for Error {
             | Self::NoBranch { .. } => self.of_bifurcations(f),
             Self::File { path, kind } => write!(f, "cannot write {}: {kind}", path.display()),
             Self::Flow(error) => error.fmt(f),
+            Self::Log(error) => error.fmt(f),
             Self::Structure(error) => error.fmt(f),
             #[cfg(feature = "text")]
             Self::Declaration(error) => error.fmt(f),

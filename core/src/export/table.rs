@@ -3,9 +3,10 @@
 use std::fmt::Write;
 
 use crate::branch::Point;
-use crate::system::SystemFacts;
 
-/// Names of the columns that every table begins with; after them come the parameters of the system, by name.
+/// Names of the columns that every table begins with; after them come the parameters of the system, by name, and then for each
+/// contact, counted from one, `contact_1_min_force` and `contact_1_max_force`, the extremes of its law with their signs, and
+/// `contact_1_piece_1` and so on, the part of the period on each piece of its law, from the lowest gaps to the highest.
 ///
 /// | column | what it is |
 /// |---|---|
@@ -13,7 +14,7 @@ use crate::system::SystemFacts;
 /// | `peak_to_peak`, `max`, `min`, `mean`, `rms` | of the first coordinate; the mean counts in `rms` |
 /// | `stability` | `stable`, `unstable` or `undecided` |
 /// | `multiplier_1_re` to `multiplier_2_im` | the two Floquet multipliers of largest modulus, over the period of the orbit |
-/// | `contact_fraction` | part of the period in which the first contact is closed |
+/// | `contact_fraction` | part of the period on pieces of the law of the first contact that are not zero: 1 for a law that acts everywhere |
 /// | `contacts` | intervals of contact in a period |
 /// | `peak_force` | largest value of the law of the first contact, by size, without factors outside of it: see [`ContactMotion`](crate::observe::ContactMotion) |
 /// | `dissipated_power` | mean over the period |
@@ -65,33 +66,40 @@ pub const COLUMNS: [&str; 20] = [
 /// let mut table = Table::of(&model);
 /// branch.points.iter().for_each(|point| table.add(0, point));
 /// assert_eq!(table.to_csv(), branch.to_csv());
-/// assert!(table.to_csv().lines().next().unwrap().ends_with(",value,bend"));
+/// assert!(table.to_csv().lines().next().unwrap().contains(",value,bend,contact_1_min_force,"));
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
     text: String,
     parameters: usize,
+    /// Pieces of the law of each contact.
+    pieces: Vec<usize>,
 }
 
 impl Table {
     /// A table without rows. A parameter whose name is taken gets an underscore after it.
     pub fn of(system: &dyn crate::System) -> Self {
-        Self::with(system.facts())
-    }
-
-    fn with(facts: &SystemFacts) -> Self {
+        let facts = system.facts();
+        let pieces = facts
+            .contacts
+            .iter()
+            .map(|contact| system.law(contact.law).facts().pieces.len());
+        let pieces: Vec<usize> = pieces.collect();
         let mut names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
+        let of_contacts = of_contacts(&pieces);
         for parameter in facts.parameters.iter() {
             let mut name = parameter.name.to_string();
-            while names.contains(&name) {
+            while names.contains(&name) || of_contacts.contains(&name) {
                 name.push('_');
             }
             names.push(name);
         }
+        names.extend(of_contacts);
         let mut table = Self {
             text: String::new(),
             parameters: facts.parameters.len(),
+            pieces,
         };
         table.line(names.iter().map(String::as_str));
         table
@@ -102,7 +110,16 @@ impl Table {
         let parameters = point.parameters.iter().take(self.parameters);
         let parameters: Vec<String> = parameters.map(|&value| number(value)).collect();
         let cells = cells(branch, point);
-        self.line(cells.iter().chain(&parameters).map(String::as_str));
+        let observed = &point.observed;
+        let contacts = observed.contacts.iter().zip(&observed.on_pieces);
+        let mut of_contacts: Vec<String> = Vec::new();
+        for ((contact, on_pieces), &pieces) in contacts.zip(&self.pieces) {
+            let forces = [contact.minimum_force, contact.maximum_force];
+            let values = forces.iter().chain(on_pieces.iter().take(pieces));
+            of_contacts.extend(values.map(|&value| number(value)));
+        }
+        let all = cells.iter().chain(&parameters).chain(&of_contacts);
+        self.line(all.map(String::as_str));
     }
 
     /// The text of the table, with a line break after every row.
@@ -124,7 +141,18 @@ impl Table {
     }
 }
 
-/// An orbit of a branch with a number as the texts of [`COLUMNS`]: a row of a [`Table`] without its parameters.
+/// Names of the columns of contacts, whose laws have so many pieces.
+fn of_contacts(pieces: &[usize]) -> Vec<String> {
+    let contacts = pieces.iter().zip(1..);
+    let names = contacts.flat_map(|(&pieces, contact)| {
+        let forces = ["min", "max"].map(|which| format!("contact_{contact}_{which}_force"));
+        let pieces = (1..=pieces).map(move |piece| format!("contact_{contact}_piece_{piece}"));
+        forces.into_iter().chain(pieces)
+    });
+    names.collect()
+}
+
+/// An orbit of a branch with a number as the texts of [`COLUMNS`]: a row of a [`Table`] without its parameters and what is said of every contact.
 pub fn cells(branch: usize, point: &Point) -> [String; 20] {
     let motion = point.motion();
     let part = |index: usize, imaginary: bool| {
@@ -207,6 +235,7 @@ mod tests {
         let mut table = Table {
             text: String::new(),
             parameters: 0,
+            pieces: Vec::new(),
         };
         table.line(["a,b", "\"", "c"].into_iter());
         assert_eq!(table.to_csv(), "\"a,b\",\"\"\"\",c\n");

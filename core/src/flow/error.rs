@@ -4,7 +4,7 @@ use super::Tangent;
 use crate::system::{System, Variable};
 
 /// Why a motion cannot be continued.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum FlowError {
     /// The tolerance asks for steps that vanish beside the phase.
@@ -19,6 +19,13 @@ pub enum FlowError {
         /// Where.
         phase: f64,
     },
+    /// The function of a section is not a number.
+    Section {
+        /// Where.
+        phase: f64,
+    },
+    /// A mean was to be taken over no period at all.
+    NoPeriods,
     /// More switches in one period than anything that moves has: chatter.
     TooManySwitches {
         /// Where.
@@ -62,6 +69,22 @@ pub enum FlowError {
     },
 }
 
+crate::error::sentence_as_debug! {
+    FlowError:
+    StepTooShort { phase, step }
+    NotFinite { phase }
+    Section { phase }
+    NoPeriods {}
+    TooManySwitches { phase, switches }
+    Rests { phase }
+    Grazes { phase }
+    SingularMass { determinant }
+    Value { variable, value }
+    Levels { contact }
+    Entries { entries, expected }
+    ;
+}
+
 impl FlowError {
     /// As numbers: which one it is, and what it carries.
     pub(super) fn numbers(self) -> [f64; 3] {
@@ -78,6 +101,8 @@ impl FlowError {
             },
             Self::Levels { contact } => [9.0, contact as f64, 0.0],
             Self::Entries { entries, expected } => [10.0, entries as f64, expected as f64],
+            Self::Section { phase } => [11.0, phase, 0.0],
+            Self::NoPeriods => [12.0, 0.0, 0.0],
         }
     }
 
@@ -108,6 +133,8 @@ impl FlowError {
                 entries: a as usize,
                 expected: b as usize,
             },
+            11 => Self::Section { phase: a },
+            12 => Self::NoPeriods,
             _ => return None,
         })
     }
@@ -117,10 +144,12 @@ impl FlowError {
         match &mut self {
             Self::StepTooShort { phase, .. }
             | Self::NotFinite { phase }
+            | Self::Section { phase }
             | Self::TooManySwitches { phase, .. }
             | Self::Rests { phase }
             | Self::Grazes { phase } => *phase = to(*phase),
             Self::SingularMass { .. }
+            | Self::NoPeriods
             | Self::Value { .. }
             | Self::Levels { .. }
             | Self::Entries { .. } => {}
@@ -186,6 +215,11 @@ impl std::fmt::Display for FlowError {
                 write!(f, "the step fell to {step:.1e} at the phase {phase}")
             }
             Self::NotFinite { phase } => write!(f, "the motion is not finite at the phase {phase}"),
+            Self::Section { phase } => write!(
+                f,
+                "the function of the section is not a number at the phase {phase}"
+            ),
+            Self::NoPeriods => write!(f, "there is no mean over no periods: take one or more"),
             Self::TooManySwitches { phase, switches } => {
                 write!(
                     f,

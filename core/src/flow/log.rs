@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// What every such file begins with; the number is that of the format.
 const HEAD: &str = "hertzian log 1, ";
+/// As much is shown of what another file says it belongs to, in bytes.
+const LINE: usize = 1000;
 
 /// An open log.
 #[derive(Debug)]
@@ -21,7 +23,7 @@ pub struct Log {
 }
 
 /// Why there is no log, or none any more.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LogError {
     /// The file cannot be read or written.
@@ -40,6 +42,13 @@ pub enum LogError {
     },
 }
 
+crate::error::sentence_as_debug! {
+    LogError:
+    File { path, kind }
+    Other { path, found }
+    ;
+}
+
 impl Log {
     /// Opens the log of a computation and reads what it has done; begins one if there is no such file. `identity` is one
     /// line that says everything the result depends on.
@@ -52,12 +61,20 @@ impl Log {
             path: path.clone(),
             kind: source.kind(),
         };
+        // What is no file, as a device, may have no end, and cannot be cut.
+        if path.exists() && !path.is_file() {
+            let found = String::new();
+            return Err(LogError::Other { path, found });
+        }
         let mut options = OpenOptions::new();
         let options = options.read(true).write(true).create(true).truncate(false);
         let mut file = options.open(&path).map_err(failed)?;
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(failed)?;
         let head = format!("{HEAD}{}\n", identity.replace('\n', " "));
+        // Of a file of something else no more than a line is looked at, however long it is.
+        let most = head.len().max(LINE) as u64;
+        let mut bytes = Vec::new();
+        let mut beginning = (&file).take(most);
+        beginning.read_to_end(&mut bytes).map_err(failed)?;
         let mut records = Vec::new();
         let mut length = head.len();
         // A head cut short is that of a process that ended before its first record.
@@ -65,6 +82,7 @@ impl Log {
             file.rewind().map_err(failed)?;
             file.write_all(head.as_bytes()).map_err(failed)?;
         } else if bytes.starts_with(head.as_bytes()) {
+            file.read_to_end(&mut bytes).map_err(failed)?;
             while let Some(record) = record(&bytes[length..]) {
                 length += FRAME + record.len();
                 records.push(record.to_vec());
@@ -72,7 +90,7 @@ impl Log {
         } else {
             let text = String::from_utf8_lossy(&bytes);
             let line = text.lines().next().and_then(|line| line.strip_prefix(HEAD));
-            let found = line.unwrap_or_default().to_owned();
+            let found = line.unwrap_or_default().chars().take(LINE).collect();
             return Err(LogError::Other { path, found });
         }
         file.set_len(length as u64).map_err(failed)?;
@@ -248,6 +266,10 @@ mod tests {
         assert!(error.to_string().contains("no checkpoint"), "{error}");
         let error = Log::open(path.join("missing"), "that").expect_err("no folder");
         assert!(error.to_string().contains("cannot use"), "{error}");
+        for device in ["/dev/zero", "/dev/null", "/"] {
+            let error = Log::open(device, "that").expect_err("no file");
+            assert!(error.to_string().contains("no checkpoint"), "{error}");
+        }
     }
 
     #[test]

@@ -121,11 +121,14 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
         Ok(())
     }
 
-    /// Adds a batch of so many applications of the map.
+    /// Adds a batch of so many applications of the map, one or more.
     ///
     /// # Errors
-    /// If the motion cannot be continued.
+    /// If the motion cannot be continued, or the batch is empty.
     pub fn batch(&mut self, periods: usize) -> Result<&Batch, FlowError> {
+        if periods == 0 {
+            return Err(FlowError::NoPeriods);
+        }
         self.sums.fill(0.0);
         let mut integral = Integral::default();
         for _ in 0..periods {

@@ -146,8 +146,8 @@ impl<'a> Section<'a> {
     /// A motion that starts on the surface and leaves it has not crossed it.
     ///
     /// # Errors
-    /// If the motion cannot be continued: what came before has been shown. If a state has not the entries that the surface asks
-    /// for.
+    /// If the motion cannot be continued, or the function of the surface is not a number: what came before has been shown. If a
+    /// state has not the entries that the surface asks for.
     pub fn follow(
         &self,
         map: &mut Stroboscope<'_>,
@@ -175,6 +175,9 @@ impl<'a> Section<'a> {
                 });
             };
             map.show_period(state, &mut show)?;
+            if let Some(phase) = search.undefined {
+                return Err(FlowError::Section { phase });
+            }
         }
         Ok(())
     }

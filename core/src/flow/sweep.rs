@@ -4,11 +4,12 @@
 //! there is one: a sweep up and a sweep down show hysteresis.
 
 use super::FlowError;
-use super::log::{Log, LogError, Reader, Writer};
+use super::log::{Log, Reader, Writer};
 use super::poincare::{Crossing, Section};
 use super::stroboscope::Stroboscope;
 use crate::error::Error;
 use crate::system::Variable;
+use crate::validate;
 
 /// What is seen at more values would not fit into memory well.
 const MOST_VALUES: usize = 1 << 24;
@@ -57,7 +58,7 @@ pub struct Sweep {
     pub transient: usize,
     /// Applications of the map that are looked at after those.
     pub periods: usize,
-    /// A state with an entry beyond this has escaped.
+    /// A state with an entry beyond this has escaped; infinite for none.
     pub escape: f64,
 }
 
@@ -124,14 +125,15 @@ impl Sweep {
     /// not computed again; what is computed is added to it. Ends early where `see` says so, after each new row.
     ///
     /// # Errors
-    /// If the log cannot be written.
+    /// If a number of the request cannot be used, or the log cannot be written.
     pub fn run(
         &self,
         map: &mut Stroboscope<'_>,
         section: Option<&Section<'_>>,
         mut log: Option<&mut Log>,
         see: &mut dyn FnMut(&Row) -> bool,
-    ) -> Result<Vec<Row>, LogError> {
+    ) -> Result<Vec<Row>, Error> {
+        self.check()?;
         let records = log.as_deref().map_or(&[][..], Log::records);
         let known = records.iter().map_while(|record| Row::read(record));
         let mut rows: Vec<Row> = known.take(self.values.len()).collect();
@@ -162,6 +164,20 @@ impl Sweep {
             }
         }
         Ok(rows)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        validate::option(
+            "values",
+            self.values.len() as f64,
+            0.0..=MOST_VALUES as f64,
+            "must be at most 2^24",
+        )?;
+        validate::positive("escape", self.escape)?;
+        for &entry in &self.start {
+            validate::finite("start", entry)?;
+        }
+        Ok(())
     }
 
     /// One value.

@@ -343,7 +343,7 @@ fn operands(nodes: &[Node], position: usize) -> [Option<usize>; 2] {
 }
 
 /// Which nodes the outputs need.
-fn needed(nodes: &[Node], outputs: &[usize]) -> Vec<bool> {
+pub(super) fn needed(nodes: &[Node], outputs: &[usize]) -> Vec<bool> {
     let mut needed = vec![false; nodes.len()];
     for &output in outputs {
         needed[output] = true;
@@ -363,7 +363,7 @@ fn needed(nodes: &[Node], outputs: &[usize]) -> Vec<bool> {
 }
 
 /// Which nodes depend on gap or rate.
-fn varying(nodes: &[Node]) -> Vec<bool> {
+pub(super) fn varying(nodes: &[Node]) -> Vec<bool> {
     let mut varying = vec![false; nodes.len()];
     for position in 0..nodes.len() {
         let from_operands = operands(nodes, position)

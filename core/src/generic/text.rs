@@ -47,7 +47,7 @@ pub struct Declaration {
 }
 
 /// Everything that is wrong with a declaration; at least one fault.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DeclarationError {
     /// What is wrong, and where.
@@ -157,6 +157,18 @@ impl fmt::Display for DeclarationError {
             write!(formatter, "{separator}{fault}")?;
         }
         Ok(())
+    }
+}
+
+// As of every error: the sentence, and with `{:#?}` what it consists of.
+impl fmt::Debug for DeclarationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !f.alternate() {
+            return fmt::Display::fmt(self, f);
+        }
+        f.debug_struct("DeclarationError")
+            .field("faults", &self.faults)
+            .finish()
     }
 }
 

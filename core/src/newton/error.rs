@@ -3,7 +3,7 @@
 use crate::linear::Singular;
 
 /// Why an iteration ended without a solution.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum NewtonError {
     /// The updates did not become small.
@@ -27,6 +27,14 @@ pub enum NewtonError {
         /// After this many updates.
         iterations: usize,
     },
+}
+
+crate::error::sentence_as_debug! {
+    NewtonError:
+    NotConverged { iterations, update, residual }
+    Singular { iterations, at }
+    NotFinite { iterations }
+    ;
 }
 
 impl std::fmt::Display for NewtonError {

@@ -46,8 +46,14 @@ impl ContactReader {
         contact.arguments(coefficients, &mut self.arguments);
     }
 
-    /// Reads the gap that has been loaded; the arguments have been taken.
-    pub(super) fn read(&mut self, law: &dyn Law, reader: &mut Reader, base: f64) -> ContactMotion {
+    /// Reads the gap that has been loaded; the arguments have been taken. Adds the part of the period on each piece.
+    pub(super) fn read(
+        &mut self,
+        law: &dyn Law,
+        reader: &mut Reader,
+        base: f64,
+        on_pieces: &mut [f64],
+    ) -> ContactMotion {
         self.cut(law, reader);
         let pieces = &law.facts().pieces;
         let touches = |panel: &Panel| pieces[panel.piece].force != Variation::Zero;
@@ -59,23 +65,41 @@ impl ContactReader {
         if self.panels.iter().any(touches) {
             self.sample_rate(law, reader, base);
         }
+        let mut extremes = [f64::INFINITY, f64::NEG_INFINITY];
         for panel in &self.panels {
             let now = touches(panel);
+            let part = (panel.end - panel.start) / TAU;
+            on_pieces[panel.piece] += part;
+            let mut here = [0.0; 2];
             if now {
-                motion.fraction += (panel.end - panel.start) / TAU;
+                motion.fraction += part;
                 let (gaps, rates) = (reader.samples(), &self.rates[..]);
                 self.batch.take(panel, [gaps, rates], reader.series(), base);
                 let gap = reader.series();
-                let peak = self
+                here = self
                     .batch
-                    .peak(law, panel.piece, &self.arguments, gap, base);
-                motion.peak_force = largest(motion.peak_force, peak);
+                    .extremes(law, panel.piece, &self.arguments, gap, base);
             }
+            extremes = [
+                -largest(-extremes[0], -here[0]),
+                largest(extremes[1], here[1]),
+            ];
             motion.count += usize::from(now && !before);
             before = now;
         }
         // The panels of contact that is never lost add up to the period but for rounding.
+        if before && self.panels.iter().all(touches) {
+            motion.fraction = 1.0;
+        }
         motion.fraction = motion.fraction.min(1.0);
+        for part in on_pieces {
+            *part = part.min(1.0);
+        }
+        // A gap that is not a number is on no panel.
+        if extremes[0] <= extremes[1] {
+            [motion.minimum_force, motion.maximum_force] = extremes;
+            motion.peak_force = largest(-extremes[0], extremes[1]);
+        }
         motion
     }
 
@@ -124,7 +148,73 @@ mod tests {
         let (mut contact, mut reader) = (ContactReader::default(), Reader::default());
         contact.arguments = arguments.to_vec();
         reader.load(gap);
-        contact.read(law, &mut reader, BASE)
+        let mut on_pieces = vec![0.0; law.facts().pieces.len()];
+        let motion = contact.read(law, &mut reader, BASE, &mut on_pieces);
+        assert!((on_pieces.iter().sum::<f64>() - 1.0).abs() < 1e-13);
+        let size = motion.maximum_force.abs().max(motion.minimum_force.abs());
+        assert_eq!(motion.peak_force, size);
+        motion
+    }
+
+    /// Parts of the period on each piece.
+    fn on_pieces(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> Vec<f64> {
+        let (mut contact, mut reader) = (ContactReader::default(), Reader::default());
+        contact.arguments = arguments.to_vec();
+        reader.load(gap);
+        let mut on_pieces = vec![0.0; law.facts().pieces.len()];
+        contact.read(law, &mut reader, BASE, &mut on_pieces);
+        on_pieces
+    }
+
+    crate::law! {
+        /// An attraction that a gap from the surface has, and a spring below: as under a tip.
+        Tip(gap, reach > 0) {
+            gap > reach => 3*(gap - reach) - 1,
+            gap < 0     => -1 + gap/2,
+            else        => -1,
+        }
+    }
+
+    /// `gap = 1/2 + 2 cos tau`: above one while `cos tau > 1/4`, above zero while `cos tau > -1/4`.
+    #[test]
+    fn times_and_signed_extremes_are_the_closed_form() {
+        let gap = [0.5, 2.0, 0.0];
+        let motion = read(&Tip, &[1.0], &gap);
+        // No piece is without a force, so contact is never lost by that measure.
+        assert_eq!((motion.fraction, motion.count), (1.0, 1));
+        assert!((motion.maximum_force - 3.5).abs() < 1e-14);
+        assert!((motion.minimum_force + 1.75).abs() < 1e-14);
+        assert!((motion.peak_force - 3.5).abs() < 1e-14);
+        let angle = |cosine: f64| cosine.acos() / std::f64::consts::PI;
+        let above = angle(0.25);
+        let middle = angle(-0.25) - above;
+        let found = on_pieces(&Tip, &[1.0], &gap);
+        for (found, expected) in found
+            .iter()
+            .zip([above, middle, 1.0 - above - middle].iter().rev())
+        {
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        }
+        // Without a crossing all of the time is on one piece.
+        assert_eq!(on_pieces(&Tip, &[1.0], &[-3.0, 1.0, 0.0]), [1.0, 0.0, 0.0]);
+        let below = read(&Tip, &[1.0], &[-3.0, 1.0, 0.0]);
+        assert!((below.minimum_force + 3.0).abs() < 1e-14);
+        assert!((below.maximum_force + 2.0).abs() < 1e-14);
+    }
+
+    /// A linear spring on one side with damping: `phi = g + 2 zeta r`, on `g = m + a cos tau` while `g > 0`. As it is left the force
+    /// pulls with the damping alone.
+    #[test]
+    fn the_smallest_force_is_the_limit_where_contact_is_lost() {
+        let (zeta, mean, size) = (0.3, 0.25, 1.0);
+        let system = PowerForm::new(true, 1.0, zeta, 1.0, 1.0);
+        let motion = read(system.law(0), &[zeta, 1.0], &[mean, size, 0.0]);
+        let angle = f64::acos(-mean / size);
+        let leaving = -2.0 * zeta * BASE * size * angle.sin();
+        let largest = mean + size.hypot(2.0 * zeta * BASE * size);
+        assert!((motion.minimum_force - leaving).abs() < 1e-13);
+        assert!((motion.maximum_force - largest).abs() < 1e-13);
+        assert!((motion.fraction - 2.0 * angle / TAU).abs() < 1e-13);
     }
 
     fn random_gap(random: &mut Random, harmonics: usize) -> Vec<f64> {

@@ -38,7 +38,7 @@ pub(super) struct Batch {
     whole: bool,
 }
 
-/// Size of the force at a phase, and its derivative by the phase.
+/// The force at a phase, or its negative, and its derivative by the phase.
 #[derive(Debug, Clone, Copy)]
 struct Slope {
     size: f64,
@@ -53,6 +53,8 @@ struct Motion<'a> {
     arguments: &'a [f64],
     gap: &'a [f64],
     base: f64,
+    /// One to look for the largest force, minus one for the smallest.
+    sign: f64,
 }
 
 impl Motion<'_> {
@@ -69,8 +71,8 @@ impl Motion<'_> {
             .derivatives(On::Piece(self.piece), self.arguments, &[gap], &rate, out);
         let slope = by_gap[0] * by_phase + by_rate[0] * self.base * bend;
         Slope {
-            size: force[0].abs(),
-            slope: slope * force[0].signum(),
+            size: self.sign * force[0],
+            slope: self.sign * slope,
         }
     }
 }
@@ -144,28 +146,39 @@ impl Batch {
         }
     }
 
-    /// Largest force by size on the panel that was taken.
-    pub(super) fn peak(
+    /// Smallest and largest force on the panel that was taken.
+    pub(super) fn extremes(
         &mut self,
         law: &dyn Law,
         piece: usize,
         arguments: &[f64],
         gap: &[f64],
         base: f64,
-    ) -> f64 {
+    ) -> [f64; 2] {
         self.force.resize(self.gap.len(), 0.0);
         let on = On::Piece(piece);
         law.force(on, arguments, &self.gap, &self.rate, &mut self.force);
-        for force in &mut self.force {
-            *force = force.abs();
-        }
         let motion = Motion {
             law,
             piece,
             arguments,
             gap,
             base,
+            sign: 1.0,
         };
+        let most = self.largest(motion);
+        for force in &mut self.force {
+            *force = -*force;
+        }
+        let least = -self.largest(Motion {
+            sign: -1.0,
+            ..motion
+        });
+        [least, most]
+    }
+
+    /// The largest value of what has been sampled.
+    fn largest(&self, motion: Motion<'_>) -> f64 {
         // The best first: few others can then be larger.
         let best = self.best();
         let mut peak = largest(self.force[best], self.refined(best, motion));
@@ -205,7 +218,7 @@ impl Batch {
             _ => (at(index - 1), at(index), at(index + 1)),
         };
         if here < before || here < after {
-            return 0.0;
+            return f64::NEG_INFINITY;
         }
         here + 0.25 * ((here - before) + (here - after))
     }
@@ -249,11 +262,11 @@ impl Batch {
     }
 }
 
-/// Largest size where the slope falls through zero inside a bracket, from a phase and a guess of the second derivative.
+/// Largest value where the slope falls through zero inside a bracket, from a phase and a guess of the second derivative.
 fn search(motion: Motion<'_>, (mut a, mut b): (f64, f64), from: (f64, f64)) -> f64 {
     let (mut tau, mut bend) = from;
     let mut before: Option<(f64, f64)> = None;
-    let mut peak = 0.0;
+    let mut peak = f64::NEG_INFINITY;
     for _ in 0..STEPS {
         let Slope { size, slope } = motion.at(tau);
         peak = largest(peak, size);
@@ -269,7 +282,7 @@ fn search(motion: Motion<'_>, (mut a, mut b): (f64, f64), from: (f64, f64)) -> f
         let step = -slope / bend;
         // A parabola of this slope and bend gains so much on the way to its peak.
         let gain = 0.5 * (slope * step).abs();
-        if gain <= GAIN * size || b - a <= 4.0 * f64::EPSILON * b.abs() {
+        if gain <= GAIN * size.abs() || b - a <= 4.0 * f64::EPSILON * b.abs() {
             break;
         }
         let next = tau + step;

@@ -21,6 +21,7 @@ use nalgebra::DMatrix;
 
 use super::method::{Floquet, Found};
 use super::orbit::Orbit;
+use super::refined;
 use super::rest::Rest;
 use super::spectrum::spread;
 use super::{Answer, Method, Stability, distance, eigenvalues};
@@ -66,6 +67,8 @@ fn by_truncation(plain: &Found, found: &Found) -> f64 {
 pub(crate) struct Judge {
     method: Method,
     engine: Box<dyn Floquet>,
+    /// What looks at orbits for a method without nodes.
+    sentinel: Option<Box<dyn Floquet>>,
     /// Error of the method that is aimed at.
     tolerance: f64,
     /// Error of the method that sufficed for the last orbit.
@@ -85,6 +88,7 @@ impl Judge {
         Self {
             method,
             engine: method.engine(),
+            sentinel: None,
             tolerance,
             aim: tolerance,
             rest: Rest::default(),
@@ -133,7 +137,13 @@ impl Judge {
             }
         };
         let known = |found: &Found| !found.multipliers.is_empty();
-        let corrected = corrected.filter(|(found, _)| known(found) && known(&plain) && !rests);
+        let corrected = if self.overlooks(balance, finer, u) {
+            let series = finer.map_or(orbit.series, |finer| finer.series());
+            refined::multipliers(balance, series).map(|found| (found, 0.0))
+        } else {
+            corrected.filter(|(found, _)| known(found) && known(&plain))
+        };
+        let corrected = corrected.filter(|_| !rests);
         let bound = corrected
             .as_ref()
             .map_or(plain.bound, |(found, _)| found.bound);
@@ -161,6 +171,23 @@ impl Judge {
             cost: self.engine.cost(),
             elapsed: started.elapsed(),
         }
+    }
+
+    /// Whether a law changes between the nodes of the orbit where they do not see it; asked of the monodromy matrix if the method has
+    /// no nodes.
+    fn overlooks(&mut self, balance: &Balance<'_>, finer: Option<&Finer<'_>>, u: &[f64]) -> bool {
+        if self.engine.knows_its_error() {
+            return self.engine.overlooks();
+        }
+        let sentinel = self
+            .sentinel
+            .get_or_insert_with(|| Method::Default.engine());
+        let orbit = match finer {
+            Some(finer) => Orbit::of(finer.balance(), finer.series()),
+            None => Orbit::of(balance, &u[..u.len() - 1]),
+        };
+        sentinel.multipliers(&orbit, 1.0);
+        sentinel.overlooks()
     }
 
     /// Multipliers of an orbit and of the corrected one, and what the truncation may leave in the latter; nothing is known of that

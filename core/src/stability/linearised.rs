@@ -23,6 +23,7 @@ use super::orbit::Orbit;
 use super::path::{Cut, Event, Path};
 use crate::fourier::grading::Grading;
 use crate::fourier::series;
+use crate::generic::scales::Sight;
 use crate::law::{On, Variation};
 use crate::layout::Entry;
 
@@ -44,6 +45,8 @@ pub(super) struct Linearised {
     single: bool,
     stiffness: Vec<f64>,
     damping: Vec<f64>,
+    /// What [`Linearised::look`] says.
+    sight: Option<Sight>,
 }
 
 /// Phases no farther from each other than this are the same but for rounding.
@@ -155,6 +158,11 @@ impl Linearised {
         count
     }
 
+    /// The worst that nodes saw of laws since this was asked last; `None` if none of them may be sharp.
+    pub(super) fn look(&mut self) -> Option<Sight> {
+        self.sight.take()
+    }
+
     /// Puts nodes on a panel and evaluates the slopes there. Returns how many evaluations that took.
     pub(super) fn evaluate(
         &mut self,
@@ -188,7 +196,8 @@ impl Linearised {
             };
             let ends = [own(start, start.last()), own(end, end.first())];
             self.nodes.motion(contact, panel, ends);
-            pair.evaluate(orbit, contact, layout, &mut self.nodes);
+            let sight = pair.evaluate(orbit, contact, layout, &mut self.nodes);
+            self.sight = self.sight.max(sight);
             count += self.nodes.taus.len();
         }
         if self.single {

@@ -141,6 +141,11 @@ pub(crate) trait Floquet: std::fmt::Debug {
     /// more harmonics.
     fn knows_its_error(&self) -> bool;
 
+    /// Whether the law changes between the nodes of the last orbit where they do not see it: then nothing is known of it.
+    fn overlooks(&self) -> bool {
+        false
+    }
+
     /// The work done so far.
     fn cost(&self) -> Cost;
 }

@@ -33,6 +33,7 @@ mod orbit;
 pub(crate) mod pairs;
 mod path;
 mod product;
+mod refined;
 mod rest;
 mod spectrum;
 mod triangular;

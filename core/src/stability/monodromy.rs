@@ -15,7 +15,7 @@
 //! and `q L` is about as large as the error of `P` (within a factor of two on the orbits that were tried). The error of the
 //! multipliers is how far they move for such an error of the matrix, whatever its signs. The number of steps follows from it,
 //! with the sixth root. How far they move for rounding errors of the matrix, near a double multiplier by the root of these, is added:
-//! no steps make it smaller. Of a system of one coordinate the determinant is known by Liouville's formula,
+//! no steps make it smaller. Where a law may be sharp, twice the steps are taken as well, and the change counts. Of a system of one coordinate the determinant is known by Liouville's formula,
 //! `det P = exp(int trace A)`, and gives the smaller multiplier however small it is. Where the matrix of others has lost small
 //! multipliers, they are found from its factors: see [`product`](super::product).
 //!
@@ -27,17 +27,23 @@
 
 use std::f64::consts::TAU;
 
+use super::distance;
 use super::linearised::{Linearised, Panel};
 use super::method::{Cost, Floquet, Found};
 use super::orbit::Orbit;
 use super::path::Path;
 use super::walk::{Walk, WalkOfFactors, WalkOfMany, WalkOfTwo};
 use crate::fourier::grading::Grading;
+use crate::generic::scales::Sight;
 
 /// Steps per period at first.
 const FIRST_DENSITY: f64 = 8.0;
 /// Steps per period at most.
 const LARGEST_DENSITY: f64 = 2048.0;
+/// Steps per period up to which a law that is sharp may ask for more.
+const SHARPEST: f64 = 64.0;
+/// What half the step makes the error smaller by, at least; the order would be 64.
+const HALVED: f64 = 8.0;
 /// Steps for each wave of a stiffness or a direction that varies in time, at least.
 const STEPS_PER_WAVE: f64 = 2.0;
 /// Numbers of steps on a panel; above, powers of two and half as many more.
@@ -58,6 +64,8 @@ pub(crate) struct Monodromy {
     linearised: Linearised,
     /// Multipliers over many decades are wanted whatever it costs.
     complete: bool,
+    /// The nodes of the last orbit do not see its laws.
+    overlooks: bool,
     /// Of the last system of several coordinates.
     many: Option<WalkOfMany>,
     cost: Cost,
@@ -68,6 +76,7 @@ impl Monodromy {
     pub(crate) fn new(complete: bool) -> Self {
         Self {
             complete,
+            overlooks: false,
             density: FIRST_DENSITY,
             path: Path::default(),
             linearised: Linearised::default(),
@@ -129,6 +138,16 @@ impl Monodromy {
             matrix,
         };
         (found, by_steps)
+    }
+
+    /// With twice the steps, and the error that the change tells: commutators do not show what a peak of the damping leaves in the
+    /// trace, and other nodes do.
+    fn halved(&mut self, orbit: &Orbit<'_>, density: f64, coarse: &Found) -> (Found, f64) {
+        let (mut finer, _) = self.at_density(orbit, 2.0 * density);
+        self.linearised.look();
+        let changed = distance(&coarse.multipliers, &finer.multipliers) / HALVED;
+        finer.error = finer.error.max(changed);
+        (finer, changed)
     }
 
     fn integrate(&mut self, walk: &mut impl Walk, orbit: &Orbit<'_>, density: f64) {
@@ -213,6 +232,16 @@ impl Floquet for Monodromy {
         let mut density = self.density.max(STEPS_PER_WAVE * waves as f64);
         loop {
             let (found, error) = self.at_density(orbit, density);
+            let sight = self.linearised.look();
+            if sight == Some(Sight::Missed) && density < SHARPEST {
+                density = (2.0 * density).min(SHARPEST);
+                continue;
+            }
+            self.overlooks = sight > Some(Sight::Clear);
+            if self.overlooks {
+                self.density = density.min(SHARPEST);
+                return found;
+            }
             let factor = (error / (TARGET * aim)).powf(1.0 / 6.0);
             // Steps that are far too long leave nothing finite: an infinite factor.
             let factor = if factor.is_nan() {
@@ -220,6 +249,15 @@ impl Floquet for Monodromy {
             } else {
                 factor
             };
+            if sight.is_some() && error <= aim && density < LARGEST_DENSITY {
+                let (finer, halved) = self.halved(orbit, density, &found);
+                if halved <= aim {
+                    self.density = density;
+                    return finer;
+                }
+                density = (2.0 * density).min(LARGEST_DENSITY);
+                continue;
+            }
             if density >= LARGEST_DENSITY || error <= aim {
                 let next = density * factor.clamp(0.5, 1.3);
                 self.density = next.clamp(FIRST_DENSITY, LARGEST_DENSITY);
@@ -231,6 +269,10 @@ impl Floquet for Monodromy {
 
     fn knows_its_error(&self) -> bool {
         true
+    }
+
+    fn overlooks(&self) -> bool {
+        self.overlooks
     }
 
     fn cost(&self) -> Cost {

@@ -10,6 +10,9 @@ use crate::statistics::Statistics;
 /// Multiplications that a search may take: some seconds. Most searches take less than a thousandth of it.
 pub(super) const LIMIT: u64 = 20_000_000_000;
 
+/// Those that motions may take after it.
+pub(super) const LIMIT_OF_MOTIONS: u64 = 4_000_000_000;
+
 /// What a search has cost so far.
 #[derive(Debug)]
 pub(super) struct Effort {
@@ -32,6 +35,16 @@ impl Effort {
     pub(super) fn take(&mut self, newton: &mut Newton) {
         self.statistics += std::mem::take(&mut newton.statistics);
         self.operations += std::mem::take(&mut newton.operations);
+    }
+
+    /// Takes so many multiplications.
+    pub(super) fn take_operations(&mut self, operations: u64) {
+        self.operations += operations;
+    }
+
+    /// Multiplications that are left.
+    pub(super) fn left(&self) -> u64 {
+        self.limit.saturating_sub(self.operations)
     }
 
     /// Whether nothing is left of it.

@@ -6,6 +6,10 @@ use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::problem::Problem;
 use crate::newton::{Border, Newton, NewtonError, NewtonOptions};
 
+/// A solution so much smaller than where the search for it began is sought again on its own scale, and so many times in all.
+const SMALLER: f64 = 1e-3;
+const SCALES: usize = 3;
+
 /// One balance at a fixed value of the variable.
 pub(super) struct Fixed<'a> {
     pub(super) balance: Balance<'a>,
@@ -75,15 +79,23 @@ impl<'a> Fixed<'a> {
         } else {
             self.value.abs()
         };
-        let scale = self.newton.norm().scale_at(u, parameter, &mut [0.0; 2]);
         let border = Border {
             row: &self.border,
             value: self.value,
         };
-        let done = self
-            .newton
-            .correct(&mut self.balance, u, border, scale, options)
-            .map(|_| ());
+        let mut scale = self.newton.norm().scale_at(u, parameter, &mut [0.0; 2]);
+        let mut done = Ok(());
+        for _ in 0..SCALES {
+            done = self
+                .newton
+                .correct(&mut self.balance, u, border, scale, options)
+                .map(|_| ());
+            let found = self.newton.norm().scale_at(u, parameter, &mut [0.0; 2]);
+            if done.is_err() || found.oscillation > SMALLER * scale.oscillation {
+                break;
+            }
+            scale = found;
+        }
         effort.take(&mut self.newton);
         u[last] = self.value;
         done

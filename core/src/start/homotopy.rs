@@ -196,6 +196,11 @@ impl Problem for Drive<'_> {
         }
     }
 
+    fn terms(&mut self, u: &[f64], terms: &mut [f64]) -> bool {
+        self.take(u);
+        self.balance.terms(&self.extended, terms)
+    }
+
     fn weights(&self, weights: &mut [f64]) {
         self.balance.weights(weights);
     }

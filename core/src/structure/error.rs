@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// What is wrong with a structure.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum StructureError {
     /// A matrix is not as many rows and columns as the structure has coordinates.
@@ -79,6 +79,20 @@ pub enum StructureError {
         /// Another.
         second: f64,
     },
+}
+
+crate::error::sentence_as_debug! {
+    StructureError:
+    MatrixSize { matrix, rows, columns, coordinates }
+    DirectionSize { contact, entries, coordinates }
+    NotFinite { place, value }
+    SingularMass { pivot }
+    NoCoordinate { coordinate, coordinates }
+    Arguments { law, expected, given }
+    Range { law, argument, value, range }
+    Name { parameter }
+    TwoValues { parameter, first, second }
+    ;
 }
 
 impl fmt::Display for StructureError {

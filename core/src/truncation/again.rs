@@ -11,13 +11,16 @@
 //!
 //! Source: Kelley (1995), Iterative Methods for Linear and Nonlinear Equations, section 5.4.1 (the chord method).
 
-use super::Finer;
+use super::{Finer, NOTHING};
 use crate::continuation::problem::Problem;
 use crate::fourier::series;
 use crate::newton::Newton;
 
 /// Relative to the oscillation, a smaller correction needs no further steps: they change it by a part that is as small.
 const SMALL: f64 = 1e-5;
+/// Unless harmonics are so few: a contact that is always closed needs no more, however stiff it is beside the inertia of the tail. Steps
+/// cost least then.
+const FEW: usize = 12;
 /// Steps are over when one is smaller than this part of all.
 const ENOUGH: f64 = 0.01;
 /// Further steps, at most.
@@ -35,7 +38,12 @@ impl Finer<'_> {
         newton: &mut Newton,
     ) -> f64 {
         let first = self.largest_change(u, phases);
-        if self.change() <= SMALL {
+        let most = if self.coarse.harmonics <= FEW * self.coarse.period {
+            NOTHING
+        } else {
+            SMALL
+        };
+        if self.change() <= most {
             return first;
         }
         self.further.clone_from(&self.orbit);

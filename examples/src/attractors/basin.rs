@@ -1,5 +1,6 @@
 //! `--basin`: basins of attraction on a grid of initial states.
 
+use std::cmp::Ordering;
 use std::fmt::Write;
 
 use hertzian::Complex;
@@ -67,7 +68,8 @@ pub fn request(task: &Task<'_>, count: usize) -> Result<Basin, Failure> {
         let [from, to] = *range else {
             return Err(Failure::Option("a range has two ends".to_owned()));
         };
-        if from >= to {
+        // Nor is there one where an end is NaN.
+        if from.partial_cmp(&to) != Some(Ordering::Less) {
             let message = format!("the range from {from} to {to} is empty");
             return Err(Failure::Option(message));
         }

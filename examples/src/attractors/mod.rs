@@ -19,8 +19,10 @@ use run::{Outcome, run};
 
 /// Reads the command line, does what it asks for, and says by the exit code how it went.
 pub fn main() -> ExitCode {
-    // Bad usage ends here, with clap's message and exit code 2.
-    let options = Options::read(std::env::args_os()).unwrap_or_else(|error| error.exit());
+    let options = match program::options("attractors", Options::read(std::env::args_os())) {
+        Ok(options) => options,
+        Err(code) => return code,
+    };
     program::run("attractors", options.quiet, |interrupted, progress| {
         let Outcome { summary, complete } = run(&options, interrupted, progress)?;
         let early = "ended before it was complete; what was computed is written";

@@ -172,7 +172,7 @@ pub struct Options {
 }
 
 /// Options and the tasks that look at them.
-const BELONGS: [(&str, &[&str]); 21] = [
+const BELONGS: [(&str, &[&str]); 22] = [
     ("up", &["sweep"]),
     ("down", &["sweep"]),
     ("from", &["sweep"]),
@@ -192,6 +192,7 @@ const BELONGS: [(&str, &[&str]); 21] = [
     ("v_range", &["basin", "phase"]),
     ("longest", &["basin", "phase"]),
     ("patience", &["basin", "phase"]),
+    ("escape", &["sweep", "basin", "phase"]),
     ("threads", &["basin"]),
     ("checkpoint", &["basin", "sweep"]),
 ];
@@ -207,13 +208,26 @@ impl Options {
             let taken = swept.filter(|name| given.has(name)).map(|name| {
                 format!("--sweep {name} takes the place of --{name}: --from and --to say where it begins and ends")
             });
+            let set = options.model.set.iter().map(|(name, _)| name.as_str());
+            let taken = taken.or_else(|| {
+                let name = swept.filter(|swept| set.clone().any(|name| name == *swept))?;
+                Some(format!("--sweep {name} takes the place of --set {name}: --from and --to say where it begins and ends"))
+            });
+            let one = options.phase && options.starts == 0;
+            let ranged = given.has("x_range") || given.has("v_range");
+            let unused = (one && ranged).then(|| {
+                "--x-range and --v-range would do nothing with --starts 0: motions start from --start".to_owned()
+            });
             // What motions of a model may reach, its file does not say.
             let looked = options.basin || options.phase && options.starts > 0;
             let ranges = given.has("x_range") && given.has("v_range");
             let missing = (looked && options.model.file.is_some() && !ranges).then(|| {
                 "--model needs --x-range and --v-range here: their defaults are those of the loaded contact".to_owned()
             });
-            taken.or_else(|| given.misplaced(&BELONGS)).or(missing)
+            taken
+                .or_else(|| given.misplaced(&BELONGS))
+                .or(unused)
+                .or(missing)
         })
     }
 }

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use hertzian::export::Npy;
+use hertzian::export::{self, Npy};
 
 use super::run::Failure;
 use crate::response::files;
@@ -90,6 +90,14 @@ pub fn paths(prefix: &Path) -> [PathBuf; 3] {
 /// # Errors
 /// If one cannot.
 pub fn check(prefix: &Path) -> Result<(), Failure> {
+    let is_folder = prefix
+        .as_os_str()
+        .to_string_lossy()
+        .ends_with(std::path::is_separator);
+    if is_folder || prefix.as_os_str().is_empty() {
+        let message = "--out is what the names of the files begin with: a folder alone gives none";
+        return Err(Failure::Option(message.to_owned()));
+    }
     for path in paths(prefix) {
         files::check(&path).map_err(|error| Failure::File(path, error))?;
     }
@@ -103,15 +111,16 @@ pub fn check(prefix: &Path) -> Result<(), Failure> {
 pub fn write(prefix: &Path, results: &Results) -> Result<(), Failure> {
     let [csv, npy, svg] = paths(prefix);
     write_csv(&csv, results).map_err(|error| Failure::File(csv, error))?;
-    std::fs::write(&npy, &results.array).map_err(|error| Failure::File(npy, error))?;
-    std::fs::write(&svg, &results.svg).map_err(|error| Failure::File(svg, error))
+    export::write(&npy, &results.array).map_err(|error| Failure::File(npy, error))?;
+    export::write(&svg, &results.svg).map_err(|error| Failure::File(svg, error))
 }
 
 fn write_csv(path: &Path, results: &Results) -> io::Result<()> {
-    let mut writer = csv::Writer::from_path(path)?;
-    writer.write_record(&results.names)?;
-    for row in &results.rows {
-        writer.write_record(row)?;
-    }
-    writer.flush()
+    files::write_csv(path, |writer| {
+        writer.write_record(&results.names)?;
+        results
+            .rows
+            .iter()
+            .try_for_each(|row| writer.write_record(row))
+    })
 }

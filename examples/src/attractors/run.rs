@@ -17,9 +17,10 @@ use super::output::{self, Results};
 use super::{basin, history, lyapunov, phase, sweep};
 use crate::model::FREQUENCY_VARIES;
 use crate::response::files;
-use crate::response::model_file::ModelError;
+use crate::response::model_file::{self, ModelError};
 use crate::response::models;
 use crate::response::progress::Progress;
+use crate::values::{self, MOST_ROWS, MOST_THREADS};
 
 /// What came of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -149,6 +150,7 @@ pub fn compute(
         interrupted,
         progress: Mutex::new(progress),
     };
+    task.check()?;
     let mut results = match options.sweep {
         Some(swept) => sweep::run(&task, swept),
         None if options.basin => basin::run(&task),
@@ -179,13 +181,78 @@ fn check(options: &Options) -> Result<(), Failure> {
         ),
     ];
     let mut faults = faults.into_iter().filter(|(is_at_fault, _)| *is_at_fault);
-    match faults.next() {
-        Some((_, message)) => Err(Failure::Option(message.to_owned())),
-        None => Ok(()),
+    if let Some((_, message)) = faults.next() {
+        return Err(Failure::Option(message.to_owned()));
     }
+    let unrepeatable = |path: &PathBuf| !path.is_file();
+    if options.checkpoint.is_some() && options.model.file.as_ref().is_some_and(unrepeatable) {
+        let message = "--checkpoint needs --model in a file: it is read again, to tell what the checkpoint belongs to";
+        return Err(Failure::Option(message.to_owned()));
+    }
+    numbers(options).map_err(Failure::Option)
+}
+
+/// What the numbers must be, whatever the oscillator is.
+fn numbers(options: &Options) -> Result<(), String> {
+    values::positive("--escape", options.escape)?;
+    for (option, value) in [("--section", options.section), ("--mark", options.mark)] {
+        value.map_or(Ok(()), |value| values::finite(option, value))?;
+    }
+    for &drive in &options.drives {
+        values::finite("--drives", drive)?;
+    }
+    if let [left, right, low, high] = options.zoom[..] {
+        values::interval("--zoom", &[left, right])?;
+        values::interval("--zoom", &[low, high])?;
+    }
+    if options.basin || options.phase && options.starts > 0 {
+        values::interval("--x-range", &options.x_range)?;
+        values::interval("--v-range", &options.v_range)?;
+    }
+    if let Some(threads) = options.threads {
+        values::counted("--threads", threads.get(), 1..=MOST_THREADS)?;
+    }
+    rows(options)?;
+    options.model.check()
+}
+
+/// What is kept of each period fits into memory.
+fn rows(options: &Options) -> Result<(), String> {
+    if options.lyapunov {
+        return values::counted("--batches", options.batches, 2..=MOST_ROWS);
+    }
+    let Some(periods) = options.periods else {
+        return Ok(());
+    };
+    // A sweep itself says that its values are too many.
+    let values = options.sweep.map_or(1, |_| options.values.max(1));
+    let directions = if options.up && options.down { 2 } else { 1 };
+    let most = MOST_ROWS / values.saturating_mul(directions).min(MOST_ROWS);
+    values::counted("--periods", periods, 0..=most)
 }
 
 impl<'t> Task<'t> {
+    /// Whether there is a motion at all that was asked for, before the first of them is followed.
+    fn check(&self) -> Result<(), Failure> {
+        self.start()?;
+        let options = self.options;
+        let on_grid = options.basin || options.phase && options.starts > 0;
+        let one = self.system.facts().coordinates.len() == 1;
+        if on_grid && one && !options.start.is_empty() {
+            let message = "--start would do nothing here: motions start from a grid of x and x'";
+            return Err(Failure::Option(message.to_owned()));
+        }
+        let marked = self.options.mark.map(Some);
+        let drives = self.drives().into_iter().chain(marked);
+        // Where a value is swept, that of the oscillator may be none.
+        if self.options.sweep.is_none() {
+            for drive in drives {
+                self.flow(drive)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Whether to go on.
     pub fn goes_on(&self) -> bool {
         !self.interrupted.load(Ordering::Relaxed)
@@ -314,8 +381,8 @@ impl<'t> Task<'t> {
         // The equation does not say what its laws are.
         let model = &self.options.model;
         let laws = match &model.file {
-            Some(path) => std::fs::read_to_string(path)
-                .map_err(|error| Failure::Option(format!("{}: {error}", path.display())))?,
+            Some(path) => model_file::text(path)
+                .map_err(|error| Failure::Model(path.clone(), ModelError::Unreadable(error)))?,
             None => format!("continuous {}, alpha {:?}", model.continuous, model.alpha),
         };
         let identity = format!(

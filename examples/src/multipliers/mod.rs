@@ -4,6 +4,7 @@ pub mod charts;
 pub mod study;
 
 use std::fmt::Write;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +12,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Parser;
 
 use crate::program::{self, Ended, Failed};
+use crate::response::files;
 use crate::response::progress::Progress;
+use crate::values;
 use study::{Measured, decay, measure, oscillators};
 
 /// Measures every method for Floquet multipliers against the multipliers of the exact orbit, Hill's with all its sortings.
@@ -20,7 +23,7 @@ use study::{Measured, decay, measure, oscillators};
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(name = "multipliers", version)]
 pub struct Options {
-    /// Folder for the table and the pictures
+    /// Folder for the table and the pictures; made if there is none
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub folder: PathBuf,
 
@@ -29,9 +32,15 @@ pub struct Options {
     pub harmonics: Vec<usize>,
 }
 
+/// The dense matrices of more would not fit into memory well.
+const MOST_HARMONICS: usize = 2999;
+
 /// Reads the command line, does what it asks for, and says by the exit code how it went.
 pub fn main() -> ExitCode {
-    let options = Options::parse();
+    let options = match program::options("multipliers", Options::try_parse()) {
+        Ok(options) => options,
+        Err(code) => return code,
+    };
     program::run("multipliers", false, |interrupted, progress| {
         run(&options, interrupted, progress).map_err(|failure| Failed {
             message: failure.to_string(),
@@ -49,6 +58,12 @@ pub fn run(
     interrupted: &AtomicBool,
     progress: &mut Progress,
 ) -> Result<Ended, Box<dyn std::error::Error>> {
+    for &harmonics in &options.harmonics {
+        values::counted("--harmonics", harmonics, 1..=MOST_HARMONICS)?;
+    }
+    let folder = &options.folder;
+    files::make_folder(folder)
+        .map_err(|error| format!("cannot write {}: {error}", folder.display()))?;
     let mut summary = String::new();
     writeln!(
         summary,
@@ -70,8 +85,10 @@ pub fn run(
             writeln!(summary, "  {name}, {method}: {order:.1}")?;
         }
     }
-    let file = |name: &str| options.folder.join(name);
-    write_table(&file("multipliers.csv"), &all)?;
+    let file = |name: &str| folder.join(name);
+    let table = file("multipliers.csv");
+    write_table(&table, &all)
+        .map_err(|error| format!("cannot write {}: {error}", table.display()))?;
     charts::by_harmonics(&all).write(file("multipliers-harmonics.svg"))?;
     charts::by_time(&all).write(file("multipliers-time.svg"))?;
     Ok(Ended {
@@ -81,30 +98,30 @@ pub fn run(
     })
 }
 
-fn write_table(path: &Path, all: &[(&str, Vec<Measured>)]) -> Result<(), csv::Error> {
-    let mut table = csv::Writer::from_path(path)?;
-    table.write_record([
-        "oscillator",
-        "method",
-        "harmonics",
-        "error",
-        "corrected_error",
-        "estimate",
-        "microseconds",
-    ])?;
-    for (name, measured) in all {
-        for m in measured {
-            table.write_record([
-                (*name).to_owned(),
-                m.method.to_string(),
-                m.harmonics.to_string(),
-                format!("{:.2e}", m.error),
-                format!("{:.2e}", m.corrected),
-                format!("{:.2e}", m.estimate),
-                format!("{:.1}", m.microseconds),
-            ])?;
+fn write_table(path: &Path, all: &[(&str, Vec<Measured>)]) -> io::Result<()> {
+    files::write_csv(path, |table| {
+        table.write_record([
+            "oscillator",
+            "method",
+            "harmonics",
+            "error",
+            "corrected_error",
+            "estimate",
+            "microseconds",
+        ])?;
+        for (name, measured) in all {
+            for m in measured {
+                table.write_record([
+                    (*name).to_owned(),
+                    m.method.to_string(),
+                    m.harmonics.to_string(),
+                    format!("{:.2e}", m.error),
+                    format!("{:.2e}", m.corrected),
+                    format!("{:.2e}", m.estimate),
+                    format!("{:.1}", m.microseconds),
+                ])?;
+            }
         }
-    }
-    table.flush()?;
-    Ok(())
+        Ok(())
+    })
 }

@@ -25,7 +25,10 @@ use run::{Drawn, run};
 /// Reads the command line, does what it asks for, and says by the exit code how it went: 0 all was drawn, 2 bad input or a file that
 /// cannot be written, 3 a figure failed or was not reached, or a value is missing or not the exact one.
 pub fn main() -> ExitCode {
-    let options = Options::parse();
+    let options = match program::options("paper", Options::try_parse()) {
+        Ok(options) => options,
+        Err(code) => return code,
+    };
     program::run("paper", options.quiet, |interrupted, progress| {
         let drawn = run(&options, interrupted, progress)?;
         let ended_early = interrupted.load(Ordering::Relaxed);

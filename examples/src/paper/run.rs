@@ -1,6 +1,5 @@
 //! From options to a folder with pictures, data and a page.
 
-use std::fs;
 use std::io;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -9,10 +8,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use hertzian::export;
+
 use super::figure::{Drawing, Figure, Table, Task};
 use super::figures::FIGURES;
 use super::options::Options;
 use super::page;
+use crate::response::files;
 use crate::response::progress::Progress;
 
 /// A figure, what came of it, and the time it took.
@@ -47,7 +49,7 @@ pub fn run(
     progress: &mut Progress,
 ) -> Result<Vec<Drawn>, Failure> {
     let folder = &options.out;
-    fs::create_dir_all(folder).map_err(|error| Failure(folder.clone(), error))?;
+    files::make_folder(folder).map_err(|error| Failure(folder.clone(), error))?;
     let asked: Vec<&'static Figure> = FIGURES
         .iter()
         .filter(|figure| options.only.is_empty() || options.only.iter().any(|id| id == figure.id))
@@ -97,7 +99,7 @@ pub fn run(
     let done: Vec<Drawn> = done.into_iter().map(|(_, drawn)| drawn).collect();
     let path = folder.join("index.html");
     let html = page::html(&done, started.elapsed(), threads);
-    fs::write(&path, html).map_err(|error| Failure(path, error))?;
+    export::write(&path, html).map_err(|error| Failure(path, error))?;
     Ok(done)
 }
 
@@ -126,18 +128,19 @@ fn write(drawn: &Drawn, folder: &Path) -> Result<(), Failure> {
         return Ok(());
     };
     let svg = folder.join(drawn.figure.id).with_extension("svg");
-    fs::write(&svg, &drawing.svg).map_err(|error| Failure(svg, error))?;
+    export::write(&svg, &drawing.svg).map_err(|error| Failure(svg, error))?;
     let csv = folder.join(drawn.figure.id).with_extension("csv");
     write_csv(&csv, &drawing.data).map_err(|error| Failure(csv, error))
 }
 
 fn write_csv(path: &Path, table: &Table) -> io::Result<()> {
-    let mut writer = csv::Writer::from_path(path)?;
-    writer.write_record(&table.names)?;
-    for row in &table.rows {
-        writer.write_record(row)?;
-    }
-    writer.flush()
+    files::write_csv(path, |writer| {
+        writer.write_record(&table.names)?;
+        table
+            .rows
+            .iter()
+            .try_for_each(|row| writer.write_record(row))
+    })
 }
 
 /// How much is done.

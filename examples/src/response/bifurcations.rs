@@ -12,6 +12,7 @@ use hertzian::{Error, EventKind, Shooting, System};
 
 use super::options::{Options, Tracked};
 use super::records::{EventRecord, PointRecord, Record, TrackRecord};
+use super::run::Failure;
 use super::search::basin;
 use super::summary;
 
@@ -74,6 +75,51 @@ pub fn find(
     Ok(Some(found))
 }
 
+/// Whether curves in two parameters can be followed.
+///
+/// # Errors
+/// If a name is not known or not the one that varies, or the second parameter cannot have the values of its range.
+pub fn check(options: &Options, model: &dyn System) -> Result<(), Failure> {
+    if options.track.is_none() {
+        return Ok(());
+    }
+    let second = second(options, model)?;
+    let value = value_of(options, model, second);
+    let [low, high] = within(options, value);
+    if !options.within.is_empty() && !(low..=high).contains(&value) {
+        let message = format!("--within must hold {second} = {value}, where the curves begin");
+        return Err(Failure::Option(message));
+    }
+    let mut parameters = model.facts().parameters.iter();
+    let facts = parameters.find(|parameter| parameter.name == second);
+    let admits = |value: f64| {
+        facts.map_or(value > 0.0 && value.is_finite(), |facts| {
+            facts.admits(value)
+        })
+    };
+    // NaN is no range either.
+    if low < high && admits(low) && admits(high) {
+        return Ok(());
+    }
+    let given = if options.within.is_empty() {
+        ", from half to twice its value: give another by --within"
+    } else {
+        ""
+    };
+    Err(Failure::Option(format!(
+        "--track: {second} cannot vary from {low} to {high}{given}"
+    )))
+}
+
+/// The range of the second parameter, which has this value.
+fn within(options: &Options, value: f64) -> [f64; 2] {
+    match options.within[..] {
+        [low, high] => [low, high],
+        _ if value < 0.0 => [2.0 * value, 0.5 * value],
+        _ => [0.5 * value, 2.0 * value],
+    }
+}
+
 impl Found {
     /// Tracks every event of a kind, but those that are on a curve already.
     fn track(
@@ -92,10 +138,7 @@ impl Found {
         let shooting = shooting(options, model);
         let second = second(options, model)?;
         let value = value_of(options, model, second);
-        let range = match options.within[..] {
-            [low, high] => [low, high],
-            _ => [0.5 * value, 2.0 * value],
-        };
+        let range = within(options, value);
         let events: Vec<CycleEvent> = self
             .diagram
             .branches

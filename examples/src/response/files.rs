@@ -1,15 +1,16 @@
 //! Writing the results to files.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::{Path, PathBuf};
+
+use hertzian::export;
 
 use super::records::Record;
 
-/// Whether a file can be written there, as far as can be told without touching it.
+/// Whether a file can be written there; one that is there is not touched.
 ///
 /// # Errors
-/// If the path is a folder, or its folder does not exist.
+/// If the path is a folder, its folder does not exist, or neither takes what is written.
 pub fn check(path: &Path) -> io::Result<()> {
     let folder = path
         .parent()
@@ -23,7 +24,16 @@ pub fn check(path: &Path) -> io::Result<()> {
             "its folder does not exist",
         ));
     }
-    Ok(())
+    export::can_write(path)
+}
+
+/// A folder for results, made if there is none, and able to take them.
+///
+/// # Errors
+/// What the system says.
+pub fn make_folder(folder: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    export::can_write(folder.join("a"))
 }
 
 /// A path that leads to the same file as one before it, if there is one. Devices can be written to as often as one likes.
@@ -56,8 +66,23 @@ fn place(path: &Path) -> PathBuf {
 /// # Errors
 /// If the file cannot be written.
 pub fn write_json(path: &Path, record: &Record) -> io::Result<()> {
-    let mut file = BufWriter::new(File::create(path)?);
-    serde_json::to_writer(&mut file, record)?;
-    writeln!(file)?;
-    file.flush()
+    let mut text = serde_json::to_vec(record)?;
+    text.push(b'\n');
+    export::write(path, text)
+}
+
+/// Writes a table.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_csv(
+    path: &Path,
+    fill: impl FnOnce(&mut csv::Writer<Vec<u8>>) -> csv::Result<()>,
+) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    fill(&mut writer)?;
+    let text = writer
+        .into_inner()
+        .map_err(csv::IntoInnerError::into_error)?;
+    export::write(path, text)
 }

@@ -21,8 +21,10 @@ use run::run;
 
 /// Reads the command line, does what it asks for, and says by the exit code how it went.
 pub fn main() -> ExitCode {
-    // Bad usage ends here, with clap's message and exit code 2.
-    let options = Options::read(std::env::args_os()).unwrap_or_else(|error| error.exit());
+    let options = match program::options("response", Options::read(std::env::args_os())) {
+        Ok(options) => options,
+        Err(code) => return code,
+    };
     program::run("response", options.quiet, |interrupted, progress| {
         let outcome = run(&options, interrupted, progress).map_err(|failure| Failed {
             message: failure.to_string(),

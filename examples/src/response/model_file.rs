@@ -1,15 +1,20 @@
 //! An oscillator read from a file, in the language of `hertzian::oscillator!`.
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 use hertzian::generic::{Declaration, DeclarationError};
+
+/// A declaration is a page; a file that is longer than this many bytes is something else, as a device without end.
+const LONGEST: u64 = 4_000_000;
 
 /// Why a file gives no oscillator.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ModelError {
     /// The file cannot be read.
-    Unreadable(std::io::Error),
+    Unreadable(io::Error),
     /// What it says is no declaration.
     Faulty(DeclarationError),
     /// A parameter to be set does not exist, or one that exists has no value.
@@ -33,6 +38,23 @@ impl ModelError {
     }
 }
 
+/// The text of a file, which may be a pipe, unless it is longer than any declaration.
+///
+/// # Errors
+/// What the system says, and if the text is too long.
+pub fn text(path: &Path) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(LONGEST + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LONGEST {
+        let message = format!("it is longer than {LONGEST} bytes, and no declaration");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
+    }
+    String::from_utf8(bytes)
+        .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
+}
+
 /// Reads the oscillator and sets its parameters. `varied` needs no value: the range gives it one.
 ///
 /// # Errors
@@ -42,7 +64,7 @@ pub fn read(
     settings: &[(String, f64)],
     varied: (&str, f64),
 ) -> Result<Declaration, ModelError> {
-    let text = std::fs::read_to_string(path).map_err(ModelError::Unreadable)?;
+    let text = text(path).map_err(ModelError::Unreadable)?;
     let mut model = Declaration::parse(&text).map_err(ModelError::Faulty)?;
     // An unknown name is reported by the run itself.
     let _ = model.set(varied.0, varied.1);

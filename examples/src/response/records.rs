@@ -77,12 +77,16 @@ pub struct PointRecord {
     pub amplitudes: Vec<f64>,
     /// Phase lags of the harmonics, the mean's zero first.
     pub phases: Vec<f64>,
-    /// Fraction of the period in contact; this and the next two of the first contact, if the oscillator has one.
+    /// Fraction of the period on pieces of the law that are not zero; this and the next two of the first contact, if the oscillator has one.
     pub contact_fraction: Option<f64>,
     /// Contacts per period.
     pub contacts: Option<usize>,
     /// Largest contact force.
     pub peak_force: Option<f64>,
+    /// Smallest and largest force of each contact, with their signs.
+    pub contact_forces: Vec<[f64; 2]>,
+    /// Part of the period on each piece of the law of each contact, from the lowest gaps to the highest.
+    pub contact_pieces: Vec<Vec<f64>>,
     /// Mean power that is dissipated.
     pub dissipated_power: f64,
 }
@@ -284,6 +288,13 @@ impl PointRecord {
             contact_fraction: contact.map(|contact| contact.fraction),
             contacts: contact.map(|contact| contact.count),
             peak_force: contact.map(|contact| contact.peak_force),
+            contact_forces: point
+                .observed
+                .contacts
+                .iter()
+                .map(|contact| [contact.minimum_force, contact.maximum_force])
+                .collect(),
+            contact_pieces: point.observed.on_pieces.clone(),
             dissipated_power: point.observed.dissipated_power,
         }
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hertzian::chart::{Chart, Reference};
-use hertzian::export::Table;
+use hertzian::export::{self, Table};
 use hertzian::{Branch, Error, FrequencyResponse, Point, Stop, System};
 
 use super::backbone;
@@ -21,6 +21,7 @@ use super::records::Record;
 use super::search;
 use super::summary;
 use crate::model::FREQUENCY_VARIES;
+use crate::values;
 
 /// What came of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,6 +101,7 @@ pub fn run(
         Failure::Model(path, error)
     })?;
     search::check(options, &*model)?;
+    bifurcations::check(options, &*model)?;
     let stop = || interrupted.load(Ordering::Relaxed);
     let go = || {
         if stop() {
@@ -166,15 +168,7 @@ fn check(options: &Options) -> Result<(), Failure> {
     if options.over_frequency() && options.model.omega.is_some() {
         return Err(Failure::Option(FREQUENCY_VARIES.to_owned()));
     }
-    let two = |count| count == 0 || count == 2;
-    if !two(options.plane.len()) {
-        let message = "--in takes two names: --in omega,drive";
-        return Err(Failure::Option(message.to_owned()));
-    }
-    if !two(options.within.len()) {
-        let message = "--within takes two values: --within 0.05,0.5";
-        return Err(Failure::Option(message.to_owned()));
-    }
+    numbers(options).map_err(Failure::Option)?;
     for path in paths(options) {
         files::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
     }
@@ -184,6 +178,22 @@ fn check(options: &Options) -> Result<(), Failure> {
         return Err(Failure::Option(message));
     }
     Ok(())
+}
+
+/// What the numbers and names of options must be where the library does not see them, or only later.
+fn numbers(options: &Options) -> Result<(), String> {
+    let two = |count| count == 0 || count == 2;
+    if !two(options.plane.len()) {
+        return Err("--in takes two names: --in omega,drive".to_owned());
+    }
+    values::once("--in", options.plane.iter().map(String::as_str))?;
+    if !two(options.within.len()) {
+        return Err("--within takes two values: --within 0.05,0.5".to_owned());
+    }
+    if !options.within.is_empty() {
+        values::interval("--within", &options.within)?;
+    }
+    options.model.check()
 }
 
 fn paths(options: &Options) -> impl Iterator<Item = &Path> {
@@ -266,9 +276,9 @@ fn write<'a>(
         move |error| Failure::File(path, error)
     };
     let svg = &options.svg;
-    std::fs::write(svg, chart.to_svg()).map_err(failed(svg))?;
+    export::write(svg, chart.to_svg()).map_err(failed(svg))?;
     if let Some(path) = &options.csv {
-        std::fs::write(path, table.to_csv()).map_err(failed(path))?;
+        export::write(path, table.to_csv()).map_err(failed(path))?;
     }
     if let Some(path) = &options.json {
         files::write_json(path, record).map_err(failed(path))?;

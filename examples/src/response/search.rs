@@ -16,14 +16,24 @@ const CELLS: usize = 64;
 /// Whether attractors can be looked for: a grid is for one coordinate, and as large as the force on it tells.
 ///
 /// # Errors
-/// If there are several coordinates, or no force where attractors are looked for.
+/// If there are several coordinates, a value is outside the range, or there is no force where attractors are looked for.
 pub fn check(options: &Options, model: &dyn System) -> Result<(), Failure> {
     let coordinates = model.facts().coordinates.len();
     if !options.search.is_empty() && coordinates > 1 {
         let message = format!("--search is for one coordinate, and there are {coordinates}");
         return Err(Failure::Option(message));
     }
+    let (from, to) = (options.from, options.to);
+    // Whether the range can be used, the library says.
+    let range = from.min(to)..=from.max(to);
+    let usable = from.is_finite() && to.is_finite();
     for &value in &options.search {
+        if usable && !range.contains(&value) {
+            let name = options.varied();
+            let message =
+                format!("--search {value}: must be between {from} and {to}, the range of {name}");
+            return Err(Failure::Option(message));
+        }
         if acceleration(options, model, value) == 0.0 {
             let message = format!(
                 "--search {value}: the right-hand side of the equation is zero there, and does not say how far motions go"

@@ -20,9 +20,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
 use hertzian::chart::Page;
+use hertzian::export;
 
 use crate::program::{self, Ended};
+use crate::response::files;
 use crate::response::progress::Progress;
+use crate::values;
 use measure::{Limits, Measured, measure};
 use method::Reference;
 use multipliers::{Answer, NAMES};
@@ -51,6 +54,8 @@ pub enum Failure {
     Reference(hertzian::Error),
     /// The curve of a problem does not pass its frequency of comparison.
     NoOrbit(&'static str),
+    /// An option cannot be used.
+    Option(String),
     /// A file could not be written.
     File(PathBuf, io::Error),
 }
@@ -60,6 +65,7 @@ impl std::fmt::Display for Failure {
         match self {
             Self::Reference(error) => error.fmt(f),
             Self::NoOrbit(problem) => write!(f, "{problem}: no orbit to compare with"),
+            Self::Option(message) => f.write_str(message),
             Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
         }
     }
@@ -69,7 +75,10 @@ impl std::error::Error for Failure {}
 
 /// Reads the command line, measures, writes, and says by the exit code how it went: 0 done, 2 failed, 3 ended early.
 pub fn main() -> ExitCode {
-    let options = Options::parse();
+    let options = match program::options("work_precision", Options::try_parse()) {
+        Ok(options) => options,
+        Err(code) => return code,
+    };
     program::run("work_precision", options.quiet, |interrupted, progress| {
         let mut problems = problem::all();
         problems.retain(|problem| {
@@ -98,7 +107,8 @@ pub fn run(
         let path = path.to_path_buf();
         move |error| Failure::File(path, error)
     };
-    fs::create_dir_all(&options.out).map_err(failed(&options.out))?;
+    check(options).map_err(Failure::Option)?;
+    files::make_folder(&options.out).map_err(failed(&options.out))?;
     let limits = Limits {
         repeats: options.repeats.get(),
         patience: options.patience,
@@ -142,7 +152,7 @@ pub fn run(
         let page = page
             .chart(size)
             .chart(chart::multipliers(&problem, &answers));
-        fs::write(&svg, page.to_svg()).map_err(failed(&svg))?;
+        export::write(&svg, page.to_svg()).map_err(failed(&svg))?;
         sections.push(Section {
             problem,
             reference,
@@ -155,86 +165,95 @@ pub fn run(
         let csv = options.out.join("multipliers.csv");
         write_multipliers(&csv, &sections).map_err(failed(&csv))?;
         let html = options.out.join("index.html");
-        fs::write(&html, page::html(&sections, &machine)).map_err(failed(&html))?;
+        export::write(&html, page::html(&sections, &machine)).map_err(failed(&html))?;
     }
     Ok(sections)
 }
 
+/// What the numbers must be.
+fn check(options: &Options) -> Result<(), String> {
+    values::positive("--patience", options.patience)?;
+    values::positive("--budget", options.budget)
+}
+
 fn write_csv(path: &Path, sections: &[Section], machine: &str) -> io::Result<()> {
-    let mut writer = csv::Writer::from_path(path)?;
-    writer.write_record([
-        "problem",
-        "method",
-        "setting",
-        "seconds_median",
-        "seconds_least",
-        "seconds_most",
-        "error_fold",
-        "error_peak_to_peak",
-        "failure",
-        "machine",
-    ])?;
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:?}"));
-    for section in sections {
-        for one in &section.measured {
-            writer.write_record([
-                section.problem.id.to_owned(),
-                one.family.name().to_owned(),
-                one.setting.to_string(),
-                number(one.median()),
-                number(one.seconds.first().copied()),
-                number(one.seconds.last().copied()),
-                number(one.fold),
-                number(one.peak_to_peak),
-                one.failure.clone().unwrap_or_default(),
-                machine.to_owned(),
-            ])?;
+    files::write_csv(path, |writer| {
+        writer.write_record([
+            "problem",
+            "method",
+            "setting",
+            "seconds_median",
+            "seconds_least",
+            "seconds_most",
+            "error_fold",
+            "error_peak_to_peak",
+            "failure",
+            "machine",
+        ])?;
+        let number =
+            |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:?}"));
+        for section in sections {
+            for one in &section.measured {
+                writer.write_record([
+                    section.problem.id.to_owned(),
+                    one.family.name().to_owned(),
+                    one.setting.to_string(),
+                    number(one.median()),
+                    number(one.seconds.first().copied()),
+                    number(one.seconds.last().copied()),
+                    number(one.fold),
+                    number(one.peak_to_peak),
+                    one.failure.clone().unwrap_or_default(),
+                    machine.to_owned(),
+                ])?;
+            }
+            for peer in &section.peers {
+                let [median, least, most] = peer.seconds.map(|seconds| number(Some(seconds)));
+                writer.write_record([
+                    section.problem.id.to_owned(),
+                    peer.name.clone(),
+                    peer.setting.clone(),
+                    median,
+                    least,
+                    most,
+                    number(peer.fold),
+                    number(peer.peak_to_peak),
+                    peer.failure.clone().unwrap_or_default(),
+                    format!("measured {}", peer.measured),
+                ])?;
+            }
         }
-        for peer in &section.peers {
-            let [median, least, most] = peer.seconds.map(|seconds| number(Some(seconds)));
-            writer.write_record([
-                section.problem.id.to_owned(),
-                peer.name.clone(),
-                peer.setting.clone(),
-                median,
-                least,
-                most,
-                number(peer.fold),
-                number(peer.peak_to_peak),
-                peer.failure.clone().unwrap_or_default(),
-                format!("measured {}", peer.measured),
-            ])?;
-        }
-    }
-    writer.flush()
+        Ok(())
+    })
 }
 
 fn write_multipliers(path: &Path, sections: &[Section]) -> io::Result<()> {
-    let mut writer = csv::Writer::from_path(path)?;
-    writer.write_record([
-        "problem",
-        "method",
-        "setting",
-        "seconds_median",
-        "error",
-        "failure",
-    ])?;
-    for Section {
-        problem, answers, ..
-    } in sections
-    {
-        for one in answers {
-            writer.write_record([
-                problem.id.to_owned(),
-                NAMES[one.method].to_owned(),
-                one.setting.clone(),
-                format!("{:?}", one.seconds),
-                format!("{:?}", one.error),
-                one.failure.clone().unwrap_or_default(),
-            ])?;
+    files::write_csv(path, |writer| {
+        writer.write_record([
+            "problem",
+            "method",
+            "setting",
+            "seconds_median",
+            "error",
+            "failure",
+        ])?;
+        for Section {
+            problem, answers, ..
+        } in sections
+        {
+            for one in answers {
+                writer.write_record([
+                    problem.id.to_owned(),
+                    NAMES[one.method].to_owned(),
+                    one.setting.clone(),
+                    format!("{:?}", one.seconds),
+                    format!("{:?}", one.error),
+                    one.failure.clone().unwrap_or_default(),
+                ])?;
+            }
         }
-    }
-    writer.flush()
+        Ok(())
+    })
 }
 
 /// Processor, versions and profile.

@@ -18,6 +18,7 @@ mod display;
 mod rational;
 mod walk;
 
+use std::cell::Cell;
 use std::collections::HashMap;
 
 pub use rational::Rational;
@@ -95,6 +96,10 @@ pub enum Node {
 pub struct Dag {
     nodes: Vec<Node>,
     positions: HashMap<Node, Id>,
+    /// Operands read and written so far.
+    work: Cell<u64>,
+    /// The most there may be; `None` without a limit.
+    budget: Option<u64>,
 }
 
 impl Dag {
@@ -119,6 +124,24 @@ impl Dag {
             Node::Power(base, exponent) | Node::PowerLog(base, exponent) => vec![*base, *exponent],
             Node::Call(_, operand) => vec![*operand],
         }
+    }
+
+    /// Limits the work from here on. Once it is spent, whatever is built is zero and worth nothing: who sets a budget asks
+    /// [`Dag::is_spent`] before the result is used.
+    pub(crate) fn set_budget(&mut self, budget: Option<u64>) {
+        self.work.set(0);
+        self.budget = budget;
+    }
+
+    /// Whether the budget has been spent.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.budget.is_some_and(|budget| self.work.get() > budget)
+    }
+
+    /// Notes work.
+    fn charge(&self, operands: usize) {
+        self.work
+            .set(self.work.get().saturating_add(operands as u64));
     }
 
     /// The position of a node that is canonical already.

@@ -44,6 +44,41 @@ impl Extent {
     }
 }
 
+/// Longer than a name that anyone writes.
+pub(crate) const LONGEST_NAME: usize = 64;
+
+/// More than anyone reads at once.
+const MOST_FAULTS: usize = 64;
+
+/// What a message quotes of something that may be long.
+const LONGEST_QUOTE: usize = 120;
+
+/// As much of something written as a message may quote, and `...` for the rest.
+pub(crate) fn shortened(whole: impl fmt::Display) -> String {
+    let mut quote = Quote::default();
+    // An error is how the rest is told not to be written.
+    if fmt::write(&mut quote, format_args!("{whole}")).is_err() {
+        quote.0.push_str("...");
+    }
+    quote.0
+}
+
+/// Takes text as long as there is room.
+#[derive(Default)]
+struct Quote(String);
+
+impl fmt::Write for Quote {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        let room = LONGEST_QUOTE.saturating_sub(self.0.chars().count());
+        self.0.extend(text.chars().take(room));
+        if text.chars().nth(room).is_some() {
+            Err(fmt::Error)
+        } else {
+            Ok(())
+        }
+    }
+}
+
 /// Gathers faults, so that one compilation reports all of them. Must be asked with [`Diagnostics::finish`].
 #[derive(Debug, Default)]
 #[must_use]
@@ -60,12 +95,25 @@ impl Diagnostics {
     }
 
     /// Adds a fault made elsewhere.
-    pub fn add(&mut self, fault: syn::Error) {
+    pub fn add(&mut self, mut fault: syn::Error) {
         self.count += 1;
+        if self.count > MOST_FAULTS {
+            return;
+        }
+        if self.count == MOST_FAULTS {
+            let message = format!("{fault} (what is wrong beyond this is not listed)");
+            fault = syn::Error::new(fault.span(), message);
+        }
         match &mut self.fault {
             Some(first) => first.combine(fault),
             None => self.fault = Some(fault),
         }
+    }
+
+    /// Puts one fault in the place of all.
+    pub fn only(&mut self, fault: syn::Error) {
+        self.count = 1;
+        self.fault = Some(fault);
     }
 
     /// Keeps the value of a success, and the fault of a failure.
@@ -140,9 +188,15 @@ impl std::error::Error for Errors {}
 
 /// The candidate that is nearest to a name, if one is near enough to be what was meant.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if name.len() > LONGEST_NAME {
+        return None;
+    }
     let near = |candidate: &'a str| (distance(name, candidate), candidate);
     let (edits, candidate) = candidates.into_iter().map(near).min()?;
-    (edits <= 1 + name.chars().count() / 4).then_some(candidate)
+    let letters = name.chars().count().max(candidate.chars().count());
+    // A word of which every letter is another one is another word.
+    let is_alike = edits < letters || name.eq_ignore_ascii_case(candidate);
+    (edits <= 1 + name.chars().count() / 4 && is_alike).then_some(candidate)
 }
 
 /// Number of insertions, deletions and replacements between two words (Levenshtein).

@@ -12,10 +12,12 @@ use crate::dag::{Id, Node, Variable};
 use crate::emit;
 use crate::errors::{Diagnostics, Errors, Extent};
 use crate::ir::{Law, Level, Model, Place};
+use crate::sketch;
 
 /// Expands a law. After errors the expansion holds all of them, and a stub of the type.
 pub fn law(declaration: TokenStream) -> TokenStream {
-    let (read, compiled) = crate::read(declaration, Form::LawAlone);
+    let written = declaration.clone();
+    let compiled = crate::read(declaration, Form::LawAlone);
     let law = compiled.and_then(|mut model| {
         let law = alone(&mut model)?;
         Ok((model, law))
@@ -24,7 +26,9 @@ pub fn law(declaration: TokenStream) -> TokenStream {
         Ok((model, law)) => emit::law_alone(&model, &law),
         Err(errors) => {
             let mut expansion = errors.into_compile_error();
-            expansion.extend(read.map(|read| emit::law_stub(&read.name, &read.visibility)));
+            for sketch in sketch::of(written) {
+                expansion.extend(emit::law_stub(&sketch.name, &sketch.visibility));
+            }
             expansion
         }
     }
@@ -90,7 +94,7 @@ mod tests {
 
     fn faults(text: &str) -> Vec<String> {
         let tokens = text.parse().expect("it is made of tokens");
-        let (_, compiled) = crate::read(tokens, Form::LawAlone);
+        let compiled = crate::read(tokens, Form::LawAlone);
         compiled.expect_err("it is refused").messages()
     }
 
@@ -98,7 +102,7 @@ mod tests {
     fn arguments_keep_their_order() {
         let declaration =
             quote!(Stop(gap, play > 0, k) { gap > play => k*(gap - play)^2, else => 0 });
-        let (_, compiled) = crate::read(declaration, Form::LawAlone);
+        let compiled = crate::read(declaration, Form::LawAlone);
         let mut model = compiled.expect("it is sound");
         let law = alone(&mut model).expect("it is a law");
         assert_eq!(law.arguments, ["play", "k"]);

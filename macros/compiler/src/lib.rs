@@ -22,10 +22,11 @@ mod index;
 mod law_alone;
 mod lower;
 mod parse;
+mod sketch;
 
 use proc_macro2::TokenStream;
 
-use crate::ast::{Declaration, Form};
+use crate::ast::Form;
 use crate::errors::{Diagnostics, Errors};
 use crate::ir::Model;
 
@@ -33,36 +34,21 @@ pub use crate::law_alone::law;
 
 /// Expands a declaration. After errors the expansion holds all of them, and a stub of the type.
 pub fn oscillator(declaration: TokenStream) -> TokenStream {
-    let (declaration, model) = read(declaration, Form::Model);
-    match model {
+    let written = declaration.clone();
+    match read(declaration, Form::Model) {
         Ok(model) => emit::emit(&model),
         Err(errors) => {
             let mut expansion = errors.into_compile_error();
-            expansion.extend(declaration.as_ref().map(stub));
+            for sketch in sketch::of(written) {
+                expansion.extend(emit::stub(
+                    &sketch.name,
+                    &sketch.visibility,
+                    &sketch.parameters,
+                ));
+            }
             expansion
         }
     }
-}
-
-/// The type without its meaning, so that the code which uses it does not fail too.
-fn stub(declaration: &Declaration) -> TokenStream {
-    let mut fields = Vec::new();
-    for parameter in &declaration.parameters {
-        if !fields.contains(&parameter.name) {
-            fields.push(parameter.name.clone());
-        }
-    }
-    let parameters = &declaration.parameters;
-    let has_defaults = !parameters.is_empty()
-        && parameters
-            .iter()
-            .all(|parameter| parameter.default.is_some());
-    emit::stub(
-        &declaration.name,
-        &declaration.visibility,
-        &fields,
-        has_defaults,
-    )
 }
 
 /// Compiles a declaration as far as the checked model.
@@ -70,11 +56,11 @@ fn stub(declaration: &Declaration) -> TokenStream {
 /// # Errors
 /// Everything that is wrong with the declaration.
 pub fn compile(declaration: TokenStream) -> Result<Model, Errors> {
-    read(declaration, Form::Model).1
+    read(declaration, Form::Model)
 }
 
 /// Parses, checks and lowers. Each stage runs only if the one before found nothing, so that no fault is reported twice.
-fn read(tokens: TokenStream, form: Form) -> (Option<Declaration>, Result<Model, Errors>) {
+fn read(tokens: TokenStream, form: Form) -> Result<Model, Errors> {
     let mut diagnostics = Diagnostics::default();
     let declaration = parse::parse(tokens, form, &mut diagnostics);
     let mut model = None;
@@ -86,8 +72,7 @@ fn read(tokens: TokenStream, form: Form) -> (Option<Declaration>, Result<Model, 
             model = lower::lower(declaration, &mut diagnostics);
         }
     }
-    let model = diagnostics
+    diagnostics
         .finish()
-        .and_then(|()| model.ok_or_else(Errors::internal));
-    (declaration, model)
+        .and_then(|()| model.ok_or_else(Errors::internal))
 }

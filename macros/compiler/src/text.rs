@@ -10,6 +10,9 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use crate::compile;
 use crate::ir::Model;
 
+/// A longer text is no model of one person, and reading it would take long.
+const LONGEST_TEXT: usize = 1 << 18;
+
 /// Something wrong with a text, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
@@ -38,6 +41,15 @@ impl fmt::Display for Fault {
 /// # Errors
 /// Everything that is wrong with the declaration, in the order of its discovery.
 pub fn compile_text(text: &str) -> Result<Model, Vec<Fault>> {
+    if text.len() > LONGEST_TEXT {
+        let message =
+            format!("this text has more than {LONGEST_TEXT} bytes: write what repeats as a loop");
+        return Err(vec![Fault {
+            message,
+            line: 1,
+            column: 1,
+        }]);
+    }
     let tokens = TokenStream::from_str(text).map_err(|fault| {
         let primes = primes::faults(text);
         if !primes.is_empty() {

@@ -3,6 +3,7 @@
 mod draw;
 mod exact;
 mod orbits;
+mod sharp;
 mod truncation;
 mod truth;
 mod two_masses;

@@ -37,6 +37,7 @@ use super::{Change, ContactDerivatives, ContactInput};
 use crate::fourier::crossings::levels::Switch;
 use crate::fourier::kernels::Product;
 use crate::fourier::series;
+use crate::generic::scales::{Scales, Sight};
 use crate::law::{On, Variation};
 use affine::Affine;
 use cut::Cut;
@@ -51,6 +52,17 @@ pub(crate) struct SwitchedAft {
     quadrature: Quadrature,
     whole: Whole,
     product: Product,
+    /// Where the laws met so far may be sharp; a law is known by the place of its facts.
+    sharp: Vec<(usize, Option<Scales>)>,
+}
+
+/// So much of what [`Scales`] say may change from node to node: the coefficients of the force then fall, and tell the rest.
+const SEEN: f64 = 1.5;
+
+/// Whether a law changes on a piece between nodes where they do not see it.
+fn overlooks(scales: &mut Option<Scales>, piece: usize, [gap, rate]: [&[f64]; 2]) -> bool {
+    let sight = |scales: &mut Scales| scales.look(piece, gap, rate, SEEN);
+    scales.as_mut().map(sight) == Some(Sight::Missed)
 }
 
 /// What is summed up over the panels.
@@ -169,11 +181,13 @@ impl SwitchedAft {
     fn integrate(&mut self, input: ContactInput<'_>, sums: &mut Sums<'_>) {
         let facts = input.law.facts();
         self.cut.apply(input);
+        let known = self.find_scales(input);
+        let scales = &mut self.sharp[known].1;
         if let [whole] = self.cut.panels()
             && whole.is_period()
             && !facts.pieces[whole.piece].affine
         {
-            self.whole.add(input, whole.piece, sums);
+            self.whole.add(input, whole.piece, sums, scales);
             return;
         }
         for piece in 0..facts.pieces.len() {
@@ -188,10 +202,25 @@ impl SwitchedAft {
                     .add(input, place, panels(), &mut self.product, sums);
             } else {
                 for panel in panels() {
-                    self.quadrature.add(input, panel, self.cut.levels(), sums);
+                    self.quadrature
+                        .add(input, panel, self.cut.levels(), sums, scales);
                 }
             }
         }
+    }
+
+    /// The position of the scales of a law, with the arguments at hand.
+    fn find_scales(&mut self, input: ContactInput<'_>) -> usize {
+        let facts = std::ptr::from_ref(input.law.facts()).addr();
+        let known = self.sharp.iter().position(|(of, _)| *of == facts);
+        let index = known.unwrap_or_else(|| {
+            self.sharp.push((facts, Scales::of(input.law)));
+            self.sharp.len() - 1
+        });
+        if let Some(scales) = &mut self.sharp[index].1 {
+            scales.set(input.arguments, self.cut.levels());
+        }
+        index
     }
 
     /// Adds the impulses of (2).

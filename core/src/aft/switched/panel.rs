@@ -8,13 +8,14 @@
 
 use super::cut::{End, Panel};
 use super::spectrum::Spectrum;
-use super::{Changing, Sums, Wanted};
+use super::{Changing, Sums, Wanted, overlooks};
 use crate::aft::ContactInput;
 use crate::fourier::gauss::{self, Rule};
 use crate::fourier::grading::{Grading, power_for};
 use crate::fourier::kernels::{evaluate, padded, project};
 use crate::fourier::series;
 use crate::fourier::taylor::Taylor;
+use crate::generic::scales::Scales;
 use crate::law::{Derivatives, On, PieceFacts, Variation};
 
 /// Nodes beyond those that the harmonics take, at first.
@@ -99,6 +100,7 @@ impl Quadrature {
         panel: &Panel,
         levels: &[f64],
         sums: &mut Sums<'_>,
+        scales: &mut Option<Scales>,
     ) {
         let facts = &input.law.facts().pieces[panel.piece];
         let with_arguments = sums.slopes.as_ref().map_or(&[][..], |s| s.arguments());
@@ -127,17 +129,17 @@ impl Quadrature {
             depth: DEPTH,
             spectra: [Spectrum::UNKNOWN; 4],
         };
-        self.part(input, panel.piece, part, demand, sums);
+        self.part((input, panel.piece), part, demand, sums, scales);
     }
 
     /// Adds the integrals over a part of a panel.
     fn part(
         &mut self,
-        input: ContactInput<'_>,
-        piece: usize,
+        (input, piece): (ContactInput<'_>, usize),
         part: Part,
         demand: Demand,
         sums: &mut Sums<'_>,
+        scales: &mut Option<Scales>,
     ) {
         let Part {
             ends: (start, end),
@@ -156,8 +158,12 @@ impl Quadrature {
             self.place(start, end, grading, wanted.ceil() as usize);
             self.evaluate(input, piece, Wanted::of(sums), &stretch);
             let count = self.rules[self.current].count as f64;
-            let needed;
+            let mut needed;
             (needed, spectra) = self.needed(facts, (width, degrees), demand, sums, &part.spectra);
+            let nodes = count as usize;
+            if depth > 0 && overlooks(scales, piece, [&self.gap[..nodes], &self.rate[..nodes]]) {
+                needed = needed.max(2.0 * count);
+            }
             if depth == 0 || needed <= count {
                 self.sum_up(input, piece, sums);
                 return;
@@ -173,8 +179,8 @@ impl Quadrature {
         };
         let first = half((start, middle), Grading { end: 1, ..ends });
         let second = half((middle, end), Grading { start: 1, ..ends });
-        self.part(input, piece, first, demand, sums);
-        self.part(input, piece, second, demand, sums);
+        self.part((input, piece), first, demand, sums, scales);
+        self.part((input, piece), second, demand, sums, scales);
     }
 
     /// What the values at the nodes say, and how many nodes they ask for.

@@ -4,10 +4,11 @@
 //! exponentially (Trefethen and Weideman (2014), The exponentially convergent trapezoidal rule). The samples are doubled until
 //! the upper end of the spectrum has fallen to rounding, or to the largest number.
 
-use super::{Changing, Sums, Wanted};
+use super::{Changing, Sums, Wanted, overlooks};
 use crate::aft::{ContactInput, PER_SAMPLE};
 use crate::fourier::sampled::SampledTransform;
 use crate::fourier::series;
+use crate::generic::scales::Scales;
 use crate::law::{Derivatives, On, Variation};
 
 /// The upper end of the spectrum, relative to the largest coefficient, at which samples suffice: aliases of the harmonics
@@ -42,7 +43,13 @@ struct Grid {
 
 impl Whole {
     /// Adds a period on one piece.
-    pub(super) fn add(&mut self, input: ContactInput<'_>, piece: usize, sums: &mut Sums<'_>) {
+    pub(super) fn add(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        sums: &mut Sums<'_>,
+        scales: &mut Option<Scales>,
+    ) {
         let slopes = sums.slopes.as_ref().map_or(0, |s| s.by_gap.len() / 2);
         let top = (sums.force.len() / 2).max(slopes);
         let least = (top + series::harmonics(input.gap) + 8).next_power_of_two();
@@ -53,7 +60,8 @@ impl Whole {
             let grid = &mut self.grids[index];
             grid.window = (samples / 16 + 1).max(2 * spacing);
             self.operations += PER_SAMPLE * samples as u64;
-            if grid.evaluate(input, piece, Wanted::of(sums)) || samples >= MOST.max(least) {
+            let resolved = grid.evaluate(input, piece, Wanted::of(sums), scales);
+            if resolved || samples >= MOST.max(least) {
                 grid.add(sums);
                 return;
             }
@@ -91,18 +99,26 @@ impl Grid {
     }
 
     /// The law at all samples. Returns whether the samples suffice.
-    fn evaluate(&mut self, input: ContactInput<'_>, piece: usize, wanted: Wanted<'_>) -> bool {
+    fn evaluate(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        wanted: Wanted<'_>,
+        scales: &mut Option<Scales>,
+    ) -> bool {
         self.transform.sample(input.gap, &mut self.gap);
         self.transform.sample(input.rate, &mut self.rate);
+        let seen = !overlooks(scales, piece, [&self.gap, &self.rate]);
         let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
         let changing = match wanted {
             Wanted::Force => {
                 input
                     .law
                     .force(on, input.arguments, gap, rate, &mut self.force);
-                return self
-                    .transform
-                    .is_resolved(&self.force, RESOLVED, self.window);
+                return seen
+                    && self
+                        .transform
+                        .is_resolved(&self.force, RESOLVED, self.window);
             }
             Wanted::Slopes => None,
             Wanted::Changes(changing) => Some(changing),
@@ -116,7 +132,8 @@ impl Grid {
         let facts = &input.law.facts().pieces[piece];
         let varying = |variation| variation == Variation::Varying;
         self.by_parameter(input, piece, changing);
-        self.transform
+        seen && self
+            .transform
             .is_resolved(&self.force, RESOLVED, self.window)
             && (!varying(facts.by_gap)
                 || self

@@ -89,7 +89,7 @@ pub struct Progress {
 }
 
 /// Why there are no basins.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum BasinError {
     /// The request is at fault.
@@ -111,6 +111,15 @@ pub enum BasinError {
         /// Why the first one cannot.
         reason: FlowError,
     },
+}
+
+crate::error::sentence_as_debug! {
+    BasinError:
+    Request { name, must }
+    Threads { count }
+    Motion { reason }
+    ;
+    Log
 }
 
 impl Basin {
@@ -141,10 +150,15 @@ impl Basin {
     ) -> Result<Basins, BasinError> {
         let order = flows.first().map(|flow| 2 * flow.coordinates());
         self.check(order)?;
+        if flows.len() > MOST_FLOWS {
+            let (name, must) = ("flows", "must be at most 1024, a thread for each");
+            return Err(BasinError::Request { name, must });
+        }
         compute::compute(self, flows, log, watch)
     }
 
-    fn check(&self, order: Option<usize>) -> Result<(), BasinError> {
+    /// Whether the request can be used with flows of so many entries, if there are any.
+    pub(crate) fn check(&self, order: Option<usize>) -> Result<(), BasinError> {
         let Grid {
             start,
             columns,
@@ -184,6 +198,8 @@ impl Basin {
     }
 }
 
+/// More threads gain nothing, and take longer to start than the work.
+const MOST_FLOWS: usize = 1024;
 /// More would not fit into memory well.
 const MOST_CELLS: usize = 1 << 28;
 

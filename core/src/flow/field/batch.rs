@@ -72,6 +72,13 @@ pub(crate) struct Samples<const S: usize> {
     pub(super) by_argument: [f64; S],
 }
 
+impl<const S: usize> Samples<S> {
+    /// Gap and rate.
+    pub(crate) fn motion(&self) -> [&[f64; S]; 2] {
+        [&self.gap, &self.rate]
+    }
+}
+
 impl<const S: usize> Batch<S> {
     pub(crate) fn new(field: &Field<'_>) -> Self {
         let n = field.coordinates();

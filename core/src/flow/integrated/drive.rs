@@ -17,6 +17,8 @@ const FIRST: f64 = 0.6;
 const GRADED: f64 = 0.3;
 /// Least first width in radians: beside a level with an exponent below one, stiffness says nothing of the motion.
 const LEAST_FIRST: f64 = 1e-6;
+/// How many times narrower a step must be, about, whose nodes do not see a law.
+const OVERLOOKED: f64 = 2.0;
 /// Attempts at one step.
 const MOST_ATTEMPTS: usize = 200;
 /// A step to a level may be so many times as wide as the widest that is known to be accurate: the step before it would be next to
@@ -338,6 +340,10 @@ impl<const S: usize> Engine<'_, S> {
         columns: &mut [f64],
     ) -> Result<Option<Plan>, FlowError> {
         let mut error = self.error();
+        if error <= 1.0 && self.overlooks() {
+            // As an error that half of the width mends.
+            error = OVERLOOKED.powi(S as i32 + 1);
+        }
         if error <= 1.0
             && let Some(tangent) = tangent
         {

@@ -7,6 +7,7 @@ use crate::flow::field::slopes::Slopes;
 use crate::flow::field::{Field, Gap};
 use crate::flow::{FlowError, Work};
 use crate::fourier::grading;
+use crate::generic::scales::{Scales, Sight};
 use crate::law::{Quantity, TermFacts};
 use crate::linear::{Lu, Matrix};
 use crate::system::Variable;
@@ -23,6 +24,10 @@ const ON_LEVEL: f64 = 16.0 * f64::EPSILON;
 
 /// Rounding of the distance of a gap from a level, in parts of what it is a sum of where the motion was largest.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// So much of what [`Scales`] say may change from node to node, and the width in radians below which a step is not asked.
+const PART: f64 = 1.5;
+const NARROW: f64 = 1e-9;
 
 /// The state of a motion from switch to switch.
 #[derive(Debug)]
@@ -67,6 +72,8 @@ pub(super) struct Engine<'a, const S: usize> {
     /// Powers that grade a step at the lower and the upper end of each piece of each contact, and for which variable.
     pub(super) powers: Vec<Vec<[u32; 2]>>,
     powers_by: Option<Variable>,
+    /// Where the law of each contact may be sharp.
+    sharp: Vec<Option<Scales>>,
     /// They belong to the present values.
     powers_known: bool,
     pub(super) here: Here,
@@ -122,6 +129,9 @@ impl<'a, const S: usize> Engine<'a, S> {
                 .map(|contact| vec![[1; 2]; field.law(contact).facts().pieces.len()])
                 .collect(),
             powers_by: None,
+            sharp: (0..contacts)
+                .map(|contact| Scales::of(field.law(contact)))
+                .collect(),
             powers_known: false,
             here: Here {
                 from: 0.0,
@@ -288,6 +298,12 @@ impl<'a, const S: usize> Engine<'a, S> {
         if let Some(by) = by {
             self.field.coefficients_by(by, slopes);
         }
+        for (contact, scales) in self.sharp.iter_mut().enumerate() {
+            let of = &self.field.contacts[contact];
+            if let Some(scales) = scales {
+                scales.set(&of.arguments, &of.levels);
+            }
+        }
         for (contact, powers) in self.powers.iter_mut().enumerate() {
             let facts = self.field.law(contact).facts();
             let arguments = &self.field.contacts[contact].arguments;
@@ -306,6 +322,21 @@ impl<'a, const S: usize> Engine<'a, S> {
                 *powers = [grading::power_for(&lower), grading::power_for(&upper)];
             }
         }
+    }
+
+    /// Whether a law changes between the nodes of the trial where they do not see it.
+    pub(super) fn overlooks(&mut self) -> bool {
+        if self.trial.width.abs() < NARROW {
+            return false;
+        }
+        let contacts = self.sharp.iter_mut().zip(&self.batch.contacts);
+        let mut contacts = contacts.zip(&self.here.pieces);
+        contacts.any(|((scales, samples), &piece)| {
+            let [gap, rate] = samples.motion();
+            scales
+                .as_mut()
+                .is_some_and(|scales| scales.look(piece, gap, rate, PART) == Sight::Missed)
+        })
     }
 
     /// The power at a level, from the side of the present piece.

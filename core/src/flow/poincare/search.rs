@@ -28,6 +28,8 @@ pub(super) struct Search<'s, 'a> {
     /// `g` at the end of what has been scanned. It is carried from stretch to stretch, since rounding could change its sign
     /// where one is evaluated by the other's polynomial.
     last: f64,
+    /// Where `g` was not a number first.
+    pub(super) undefined: Option<f64>,
 }
 
 impl<'s, 'a> Search<'s, 'a> {
@@ -38,14 +40,20 @@ impl<'s, 'a> Search<'s, 'a> {
             state: state.to_vec(),
             side: None,
             last: (section.function)(phase, state),
+            undefined: None,
         };
+        search.undefined = search.last.is_nan().then_some(phase);
         search.passed(search.last);
         search
     }
 
     fn value(&mut self, stretch: &dyn Stretch, phase: f64) -> f64 {
         stretch.state(phase, &mut self.state);
-        (self.section.function)(phase, &self.state)
+        let value = (self.section.function)(phase, &self.state);
+        if value.is_nan() {
+            self.undefined.get_or_insert(phase);
+        }
+        value
     }
 
     /// Whether the side changes at a value; on the surface it does not.

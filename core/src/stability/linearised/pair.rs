@@ -1,6 +1,7 @@
 //! One contact in the linearised equation: a column and a row, with slopes at the nodes of a panel.
 
 use super::nodes::Nodes;
+use crate::generic::scales::{Scales, Sight};
 use crate::law::{Derivatives, On, Variation};
 use crate::layout::{ContactLayout, Term};
 use crate::stability::orbit::Orbit;
@@ -20,7 +21,13 @@ pub(super) struct Pair {
     pub(super) by_rate: Vec<f64>,
     /// The slopes are not all zero on this panel.
     pub(super) present: bool,
+    /// Where the law may be sharp, once it has been asked.
+    scales: Option<Scales>,
+    asked: bool,
 }
+
+/// So much of what [`Scales`] say may change from node to node: steps of order six then err by parts of `1e-4`, and show it.
+const PART: f64 = 0.5;
 
 impl Pair {
     /// The directions at a phase.
@@ -89,14 +96,14 @@ impl Pair {
         true
     }
 
-    /// The slopes at the nodes.
+    /// The slopes at the nodes, and what these see of a law that may be sharp.
     pub(super) fn evaluate(
         &mut self,
         orbit: &Orbit<'_>,
         contact: &Contact,
         layout: &ContactLayout,
         nodes: &mut Nodes,
-    ) {
+    ) -> Option<Sight> {
         self.present = true;
         self.by_gap.resize(nodes.gap.len(), 0.0);
         self.by_rate.resize(nodes.gap.len(), 0.0);
@@ -108,6 +115,17 @@ impl Pair {
         let law = orbit.system.law(layout.law);
         let on = On::Piece(contact.piece);
         law.derivatives(on, &contact.arguments, &nodes.gap, &nodes.rate, out);
+        if !self.asked {
+            (self.scales, self.asked) = (Scales::of(law), true);
+        }
+        let scales = self.scales.as_mut()?;
+        scales.set(&contact.arguments, &contact.levels);
+        if !scales.any(contact.piece) {
+            return None;
+        }
+        let count = nodes.taus.len();
+        let (gap, rate) = (&nodes.gap[..count], &nodes.rate[..count]);
+        Some(scales.look(contact.piece, gap, rate, PART))
     }
 }
 

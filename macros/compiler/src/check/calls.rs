@@ -1,9 +1,11 @@
 //! Rules on calls.
 
+use std::collections::HashSet;
+
 use super::expressions;
 use super::names::{CONSTANTS, FUNCTIONS, declared};
 use crate::ast::{Declaration, Kind};
-use crate::errors::{Diagnostics, Extent, nearest};
+use crate::errors::{Diagnostics, Extent, nearest, shortened};
 
 /// Every call is of a function or law that exists, with as many arguments as it takes.
 pub(super) fn calls_are_of_known_functions(
@@ -14,7 +16,7 @@ pub(super) fn calls_are_of_known_functions(
         let Kind::Call(name, arguments) = &part.kind else {
             return;
         };
-        let text = name.to_string();
+        let text = shortened(name);
         let law = declaration.laws.iter().find(|law| law.name == text);
         if let (Some(_), Some(_)) = (law, at.law) {
             let message =
@@ -49,6 +51,20 @@ pub(super) fn calls_are_of_known_functions(
     });
 }
 
+/// The law that nothing calls, if there is one and not more: a law renamed where it is declared, and not where it is called.
+fn renamed(declaration: &Declaration) -> Option<String> {
+    let mut called = HashSet::new();
+    expressions::parts(declaration, &mut |part, _| {
+        if let Kind::Call(name, _) = &part.kind {
+            called.insert(name.to_string());
+        }
+    });
+    let laws = declaration.laws.iter().map(|law| law.name.to_string());
+    let mut idle = laws.filter(|law| !called.contains(law));
+    let law = idle.next()?;
+    idle.next().is_none().then_some(law)
+}
+
 fn unknown_function(declaration: &Declaration, name: &str) -> String {
     if CONSTANTS.contains(&name)
         || declared(declaration)
@@ -68,6 +84,11 @@ fn unknown_function(declaration: &Declaration, name: &str) -> String {
     };
     if !instead.is_empty() {
         return format!("unknown function `{name}`: {instead}");
+    }
+    if let Some(law) = renamed(declaration) {
+        return format!(
+            "unknown function `{name}`: did you mean the law `{law}`, which is never called?"
+        );
     }
     let advice = match name {
         "sign" | "signum" => Some("sgn".to_owned()),

@@ -6,7 +6,7 @@
 use crate::ast::{Declaration, Limit, Parameter};
 use crate::dag::{Dag, Id, Node, Variable};
 use crate::errors::{Diagnostics, Extent};
-use crate::lower::interval::Interval;
+use crate::lower::interval::{Interval, Ranges, Stretch};
 
 /// The mass matrix is regular: for some values of the parameters it can be inverted.
 pub(crate) fn mass_is_regular(
@@ -36,6 +36,46 @@ pub(crate) fn mass_is_regular(
     Err(crate::lower::all_equations(declaration).fault(
         "the mass matrix is singular: the second derivatives in these equations are not independent; combine the equations so that each holds one of its own",
     ))
+}
+
+/// An equation that holds one second derivative alone does not hold it with a negative mass, by number, by default or by range.
+pub(crate) fn masses_are_positive(
+    declaration: &Declaration,
+    dag: &mut Dag,
+    masses: &[(usize, usize, Id)],
+    ranges: &Ranges,
+    diagnostics: &mut Diagnostics,
+) {
+    let coordinates: Vec<_> = declaration.elements().collect();
+    for &(row, column, mass) in masses {
+        if masses.iter().filter(|(other, ..)| *other == row).count() > 1 {
+            continue;
+        }
+        let (coordinate, name) = &coordinates[column];
+        let bounds = ranges.bounds(dag, mass, Stretch::ALL);
+        if bounds.is_not_positive() {
+            let message = format!(
+                "the mass of `{coordinate}` is negative: change the signs of the whole equation, so that it holds `m*ddot({coordinate})` with a positive `m`"
+            );
+            diagnostics.report(Extent::at(name.span()), message);
+            continue;
+        }
+        let default = |variable| match variable {
+            Variable::Parameter(index) => declaration
+                .parameters
+                .get(index)
+                .and_then(|parameter| parameter.default)
+                .map_or(f64::NAN, |(value, _)| value),
+            _ => f64::NAN,
+        };
+        let value = dag.evaluate(mass, &default);
+        if value < 0.0 {
+            let message = format!(
+                "with the defaults of the parameters the mass of `{coordinate}` is {value}: a mass is positive; change a default, and declare ranges that keep it so"
+            );
+            diagnostics.report(Extent::at(name.span()), message);
+        }
+    }
 }
 
 /// No range admits a value at which a mass vanishes; a parameter without a range is left to the runtime.

@@ -12,6 +12,9 @@ const MOST_COORDINATES: usize = 1024;
 /// More repetitions, all loops taken together, than compile in good time.
 const MOST_REPETITIONS: usize = 4096;
 
+/// More operations, all loops written out, than compile in good time.
+const MOST_OPERATIONS: usize = 1 << 18;
+
 /// The arrays of coordinates are of a size that can be compiled.
 pub(super) fn coordinates_are_few(
     declaration: &Declaration,
@@ -39,6 +42,7 @@ pub(super) fn loops_end_soon<'a>(
     let mut unroller = Unroller {
         constants: Constants::of(&declaration.lets),
         repetitions: 0,
+        operations: 0,
         equations: Vec::new(),
     };
     let before = diagnostics.count();
@@ -57,6 +61,7 @@ pub(super) fn loops_end_soon<'a>(
 struct Unroller<'a> {
     constants: Constants,
     repetitions: usize,
+    operations: usize,
     equations: Vec<&'a Equation>,
 }
 
@@ -78,6 +83,12 @@ impl<'a> Unroller<'a> {
     }
 
     fn expression(&mut self, expression: &Expr) -> syn::Result<()> {
+        self.operations += 1;
+        if self.operations > MOST_OPERATIONS {
+            return Err(expression.extent.fault(format!(
+                "more than {MOST_OPERATIONS} numbers, names and operations, with all loops written out: make the ranges smaller"
+            )));
+        }
         if let Kind::Sigma(repeated) = &expression.kind {
             return self.repeat(repeated, |unroller| unroller.expression(&repeated.body));
         }

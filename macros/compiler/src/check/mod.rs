@@ -17,11 +17,17 @@ pub(crate) mod pieces;
 pub(crate) mod powers;
 pub(crate) mod rates;
 
+pub(crate) use names::{MOST_DECLARED, is_primitive};
+
 use crate::ast::{Declaration, Equation, Expr, Kind, Let, Parameter, Statement};
 use crate::errors::{Diagnostics, Extent};
 
 /// Applies the rules on what is written.
 pub fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+    if !names::names_are_few(declaration, diagnostics) {
+        return;
+    }
+    names::names_are_free_in_generated_code(declaration, diagnostics);
     names::names_are_not_built_in(declaration, diagnostics);
     names::names_are_distinct(declaration, diagnostics);
     names::names_are_known(declaration, diagnostics);

@@ -6,7 +6,7 @@ use proc_macro2::Ident;
 
 use super::expressions::{self, Where};
 use crate::ast::{Coordinate, Declaration, Expr, Form, Kind, Law};
-use crate::errors::{Diagnostics, Extent, nearest};
+use crate::errors::{Diagnostics, Extent, nearest, shortened};
 
 /// Names with a meaning of their own.
 pub(super) const CONSTANTS: [&str; 3] = ["omega", "t", "pi"];
@@ -39,6 +39,87 @@ pub(super) fn declared(declaration: &Declaration) -> Vec<(&'static str, &Ident)>
 pub(super) fn local(law: &Law) -> impl Iterator<Item = (&'static str, &Ident)> {
     let arguments = law.arguments.iter().map(|name| ("argument", name));
     std::iter::once(("gap", &law.gap)).chain(arguments)
+}
+
+/// Types of Rust that generated code is made of, and would mean the model instead.
+const PRIMITIVES: [&str; 17] = [
+    "bool", "char", "str", "f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16",
+    "u32", "u64", "u128", "usize",
+];
+
+/// Whether a name is that of a type that is built into Rust.
+pub(crate) fn is_primitive(name: &Ident) -> bool {
+    PRIMITIVES.iter().any(|primitive| name == primitive)
+}
+
+/// No name is one that generated code needs: the type is not called like a number of Rust, and nothing is called `__x` or `r#x`.
+pub(super) fn names_are_free_in_generated_code(
+    declaration: &Declaration,
+    diagnostics: &mut Diagnostics,
+) {
+    let name = &declaration.name;
+    if is_primitive(name) {
+        let message = format!(
+            "`{name}` is a type of Rust, which generated code uses: choose another name, as in `Oscillator`"
+        );
+        diagnostics.report(Extent::at(name.span()), message);
+    }
+    let locals = declaration.laws.iter().flat_map(local);
+    let mut names: Vec<(&str, &Ident)> = vec![("model", name)];
+    names.extend(declared(declaration).into_iter().chain(locals));
+    expressions::loops(declaration, &mut |_, _, own| names.extend(own));
+    // The name of a law alone is that of its type.
+    if declaration.form == Form::LawAlone {
+        names.retain(|(what, _)| *what != "law");
+    }
+    for (_, name) in names {
+        let text = name.to_string();
+        if text.starts_with("__") {
+            let message =
+                format!("names that begin with `__` are those of generated code: rename `{text}`");
+            diagnostics.report(Extent::at(name.span()), message);
+        }
+        if let Some(plain) = text.strip_prefix("r#") {
+            let message = format!(
+                "names are words of mathematics, without `r#`: write `{plain}_` or another name"
+            );
+            diagnostics.report(Extent::at(name.span()), message);
+        }
+    }
+}
+
+/// More than a model that is written by hand declares, of each kind.
+pub(crate) const MOST_DECLARED: usize = 512;
+
+/// There are not too many items of a kind, and a law has not too many arguments. False where a rule that compares names would take
+/// too long.
+pub(super) fn names_are_few(declaration: &Declaration, diagnostics: &mut Diagnostics) -> bool {
+    let items = declared(declaration);
+    let mut many = Vec::new();
+    for kind in ["coordinate", declaration.form.parameter(), "`let`", "law"] {
+        let names = items.iter().filter(|(what, _)| *what == kind);
+        many.push((kind, names.map(|(_, name)| *name).nth(MOST_DECLARED)));
+    }
+    for law in &declaration.laws {
+        many.push(("argument of a law", law.arguments.get(MOST_DECLARED)));
+    }
+    let mut few = true;
+    for (kind, name) in many {
+        if let Some(name) = name {
+            let message = format!(
+                "more than {MOST_DECLARED} declarations of a {}: {}",
+                plain(kind),
+                match kind {
+                    "coordinate" => "write an array, as in `Chain(x[64])`",
+                    "`let`" => "write what repeats as a loop",
+                    _ => "use numbers, or attach laws to matrices with a `Structure`",
+                }
+            );
+            diagnostics.report(Extent::at(name.span()), message);
+            few = false;
+        }
+    }
+    few
 }
 
 /// No declared name hides `omega`, `t`, `pi` or a function.
@@ -219,6 +300,8 @@ fn index_is_in_place(
 }
 
 fn unknown(declaration: &Declaration, name: &str, beside_time: bool, at: Where<'_, '_>) -> String {
+    let shown = shortened(name);
+    let name = shown.as_str();
     if FUNCTIONS.contains(&name) || declaration.laws.iter().any(|item| item.name == name) {
         return format!("`{name}` takes an argument in parentheses, as in `{name}(...)`");
     }

@@ -6,7 +6,7 @@ use proc_macro2::Ident;
 
 use crate::ast::{Condition, Declaration, Equation, Expr, Kind, Law, Loop, Piece, Statement, Unit};
 use crate::dag::Rational;
-use crate::errors::{Diagnostics, Extent, nearest};
+use crate::errors::{Diagnostics, Extent, nearest, shortened};
 use crate::index::Constants;
 
 mod dimension;
@@ -201,7 +201,9 @@ impl Checker<'_> {
         }
         let Some(exponent_value) = self.constants.value(exponent) else {
             return Err(base.extent.fault(format!(
-                "`{base}` is in {measure}, and its exponent `{exponent}` is known at run time only, so the power has no unit: divide by a reference value, as in `({base}/reference)^{exponent}`"
+                "`{0}` is in {measure}, and its exponent `{1}` is known at run time only, so the power has no unit: divide by a reference value, as in `({0}/reference)^{1}`",
+                shortened(base),
+                shortened(exponent)
             )));
         };
         let power = measure.power(exponent_value);
@@ -212,7 +214,8 @@ impl Checker<'_> {
     fn plain(&mut self, expression: &Expr, what: &str) -> syn::Result<()> {
         match self.of(expression)? {
             Some(measure) if measure != Dimension::ONE => Err(expression.extent.fault(format!(
-                "{what} must be a plain number, and `{expression}` is in {measure}"
+                "{what} must be a plain number, and `{}` is in {measure}",
+                shortened(expression)
             ))),
             _ => Ok(()),
         }
@@ -286,7 +289,8 @@ impl Checker<'_> {
 fn agree(before: Measure, own: Measure, term: &Expr, what: &str) -> syn::Result<Measure> {
     match (before, own) {
         (Some(before), Some(own)) if before != own => Err(term.extent.fault(format!(
-            "`{term}` is in {own}, and {what} in {before}: they cannot be added or compared"
+            "`{}` is in {own}, and {what} in {before}: they cannot be added or compared",
+            shortened(term)
         ))),
         (Some(before), _) => Ok(Some(before)),
         (None, own) => Ok(own),

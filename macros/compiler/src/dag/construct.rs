@@ -55,6 +55,9 @@ impl Dag {
 
     /// Sum of any number of terms.
     pub fn sum(&mut self, terms: &[Id]) -> Id {
+        if self.is_spent() {
+            return self.integer(0);
+        }
         let mut collected: Vec<(Id, Rational)> = Vec::new();
         for &term in terms {
             let parts = match self.node(term) {
@@ -66,6 +69,7 @@ impl Dag {
                 collected.push((rest, coefficient));
             }
         }
+        self.charge(1 + 2 * collected.len());
         collected.sort_by_key(|&(rest, _)| rest);
         let mut merged: Vec<(Id, Rational)> = Vec::new();
         for (rest, coefficient) in collected {
@@ -91,6 +95,9 @@ impl Dag {
 
     /// Product of any number of factors.
     pub fn product(&mut self, factors: &[Id]) -> Id {
+        if self.is_spent() {
+            return self.integer(0);
+        }
         let mut parts = Factors::default();
         for &factor in factors {
             match self.node(factor) {
@@ -102,6 +109,7 @@ impl Dag {
                 _ => self.take_factor(&mut parts, factor),
             }
         }
+        self.charge(1 + 2 * (parts.numbers.len() + parts.powers.len() + parts.logarithms.len()));
         if parts.numbers.iter().any(|number| number.is_zero()) {
             return self.integer(0);
         }

@@ -13,8 +13,11 @@ enum Binding {
     Atom,
 }
 
+/// A longer text is cut, at every node: shared parts would double it with each use.
+const LONGEST: usize = 2000;
+
 impl Dag {
-    /// The expression in infix notation.
+    /// The expression in infix notation; of a very long one the beginning, and `...`.
     pub fn display(&self, id: Id, names: &dyn Fn(Variable) -> String) -> String {
         let mut texts: HashMap<Id, (String, Binding)> = HashMap::new();
         for current in self.reachable(&[id]) {
@@ -64,7 +67,7 @@ impl Dag {
                     Binding::Atom,
                 ),
             };
-            texts.insert(current, text);
+            texts.insert(current, (cut(text.0), text.1));
         }
         texts.remove(&id).map(|(text, _)| text).unwrap_or_default()
     }
@@ -81,6 +84,9 @@ impl Dag {
         terms.sort_by_key(|&(negative, number, _)| (negative, number));
         let mut joined = String::new();
         for (_, _, text) in terms {
+            if joined.len() > LONGEST {
+                break;
+            }
             let (sign, magnitude) = match text.strip_prefix('-') {
                 _ if joined.is_empty() => ("", text.as_str()),
                 Some(magnitude) => (" - ", magnitude),
@@ -140,6 +146,15 @@ impl Dag {
     fn is_minus_one(&self, id: Id) -> bool {
         self.as_number(id) == Some(Rational::integer(-1))
     }
+}
+
+/// At most as much of a text as is shown.
+fn cut(mut text: String) -> String {
+    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+        text.truncate(end);
+        text.push_str("...");
+    }
+    text
 }
 
 /// Decimal where that is exact and short, a fraction otherwise.

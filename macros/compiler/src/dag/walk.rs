@@ -12,6 +12,7 @@ impl Dag {
         while let Some(id) = pending.pop() {
             if found.insert(id) {
                 pending.extend(self.operands(id));
+                self.charge(1);
             }
         }
         found.into_iter().collect()

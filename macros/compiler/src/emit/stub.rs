@@ -5,15 +5,8 @@ use quote::quote;
 
 use super::wrap;
 
-/// The type with its fields and an implementation that is never run: the declaration has already been refused. It has
-/// defaults if the declaration gives one to every parameter.
-pub fn stub(
-    name: &Ident,
-    visibility: &syn::Visibility,
-    fields: &[Ident],
-    has_defaults: bool,
-) -> TokenStream {
-    let default = has_defaults.then(|| quote!(, ::core::default::Default));
+/// The type with its fields, defaults and an implementation that is never run: the declaration has already been refused.
+pub fn stub(name: &Ident, visibility: &syn::Visibility, fields: &[Ident]) -> TokenStream {
     let implementation = wrap(
         name,
         &quote! {
@@ -29,7 +22,7 @@ pub fn stub(
     );
     quote! {
         #[allow(missing_docs)]
-        #[derive(::core::fmt::Debug, ::core::clone::Clone, ::core::cmp::PartialEq #default)]
+        #[derive(::core::fmt::Debug, ::core::clone::Clone, ::core::cmp::PartialEq, ::core::default::Default)]
         #visibility struct #name { #(pub #fields: ::core::primitive::f64),* }
         #implementation
     }

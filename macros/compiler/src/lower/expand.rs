@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::ast::{Expr, Form, Kind};
 use crate::dag::{Dag, Function, Id, Variable};
-use crate::errors::Extent;
+use crate::errors::{Extent, shortened};
 use crate::index::Constants;
 
 use super::interval::Ranges;
@@ -71,6 +71,8 @@ pub struct Expander {
     pub gap: String,
     /// How many terms have been made.
     spent: usize,
+    /// Where the budget of the graph was found to be spent.
+    pub spent_at: Option<Extent>,
     /// How many terms may be made beyond those of one equation.
     pub allowance: usize,
 }
@@ -79,11 +81,11 @@ impl Expander {
     /// An expression as one would write it.
     pub fn show(&self, id: Id) -> String {
         let is_name = !self.gap.contains([' ', '*', '/', '-']);
-        self.dag.display(id, &|variable| match variable {
+        shortened(self.dag.display(id, &|variable| match variable {
             // `a*(x - y)`, not `a*x - y`.
             Variable::Gap if !is_name => format!("({})", self.gap),
             _ => self.label(variable),
-        })
+        }))
     }
 
     /// A variable as one would write it.
@@ -138,7 +140,7 @@ impl Expander {
             Kind::Power(base, exponent) => {
                 let base_terms = self.expand(base)?;
                 let exponent_terms = self.expand(exponent)?;
-                let quote = Quote::power(base, &exponent.to_string());
+                let quote = Quote::power(base, &shortened(exponent));
                 let exponent = self.constant(&exponent_terms, exponent.extent, "an exponent")?;
                 self.power(base_terms, exponent, quote, extent)?
             }
@@ -158,6 +160,15 @@ impl Expander {
         self.spent = self.spent.saturating_add(terms);
         if self.spent > MOST_TERMS + self.allowance {
             return Err(extent.fault("too much to multiply out: make it a law, or factor it"));
+        }
+        self.work_is_left(extent)
+    }
+
+    /// The budget of the graph is not spent.
+    pub(super) fn work_is_left(&mut self, extent: Extent) -> syn::Result<()> {
+        if self.dag.is_spent() {
+            let extent = *self.spent_at.get_or_insert(extent);
+            return Err(too_long(extent));
         }
         Ok(())
     }
@@ -387,6 +398,13 @@ impl Expander {
         let parts: Vec<Id> = terms.iter().map(|term| term.coefficient).collect();
         Ok(self.dag.sum(&parts))
     }
+}
+
+/// What is said where the budget of the graph is spent.
+pub(super) fn too_long(extent: Extent) -> syn::Error {
+    extent.fault(
+        "this would take too long to compile: write it with fewer terms, factors and pieces, or attach laws to matrices with a `Structure`",
+    )
 }
 
 /// Whether a variable is a coordinate or one of its derivatives.

@@ -7,7 +7,7 @@ use crate::dag::{Dag, Id, Node, Rational, Variable};
 use crate::errors::{Diagnostics, Extent};
 
 use super::algebra::{addends, split_factor};
-use super::expand::Expander;
+use super::expand::{Expander, is_motion};
 use super::gaps::{Direction, in_gap, mixed, pivot_does_not_vanish, show_gap, single_direction};
 use super::interval::Stretch;
 use super::law::{Lowered, finish};
@@ -68,6 +68,7 @@ impl Gatherer {
         let Motion::Nonlinear(id) = term.motion else {
             return Ok(vec![*term]);
         };
+        context.work_is_left(term.extent)?;
         let mut linear = Vec::new();
         let whole = single_direction(&mut context.dag, id);
         let parts = if whole.is_some() {
@@ -77,6 +78,10 @@ impl Gatherer {
         };
         let is_of_one_gap = |dag: &mut Dag, id| single_direction(dag, id).is_some();
         for part in parts {
+            if !moves(&context.dag, part) {
+                linear.push(still(&mut context.dag, term, part));
+                continue;
+            }
             let parts = if is_of_one_gap(&mut context.dag, part) {
                 vec![part]
             } else {
@@ -84,6 +89,10 @@ impl Gatherer {
                     .ok_or_else(|| mixed(context, part, term.extent))?
             };
             for part in parts {
+                if !moves(&context.dag, part) {
+                    linear.push(still(&mut context.dag, term, part));
+                    continue;
+                }
                 let direction = single_direction(&mut context.dag, part)
                     .ok_or_else(|| mixed(context, part, term.extent))?;
                 pivot_does_not_vanish(context, &direction, term.extent)?;
@@ -145,6 +154,12 @@ impl Gatherer {
         let mut forces: Vec<Id> = Vec::new();
         let mut faulty: Vec<Origin> = Vec::new();
         for group in groups {
+            if diagnostics
+                .keep(context.work_is_left(group[0].extent))
+                .is_none()
+            {
+                break;
+            }
             let (factor, force) = common_factor(&mut context.dag, &group);
             let row = (group[0].row, group[0].wave, factor);
             let known = forces
@@ -169,6 +184,19 @@ impl Gatherer {
             }
         }
         laws
+    }
+}
+
+/// Whether an expression depends on the motion.
+fn moves(dag: &Dag, id: Id) -> bool {
+    dag.variables(id).into_iter().any(is_motion)
+}
+
+/// What is left of a term where the motion has been taken out of it: `1` of `(1 + x)*(1 + y)`.
+fn still(dag: &mut Dag, term: &Term, value: Id) -> Term {
+    Term {
+        motion: Motion::None,
+        ..term.scaled(dag, value)
     }
 }
 

@@ -3,7 +3,8 @@
 use crate::ast::Expr;
 use crate::check::powers;
 use crate::dag::{Function, Id, Node, Rational, Variable};
-use crate::errors::Extent;
+use crate::differentiate::differentiate;
+use crate::errors::{Extent, shortened};
 use crate::simplify::factors_of;
 
 use super::expand::Expander;
@@ -66,6 +67,9 @@ impl Expander {
             return Ok(self.nonlinear(value, extent));
         }
         if trigonometric {
+            if operand.iter().all(Term::is_constant) {
+                self.omega_is_no_angle(operand, written, extent)?;
+            }
             return self.oscillation(function == Function::Sine, operand, extent);
         }
         steady(operand, extent)?;
@@ -131,6 +135,29 @@ impl Expander {
             return super::resolve::step_as_sign(&mut self.dag, operand);
         }
         self.dag.call(function, operand)
+    }
+
+    /// A multiple of `omega` is an angle only with a time beside it: `cos(omega)` is a constant that nobody means.
+    fn omega_is_no_angle(
+        &mut self,
+        operand: &[Term],
+        written: &Expr,
+        extent: Extent,
+    ) -> syn::Result<()> {
+        let coefficients: Vec<Id> = operand.iter().map(|term| term.coefficient).collect();
+        let phase = self.dag.sum(&coefficients);
+        let by_omega = differentiate(&mut self.dag, phase, Variable::Omega);
+        let is_multiple = self
+            .dag
+            .as_number(by_omega)
+            .is_some_and(|slope| !slope.is_zero());
+        if is_multiple {
+            let written = shortened(written);
+            return Err(extent.fault(format!(
+                "`{written}` is a frequency, not an angle, and this does not change with time: did you mean `omega*t`, as in `cos(omega*t)`?"
+            )));
+        }
+        Ok(())
     }
 
     /// `cos(a omega t + phi)` as `cos phi cos(a omega t) - sin phi sin(a omega t)`, and the sine likewise.

@@ -8,6 +8,7 @@ use crate::errors::Extent;
 use super::algebra::split_factor;
 use super::expand::{Expander, is_motion};
 use super::interval::Stretch;
+use super::polynomial::LARGEST_DEGREE;
 
 /// Coefficients of the coordinates in a gap, the first of them one, in order of the coordinates.
 pub type Direction = Vec<(usize, Id)>;
@@ -29,7 +30,7 @@ pub(super) fn mixed(context: &mut Expander, part: Id, extent: Extent) -> syn::Er
         .map(|direction| format!("`{}`", show_gap(context, &direction)))
         .collect();
     extent.fault(format!(
-        "this term mixes {} nonlinearly: a force depends on one gap, a fixed combination of coordinates, and on its rate; only polynomials of coordinates, or of velocities, can be taken apart",
+        "this term mixes {} nonlinearly: a force depends on one gap, a fixed combination of coordinates, and on its rate; only polynomials of coordinates, or of velocities, can be taken apart, up to the degree {LARGEST_DEGREE}",
         if gaps.len() > 1 { gaps.join(" and ") } else { "several coordinates".to_owned() }
     ))
 }

@@ -11,7 +11,7 @@ use crate::ir;
 use super::algebra::{addends, affine, split_factor};
 use super::expand::{Expander, Meaning};
 use super::interval::{Interval, Stretch};
-use super::resolve::{Segment, resolve};
+use super::resolve::{MOST_SEGMENTS, Segment, TOO_MANY, resolve};
 use super::written::{Written, followed};
 
 /// A law and what its arguments beyond the written ones stand for.
@@ -66,6 +66,10 @@ fn segments(
     law: &Law,
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<Segment>> {
+    if law.pieces.len() > MOST_SEGMENTS {
+        diagnostics.report(Extent::at(law.name.span()), TOO_MANY);
+        return None;
+    }
     let mut sound = true;
     let mut forces = Vec::new();
     let mut bounded = Vec::new();

@@ -20,9 +20,10 @@ pub(crate) mod written;
 
 use crate::ast::{Declaration, Equation, Expr, Kind, Limit, Statement};
 use crate::check::{forcing, inertia};
-use crate::dag::{Id, Variable};
+use crate::dag::{Dag, Id, Variable};
 use crate::errors::{Diagnostics, Extent};
 use crate::index::Constants;
+use crate::interpret::{Coefficients, Family};
 use crate::ir::{self, Bound, Model};
 
 use self::build::Builder;
@@ -35,10 +36,58 @@ use self::term::{Term, collect};
 /// What an equation with a few contacts is multiplied out to.
 const TERMS_PER_COORDINATE: usize = 512;
 
+/// Operands that are read and written before a declaration is given up: less than a second, and several hundred times what any
+/// of the examples takes.
+const BUDGET: u64 = 3_000_000;
+
 /// Lowers a declaration that has passed [`check`](crate::check::check). `None` if something was reported.
 pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option<Model> {
     let parameters = parameters(declaration);
     let mut context = context(declaration, &parameters);
+    context.dag.set_budget(Some(BUDGET));
+    let mut builder = Builder::new(context);
+    let model = lowered(declaration, parameters, &mut builder, diagnostics);
+    let context = &mut builder.context;
+    if context.dag.is_spent() {
+        // What was found since then, and what was built, is worth nothing.
+        let place = context
+            .spent_at
+            .unwrap_or_else(|| all_equations(declaration));
+        diagnostics.only(expand::too_long(place));
+        return None;
+    }
+    let mut model = model?;
+    model.dag = std::mem::take(&mut context.dag);
+    model.dag.set_budget(Some(BUDGET));
+    if !derivatives_fit(&model) {
+        diagnostics.only(expand::too_long(all_equations(declaration)));
+        return None;
+    }
+    model.dag.set_budget(None);
+    Some(model)
+}
+
+/// Whether the derivatives of laws and coefficients, and what is known of them, can be had within the budget: a product of many
+/// factors is short, and its second derivative is not.
+fn derivatives_fit(model: &Model) -> bool {
+    let mut trial = model.clone();
+    for law in &model.laws {
+        let _ = Family::of(&mut trial.dag, law);
+        if trial.dag.is_spent() {
+            return false;
+        }
+    }
+    let _ = Coefficients::of(&mut trial);
+    !trial.dag.is_spent()
+}
+
+fn lowered(
+    declaration: &Declaration,
+    parameters: Vec<ir::Parameter>,
+    builder: &mut Builder,
+    diagnostics: &mut Diagnostics,
+) -> Option<Model> {
+    let context = &mut builder.context;
     for item in &declaration.lets {
         let terms = diagnostics.keep(context.expand(&item.value))?;
         context
@@ -48,14 +97,13 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
     let mut gatherer = Gatherer::default();
     let mut rows = Rows::default();
     for statement in &declaration.equations {
-        rows.statement(&mut context, statement, &mut gatherer, diagnostics);
+        rows.statement(context, statement, &mut gatherer, diagnostics);
     }
-    let laws = declared_laws(&mut context, declaration, diagnostics);
-    let found = gatherer.laws(&mut context, diagnostics);
+    let laws = declared_laws(context, declaration, diagnostics);
+    let found = gatherer.laws(context, diagnostics);
     if !diagnostics.is_clean() {
         return None;
     }
-    let mut builder = Builder::new(context);
     for (row, term) in rows.terms {
         diagnostics.keep(builder.term(row, term, &laws));
     }
@@ -68,13 +116,15 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
     let dag = &builder.context.dag;
     diagnostics.keep(inertia::mass_is_regular(declaration, dag, &masses, ranges))?;
     inertia::ranges_admit_no_singular_mass(declaration, dag, &masses, ranges, diagnostics);
+    let (dag, ranges) = (&mut builder.context.dag, &builder.context.ranges);
+    inertia::masses_are_positive(declaration, dag, &masses, ranges, diagnostics);
     let equations: Vec<String> = declaration
         .equations
         .iter()
         .map(ToString::to_string)
         .collect();
     Some(Model {
-        dag: builder.context.dag,
+        dag: Dag::default(),
         visibility: declaration.visibility.clone(),
         name: declaration.name.clone(),
         documentation: declaration.documentation.clone(),
@@ -82,7 +132,7 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
         coordinates: declaration.elements().map(|(name, _)| name).collect(),
         parameters,
         divisor: assembly.divisor,
-        laws: builder.laws,
+        laws: std::mem::take(&mut builder.laws),
         contacts: assembly.contacts,
         coefficients: assembly.coefficients,
     })

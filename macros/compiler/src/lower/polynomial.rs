@@ -23,17 +23,14 @@ use crate::simplify::expand;
 use super::algebra::{addends, split_factor};
 use super::expand::is_motion;
 
-/// Larger than in any force, and small enough for exact numbers.
-const LARGEST_DEGREE: i32 = 8;
-
-/// More forms than this are no longer a good way to compute a polynomial.
-const MOST_FORMS: usize = 64;
+/// Larger than in any force, and small enough for exact numbers. A monomial of this degree has at most 128 forms.
+pub(super) const LARGEST_DEGREE: i32 = 8;
 
 /// A linear form, and what its power is multiplied by.
 type Form = (Vec<Rational>, Rational);
 
-/// The terms of a polynomial in coordinates, or in velocities, as powers of linear forms; terms of one gap are returned
-/// as they are, and `None` where a term is neither.
+/// The terms of a polynomial in coordinates, or in velocities, as powers of linear forms; terms of one gap, and those that do not
+/// move, are returned as they are, and `None` where a term is neither.
 pub fn powers_of_forms(
     dag: &mut Dag,
     id: Id,
@@ -42,15 +39,15 @@ pub fn powers_of_forms(
     let expanded = expand(dag, id);
     let mut powers = Vec::new();
     for term in addends(dag, expanded) {
-        if is_of_one_gap(dag, term) {
-            powers.push(term);
-            continue;
-        }
         let moving: Vec<Variable> = dag
             .variables(term)
             .into_iter()
             .filter(|&v| is_motion(v))
             .collect();
+        if moving.is_empty() || is_of_one_gap(dag, term) {
+            powers.push(term);
+            continue;
+        }
         let (factor, monomial) = split_factor(dag, term, &moving);
         let (variables, exponents) = exponents(dag, monomial)?;
         let degree: i32 = exponents
@@ -175,9 +172,6 @@ fn forms_of_many(degree: i32, exponents: &[i32]) -> Option<Vec<Form>> {
                 Some((_, sum)) => *sum = sum.checked_add(weight)?,
                 None => merged.push((form, weight)),
             }
-        }
-        if merged.len() > MOST_FORMS {
-            return None;
         }
         // Counts up, one digit for each variable.
         let digit = (0..choice.len()).find(|&digit| choice[digit] < exponents[digit]);

@@ -13,7 +13,10 @@ use super::interval::Stretch;
 use super::written::{Written, followed, quote_of_switch};
 
 /// More levels than a law has.
-const MOST_SEGMENTS: usize = 64;
+pub(super) const MOST_SEGMENTS: usize = 64;
+
+/// What is said of more.
+pub(super) const TOO_MANY: &str = "more than 64 pieces in one law";
 
 /// A force on a stretch of the gap, smooth inside.
 #[derive(Debug, Clone)]
@@ -42,8 +45,9 @@ pub fn resolve(
     let mut smooth = Vec::new();
     let mut pending = vec![whole];
     while let Some(mut segment) = pending.pop() {
+        context.work_is_left(extent)?;
         if smooth.len() + pending.len() > MOST_SEGMENTS {
-            return Err(extent.fault("more than 64 pieces in one law"));
+            return Err(extent.fault(TOO_MANY));
         }
         let switches = innermost_switches(&context.dag, segment.force);
         let Some(&first) = switches.first() else {
@@ -81,6 +85,7 @@ pub fn resolve(
 /// The operands of the absolute values, signs and steps of the gap whose own operands hold none.
 fn innermost_switches(dag: &Dag, force: Id) -> Vec<Id> {
     let mut holding: HashSet<Id> = HashSet::new();
+    let mut seen = HashSet::new();
     let mut found = Vec::new();
     // Operands come before their use.
     for id in dag.reachable(&[force]) {
@@ -93,7 +98,7 @@ fn innermost_switches(dag: &Dag, force: Id) -> Vec<Id> {
             }
             _ => None,
         };
-        found.extend(switch.filter(|operand| !holds && !found.contains(operand)));
+        found.extend(switch.filter(|operand| !holds && seen.insert(*operand)));
         if holds || switch.is_some() {
             holding.insert(id);
         }

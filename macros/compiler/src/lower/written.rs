@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use crate::ast::{Expr, Kind};
 use crate::dag::{Dag, Id};
-use crate::errors::Extent;
+use crate::errors::{Extent, shortened};
 
 /// A power or quotient, or what an absolute value, sign or step is taken of (a *switch*).
 #[derive(Debug, Clone)]
@@ -31,7 +31,7 @@ impl Quote {
     /// A base and an exponent.
     pub fn power(base: &Expr, exponent: &str) -> Self {
         Self {
-            operand: base.to_string().into(),
+            operand: shortened(base).into(),
             exponent: exponent.into(),
         }
     }
@@ -45,10 +45,10 @@ impl Quote {
     pub fn difference(first: &Expr, second: &Expr) -> Self {
         let is_zero = |expression: &Expr| matches!(&expression.kind, Kind::Number(value, _) if value.is_zero());
         let operand = match &second.kind {
-            _ if is_zero(second) => first.to_string(),
-            _ if is_zero(first) => second.to_string(),
-            Kind::Sum(_) => format!("{first} - ({second})"),
-            _ => format!("{first} - {second}"),
+            _ if is_zero(second) => shortened(first),
+            _ if is_zero(first) => shortened(second),
+            Kind::Sum(_) => format!("{} - ({})", shortened(first), shortened(second)),
+            _ => format!("{} - {}", shortened(first), shortened(second)),
         };
         Self {
             operand: operand.into(),

@@ -1,11 +1,12 @@
 //! Parameters and coordinates, with unit, default and range.
 
-use proc_macro2::Delimiter;
+use proc_macro2::{Delimiter, Ident};
 
 use super::Parser;
 use super::tokens::Token;
 use crate::ast::{Coordinate, Limit, Parameter};
 use crate::dag::Rational;
+use crate::errors::shortened;
 
 impl Parser<'_> {
     /// `name : unit = default range ;`. A parameter with a faulty range is kept, so that its field exists.
@@ -27,6 +28,12 @@ impl Parser<'_> {
     /// What follows the name of a parameter: unit, default and range, each if it is there.
     fn details(&mut self, parameter: &mut Parameter) -> syn::Result<()> {
         parameter.unit = self.unit()?;
+        if matches!(self.tokens.peek(), Token::Open(Delimiter::Bracket, _)) {
+            self.tokens.next();
+            if let Some(fault) = self.unit_in_brackets(&parameter.name) {
+                return Err(fault);
+            }
+        }
         if self.tokens.is("=") {
             self.tokens.next();
             let start = self.tokens.here();
@@ -43,24 +50,37 @@ impl Parser<'_> {
         let example = "the coordinates in parentheses, as in `Oscillator(x)`";
         self.list(example, |parser| {
             let name = parser.name("a name")?;
-            let count = parser.count()?;
+            let count = parser.count(&name)?;
             let unit = parser.unit()?;
             Ok(Coordinate { name, count, unit })
         })
     }
 
+    /// What is said of `x [m]`, if what is next, after the bracket, is a unit.
+    fn unit_in_brackets(&mut self, name: &Ident) -> Option<syn::Error> {
+        let place = self.tokens.here();
+        let unit = self.product_of_units().ok()?;
+        let unit = shortened(unit.text);
+        Some(place.fault(format!("a unit is written after a colon: `{name}: {unit}`")))
+    }
+
     /// `[8]`, if it is there.
-    fn count(&mut self) -> syn::Result<Option<usize>> {
+    fn count(&mut self, name: &Ident) -> syn::Result<Option<usize>> {
         let Token::Open(Delimiter::Bracket, _) = self.tokens.peek() else {
             return Ok(None);
         };
         self.tokens.next();
         let place = self.tokens.here();
+        let first = self.tokens.position();
         let count = match self.tokens.next() {
             Token::Literal(text) => text.parse().ok(),
             _ => None,
         };
         let Some(count) = count.filter(|&count: &usize| count > 0) else {
+            self.tokens.go_to(first);
+            if let Some(fault) = self.unit_in_brackets(name) {
+                return Err(fault);
+            }
             return Err(place.fault("an array has a length of at least one, as in `Chain(x[64])`"));
         };
         self.close("`]`")?;
@@ -111,7 +131,8 @@ impl Parser<'_> {
         self.tokens.next();
         let Some(value) = Rational::from_decimal(&text) else {
             return Err(place.fault(format!(
-                "expected a decimal number in the range, found `{text}`"
+                "expected a decimal number in the range, found `{}`",
+                shortened(&text)
             )));
         };
         let value = if minus {

@@ -10,7 +10,7 @@ use super::Parser;
 use super::tokens::Token;
 use crate::ast::{Expr, Kind};
 use crate::dag::Rational;
-use crate::errors::Diagnostics;
+use crate::errors::{Diagnostics, shortened};
 
 /// Deeper nesting than anyone writes, and far less than what a stack holds.
 const DEEPEST: usize = 40;
@@ -106,8 +106,13 @@ impl Parser<'_> {
     fn power(&mut self) -> syn::Result<Expr> {
         let start = self.tokens.here();
         let mut base = self.operand()?;
+        let mut methods = 0;
         while self.is_method() {
             base = self.method(base, start)?;
+            methods += 1;
+            if methods == DEEPEST {
+                return Err(self.tokens.here().fault(too_deep()));
+            }
         }
         if !self.tokens.take("^") {
             return Ok(base);
@@ -204,14 +209,17 @@ impl Parser<'_> {
         read: impl FnOnce(&mut Self) -> syn::Result<T>,
     ) -> syn::Result<T> {
         if self.depth == DEEPEST {
-            let message = format!("nested more than {DEEPEST} deep: name parts of it with `let`");
-            return Err(self.tokens.here().fault(message));
+            return Err(self.tokens.here().fault(too_deep()));
         }
         self.depth += 1;
         let result = read(self);
         self.depth -= 1;
         result
     }
+}
+
+fn too_deep() -> String {
+    format!("nested more than {DEEPEST} deep: name parts of it with `let`")
 }
 
 /// An exponent that is a fraction is in parentheses: `x^1/3` is `(x^1)/3`, which nobody means.
@@ -237,7 +245,9 @@ fn exponent_is_in_parentheses(power: &Expr, divisor: &Expr, diagnostics: &mut Di
             extent: power.extent,
         };
         let message = format!(
-            "`{written}` divides the power, not the exponent: put the exponent in parentheses, as in `{root}`"
+            "`{}` divides the power, not the exponent: put the exponent in parentheses, as in `{}`",
+            shortened(&written),
+            shortened(&root)
         );
         diagnostics.report(written.extent, message);
     }

@@ -6,7 +6,7 @@ use super::Parser;
 use super::tokens::Token;
 use crate::ast::{Expr, Kind};
 use crate::dag::Rational;
-use crate::errors::Extent;
+use crate::errors::{Extent, shortened};
 
 impl Parser<'_> {
     /// Whether a point and a name are next.
@@ -29,7 +29,7 @@ impl Parser<'_> {
         let extent = start.to(self.tokens.before());
         let mut written = Vec::new();
         written.extend(arguments.iter().map(ToString::to_string));
-        let written = format!(".{name}({})", written.join(", "));
+        let written = shortened(format!(".{name}({})", written.join(", ")));
         let Some(kind) = meant(&name, of, arguments) else {
             let message = format!(
                 "there are no methods here, as `{written}` would be: write a function, as in `sqrt(x)`"
@@ -37,8 +37,10 @@ impl Parser<'_> {
             return Err(place.to(self.tokens.before()).fault(message));
         };
         let meant = Expr { kind, extent };
-        let message =
-            format!("there are no methods here, as `{written}` would be: write `{meant}`");
+        let message = format!(
+            "there are no methods here, as `{written}` would be: write `{}`",
+            shortened(&meant)
+        );
         self.diagnostics.report(extent, message);
         Ok(meant)
     }

@@ -15,7 +15,7 @@ use syn::ext::IdentExt;
 
 use self::tokens::{Token, Tokens};
 use crate::ast::{Declaration, Equation, Form, Let, Statement};
-use crate::errors::Diagnostics;
+use crate::errors::{Diagnostics, LONGEST_NAME, shortened};
 
 /// Reads a declaration. `None` where not even its name could be read.
 pub fn parse(
@@ -23,8 +23,9 @@ pub fn parse(
     form: Form,
     diagnostics: &mut Diagnostics,
 ) -> Option<Declaration> {
+    let tokens = diagnostics.keep(Tokens::new(declaration))?;
     let mut parser = Parser {
-        tokens: Tokens::new(declaration),
+        tokens,
         depth: 0,
         diagnostics,
     };
@@ -217,11 +218,18 @@ impl Parser<'_> {
         match self.tokens.peek() {
             Token::Name(name) if syn::parse_str::<Ident>(&name.to_string()).is_ok() => {
                 let name = name.clone();
+                if name.to_string().len() > LONGEST_NAME {
+                    let message = format!("a name has at most {LONGEST_NAME} letters");
+                    return Err(self.tokens.here().fault(message));
+                }
                 self.tokens.next();
                 Ok(name)
             }
             Token::Name(name) => {
-                let message = format!("`{}` is a word of Rust: choose another name", name.unraw());
+                let message = format!(
+                    "`{}` is a word of Rust: choose another name",
+                    shortened(name.unraw())
+                );
                 Err(self.tokens.here().fault(message))
             }
             _ => Err(self.unexpected(expected)),

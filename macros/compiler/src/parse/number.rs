@@ -3,19 +3,20 @@
 use super::Parser;
 use crate::ast::{Expr, Kind};
 use crate::dag::Rational;
-use crate::errors::Extent;
+use crate::errors::{Extent, shortened};
 
 impl Parser<'_> {
     /// The number a literal stands for. What is glued to it is reported, and the number still returned.
     pub(super) fn number(&mut self, literal: &str, extent: Extent) -> syn::Result<Expr> {
         let (text, suffix) = split_suffix(literal);
+        let shown = shortened(literal);
         let Some(value) = Rational::from_decimal(text) else {
             let message = if text.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
                 format!(
-                    "`{literal}` is out of range: numbers are exact, with at most 38 digits before and after the point"
+                    "`{shown}` is out of range: numbers are exact, with at most 38 digits before and after the point"
                 )
             } else {
-                format!("`{literal}` is not a number")
+                format!("`{shown}` is not a number")
             };
             return Err(extent.fault(message));
         };
@@ -34,11 +35,13 @@ impl Parser<'_> {
         {
             self.diagnostics.report(
                 extent,
-                format!("write `{literal}` as a plain decimal number, such as `1.5e-3`"),
+                format!("write `{shown}` as a plain decimal number, such as `1.5e-3`"),
             );
         } else if !suffix.is_empty() {
             let message = format!(
-                "`{literal}` is read as one number with a suffix: write a star, `{text}*{suffix}`"
+                "`{shown}` is read as one number with a suffix: write a star, `{}*{}`",
+                shortened(text),
+                shortened(suffix)
             );
             self.diagnostics.report(extent, message);
         }

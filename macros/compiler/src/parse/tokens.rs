@@ -2,7 +2,10 @@
 
 use proc_macro2::{Delimiter, Ident, Spacing, Span, TokenStream, TokenTree};
 
-use crate::errors::Extent;
+use crate::errors::{Extent, shortened};
+
+/// More tokens than a declaration that compiles in good time has.
+const MOST_TOKENS: usize = 1 << 16;
 
 /// One token. The brackets of a group are tokens of their own.
 #[derive(Debug, Clone)]
@@ -30,12 +33,23 @@ pub struct Tokens {
 
 impl Tokens {
     /// Flattens a stream, without recursion: nothing is known yet of how deep it is.
-    pub fn new(stream: TokenStream) -> Self {
+    ///
+    /// # Errors
+    /// If it has too many tokens; the fault is at the first of these.
+    pub fn new(stream: TokenStream) -> syn::Result<Self> {
         let mut tokens: Vec<(Token, Span)> = Vec::new();
         let mut open: Vec<(usize, Delimiter, Span, proc_macro2::token_stream::IntoIter)> =
             Vec::new();
         let mut rest = stream.into_iter();
         loop {
+            if tokens.len() > MOST_TOKENS {
+                let place = tokens
+                    .last()
+                    .map_or_else(Span::call_site, |(_, span)| *span);
+                return Err(Extent::at(place).fault(format!(
+                    "more than {MOST_TOKENS} names, numbers and marks: write what repeats as a loop"
+                )));
+            }
             match rest.next() {
                 Some(TokenTree::Group(group)) => {
                     open.push((tokens.len(), group.delimiter(), group.span_close(), rest));
@@ -67,10 +81,10 @@ impl Tokens {
             .last()
             .map_or_else(Span::call_site, |(_, span)| *span);
         tokens.push((Token::End, last));
-        Self {
+        Ok(Self {
             tokens,
             position: 0,
-        }
+        })
     }
 
     /// The next token.
@@ -161,8 +175,8 @@ impl Tokens {
     /// The next token as a message names it.
     pub fn found(&self) -> String {
         match self.peek() {
-            Token::Name(name) => format!("`{name}`"),
-            Token::Literal(text) => format!("`{text}`"),
+            Token::Name(name) => format!("`{}`", shortened(name)),
+            Token::Literal(text) => format!("`{}`", shortened(text)),
             Token::Mark(mark, _) => format!("`{mark}`"),
             Token::Open(delimiter, _) => format!("`{}`", brackets(*delimiter).0),
             Token::Close(delimiter) => format!("`{}`", brackets(*delimiter).1),

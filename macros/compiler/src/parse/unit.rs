@@ -19,7 +19,7 @@ impl Parser<'_> {
         Ok(Some((unit, start.to(self.tokens.before()))))
     }
 
-    fn product_of_units(&mut self) -> syn::Result<Unit> {
+    pub(super) fn product_of_units(&mut self) -> syn::Result<Unit> {
         let mut unit = self.power_of_unit()?;
         loop {
             let divided = self.tokens.is("/");

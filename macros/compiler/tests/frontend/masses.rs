@@ -71,3 +71,38 @@ fn masses_that_cannot_vanish_or_have_no_range_are_kept() {
     }
     model("M(x) { param k in 0.0..; ddot(x) + k*x = 0; }");
 }
+
+#[test]
+fn negative_masses_are_refused() {
+    for (parameters, mass, message) in [
+        ("", "-1", "the mass of `x` is negative: change the signs"),
+        (
+            "param m < 0;",
+            "m",
+            "the mass of `x` is negative: change the signs",
+        ),
+        (
+            "param m > 0;",
+            "-2*m",
+            "the mass of `x` is negative: change the signs",
+        ),
+        (
+            "param m = -1;",
+            "m",
+            "with the defaults of the parameters the mass of `x` is -1: ",
+        ),
+        (
+            "param m = 1; param e = 3;",
+            "(m - e)",
+            "with the defaults of the parameters the mass of `x` is -2: ",
+        ),
+    ] {
+        let text = faults(&format!(
+            "M(x) {{ {parameters} {mass}*ddot(x) + x^3 = cos(omega*t); }}"
+        ));
+        assert!(text.contains(message), "{text}\nwith {mass}");
+    }
+    // Signs are known of equations with one inertia.
+    model("M(x, y) { ddot(x) - ddot(y) + x = 0; ddot(y) - 2*ddot(x) + y = 0; }");
+    model("M(x) { param m; m*ddot(x) + x = 0; }");
+}

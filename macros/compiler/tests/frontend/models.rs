@@ -1,5 +1,8 @@
 //! Declarations and what they are lowered to.
 
+use hertzian_compiler::dag::Variable;
+use hertzian_compiler::ir::Place;
+
 use crate::{assert_model, faults, model, summary};
 
 #[test]
@@ -193,4 +196,56 @@ fn all_faults_are_reported_at_once() {
     ] {
         assert!(text.contains(word), "{word}: {text}");
     }
+}
+
+/// The force of a polynomial is the polynomial: compared where all coordinates have values, by the pieces of its laws.
+#[test]
+fn polynomials_of_several_coordinates_are_taken_apart() {
+    let values = [0.7_f64, -1.3, 0.4, 0.9];
+    let [x, y, z, w] = values;
+    for (text, expected) in [
+        ("(1+x)*(1+y)*(1+z)", (1.0 + x) * (1.0 + y) * (1.0 + z)),
+        ("(2-x)*(1+y)", (2.0 - x) * (1.0 + y)),
+        ("(x*y+1)^3", (x * y + 1.0).powi(3)),
+        ("(x+y*z-2)^2*w", (x + y * z - 2.0).powi(2) * w),
+        ("(1+x*y*z*w)^2", (1.0 + x * y * z * w).powi(2)),
+        ("x^2*y^2*z^2*w^2", (x * y * z * w).powi(2)),
+        ("x^5*y*z*w", x.powi(5) * y * z * w),
+    ] {
+        let model = model(&format!(
+            "M(x, y, z, w) {{ ddot(x) + {text} = 0; ddot(y) = 0; ddot(z) = 0; ddot(w) = 0; }}"
+        ));
+        let number = |id| model.dag.evaluate(id, &|_| f64::NAN);
+        let mut sum = 0.0;
+        let mut gaps = vec![0.0; model.contacts.len()];
+        let mut factors = vec![0.0; model.contacts.len()];
+        for &(place, id) in &model.coefficients {
+            match place {
+                Place::Stiffness { row: 0, column, .. } => sum += number(id) * values[column],
+                Place::Load { row: 0, .. } => sum -= number(id),
+                Place::GapDirection {
+                    contact, column, ..
+                } => gaps[contact] += number(id) * values[column],
+                Place::ForceDirection {
+                    contact, row: 0, ..
+                } => factors[contact] += number(id),
+                _ => {}
+            }
+        }
+        for (index, contact) in model.contacts.iter().enumerate() {
+            let gap = |variable| {
+                if variable == Variable::Gap {
+                    gaps[index]
+                } else {
+                    f64::NAN
+                }
+            };
+            sum += factors[index] * model.dag.evaluate(model.laws[contact.law].pieces[0], &gap);
+        }
+        assert!(
+            (sum - expected).abs() < 1e-11,
+            "{text}: {sum}, not {expected}"
+        );
+    }
+    assert!(faults("M(x, y) { ddot(x) + x^8*y = 0; ddot(y) = 0; }").contains("up to the degree 8"));
 }

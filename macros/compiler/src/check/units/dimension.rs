@@ -81,8 +81,34 @@ impl Dimension {
 }
 
 impl fmt::Display for Dimension {
-    /// Forces as `N`, all else in base units.
+    /// A symbol where there is one; else forces as `N` and all else in base units. A power of ten becomes a prefix: of the symbols
+    /// that can carry it, the one with which the whole is shortest.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let is_own = |symbol: &&str| Self::of_symbol(symbol) == Some(*self);
+        let names = SYMBOLS.iter().map(|(symbol, _)| *symbol);
+        if let Some(symbol) = names.clone().filter(|symbol| *symbol != "rad").find(is_own) {
+            return formatter.write_str(symbol);
+        }
+        let lengths = ["mm", "um", "nm"].into_iter();
+        let prefixed = lengths.chain(names).filter_map(|symbol| self.with(symbol));
+        let shortest = prefixed.min_by_key(|text| (text.contains('('), text.len()));
+        match shortest.filter(|_| !self.0[5].is_zero()) {
+            Some(text) => formatter.write_str(&text),
+            None => formatter.write_str(&self.in_base_units(None)),
+        }
+    }
+}
+
+impl Dimension {
+    /// The power of a symbol that carries the power of ten, and the rest in base units; `None` where the symbol cannot.
+    fn with(self, symbol: &str) -> Option<String> {
+        let own = Self::of_symbol(symbol)?;
+        let power = self.0[5].checked_div(own.0[5])?;
+        let rest = self.times(own.power(power.negate()?)?)?;
+        Some(rest.in_base_units(Some((symbol, power))))
+    }
+
+    fn in_base_units(self, first: Option<(&str, Rational)>) -> String {
         let mut factors: Vec<(&str, Rational)> = BASES.into_iter().zip(self.0).collect();
         let mass = self.0[0];
         let newtons = Self::of_symbol("N")
@@ -92,6 +118,10 @@ impl fmt::Display for Dimension {
             factors = BASES.into_iter().zip(rest.0).collect();
             factors[0] = ("N", mass);
         }
+        if let Some(first) = first {
+            let at = usize::from(factors[0].0 == "N");
+            factors.insert(at, first);
+        }
         factors.retain(|(_, exponent)| !exponent.is_zero());
         let (above, below): (Vec<_>, Vec<_>) = factors
             .into_iter()
@@ -100,12 +130,12 @@ impl fmt::Display for Dimension {
         if text.is_empty() {
             text.push("1".to_owned());
         }
-        formatter.write_str(&text.join("*"))?;
+        let mut text = text.join("*");
         for (base, exponent) in below {
             let positive = exponent.absolute().unwrap_or(exponent);
-            write!(formatter, "/{}", power_text(&(base, positive)))?;
+            text = format!("{text}/{}", power_text(&(base, positive)));
         }
-        Ok(())
+        text
     }
 }
 

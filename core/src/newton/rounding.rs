@@ -1,0 +1,42 @@
+//! Where rounding of the residual keeps updates from becoming small.
+//!
+//! The tolerance is relative to what oscillates, rounding is relative to the whole: to means, offsets and forces. A small motion about
+//! a static state is known to fewer digits than are asked for. A solution is then one whose residual is not larger than the rounding of
+//! the terms it is summed from.
+//!
+//! Source: Higham (2002), Accuracy and Stability of Numerical Algorithms, section 25.2 (the limiting residual of Newton's method).
+
+use super::Newton;
+use crate::continuation::problem::Problem;
+
+/// A residual of so many roundings of its terms is nothing but rounding: sums over harmonics and nodes add up.
+const ROUNDINGS: f64 = 64.0;
+
+impl Newton {
+    /// Whether the residual at `u` is nothing but rounding. If so, keeps what it makes of an update.
+    pub(super) fn is_rounding(&mut self, problem: &mut impl Problem, u: &[f64]) -> bool {
+        let n = self.norm.unknowns();
+        let before = problem.operations();
+        let known = problem.terms(u, &mut self.trial[..n]);
+        self.operations += problem.operations() - before;
+        let within = |(r, terms): (&f64, &f64)| r.abs() <= ROUNDINGS * f64::EPSILON * terms;
+        if !known || !self.residual[..n].iter().zip(&self.trial).all(within) {
+            return false;
+        }
+        for (to, r) in self.trial[..n].iter_mut().zip(&self.residual) {
+            *to = (f64::EPSILON * *to).copysign(*r);
+        }
+        self.trial[n] = 0.0;
+        let mut made = std::mem::take(&mut self.trial);
+        self.solve(&mut made);
+        self.rounding = self.norm.length(self.scale, &made);
+        self.trial = made;
+        self.rounding.is_finite()
+    }
+
+    /// What rounding of the residual makes of an update, in the units of what oscillates, where the last correction ended there; zero
+    /// otherwise.
+    pub fn rounding_size(&self) -> f64 {
+        self.rounding * self.scale.oscillation
+    }
+}

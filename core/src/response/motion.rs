@@ -1,0 +1,90 @@
+//! How a start moves states of the system in time.
+
+use std::f64::consts::TAU;
+
+use crate::flow::{self, Flow, FlowError, Options, Stretch};
+use crate::follower::Follower;
+use crate::start::{Moved, Moving};
+use crate::system::{System, Variable};
+
+/// Tolerance of motions that only lead to a guess.
+const TOLERANCE: f64 = 1e-7;
+/// Multiplications for the force of a contact at one instant.
+const PER_CONTACT: u64 = 64;
+
+/// Moves a state of the system of a branch.
+pub(super) fn moved(follower: &Follower<'_>, moving: Moving<'_>) -> Moved {
+    let mut parameters = follower.parameters.clone();
+    let mut omega = moving.omega;
+    match moving.variable {
+        Variable::Omega => omega = moving.value,
+        Variable::Parameter(index) => parameters[index] = moving.value,
+    }
+    let options = Options::default().tolerance(TOLERANCE);
+    let Ok(mut flow) = flow::at(follower.system, &parameters, omega, options) else {
+        return Moved {
+            positions: None,
+            operations: 0,
+        };
+    };
+    let most = usize::try_from(moving.most / per_force(follower.system)).unwrap_or(usize::MAX);
+    let positions = recorded(flow.as_mut(), moving, most).ok().flatten();
+    Moved {
+        positions,
+        operations: flow.work().forces as u64 * per_force(follower.system),
+    }
+}
+
+/// Positions over the last periods, unless that takes more than so many evaluations of the force.
+///
+/// # Errors
+/// If the motion cannot be continued.
+fn recorded(
+    flow: &mut dyn Flow,
+    moving: Moving<'_>,
+    most: usize,
+) -> Result<Option<Vec<f64>>, FlowError> {
+    let Moving {
+        state,
+        skipped,
+        recorded,
+        samples,
+        ..
+    } = moving;
+    for _ in 0..skipped {
+        flow.advance(0.0, TAU, state, None, None)?;
+        if flow.work().forces > most {
+            return Ok(None);
+        }
+    }
+    let coordinates = flow.coordinates();
+    let count = recorded * samples;
+    let mut positions = vec![0.0; coordinates * count];
+    let mut between = state.to_vec();
+    for period in 0..recorded {
+        let mut next = 0;
+        let mut see = |stretch: &dyn Stretch| {
+            let end = stretch.phases().1;
+            while next < samples {
+                let phase = TAU * next as f64 / samples as f64;
+                if phase > end {
+                    break;
+                }
+                stretch.state(phase, &mut between);
+                for (i, x) in between[..coordinates].iter().enumerate() {
+                    positions[i * count + period * samples + next] = *x;
+                }
+                next += 1;
+            }
+        };
+        flow.advance(0.0, TAU, state, None, Some(&mut see))?;
+    }
+    Ok(positions.iter().all(|x| x.is_finite()).then_some(positions))
+}
+
+/// Multiplications for all forces at one instant, about.
+fn per_force(system: &dyn System) -> u64 {
+    let facts = system.facts();
+    let order = facts.coordinates.len() as u64;
+    PER_CONTACT * facts.contacts.len() as u64 + 4 * order * order
+}
