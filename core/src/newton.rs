@@ -292,12 +292,7 @@ impl Newton {
         self.contraction
     }
 
-    /// How far from the solution the last correction ended, estimated, in units of the scale.
-    pub fn left(&self) -> f64 {
-        self.left
-    }
-
-    /// The same in the units of what oscillates: a mean over coordinates and time.
+    /// How far from the solution the last correction ended, estimated, in the units of what oscillates: a mean over coordinates and time.
     pub fn left_in_oscillation(&self) -> f64 {
         self.left * self.scale.oscillation
     }
