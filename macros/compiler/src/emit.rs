@@ -107,7 +107,9 @@ fn wrap_items(items: &TokenStream) -> TokenStream {
         #[allow(missing_docs, nonstandard_style, unused, unused_qualifications)]
         const _: () = {
             use ::core::primitive::{f64, usize};
-            use ::hertzian::{emitted as __emitted, generic as __generic, law as __law, system as __system};
+            // One name, so that a crate which cannot be found is one error. A glob would report each of its names.
+            use ::hertzian as __hertzian;
+            use __hertzian::{emitted as __emitted, generic as __generic, law as __law, system as __system};
             use ::std::borrow::Cow as __Cow;
 
             #items

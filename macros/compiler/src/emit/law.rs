@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 
 use super::code::{base, position};
 use super::data;
-use super::names::locals;
+use super::names::{imported, locals};
 use super::shared::{Shared, share_bases};
 use crate::dag::{Dag, Id, Variable};
 use crate::facts::Piece;
@@ -48,11 +48,12 @@ pub fn family(dag: &mut Dag, law: &Law, index: usize) -> TokenStream {
         });
         of_whole.extend(quote!(.with_parts(&SPRING, &PRIMITIVE)));
     }
+    let names = imported(&quote!(#nodes #of_parts #of_whole));
     quote! {
         #functions
 
         static #whole: __emitted::Generated<#kernels, #arguments, #levels, #values> = {
-            use __emitted::constants::*;
+            #names
             #nodes
             #of_parts
             #of_whole

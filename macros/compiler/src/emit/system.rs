@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 
 use super::code::{Code, position};
 use super::data::{bound, list, text};
-use super::names::locals;
+use super::names::{imported, locals};
 use super::tape::{Style, Tape};
 use crate::dag::{Id, Variable};
 use crate::differentiate::differentiate;
@@ -144,9 +144,10 @@ fn facts(model: &Model) -> TokenStream {
         quote!(contact(#law))
     }));
     let places = list(model.coefficients.iter().map(|&(at, _)| place(at)));
+    let names = imported(&quote!(#parameters #contacts #places));
     quote! {
         {
-            use __emitted::constants::*;
+            #names
             const PARAMETERS: &[__system::ParameterFacts] = #parameters;
             __system::SystemFacts {
                 name: #name,
