@@ -9,12 +9,14 @@
 //!
 //! The chapter "A measured contact" of the book says what agrees with what they describe, and what could not be compared.
 
+use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
 use hertzian::backbone::FreeOscillation;
 use hertzian::chart::{Chart, Curve, Markers, Reference};
 use hertzian::{Branch, Error, FrequencyResponse, Point};
+use hertzian_examples::program::print;
 
 hertzian::oscillator! {
     Ball(q) {
@@ -39,7 +41,8 @@ const SIGMA: [f64; 4] = [0.004, 0.02, 0.03, 0.034];
 const TOUCH: f64 = 1.842_015_749_320_193;
 
 fn main() -> ExitCode {
-    match run(Path::new("contact_resonance.svg")) {
+    let printed = run(Path::new("contact_resonance.svg")).and_then(|text| Ok(print(&text)?));
+    match printed {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
@@ -48,16 +51,20 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+fn run(path: &Path) -> Result<String, Box<dyn std::error::Error>> {
     let mut chart = Chart::new("A ball pressed on a plane by its weight, damping ratio 1 %")
         .x("frequency / linear resonance")
         .y("peak-to-peak / static displacement");
     let mut folds = Vec::new();
-    println!("sigma  peak   at      jumps at              contact lost from");
+    let mut text = String::new();
+    writeln!(
+        text,
+        "sigma  peak   at      jumps at              contact lost from"
+    )?;
     for sigma in SIGMA {
         let model = Ball { zeta: ZETA, sigma };
         let branch = FrequencyResponse::of(&model).from(1.1).to(0.75).run()?;
-        println!("{}", described(sigma, &branch));
+        writeln!(text, "{}", described(sigma, &branch))?;
         folds.extend(
             branch
                 .folds()
@@ -84,10 +91,13 @@ fn run(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         })
         .write(path)?;
     if let Some([omega, size]) = touch {
-        println!("free oscillation leaves contact at {omega:.6}, peak-to-peak {size:.6}");
+        writeln!(
+            text,
+            "free oscillation leaves contact at {omega:.6}, peak-to-peak {size:.6}"
+        )?;
     }
-    println!("written {}", path.display());
-    Ok(())
+    writeln!(text, "written {}", path.display())?;
+    Ok(text)
 }
 
 /// Largest vibration, folds, and where on the branch contact is lost first.

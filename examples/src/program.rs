@@ -63,8 +63,11 @@ pub fn options<O>(name: &str, parsed: Result<O, clap::Error>) -> Result<O, ExitC
     })
 }
 
-/// Prints a text, all of it.
-fn print(text: &str) -> io::Result<()> {
+/// Prints a text, all of it, unless nobody reads it any more.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn print(text: &str) -> io::Result<()> {
     let mut out = io::stdout();
     unless_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
