@@ -104,6 +104,18 @@ pub enum Error {
         /// Its determinant.
         determinant: f64,
     },
+    /// An equation holds one second derivative alone, and its mass is negative.
+    NegativeMass {
+        /// The coordinate.
+        coordinate: String,
+        /// Its mass.
+        mass: f64,
+    },
+    /// The mass matrix is symmetric and not positive definite: there are motions of negative kinetic energy.
+    IndefiniteMass {
+        /// Its smallest eigenvalue.
+        eigenvalue: f64,
+    },
     /// A branch passes a value between two of its points, but the orbit there could not be computed.
     Lost {
         /// The value.
@@ -235,6 +247,8 @@ sentence_as_debug! {
     Harmonics { harmonics, highest }
     NoCoordinates {}
     SingularMass { determinant }
+    NegativeMass { coordinate, mass }
+    IndefiniteMass { eigenvalue }
     Lost { value, from, to }
     NoStart { value, reason }
     State { entries, expected }

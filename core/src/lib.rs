@@ -37,7 +37,7 @@
 //! | motions in time, and what they settle to | [`flow`]: histories, sections, sweeps, Lyapunov exponents, basins |
 //! | a structure given as matrices, with contacts | [`structure`], whose laws [`law!`] declares |
 //! | pictures and tables | `chart` (feature `plot`), [`export`] |
-//! | what can go wrong | [`error`] |
+//! | what can go wrong, and what is unusual about a system | [`error`], [`remarks`] |
 //! | the contract of generated code, for systems and laws by hand | [`system`], [`law`](mod@law), [`fourier::series`] |
 //! | the same declarations interpreted, or read from text | [`generic`] |
 //! | how powers are computed, and how to pin that | [`power`] |
@@ -103,6 +103,7 @@ pub mod power;
 #[cfg(test)]
 mod random;
 mod reader;
+pub mod remarks;
 mod response;
 mod run;
 pub mod stability;

@@ -198,7 +198,7 @@ pub(crate) fn levels(system: &dyn System, parameters: &[f64], omega: f64) -> Res
     Ok(())
 }
 
-/// The mass matrix can be inverted.
+/// The mass matrix can be inverted, and gives no motion a negative energy.
 pub(crate) fn mass(system: &dyn System, parameters: &[f64], omega: f64) -> Result<(), Error> {
     let layout = Layout::of(system);
     let mut coefficients = vec![0.0; layout.coefficients];
@@ -208,7 +208,34 @@ pub(crate) fn mass(system: &dyn System, parameters: &[f64], omega: f64) -> Resul
         mass[(entry.row, entry.column)] += coefficients[entry.coefficient];
     }
     let determinant: f64 = mass.determinant();
-    regular(&mass).map_err(|_| Error::SingularMass { determinant })
+    regular(&mass).map_err(|_| Error::SingularMass { determinant })?;
+    energy_is_positive(system.facts(), &mass)
+}
+
+/// A mass that stands alone in its equation is positive, and a symmetric matrix is positive definite. Of others nothing is known: the
+/// equations may be combined or in any order, as a zero on the diagonal says.
+fn energy_is_positive(facts: &SystemFacts, mass: &DMatrix<f64>) -> Result<(), Error> {
+    for row in mass.row_iter() {
+        let mut entries = row.iter().enumerate().filter(|(_, entry)| **entry != 0.0);
+        if let (Some((column, &own)), None) = (entries.next(), entries.next())
+            && own < 0.0
+        {
+            let coordinate = facts.coordinates[column].to_string();
+            return Err(Error::NegativeMass {
+                coordinate,
+                mass: own,
+            });
+        }
+    }
+    let largest = mass.amax();
+    let is_symmetric = (mass - mass.transpose()).amax() <= 1e-12 * largest;
+    if is_symmetric && mass.diagonal().min() > 0.0 {
+        let eigenvalue = mass.symmetric_eigenvalues().min();
+        if eigenvalue < 0.0 {
+            return Err(Error::IndefiniteMass { eigenvalue });
+        }
+    }
+    Ok(())
 }
 
 /// A pivot of a mass matrix that is smaller than this share of the largest is taken for zero.

@@ -82,6 +82,13 @@ pub enum Stop {
         /// What the last correction said.
         reason: NewtonError,
     },
+    /// The orbits grow without bound while what is varied hardly moves: a resonance that no damping limits.
+    Unbounded {
+        /// Where.
+        value: f64,
+        /// How many times the first orbit's oscillation the last one is.
+        growth: f64,
+    },
     /// The caller asked to stop.
     Interrupted,
 }
@@ -107,6 +114,10 @@ impl std::fmt::Display for Stop {
                     "no further solution found at {value} with a step of {step:.1e}: {reason}"
                 )
             }
+            Self::Unbounded { value, growth } => write!(
+                f,
+                "the oscillation grew {growth:.0e} times towards {value:.12}, without an end: a resonance without damping"
+            ),
             Self::Interrupted => write!(f, "interrupted"),
         }
     }
@@ -235,6 +246,9 @@ pub(crate) fn follow_until_stuck<P: Problem>(
         if count == 0 {
             first = point.clone();
         }
+        if let Some(stop) = unbounded(&first, &point) {
+            return stopped(stop);
+        }
         count += 1;
         if count >= options.points {
             return stopped(Stop::PointLimit {
@@ -255,6 +269,19 @@ pub(crate) fn follow_until_stuck<P: Problem>(
             }
         }
     }
+}
+
+/// An oscillation that has grown so many times, while the branch goes on upwards, has no bound: beside a resonance with less damping
+/// than `1 / GROWTH` rounding of the frequency is all that is left.
+const GROWTH: f64 = 1e10;
+
+fn unbounded(first: &CurvePoint, point: &CurvePoint) -> Option<Stop> {
+    let growth = point.scale.oscillation / first.scale.oscillation;
+    let upwards = point.parameter_slope().abs() * GROWTH < point.scale.parameter.recip();
+    (growth > GROWTH && upwards).then(|| Stop::Unbounded {
+        value: point.parameter(),
+        growth,
+    })
 }
 
 /// What a visitor sees.

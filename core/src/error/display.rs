@@ -135,6 +135,14 @@ impl fmt::Display for Error {
                     "the mass matrix is singular: its determinant is {determinant:e}"
                 )
             }
+            Self::NegativeMass { coordinate, mass } => write!(
+                f,
+                "the mass of {coordinate} is {mass:e}, and a mass is positive: change the parameters, or the signs of the equation"
+            ),
+            Self::IndefiniteMass { eigenvalue } => write!(
+                f,
+                "the mass matrix is symmetric and has the eigenvalue {eigenvalue:e}: kinetic energy is positive"
+            ),
             Self::Lost { value, from, to } => {
                 write!(
                     f,

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hertzian::chart::{Chart, Reference};
 use hertzian::export::{self, Table};
-use hertzian::{Branch, Error, FrequencyResponse, Point, Stop, System};
+use hertzian::{Branch, Error, FrequencyResponse, Point, Stop, System, remarks};
 
 use super::backbone;
 use super::bifurcations;
@@ -118,7 +118,9 @@ pub fn run(
     };
     let branch = request(options, &*model).run_with(|point| see(point.value))?;
 
-    let mut warnings = Vec::new();
+    let omega = branch.points.first().map_or(1.0, |point| point.orbit.omega);
+    let remarks = remarks::of(&*model, omega).into_iter();
+    let mut warnings: Vec<String> = remarks.map(|remark| remark.to_string()).collect();
     let at = solutions_at(options, &branch, &mut warnings);
     let mut record = Record::of(&branch, options, &at);
     let mut table = Table::of(&*model);

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use hertzian::{Error, FrequencyResponse, Stop, Verdict};
+use hertzian::{Error, FrequencyResponse, Stop, Verdict, oscillator};
 
 use crate::{CONTACT, Fractional, OneSided, Pair};
 
@@ -160,6 +160,33 @@ fn what_cannot_be_represented_is_refused() {
         refused(FrequencyResponse::of(&singular).from(0.6).to(1.6)),
         Error::SingularMass { determinant: 0.0 }
     );
+}
+
+oscillator! {
+    /// A linear oscillator without damping: its amplitude is `drive / |1 - omega^2|`.
+    Undamped(x) {
+        param drive;
+        ddot(x) + x = drive*cos(omega*t);
+    }
+}
+
+#[test]
+fn a_resonance_without_damping_has_no_end() {
+    for (drive, from, to) in [(1.0, 0.5, 1.5), (1e-9, 0.5, 1.5), (1.0, 1.5, 0.5)] {
+        let model = Undamped { drive };
+        let branch = FrequencyResponse::of(&model)
+            .from(from)
+            .to(to)
+            .run()
+            .unwrap();
+        let Stop::Unbounded { value, growth } = branch.stopped else {
+            panic!("{:?}", branch.stopped);
+        };
+        assert!((value - 1.0).abs() < 1e-9 && growth > 1e10);
+        let point = &branch.points[branch.points.len() / 2];
+        let exact = 2.0 * drive / (1.0 - point.value * point.value).abs();
+        assert!((point.peak_to_peak() / exact - 1.0).abs() < 1e-6);
+    }
 }
 
 #[test]

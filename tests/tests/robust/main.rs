@@ -100,6 +100,7 @@ fn ended(stop: Stop) -> String {
         Stop::Closed => "curve, closed".to_owned(),
         Stop::Joined { .. } => "curve, joined one of a shorter period".to_owned(),
         Stop::PointLimit { .. } => "curve, as many points as asked for".to_owned(),
+        Stop::Unbounded { .. } => "curve, grew without bound".to_owned(),
         Stop::StepTooShort { reason, .. } => format!("stopped early: {}", in_words(reason)),
         other => other.to_string(),
     }
