@@ -31,7 +31,7 @@ use judge::Case;
 use report::{Kind, Report};
 
 /// Models by default.
-const MODELS: u64 = 15;
+const MODELS: u64 = 30;
 /// A model that has not ended after this is taken for one that never ends.
 const HUNG: Duration = Duration::from_secs(600);
 /// Part of the stated errors of peak-to-peak that may be exceeded three times, and how many may be among few.
