@@ -5,6 +5,7 @@ use std::mem::discriminant;
 use std::time::Duration;
 
 use crate::continuation::follow::Stop;
+use crate::decimal::Decimal;
 use crate::error::Error;
 use crate::export::Table;
 use crate::follower::Follower;
@@ -80,7 +81,8 @@ pub struct Point {
     pub stability: Stability,
     /// What is read off it.
     pub observed: Observed,
-    /// Estimated relative error of peak-to-peak from the harmonics that were left out; `None` where neither the tolerance nor
+    /// Estimated error of peak-to-peak from the harmonics that were left out: of the first coordinate relative to its own, of the others
+    /// relative to the largest of all. A first coordinate that moves less than a millionth of that is measured by a millionth. `None` where neither the tolerance nor
     /// the stability asked for it. Infinite where it could not be estimated: nothing is known of the error then.
     pub error: Option<f64>,
 }
@@ -176,10 +178,11 @@ impl fmt::Display for Event {
             contacts,
             ..
         } = self;
-        let (value, size) = (point.value, point.peak_to_peak());
+        let value = Decimal::rounded(point.value, 9);
+        let size = Decimal::rounded(point.peak_to_peak(), 6);
         write!(
             f,
-            "{kind} at {value:.9} (error {error:.0e}), peak-to-peak {size:.6}"
+            "{kind} at {value} (error {error:.0e}), peak-to-peak {size}"
         )?;
         if *contacts > 1 {
             write!(f, ", {contacts} contacts at once")?;

@@ -1,5 +1,6 @@
 //! What charts say of a branch: the system with its parameters, and what is at the axes.
 
+use crate::decimal::Decimal;
 use crate::system::SystemFacts;
 
 /// Title and axes.
@@ -18,8 +19,9 @@ impl Labels {
     pub(crate) fn of(facts: &SystemFacts, varied: &str, parameters: &[f64], omega: f64) -> Self {
         let known = facts.parameters.iter().zip(parameters);
         let held = known.filter(|(parameter, _)| parameter.name != varied);
-        let values = held.map(|(parameter, value)| format!("{} = {value}", parameter.name));
-        let omega = (varied != "omega").then(|| format!("omega = {omega}"));
+        let values = held
+            .map(|(parameter, value)| format!("{} = {}", parameter.name, Decimal::plain(*value)));
+        let omega = (varied != "omega").then(|| format!("omega = {}", Decimal::plain(omega)));
         let omega = omega.filter(|_| !parameters.is_empty());
         let labels = Self {
             title: facts.name.to_string(),

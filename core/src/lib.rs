@@ -79,6 +79,7 @@ mod by_hand;
 #[cfg(feature = "plot")]
 pub mod chart;
 mod continuation;
+mod decimal;
 #[doc(hidden)]
 pub mod emitted;
 pub mod error;

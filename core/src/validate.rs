@@ -8,6 +8,7 @@ use std::ops::RangeInclusive;
 use nalgebra::DMatrix;
 
 use crate::continuation::step::StepControl;
+use crate::decimal::Decimal;
 use crate::error::Error;
 use crate::layout::Layout;
 use crate::system::{Bound, ParameterFacts, System, SystemFacts, Variable};
@@ -109,13 +110,13 @@ fn parameter(facts: &ParameterFacts, value: f64) -> Result<(), Error> {
 pub(crate) fn described(minimum: Bound, maximum: Bound) -> String {
     let lower = match minimum {
         Bound::Unbounded => "(-inf".to_owned(),
-        Bound::Included(bound) => format!("[{bound}"),
-        Bound::Excluded(bound) => format!("({bound}"),
+        Bound::Included(bound) => format!("[{}", Decimal::plain(bound)),
+        Bound::Excluded(bound) => format!("({}", Decimal::plain(bound)),
     };
     let upper = match maximum {
         Bound::Unbounded => "inf)".to_owned(),
-        Bound::Included(bound) => format!("{bound}]"),
-        Bound::Excluded(bound) => format!("{bound})"),
+        Bound::Included(bound) => format!("{}]", Decimal::plain(bound)),
+        Bound::Excluded(bound) => format!("{})", Decimal::plain(bound)),
     };
     format!("{lower}, {upper}")
 }

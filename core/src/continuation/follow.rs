@@ -15,6 +15,7 @@
 use super::problem::{Problem, Scale};
 use super::step::StepControl;
 use super::walk::{Begun, Walk};
+use crate::decimal::Decimal;
 use crate::newton::{Newton, NewtonError, NewtonOptions};
 
 /// What to follow, and how far.
@@ -101,7 +102,8 @@ impl std::fmt::Display for Stop {
             Self::Closed => write!(f, "closed upon itself"),
             Self::Joined { period, value } => write!(
                 f,
-                "joined a branch of orbits of period {period} at {value:.9}; beyond, the same orbits would follow again, shifted or mirrored"
+                "joined a branch of orbits of period {period} at {}; beyond, the same orbits would follow again, shifted or mirrored",
+                Decimal::rounded(*value, 9)
             ),
             Self::PointLimit { points } => write!(f, "reached the limit of {points} points"),
             Self::StepTooShort {
@@ -111,12 +113,14 @@ impl std::fmt::Display for Stop {
             } => {
                 write!(
                     f,
-                    "no further solution found at {value} with a step of {step:.1e}: {reason}"
+                    "no further solution found at {} with a step of {step:.1e}: {reason}",
+                    Decimal::plain(*value)
                 )
             }
             Self::Unbounded { value, growth } => write!(
                 f,
-                "the oscillation grew {growth:.0e} times towards {value:.12}, without an end: a resonance without damping"
+                "the oscillation grew {growth:.0e} times towards {}, without an end: a resonance without damping",
+                Decimal::rounded(*value, 12)
             ),
             Self::Interrupted => write!(f, "interrupted"),
         }

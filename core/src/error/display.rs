@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::Error;
+use crate::decimal::Decimal;
 
 impl Error {
     /// What is written of names, options and ranges.
@@ -16,12 +17,7 @@ impl Error {
                 write!(f, "there is no parameter {name}; there are {known}")
             }
             Self::Option { name, value, must } => {
-                let size = value.abs();
-                if size == 0.0 || (1e-6..1e15).contains(&size) || !size.is_finite() {
-                    write!(f, "{name} = {value}: {must}")
-                } else {
-                    write!(f, "{name} = {value:e}: {must}")
-                }
+                write!(f, "{name} = {}: {must}", Decimal::plain(*value))
             }
             Self::Missing { name: "omega" } => write!(
                 f,
@@ -36,7 +32,11 @@ impl Error {
             Self::Missing { name } => write!(f, "`{name}` has not been given"),
             Self::Varied { name, must } => write!(f, "what is varied is {name}: it {must}"),
             Self::EmptyRange { value } => {
-                write!(f, "the range is empty: from and to are both {value}")
+                write!(
+                    f,
+                    "the range is empty: from and to are both {}",
+                    Decimal::plain(*value)
+                )
             }
             _ => Ok(()),
         }
@@ -82,13 +82,24 @@ impl Error {
                 between: [low, high],
             } => write!(
                 f,
-                "no orbit in phase resonance found at {value} between the excitation frequencies {low} and {high}"
+                "no orbit in phase resonance found at {} between the excitation frequencies {} and {}",
+                Decimal::plain(*value),
+                Decimal::plain(*low),
+                Decimal::plain(*high)
             ),
             Self::Search { value, reason } => {
-                write!(f, "attractors at {value} could not be looked for: {reason}")
+                write!(
+                    f,
+                    "attractors at {} could not be looked for: {reason}",
+                    Decimal::plain(*value)
+                )
             }
             Self::NoBranch { kind, value } => {
-                write!(f, "no further branch was found at the {kind} at {value:.9}")
+                write!(
+                    f,
+                    "no further branch was found at the {kind} at {}",
+                    Decimal::rounded(*value, 9)
+                )
             }
             _ => Ok(()),
         }
@@ -99,7 +110,11 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Parameter { name, value, range } => {
-                write!(f, "parameter {name} = {value} is outside its range {range}")
+                write!(
+                    f,
+                    "parameter {name} = {} is outside its range {range}",
+                    Decimal::plain(*value)
+                )
             }
             Self::UnknownParameter { .. }
             | Self::Option { .. }
@@ -146,20 +161,33 @@ impl fmt::Display for Error {
             Self::Lost { value, from, to } => {
                 write!(
                     f,
-                    "the orbit at {value}, between those at {from} and {to}, could not be computed"
+                    "the orbit at {}, between those at {} and {}, could not be computed",
+                    Decimal::plain(*value),
+                    Decimal::plain(*from),
+                    Decimal::plain(*to)
                 )
             }
             Self::NoStart { value, reason } => {
-                write!(f, "no periodic orbit found at {value}: {reason}")
+                write!(
+                    f,
+                    "no periodic orbit found at {}: {reason}",
+                    Decimal::plain(*value)
+                )
             }
             Self::State { .. } | Self::Values { .. } | Self::NotAffine => self.of_motions(f),
             Self::Beyond { value, fold } => write!(
                 f,
-                "no periodic orbit at {value} near the given one: its branch turns back at {fold:.12}, {:.1e} away",
+                "no periodic orbit at {} near the given one: its branch turns back at {}, {:.1e} away",
+                Decimal::plain(*value),
+                Decimal::rounded(*fold, 12),
                 (value - fold).abs()
             ),
             Self::Motion { value, reason } => {
-                write!(f, "no periodic orbit found at {value}: {reason}")
+                write!(
+                    f,
+                    "no periodic orbit found at {}: {reason}",
+                    Decimal::plain(*value)
+                )
             }
             Self::SearchLimit {
                 value,
@@ -168,7 +196,8 @@ impl fmt::Display for Error {
                 reason,
             } => write!(
                 f,
-                "no periodic orbit found at {value} in {evaluations} evaluations of the balance, which took the {:.0e} multiplications that a search is allowed; the last attempt: {reason}",
+                "no periodic orbit found at {} in {evaluations} evaluations of the balance, which took the {:.0e} multiplications that a search is allowed; the last attempt: {reason}",
+                Decimal::plain(*value),
                 *multiplications as f64
             ),
             Self::NoSuchPeriod {
@@ -177,7 +206,8 @@ impl fmt::Display for Error {
                 attempts,
             } => write!(
                 f,
-                "no orbit of period {period} found at {value}: {attempts}; start where there is one, and follow it from there"
+                "no orbit of period {period} found at {}: {attempts}; start where there is one, and follow it from there",
+                Decimal::plain(*value)
             ),
             Self::NeverAtRest { .. }
             | Self::NotFree { .. }

@@ -6,6 +6,7 @@ mod json;
 mod npy;
 mod table;
 
+pub use crate::decimal::Decimal;
 pub use file::{can_write, write};
 #[cfg(feature = "serde")]
 pub(crate) use json::{pairs, seconds, text};

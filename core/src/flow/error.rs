@@ -1,6 +1,7 @@
 //! Why a motion cannot be continued, or a flow not be changed.
 
 use super::Tangent;
+use crate::decimal::Decimal;
 use crate::system::{System, Variable};
 
 /// Why a motion cannot be continued.
@@ -237,20 +238,25 @@ impl std::fmt::Display for FlowError {
             Self::SingularMass { determinant } => {
                 write!(
                     f,
-                    "the mass matrix is singular: its determinant is {determinant}"
+                    "the mass matrix is singular: its determinant is {determinant:e}"
                 )
             }
             Self::Value {
                 variable: Variable::Omega,
                 value,
-            } => write!(f, "omega = {value}: must be positive and finite"),
+            } => write!(
+                f,
+                "omega = {}: must be positive and finite",
+                Decimal::plain(*value)
+            ),
             Self::Value {
                 variable: Variable::Parameter(index),
                 value,
             } => write!(
                 f,
-                "parameter {} cannot be {value}: it is outside its range, or there is no such parameter",
-                index + 1
+                "parameter {} cannot be {}: it is outside its range, or there is no such parameter",
+                index + 1,
+                Decimal::plain(*value)
             ),
             Self::Levels { contact } => write!(
                 f,

@@ -21,7 +21,7 @@ use nalgebra::DMatrix;
 
 use super::method::{Floquet, Found};
 use super::orbit::Orbit;
-use super::refined;
+use super::refined::{self, Refined};
 use super::rest::Rest;
 use super::spectrum::spread;
 use super::{Answer, Method, Stability, distance, eigenvalues};
@@ -74,6 +74,8 @@ pub(crate) struct Judge {
     /// Error of the method that sufficed for the last orbit.
     aim: f64,
     rest: Rest,
+    /// The last orbit, where it was closed by integration.
+    pub(crate) refined: Option<Refined>,
     /// Orbits judged.
     pub(crate) computed: usize,
 }
@@ -92,6 +94,7 @@ impl Judge {
             tolerance,
             aim: tolerance,
             rest: Rest::default(),
+            refined: None,
             computed: 0,
         }
     }
@@ -116,6 +119,7 @@ impl Judge {
         let started = Instant::now();
         self.computed += 1;
         let orbit = Orbit::of(balance, &u[..u.len() - 1]);
+        self.refined = None;
         let rests = self.rest.on_a_level(&orbit);
         let plain;
         let corrected = match finer {
@@ -139,7 +143,9 @@ impl Judge {
         let known = |found: &Found| !found.multipliers.is_empty();
         let corrected = if self.overlooks(balance, finer, u) {
             let series = finer.map_or(orbit.series, |finer| finer.series());
-            refined::multipliers(balance, series).map(|found| (found, 0.0))
+            let (found, refined) = refined::multipliers(balance, series).unzip();
+            self.refined = refined;
+            found.map(|found| (found, 0.0))
         } else {
             corrected.filter(|(found, _)| known(found) && known(&plain))
         };

@@ -33,6 +33,8 @@ const STEPS: usize = 8;
 /// An update smaller than this part of the orbit ends the first; the second goes on as far as rounding lets it, or to the other.
 const NEAR: f64 = 1e-6;
 const CLOSED: f64 = 1e-12;
+/// Error of the states of a closed orbit, in parts of its size.
+const INTEGRATED: f64 = 1e-9;
 /// Farther from the series, in parts of the orbit's size, lies another orbit.
 const FAR: f64 = 0.1;
 /// Rounding errors of the matrix, relative to its largest entry.
@@ -111,9 +113,52 @@ impl<'a> Map<'a> {
     }
 }
 
-/// Multipliers of the orbit at the value that a balance was set to, beside the orbit with these series; `None` if it is not found
-/// or is not near.
-pub(super) fn multipliers(balance: &Balance<'_>, orbit: &[f64]) -> Option<Found> {
+/// An orbit closed by integration.
+#[derive(Debug)]
+pub(crate) struct Refined {
+    /// Its state at phase zero.
+    state: Vec<f64>,
+    /// Size of its largest oscillation.
+    size: f64,
+}
+
+impl Refined {
+    /// The largest difference of a coordinate's peak-to-peak, in its unit, from that of series, whose extremes have these phases; to
+    /// first order, since extremes are flat. With what the integration may err by.
+    pub(crate) fn peak_to_peak_error(
+        &self,
+        balance: &Balance<'_>,
+        series: &[f64],
+        phases: &[[f64; 2]],
+        units: &[f64],
+    ) -> Option<f64> {
+        let coordinates = balance.layout().coordinates;
+        let (parameters, omega) = (balance.parameters(), balance.omega());
+        let mut flow = Integrated::new(balance.system(), parameters, omega, FINE).ok()?;
+        let period = balance.resolution().period as f64;
+        let length = series.len() / coordinates;
+        let mut largest = 0.0_f64;
+        for (coordinate, phases) in phases.iter().enumerate() {
+            let of = &series[coordinate * length..][..length];
+            let mut range = [0.0; 2];
+            for (difference, phase) in range.iter_mut().zip(phases) {
+                let mut state = self.state.clone();
+                // Phases of series are of the orbit's own period, those of a flow of the declaration's.
+                flow.advance(0.0, phase * period, &mut state, None, None)
+                    .ok()?;
+                let (value, _, _) = series::value_and_derivatives(of, *phase);
+                *difference = state[coordinate] - value;
+            }
+            let difference = (range[1] - range[0]).abs() + INTEGRATED * self.size;
+            largest = largest.max(difference / units[coordinate]);
+        }
+        Some(largest)
+    }
+}
+
+/// Multipliers of the orbit at the value that a balance was set to, beside the orbit with these series, and that orbit; `None` if it is
+/// not found or is not near.
+pub(super) fn multipliers(balance: &Balance<'_>, orbit: &[f64]) -> Option<(Found, Refined)> {
     let coordinates = balance.layout().coordinates;
     let (mut state, size) = begin(orbit, coordinates, balance.base());
     let first = state.clone();
@@ -144,7 +189,7 @@ pub(super) fn multipliers(balance: &Balance<'_>, orbit: &[f64]) -> Option<Found>
             let differ = |other: &DMatrix<f64>| distance(&found.multipliers, &eigenvalues(other));
             let error = differ(&other) + differ(&before);
             found.error += error;
-            return Some(found);
+            return Some((found, Refined { state, size }));
         }
         (change, before) = (next, matrix);
     }

@@ -1,5 +1,6 @@
 //! What can be wrong with a structure.
 
+use crate::decimal::Decimal;
 use std::fmt;
 
 /// What is wrong with a structure.
@@ -115,7 +116,9 @@ impl fmt::Display for StructureError {
                 formatter,
                 "a direction of contact {contact} has {entries} entries; there are {coordinates} coordinates"
             ),
-            Self::NotFinite { place, value } => write!(formatter, "{value} in {place}"),
+            Self::NotFinite { place, value } => {
+                write!(formatter, "{} in {place}", Decimal::plain(*value))
+            }
             Self::SingularMass { pivot } => write!(
                 formatter,
                 "the mass matrix has no inverse: its smallest pivot is {pivot:e} of the largest"
@@ -142,7 +145,8 @@ impl fmt::Display for StructureError {
                 range,
             } => write!(
                 formatter,
-                "argument `{argument}` of law `{law}` is {value}, outside its range {range}"
+                "argument `{argument}` of law `{law}` is {}, outside its range {range}",
+                Decimal::plain(*value)
             ),
             Self::Name { parameter } => write!(
                 formatter,

@@ -29,15 +29,16 @@ const STEPS: usize = 6;
 const SLOWEST: f64 = 0.9;
 
 impl Finer<'_> {
-    /// How much the peak-to-peak of the coordinates is changed, the largest of them, given the phases of their smallest and largest
-    /// values, by the last correction of an orbit and by further steps of it, where it is not small.
+    /// How much the peak-to-peak of a coordinate is changed in its unit, at most, given the phases of the smallest and largest values, by
+    /// the last correction of an orbit and by further steps of it, where it is not small.
     pub(crate) fn peak_to_peak_error(
         &mut self,
         u: &[f64],
         phases: &[[f64; 2]],
+        units: &[f64],
         newton: &mut Newton,
     ) -> f64 {
-        let first = self.largest_change(u, phases);
+        let first = self.largest_change(u, phases, units);
         let most = if self.coarse.harmonics <= FEW * self.coarse.period {
             NOTHING
         } else {
@@ -49,7 +50,10 @@ impl Finer<'_> {
         self.further.clone_from(&self.orbit);
         let left = self.step_on(u, newton);
         let error = match left {
-            Some(left) => first.max(self.largest_change(u, phases)) + left,
+            Some(left) => {
+                let unit = units.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+                first.max(self.largest_change(u, phases, units)) + left / unit
+            }
             None => f64::INFINITY,
         };
         // What else is read off the orbit is to first order.
@@ -59,10 +63,12 @@ impl Finer<'_> {
         error
     }
 
-    fn largest_change(&self, u: &[f64], phases: &[[f64; 2]]) -> f64 {
-        let coordinates = phases.iter().enumerate();
+    fn largest_change(&self, u: &[f64], phases: &[[f64; 2]], units: &[f64]) -> f64 {
+        let coordinates = phases.iter().zip(units).enumerate();
         coordinates
-            .map(|(coordinate, &phases)| self.peak_to_peak_change(u, coordinate, phases))
+            .map(|(coordinate, (&phases, unit))| {
+                self.peak_to_peak_change(u, coordinate, phases) / unit
+            })
             .fold(0.0, f64::max)
     }
 

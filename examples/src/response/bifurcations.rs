@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
-use hertzian::export::Table;
+use hertzian::export::{Decimal, Table};
 use hertzian::flow::basin::Progress;
 use hertzian::flow::shooting::{CycleEvent, Track};
 use hertzian::{Error, EventKind, Shooting, System};
@@ -303,10 +303,11 @@ impl Found {
                 "curve      {kind}, period {period}: {count} points in {x}, {y}; {begin} and {end}"
             )?;
             for special in &track.special {
-                let ([a, b], error) = (special.values, special.error);
+                let [a, b] = special.values.map(|value| Decimal::rounded(value, 9));
+                let error = special.error;
                 writeln!(
                     text,
-                    "  {:<8} {x} {a:.9}, {y} {b:.9} (error {error:.0e})",
+                    "  {:<8} {x} {a}, {y} {b} (error {error:.0e})",
                     special.kind
                 )?;
             }

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 use std::path::Path;
 
+use hertzian::export::Decimal;
 use hertzian::{Branch, Event, EventKind, Point, System, Verdict};
 
 use super::options::{Aft, Options};
@@ -77,12 +78,10 @@ fn write_all(
     folds(text, branch)?;
     stability(text, branch)?;
     let solutions = at.iter().map(|point| {
-        let (value, size) = (point.value, point.peak_to_peak());
+        let value = Decimal::plain(point.value);
+        let size = Decimal::rounded(point.peak_to_peak(), 6);
         let verdict = point.stability.verdict;
-        format!(
-            "{} {value}: peak-to-peak {size:.6}, {verdict}",
-            branch.varied
-        )
+        format!("{} {value}: peak-to-peak {size}, {verdict}", branch.varied)
     });
     for solution in solutions {
         writeln!(text, "at         {solution}")?;
@@ -160,11 +159,11 @@ fn range(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
         };
         writeln!(
             text,
-            "points     {}, {} from {:.6} to {:.6}, {harmonics} harmonics",
+            "points     {}, {} from {} to {}, {harmonics} harmonics",
             branch.points.len(),
             branch.varied,
-            first.value,
-            last.value,
+            Decimal::rounded(first.value, 6),
+            Decimal::rounded(last.value, 6),
         )?;
     }
     writeln!(text, "ended      {}", branch.stopped)
@@ -173,20 +172,21 @@ fn range(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
 fn folds(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
     let folds = branch.folds().map(|fold| {
         let point = &fold.point;
-        let (value, size) = (point.value, point.peak_to_peak());
+        let value = Decimal::rounded(point.value, 9);
+        let size = Decimal::rounded(point.peak_to_peak(), 6);
         format!(
-            "{} {value:.9} (error {:.0e}), peak-to-peak {size:.6}",
+            "{} {value} (error {:.0e}), peak-to-peak {size}",
             branch.varied, fold.error
         )
     });
     list(text, "fold", folds)?;
     let turns = branch.turns.iter().map(|turn| {
-        let (varied, value) = (&branch.varied, turn.value);
+        let (varied, value) = (&branch.varied, Decimal::rounded(turn.value, 6));
         match turn.kind {
             EventKind::Fold => {
-                format!("{varied} {value:.6}, not confirmed as a fold: the slope jumps")
+                format!("{varied} {value}, not confirmed as a fold: the slope jumps")
             }
-            kind => format!("{varied} {value:.6}, not confirmed as a {kind}"),
+            kind => format!("{varied} {value}, not confirmed as a {kind}"),
         }
     });
     list(text, "turn", turns)?;
@@ -196,8 +196,10 @@ fn folds(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
         .filter(|event| event.kind == EventKind::SymmetryBreaking)
         .map(|event| {
             format!(
-                "{} {:.9} (error {:.0e}), broken: a branch without it crosses",
-                branch.varied, event.point.value, event.error
+                "{} {} (error {:.0e}), broken: a branch without it crosses",
+                branch.varied,
+                Decimal::rounded(event.point.value, 9),
+                event.error
             )
         });
     list(text, "symmetry", broken)?;
@@ -219,12 +221,16 @@ fn stability(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
             let (from, to) = (before.stability.verdict, behind.stability.verdict);
             match between(branch, before, behind) {
                 Some(event) => format!(
-                    "{from} before the {} at {} {:.6}, {to} after it",
-                    event.kind, branch.varied, event.point.value
+                    "{from} before the {} at {} {}, {to} after it",
+                    event.kind,
+                    branch.varied,
+                    Decimal::rounded(event.point.value, 6)
                 ),
                 None => format!(
-                    "{from} until {} {:.6}, {to} from {:.6}",
-                    branch.varied, before.value, behind.value
+                    "{from} until {} {}, {to} from {}",
+                    branch.varied,
+                    Decimal::rounded(before.value, 6),
+                    Decimal::rounded(behind.value, 6)
                 ),
             }
         })

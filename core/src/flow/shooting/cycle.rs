@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::extremes::Extremes;
 use crate::branch::{EventKind, Turn};
 use crate::continuation::follow::Stop;
+use crate::decimal::Decimal;
 use crate::flow::{FlowError, Work};
 use crate::labels::Labels;
 use crate::stability::Stability;
@@ -92,9 +93,9 @@ impl fmt::Display for CycleEvent {
         } = self;
         write!(
             f,
-            "{kind} at {:.12} (error {error:.0e}), peak-to-peak {:.9}",
-            cycle.value,
-            cycle.peak_to_peak()
+            "{kind} at {} (error {error:.0e}), peak-to-peak {}",
+            Decimal::rounded(cycle.value, 12),
+            Decimal::rounded(cycle.peak_to_peak(), 9)
         )
     }
 }
@@ -134,6 +135,7 @@ impl fmt::Display for End {
                 symmetric: true,
             } => write!(f, "met a branch of symmetric orbits of period {period}"),
             Self::Motion { value, reason } => {
+                let value = Decimal::plain(*value);
                 write!(f, "no further motion computed at {value}: {reason}")
             }
         }

@@ -19,6 +19,7 @@ use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, follow,
 };
 use crate::continuation::step::StepControl;
+use crate::decimal::Decimal;
 use crate::error::Error;
 use crate::flow::FlowError;
 use crate::newton::Newton;
@@ -77,12 +78,8 @@ pub struct Special {
 
 impl std::fmt::Display for Special {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let [a, b] = self.values;
-        write!(
-            f,
-            "{} at {a:.12}, {b:.12} (error {:.0e})",
-            self.kind, self.error
-        )
+        let [a, b] = self.values.map(|value| Decimal::rounded(value, 12));
+        write!(f, "{} at {a}, {b} (error {:.0e})", self.kind, self.error)
     }
 }
 

@@ -1,0 +1,56 @@
+//! Numbers as a reader expects them: in decimals where their size allows, in powers of ten elsewhere.
+
+use std::fmt;
+
+/// Sizes that are written out whole: below, zeros would lead; above, they would follow.
+const PLAIN: std::ops::Range<f64> = 1e-6..1e15;
+/// Sizes that are written with a given number of decimals: below, digits would be lost; above, decimals mean nothing.
+const ROUNDED: std::ops::Range<f64> = 1e-3..1e6;
+
+/// A number to be printed.
+///
+/// ```
+/// use hertzian::export::Decimal;
+///
+/// assert_eq!(Decimal::plain(0.25).to_string(), "0.25");
+/// assert_eq!(Decimal::plain(1e-300).to_string(), "1e-300");
+/// assert_eq!(Decimal::rounded(0.715119549676, 9).to_string(), "0.715119550");
+/// assert_eq!(Decimal::rounded(2.5e-8, 3).to_string(), "2.500e-8");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Decimal {
+    value: f64,
+    decimals: Option<usize>,
+}
+
+impl Decimal {
+    /// With all digits that tell it from other numbers.
+    pub const fn plain(value: f64) -> Self {
+        Self {
+            value,
+            decimals: None,
+        }
+    }
+
+    /// With so many decimals, of itself or of its power of ten.
+    pub const fn rounded(value: f64, decimals: usize) -> Self {
+        Self {
+            value,
+            decimals: Some(decimals),
+        }
+    }
+}
+
+impl fmt::Display for Decimal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { value, decimals } = *self;
+        let usual = if decimals.is_some() { ROUNDED } else { PLAIN };
+        let written_out = value == 0.0 || !value.is_finite() || usual.contains(&value.abs());
+        match (written_out, decimals) {
+            (true, None) => write!(f, "{value}"),
+            (false, None) => write!(f, "{value:e}"),
+            (true, Some(decimals)) => write!(f, "{value:.decimals$}"),
+            (false, Some(decimals)) => write!(f, "{value:.decimals$e}"),
+        }
+    }
+}
