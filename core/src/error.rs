@@ -116,6 +116,15 @@ pub enum Error {
         /// Its smallest eigenvalue.
         eigenvalue: f64,
     },
+    /// Nothing holds the system along a direction, and its mean load is not zero along it: no motion is periodic.
+    CarriedAway {
+        /// Value of what is varied.
+        value: f64,
+        /// The mean load along the direction.
+        load: f64,
+        /// The direction, as a sum of coordinates.
+        direction: String,
+    },
     /// A branch passes a value between two of its points, but the orbit there could not be computed.
     Lost {
         /// The value.
@@ -249,6 +258,7 @@ sentence_as_debug! {
     SingularMass { determinant }
     NegativeMass { coordinate, mass }
     IndefiniteMass { eigenvalue }
+    CarriedAway { value, load, direction }
     Lost { value, from, to }
     NoStart { value, reason }
     State { entries, expected }

@@ -106,6 +106,7 @@ mod random;
 mod reader;
 pub mod remarks;
 mod response;
+mod rigid;
 mod run;
 pub mod stability;
 #[doc(hidden)]

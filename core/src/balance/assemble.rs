@@ -52,7 +52,34 @@ impl Balance<'_> {
             block.add_to(&self.harmonics, jacobian);
         }
         self.add_masses(jacobian);
+        self.add_gauge_to(jacobian);
         jacobian.set_column(&self.scratch.column);
+    }
+
+    /// Adds what holds the mean along rigid motions: see [`rigid`](crate::rigid).
+    fn add_gauge_to(&self, jacobian: &mut Jacobian) {
+        let (n, length) = (
+            self.layout.coordinates,
+            blocks::places(&self.harmonics.core),
+        );
+        if self.harmonics.core.first() != Some(&0) {
+            return;
+        }
+        for (i, gauge) in self.gauge.chunks_exact(n).enumerate() {
+            let row = jacobian.core_mut().row_mut(i * length);
+            for (j, value) in gauge.iter().enumerate() {
+                row[j * length] += value;
+            }
+        }
+    }
+
+    /// The same in a residual.
+    fn add_gauge(&self, u: &[f64], residual: &mut [f64]) {
+        let (n, length) = (self.layout.coordinates, self.length());
+        for (i, gauge) in self.gauge.chunks_exact(n).enumerate() {
+            let means = u.chunks_exact(length).map(|series| series[0]);
+            residual[i * length] += gauge.iter().zip(means).map(|(g, x)| g * x).sum::<f64>();
+        }
     }
 
     /// Adds `Omega^2 M D^2`.
@@ -97,6 +124,7 @@ impl Problem for Balance<'_> {
         let u = &u[..unknowns];
         residual.fill(0.0);
         self.add_linear(&self.coefficients, u, residual);
+        self.add_gauge(u, residual);
         let Some(jacobian) = jacobian else {
             let mut force = std::mem::take(&mut self.scratch.force);
             for contact in 0..self.layout.contacts.len() {
@@ -125,6 +153,7 @@ impl Problem for Balance<'_> {
         self.linear_by_variable(u, &mut column);
         derivative.fill(0.0);
         self.add_motion(&self.coefficients, &direction[..unknowns], derivative);
+        self.add_gauge(&direction[..unknowns], derivative);
         for (to, by) in derivative.iter_mut().zip(&column) {
             *to += direction[unknowns] * by;
         }

@@ -39,6 +39,7 @@ use crate::aft::{Aft, Engine};
 use crate::fourier::series;
 use crate::jacobian::Partition;
 use crate::layout::Layout;
+use crate::rigid::{Place, Rigid};
 use crate::system::{System, Variable};
 use blocks::Block;
 use contacts::Scratch;
@@ -88,6 +89,9 @@ pub struct Balance<'a> {
     scratch: Scratch,
     harmonics: Harmonics,
     blocks: Vec<Block>,
+    rigid: Option<Rigid>,
+    /// What gives the mean along rigid motions its stiffness, row by row.
+    gauge: Vec<f64>,
 }
 
 impl std::fmt::Debug for Balance<'_> {
@@ -113,7 +117,21 @@ impl<'a> Balance<'a> {
         let harmonics = Harmonics::of(resolution);
         let mut coefficients = vec![0.0; layout.coefficients];
         system.coefficients(parameters, omega, &mut coefficients);
+        let rigid = Rigid::beside(Place {
+            system,
+            layout: &layout,
+            parameters,
+            omega,
+            variable,
+        });
+        let base = omega / (f64::from(system.facts().divisor) * resolution.period as f64);
+        let gauge = rigid.as_ref().map_or(Vec::new(), |rigid| {
+            let rows = rigid.inertia().transpose();
+            rows.iter().map(|x| base * base * x).collect()
+        });
         Self {
+            rigid,
+            gauge,
             system,
             resolution,
             parameters: parameters.to_vec(),
@@ -161,6 +179,11 @@ impl<'a> Balance<'a> {
 
     pub(crate) fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    /// The rigid motions, if there are any.
+    pub(crate) fn rigid(&self) -> Option<&Rigid> {
+        self.rigid.as_ref()
     }
 
     pub(crate) fn coefficients(&self) -> &[f64] {

@@ -52,6 +52,14 @@ impl Error {
             Self::Values { values, expected } => {
                 write!(f, "{values} values were given for {expected} parameters")
             }
+            Self::CarriedAway {
+                value,
+                load,
+                direction,
+            } => write!(
+                f,
+                "no periodic orbit at {value}: the mean load along {direction} is {load:.6e}, and nothing holds the system there, so that it is carried away"
+            ),
             Self::NotAffine => write!(
                 f,
                 "the motion has no closed form: a force is not affine on one of its pieces, or a stiffness or a direction varies in time"
@@ -174,7 +182,10 @@ impl fmt::Display for Error {
                     Decimal::plain(*value)
                 )
             }
-            Self::State { .. } | Self::Values { .. } | Self::NotAffine => self.of_motions(f),
+            Self::State { .. }
+            | Self::Values { .. }
+            | Self::CarriedAway { .. }
+            | Self::NotAffine => self.of_motions(f),
             Self::Beyond { value, fold } => write!(
                 f,
                 "no periodic orbit at {} near the given one: its branch turns back at {}, {:.1e} away",

@@ -11,6 +11,7 @@ use crate::fourier::series;
 use crate::harmonics::Chooser;
 use crate::layout::{ContactLayout, Layout};
 use crate::newton::NewtonOptions;
+use crate::rigid::{self, Place};
 use crate::symmetry::{is_broken, is_odd};
 use crate::system::{Bound, Variable};
 use crate::validate;
@@ -81,20 +82,14 @@ impl<'a> FrequencyResponse<'a> {
                 resolution.harmonics |= 1;
             }
         }
-        // That declared levels are in order within the ranges of the parameters, the compiler has proved. Of other laws the ends are
-        // looked at.
-        let at_end = match variable {
-            Variable::Omega => (parameters.clone(), to),
-            Variable::Parameter(index) => {
-                let mut parameters = parameters.clone();
-                parameters[index] = to;
-                (parameters, omega)
-            }
+        let place = Place {
+            system: self.system,
+            layout: &layout,
+            parameters: &parameters,
+            omega,
+            variable,
         };
-        for (parameters, omega) in [(&parameters, omega), (&at_end.0, at_end.1)] {
-            validate::levels(self.system, parameters, omega)?;
-            validate::mass(self.system, parameters, omega)?;
-        }
+        check_ends(place, [from, to])?;
         let newton = NewtonOptions {
             tolerance: (1e-3 * self.tolerance).clamp(1e-11, 1e-6),
             iterations: 12,
@@ -317,6 +312,24 @@ impl<'a> FrequencyResponse<'a> {
             period: self.period,
         })
     }
+}
+
+/// At both ends of a range levels are in order and masses regular, and nothing in it is carried away. That declared levels are in order
+/// within the ranges of the parameters, the compiler has proved. Of other laws the ends are looked at.
+fn check_ends(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> {
+    let mut parameters = place.parameters.to_vec();
+    for value in [from, to] {
+        let omega = match place.variable {
+            Variable::Omega => value,
+            Variable::Parameter(index) => {
+                parameters[index] = value;
+                place.omega
+            }
+        };
+        validate::levels(place.system, &parameters, omega)?;
+        validate::mass(place.system, &parameters, omega)?;
+    }
+    rigid::held(place, [from, to])
 }
 
 /// So many harmonics of the base frequency have no more than [`MOST_UNKNOWNS`].

@@ -168,6 +168,17 @@ pub(super) fn defect(multipliers: &[Complex<f64>], determinant: f64) -> f64 {
     if error.is_nan() { f64::INFINITY } else { error }
 }
 
+/// Takes those out that are nearest to one: there is no matrix to take them out of.
+fn take_out(multipliers: &mut Vec<Complex<f64>>, count: usize) {
+    for _ in 0..count {
+        let apart = multipliers.iter().map(|m| (m - 1.0).norm()).enumerate();
+        let nearest = apart.min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((index, _)) = nearest {
+            multipliers.remove(index);
+        }
+    }
+}
+
 impl Floquet for Hill {
     fn multipliers(&mut self, orbit: &Orbit<'_>, _aim: f64) -> Found {
         let Some(coefficients) = Coefficients::of(orbit) else {
@@ -184,10 +195,14 @@ impl Floquet for Hill {
             return Found::NOTHING;
         };
         let multipliers = exponents.iter().map(|exponent| (exponent.scale(TAU)).exp());
-        let multipliers = sort(multipliers.collect());
+        let mut multipliers = sort(multipliers.collect());
+        let error = defect(&multipliers, coefficients.determinant());
+        if let Some(rigid) = orbit.rigid {
+            take_out(&mut multipliers, rigid.multipliers());
+        }
         Found {
-            error: defect(&multipliers, coefficients.determinant()),
             multipliers,
+            error,
             ..Found::NOTHING
         }
     }

@@ -168,7 +168,7 @@ impl Judge {
         let moved = finer.and_then(|finer| finer.extended().last());
         Answer {
             method: self.method,
-            stability,
+            stability: stability.beside(balance.rigid()),
             value: moved.copied().unwrap_or(u[u.len() - 1]),
             uncorrected: plain.multipliers,
             by_method,

@@ -146,6 +146,9 @@ impl Floquet for KoopmanHill {
         self.cost.contacts += coefficients.contacts;
         self.cost.spectra += 1;
         let matrix = self.monodromy(&coefficients);
+        let matrix = orbit
+            .rigid
+            .map_or_else(|| matrix.clone(), |rigid| rigid.taken_out_of(&matrix));
         let multipliers = eigenvalues(&matrix);
         Found {
             error: defect(&multipliers, coefficients.determinant()),

@@ -97,6 +97,7 @@ fn multipliers(
         series: &series,
         aft: Aft::Switched,
         samples: 0,
+        rigid: None,
     };
     let found = method.engine().multipliers(&orbit, 1e-12);
     (found.multipliers, found.error, found.bound)

@@ -42,6 +42,8 @@ mod walk;
 
 use nalgebra::Complex;
 
+use crate::rigid::Rigid;
+
 pub use answer::Answer;
 pub use method::{Cost, Method, Projection, Sorting};
 pub(crate) use pairs::product_of_pairs;
@@ -55,11 +57,14 @@ pub struct Stability {
     /// The verdict.
     pub verdict: Verdict,
     /// Floquet multipliers over the orbit's own period, largest modulus first; those of the orbit corrected for the
-    /// harmonics and samples that were left out.
+    /// harmonics and samples that were left out. Those of [rigid motions](Self::rigid) are not among them.
     #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::pairs"))]
     pub multipliers: Vec<Complex<f64>>,
     /// Estimated error of the multipliers: of the integration, and of the orbit's own truncation.
     pub error: f64,
+    /// So many multipliers more are exactly one, since nothing holds the system along some directions: shifted along them an orbit
+    /// is another one, and so it is at another constant speed where nothing damps that. The verdict is about the others.
+    pub rigid: usize,
 }
 
 /// Whether small perturbations die out.
@@ -93,6 +98,15 @@ impl Stability {
             verdict: Verdict::Undecided,
             multipliers: Vec::new(),
             error: f64::INFINITY,
+            rigid: 0,
+        }
+    }
+
+    /// The same of a system with rigid motions, whose multipliers have been taken out.
+    pub(crate) fn beside(self, rigid: Option<&Rigid>) -> Self {
+        Self {
+            rigid: rigid.map_or(0, Rigid::multipliers),
+            ..self
         }
     }
 
@@ -112,6 +126,7 @@ impl Stability {
             verdict,
             multipliers,
             error,
+            rigid: 0,
         }
     }
 }

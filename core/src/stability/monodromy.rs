@@ -102,7 +102,8 @@ impl Monodromy {
         let order = 2 * orbit.layout.coordinates;
         self.cost.spectra += 1;
         self.cost.order = self.cost.order.max(order);
-        let (multipliers, [by_steps, by_rounding], matrix) = if order == 2 {
+        let (multipliers, [by_steps, by_rounding], matrix) = if order == 2 && orbit.rigid.is_none()
+        {
             let mut walk = WalkOfTwo::new();
             self.integrate(&mut walk, orbit, density);
             let (multipliers, errors) = walk.multipliers();
@@ -112,9 +113,14 @@ impl Monodromy {
             let mut walk = kept.unwrap_or_else(|| WalkOfMany::new(order));
             walk.begin();
             self.integrate(&mut walk, orbit, density);
+            if let Some(rigid) = orbit.rigid {
+                walk.take_out(rigid);
+            }
             let (mut multipliers, errors) = walk.multipliers();
             let matrix = walk.matrices()[0].to_vec();
-            let lost = walk.has_lost(&multipliers) && (self.complete || order <= SMALL);
+            let lost = walk.has_lost(&multipliers)
+                && (self.complete || order <= SMALL)
+                && orbit.rigid.is_none();
             self.many = Some(walk);
             if lost {
                 let mut factors = WalkOfFactors::new(order);

@@ -30,6 +30,7 @@ fn monodromy(system: &PowerForm, density: f64) -> DMatrix<f64> {
         series: &[MEAN, 1.0, 0.0],
         aft: Aft::Switched,
         samples: 0,
+        rigid: None,
     };
     DMatrix::from_vec(2, 2, Monodromy::new(true).matrix(&orbit, density))
 }

@@ -3,6 +3,7 @@
 use crate::aft::Aft;
 use crate::balance::Balance;
 use crate::layout::Layout;
+use crate::rigid::Rigid;
 use crate::system::System;
 
 /// An orbit: the system, its coefficients, and the series of its coordinates.
@@ -20,6 +21,8 @@ pub(crate) struct Orbit<'a> {
     /// How its contact forces were found, and with how many samples where they were sampled.
     pub(crate) aft: Aft,
     pub(crate) samples: usize,
+    /// Rigid motions of the system, whose multipliers are known.
+    pub(crate) rigid: Option<&'a Rigid>,
 }
 
 impl<'a> Orbit<'a> {
@@ -34,6 +37,7 @@ impl<'a> Orbit<'a> {
             series,
             aft: balance.resolution().aft,
             samples: balance.resolution().samples,
+            rigid: balance.rigid(),
         }
     }
 }

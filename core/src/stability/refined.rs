@@ -24,6 +24,7 @@ use super::{distance, eigenvalues};
 use crate::balance::Balance;
 use crate::flow::{Flow, Integrated, Tangent};
 use crate::fourier::series;
+use crate::rigid::Rigid;
 
 /// Tolerances of the integration that finds the orbit, and of the one that is given.
 const COARSE: f64 = 1e-8;
@@ -48,10 +49,11 @@ struct Map<'a> {
     /// What counts as one in each entry of a state.
     units: Vec<f64>,
     tangent: Tangent,
+    rigid: Option<&'a Rigid>,
 }
 
 impl<'a> Map<'a> {
-    fn new(balance: &Balance<'a>, tolerance: f64) -> Option<Self> {
+    fn new(balance: &'a Balance<'_>, tolerance: f64) -> Option<Self> {
         let coordinates = balance.layout().coordinates;
         let period = balance.resolution().period as f64;
         let (parameters, omega) = (balance.parameters(), balance.omega());
@@ -62,6 +64,7 @@ impl<'a> Map<'a> {
             end: TAU * period,
             units,
             tangent: Tangent::of_state(coordinates, None),
+            rigid: balance.rigid(),
         })
     }
 
@@ -88,13 +91,27 @@ impl<'a> Map<'a> {
     fn step(&mut self, state: &mut [f64]) -> Option<(f64, DMatrix<f64>)> {
         let (left, matrix) = self.at(state)?;
         let order = state.len();
-        let system = DMatrix::identity(order, order) - &matrix;
+        let mut system = DMatrix::identity(order, order) - &matrix;
+        if let Some(rigid) = self.rigid {
+            // A shift is not determined: none is made.
+            let n = order / 2;
+            let mut block = system.view_mut((n, 0), (n, n));
+            block += rigid.projector();
+        }
         let change = system.lu().solve(&left)?;
         for ((x, change), unit) in state.iter_mut().zip(&change).zip(&self.units) {
             *x += change * unit;
         }
         let size = change.amax();
         size.is_finite().then_some((size, matrix))
+    }
+
+    /// A map without the multipliers of rigid motions.
+    fn reduced(&self, matrix: DMatrix<f64>) -> DMatrix<f64> {
+        match self.rigid {
+            Some(rigid) => rigid.taken_out_of(&matrix),
+            None => matrix,
+        }
     }
 
     /// Multipliers, with the error that rounding leaves.
@@ -184,8 +201,9 @@ pub(super) fn multipliers(balance: &Balance<'_>, orbit: &[f64]) -> Option<(Found
         // Below what is near, updates that no longer shrink are rounding and tolerance.
         let settled = next <= NEAR * size && next >= 0.5 * change;
         if next <= CLOSED * size || settled {
+            let [matrix, other, before] =
+                [matrix, coarse.at(&at)?.1, before].map(|matrix| fine.reduced(matrix));
             let mut found = Map::multipliers(&matrix)?;
-            let (_, other) = coarse.at(&at)?;
             let differ = |other: &DMatrix<f64>| distance(&found.multipliers, &eigenvalues(other));
             let error = differ(&other) + differ(&before);
             found.error += error;

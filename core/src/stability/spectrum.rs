@@ -10,6 +10,12 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     if matrix.iter().any(|x| !x.is_finite()) {
         return Vec::new();
     }
+    if matrix.nrows() < 2 {
+        return matrix
+            .iter()
+            .map(|value| Complex::new(*value, 0.0))
+            .collect();
+    }
     if matrix.nrows() == 2 {
         let [a, c, b, d] = [0, 1, 2, 3].map(|index| matrix[index]);
         let values = eigenvalues_of_two([[a, b], [c, d]], a * d - b * c);

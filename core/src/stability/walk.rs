@@ -7,6 +7,7 @@ use super::magnus::Magnus;
 use super::product::eigenvalues_of_product;
 use super::spectrum::{eigenvalues_of_two, spread};
 use super::two::{self, Square};
+use crate::rigid::Rigid;
 
 /// The matrix `q L` of [`monodromy`](super::monodromy) is the error of `P` to about this factor.
 const SAFETY: f64 = 1.5;
@@ -158,6 +159,13 @@ impl WalkOfMany {
     pub(super) fn has_lost(&self, multipliers: &[Complex<f64>]) -> bool {
         let lost = |last: &Complex<f64>| last.norm() < LOST * self.product.amax();
         multipliers.last().is_some_and(lost)
+    }
+
+    /// Takes what is known of rigid motions out of what has been integrated.
+    pub(super) fn take_out(&mut self, rigid: &Rigid) {
+        for matrix in [&mut self.product, &mut self.lack] {
+            *matrix = rigid.taken_out_of(matrix);
+        }
     }
 
     /// Begins anew.

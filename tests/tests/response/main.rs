@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod first_orbits;
+mod free;
 mod given;
 mod requests;
 mod start;
