@@ -5,6 +5,13 @@
 //! orbits have, and that of the others. Where the determinant of the other block changes its sign, a branch of orbits
 //! crosses that do have them: the symmetry breaks, or the period doubles.
 //!
+//! Orbits that come back after a part of `1 / m` of the period ([`copies`](crate::symmetry)) have harmonics that are multiples of `m`.
+//! The block of the others falls apart again: waves that are multiples of `m` couple harmonic `k` to those that are `k` or `-k` to
+//! the modulus `m`. A shift of `1 / m` of the period multiplies a class by `exp(2 pi i k / m)` and commutes with its block, which is
+//! that of a complex matrix and its conjugate: a determinant that is a square, and changes no sign. Two classes are real, that of the
+//! orbits and, where `m` is even, that of the odd multiples of `m / 2`. Where `m` is odd, the second is found in twice the period: that
+//! of the odd multiples of `m` there.
+//!
 //! Where the branch crosses another one of orbits with the same harmonics, all of the matrix is singular that Newton's method has on
 //! it, `[R_u R_l; t^T]` with the tangent `t` (Keller's test function): its determinant changes its sign there, and not at a fold.
 //!
@@ -22,11 +29,35 @@ use crate::fourier::series;
 use crate::jacobian::Jacobian;
 use crate::system::{System, Variable};
 
+/// A part of the Jacobian that becomes singular by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// The harmonics that the orbits have, with the tangent of the branch.
+    Own,
+    /// The even multiples of the stride, where the orbits have odd ones.
+    Even,
+    /// The odd multiples of half the stride, which is even.
+    Between,
+    /// The odd multiples of the stride in twice the period.
+    Doubled,
+}
+
+impl Part {
+    /// What happens where it is singular. A doubling of the time in which orbits come back that is a part of the declared period is
+    /// no doubling of that: it crosses another branch of the same period.
+    pub(crate) fn kind(self) -> EventKind {
+        match self {
+            Self::Even => EventKind::SymmetryBreaking,
+            Self::Doubled => EventKind::PeriodDoubling,
+            Self::Own | Self::Between => EventKind::BranchPoint,
+        }
+    }
+}
+
 /// The block of one balance, or all of its Jacobian.
 #[derive(Debug)]
 pub(crate) struct Block<'a> {
-    /// What happens where it is singular.
-    pub(crate) kind: EventKind,
+    pub(crate) part: Part,
     balance: Balance<'a>,
     jacobian: Jacobian,
     residual: Vec<f64>,
@@ -40,10 +71,9 @@ pub(crate) struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// For orbits of a balance of this resolution: of the even harmonics where a symmetry breaks, of the odd harmonics of twice
-    /// the period where that doubles, and otherwise of all that the orbits have.
+    /// For orbits of a balance of this resolution.
     pub(crate) fn new(
-        kind: EventKind,
+        part: Part,
         system: &'a dyn System,
         parameters: &[f64],
         omega: f64,
@@ -51,13 +81,19 @@ impl<'a> Block<'a> {
         resolution: Resolution,
     ) -> Self {
         // Nothing is left out of the block: its determinant is what counts.
-        let resolution = match kind {
-            EventKind::SymmetryBreaking => Resolution {
+        let resolution = match part {
+            Part::Even => Resolution {
                 parity: Parity::Even,
                 core: resolution.harmonics,
                 ..resolution
             },
-            EventKind::PeriodDoubling => Resolution {
+            Part::Between => Resolution {
+                parity: Parity::Odd,
+                stride: resolution.stride / 2,
+                core: resolution.harmonics,
+                ..resolution
+            },
+            Part::Doubled => Resolution {
                 parity: Parity::Odd,
                 harmonics: 2 * resolution.harmonics,
                 core: 2 * resolution.harmonics,
@@ -65,7 +101,7 @@ impl<'a> Block<'a> {
                 period: 2 * resolution.period,
                 ..resolution
             },
-            _ => Resolution {
+            Part::Own => Resolution {
                 core: resolution.harmonics,
                 ..resolution
             },
@@ -75,7 +111,7 @@ impl<'a> Block<'a> {
         let mut border = vec![0.0; n + 1];
         border[n] = 1.0;
         Self {
-            kind,
+            part,
             jacobian: Jacobian::new(balance.partition()),
             residual: vec![0.0; n],
             border,
@@ -89,7 +125,7 @@ impl<'a> Block<'a> {
 
     /// The same at an orbit whose branch has a direction, which matters where all harmonics are in the block.
     pub(crate) fn determinant_along(&mut self, u: &[f64], tangent: &[f64]) -> (f64, f64) {
-        if self.kind == EventKind::BranchPoint {
+        if self.part == Part::Own {
             self.border.copy_from_slice(tangent);
         }
         self.determinant(u)
@@ -104,7 +140,7 @@ impl<'a> Block<'a> {
         self.orbit.clear();
         self.orbit.extend_from_slice(u);
         self.computed += 1;
-        if self.kind == EventKind::PeriodDoubling {
+        if self.part == Part::Doubled {
             let coordinates = self.balance.layout().coordinates;
             stretch(u, coordinates, &mut self.stretched);
         } else {
@@ -141,7 +177,7 @@ impl Block<'_> {
                 *x /= largest;
             }
         }
-        if self.kind != EventKind::BranchPoint {
+        if self.part != Part::Own {
             v[n] = 0.0;
         }
         (self.stretched.clone(), v)

@@ -164,7 +164,7 @@ pub struct Event {
     /// Where an orbit grazes, the number of contacts that touch a level there; several at once where they are copies of each other,
     /// as the balls of a bearing. Zero otherwise.
     pub contacts: usize,
-    /// At a branch point the tangent of the branch, in extended unknowns; otherwise nothing.
+    /// At a crossing with another branch of the same harmonics the tangent of the branch, in extended unknowns; otherwise nothing.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) tangent: Vec<f64>,
 }

@@ -1,8 +1,8 @@
 //! What it takes to compute further orbits of a branch, and those at a value.
 
 use crate::balance::{Balance, Parity, Resolution};
-use crate::block::Block;
-use crate::branch::{Event, EventKind, Orbit, Point};
+use crate::block::{Block, Part};
+use crate::branch::{Event, Orbit, Point};
 use crate::continuation::follow::{CurvePoint, FollowOptions};
 use crate::continuation::locate::locate;
 use crate::continuation::problem::{Norm, Problem};
@@ -90,27 +90,31 @@ impl<'a> Follower<'a> {
     }
 
     /// What becomes singular at bifurcations of orbits of that resolution: the even harmonics where they have odd ones only, those
-    /// of twice the period, and all, where that is looked for.
+    /// of twice the period, which are harmonics of the declared one where an even number of them is in it, and all, where that is
+    /// looked for.
     pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<Block<'a>> {
         let odd = resolution.parity == Parity::Odd;
+        let all = self.sought == Sought::All;
+        let halves = resolution.stride.is_multiple_of(2);
         let wanted = [
-            (odd, EventKind::SymmetryBreaking),
+            (odd, Part::Even),
             (
-                !odd && self.sought != Sought::Folds,
-                EventKind::PeriodDoubling,
+                !odd && !halves && self.sought != Sought::Folds,
+                Part::Doubled,
             ),
-            (self.sought == Sought::All, EventKind::BranchPoint),
+            (!odd && halves && all, Part::Between),
+            (all, Part::Own),
         ];
         let wanted = wanted.into_iter().filter(|(wanted, _)| *wanted);
         wanted
-            .map(|(_, kind)| self.block(kind, resolution))
+            .map(|(_, part)| self.block(part, resolution))
             .collect()
     }
 
-    /// What becomes singular at bifurcations of one kind.
-    pub(crate) fn block(&self, kind: EventKind, resolution: Resolution) -> Block<'a> {
+    /// One part of the Jacobian.
+    pub(crate) fn block(&self, part: Part, resolution: Resolution) -> Block<'a> {
         Block::new(
-            kind,
+            part,
             self.system,
             &self.parameters,
             self.omega,
@@ -146,7 +150,7 @@ impl<'a> Follower<'a> {
         let mut jacobian = Jacobian::new(balance.partition());
         let mut residual = vec![0.0; u.len() - 1];
         balance.evaluate(u, &mut residual, Some(&mut jacobian));
-        let least = LEAST_CORE * self.resolution.period;
+        let least = LEAST_CORE * self.resolution.period * self.resolution.stride;
         balance.core_size(COUPLING).max(least)
     }
 

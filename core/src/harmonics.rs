@@ -41,8 +41,8 @@ pub(crate) struct Chooser {
     least: usize,
     /// Most harmonics.
     most: usize,
-    /// Harmonics are odd, so that an even number is as good as the one below it.
-    odd: bool,
+    /// Lowest harmonic there may be, and from one to the next: a number between two is as good as the one below it.
+    lattice: (usize, usize),
     calm: usize,
     too_few: Option<TooFew>,
     /// Points for which the number is kept, and how many the next time.
@@ -61,17 +61,14 @@ struct TooFew {
 }
 
 impl Chooser {
-    pub(crate) fn new(tolerance: f64, least: usize, most: usize, odd: bool) -> Self {
-        let most = if odd && most > 1 {
-            (most - 1) | 1
-        } else {
-            most
-        };
+    pub(crate) fn new(tolerance: f64, least: usize, most: usize, lattice: (usize, usize)) -> Self {
+        let (first, step) = lattice;
+        let most = most - most.saturating_sub(first) % step;
         Self {
             tolerance,
             least,
             most,
-            odd,
+            lattice,
             calm: 0,
             too_few: None,
             kept: 0,
@@ -154,8 +151,9 @@ impl Chooser {
 
     /// The next whole number that makes a difference, at most the largest.
     fn rounded(&self, wanted: f64) -> usize {
-        let whole = wanted.ceil() as usize;
-        (if self.odd { whole | 1 } else { whole }).min(self.most)
+        let (first, step) = self.lattice;
+        let beyond = (wanted.ceil() as usize).saturating_sub(first);
+        (first + beyond.next_multiple_of(step)).min(self.most)
     }
 }
 
@@ -178,14 +176,14 @@ mod tests {
 
     #[test]
     fn harmonics_follow_the_error() {
-        let mut chooser = Chooser::new(1e-6, 3, 100, false);
+        let mut chooser = Chooser::new(1e-6, 3, 100, (0, 1));
         assert_eq!(chooser.decide(10, 5e-7), None);
         assert_eq!(chooser.decide(10, 8e-6), Some(20));
         assert_eq!(chooser.decide(10, 1.0), Some(20));
         assert_eq!(chooser.decide(10, f64::NAN), Some(20));
         assert_eq!(chooser.decide(90, 1.0), Some(100));
         assert_eq!(chooser.decide(100, 1.0), None);
-        let mut chooser = Chooser::new(1e-6, 3, 100, false);
+        let mut chooser = Chooser::new(1e-6, 3, 100, (0, 1));
         assert_eq!(chooser.decide(10, 0.0), None);
         assert_eq!(chooser.decide(10, 0.0), None);
         assert_eq!(chooser.decide(10, 0.0), Some(5));
@@ -197,7 +195,7 @@ mod tests {
     /// An error that falls as `e^(-2 K)` asks for the same number for ever, once it is found.
     #[test]
     fn an_exponential_fall_settles() {
-        let mut chooser = Chooser::new(1e-6, 3, 100, false);
+        let mut chooser = Chooser::new(1e-6, 3, 100, (0, 1));
         let error = |harmonics: usize| (-2.0 * harmonics as f64).exp();
         let (mut harmonics, mut changes) = (40, Vec::new());
         for _ in 0..200 {
@@ -213,7 +211,7 @@ mod tests {
 
     #[test]
     fn odd_orbits_have_odd_numbers() {
-        let mut chooser = Chooser::new(1e-6, 5, 100, true);
+        let mut chooser = Chooser::new(1e-6, 5, 100, (1, 2));
         assert_eq!(chooser.decide(9, 1e-6 * 1.2), Some(11));
         assert_eq!(chooser.decide(51, 1.0), Some(99));
         assert_eq!(chooser.decide(99, 1.0), None);
@@ -221,7 +219,7 @@ mod tests {
 
     #[test]
     fn after_a_failure_the_number_is_kept_for_a_while() {
-        let mut chooser = Chooser::new(1e-6, 3, 100, false);
+        let mut chooser = Chooser::new(1e-6, 3, 100, (0, 1));
         for times in [KEPT, 2 * KEPT] {
             assert_eq!(chooser.decide(10, 1.0), Some(20));
             chooser.keep();

@@ -328,6 +328,7 @@ mod tests {
             harmonics: 10,
             core: 10,
             parity: crate::balance::Parity::All,
+            stride: 1,
             samples: 64,
             aft: Aft::Switched,
             period: 1,

@@ -19,6 +19,7 @@ use crate::run::Run;
 use crate::stability::Method;
 use crate::start::{Moving, start, without_symmetry};
 use crate::statistics::Statistics;
+use crate::symmetry::has_stride;
 use crate::system::System;
 
 /// What to follow, set up step by step, then [run](FrequencyResponse::run).
@@ -215,10 +216,12 @@ impl<'a> FrequencyResponse<'a> {
         self
     }
 
-    /// Whether orbits of period one have the odd symmetry, `x(t + T/2) = -x(t)`, where the system has it. Default: yes; they have
-    /// odd harmonics only then, and where the symmetry breaks is located. Otherwise a first orbit without the symmetry is looked
-    /// for, as in one of two wells, and one with it taken if none is found; the branch may pass from one to the other. An orbit
-    /// without the symmetry that is [given](Self::near_orbit) does not need this.
+    /// Whether orbits of period one have the symmetry that the system has. Default: yes. Of the odd symmetry, `x(t + T/2) = -x(t)`,
+    /// they have odd harmonics only then, and where the symmetry breaks is located. Otherwise a first orbit without the symmetry is
+    /// looked for, as in one of two wells, and one with it taken if none is found; the branch may pass from one to the other. Where
+    /// contacts take each other's place after a part of the period, as the balls of a bearing or the blades of a rotor, orbits come
+    /// back after that part; otherwise all harmonics are unknowns, whatever the orbits have. An orbit without the symmetry that is
+    /// [given](Self::near_orbit) does not need this.
     #[must_use]
     pub fn symmetric(mut self, wanted: bool) -> Self {
         self.symmetric = wanted;
@@ -348,12 +351,23 @@ impl<'a> FrequencyResponse<'a> {
         let odd = follower.asymmetric || follower.resolution.parity == Parity::Odd;
         follower.resolution.parity = Parity::All;
         follower.asymmetric = odd && !doubles;
+        let orbit = &event.point.orbit;
+        let mut stride = follower.resolution.stride;
+        if !has_stride(orbit, stride) {
+            stride = 1;
+        }
+        let halves = event.kind == EventKind::BranchPoint && event.tangent.is_empty();
+        follower.resolution.stride = if halves && stride.is_multiple_of(2) {
+            stride / 2
+        } else {
+            stride
+        };
         if let Some(chooser) = &follower.chooser {
             let times = request.period / event.point.orbit.period;
             let known = times * event.point.orbit.harmonics();
             follower.resolution.harmonics = chooser.admitted(known);
         }
-        let point = depart(&follower, event, side.sign())?;
+        let point = depart(&follower, event, stride, side.sign())?;
         let run = Run::new(&follower, options, &point.u);
         let start = Start::Along(Box::new(point));
         self.followed(run, start, &mut visit, (Statistics::default(), started))

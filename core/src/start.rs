@@ -226,6 +226,7 @@ mod tests {
                 harmonics: 10 * period,
                 core: 10 * period,
                 parity: Parity::All,
+                stride: 1,
                 samples: 64,
                 aft: Aft::Switched,
                 period,

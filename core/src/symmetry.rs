@@ -11,6 +11,7 @@
 //! Stewart and Schaeffer (1988), Singularities and Groups in Bifurcation Theory II, chapter XIII (block structure).
 
 mod contacts;
+mod stride;
 
 use crate::branch::Orbit;
 use crate::layout::{Entry, Layout};
@@ -22,6 +23,8 @@ use crate::system::{System, Variable};
 const LOOKED_AT: [f64; 6] = [0.0, 0.137, 0.36, 0.618, 0.83, 1.0];
 /// Terms that cancel to this part of their sizes cancel.
 const ROUNDING: f64 = 1e-14;
+
+pub(crate) use stride::has_stride;
 
 /// What an orbit has beyond the odd symmetry, beside that of another one.
 pub(crate) fn broken(from: &Orbit, u: &[f64]) -> Addition {
@@ -51,40 +54,58 @@ pub(crate) fn broken_share(u: &[f64], length: usize) -> f64 {
     even / all
 }
 
-/// Whether solutions with odd harmonics only exist over a range of the variable.
-pub(crate) fn is_odd(
-    system: &dyn System,
-    layout: &Layout,
-    parameters: &[f64],
-    omega: f64,
-    variable: Variable,
-    [from, to]: [f64; 2],
-) -> bool {
-    let mut values = vec![0.0; layout.coefficients];
-    LOOKED_AT.iter().all(|part| {
-        let value = from + part * (to - from);
-        let (mut parameters, mut omega) = (parameters.to_vec(), omega);
-        match variable {
-            Variable::Omega => omega = value,
-            Variable::Parameter(index) => parameters[index] = value,
-        }
-        system.coefficients(&parameters, omega, &mut values);
-        vanish(&layout.load, &values, 0)
-            && vanish(&layout.stiffness, &values, 1)
-            && contacts::are_symmetric(system, layout, &values)
-    })
+/// A system over a range of its variable.
+#[derive(Clone, Copy)]
+pub(crate) struct Over<'s> {
+    pub(crate) system: &'s dyn System,
+    pub(crate) layout: &'s Layout,
+    pub(crate) parameters: &'s [f64],
+    pub(crate) omega: f64,
+    pub(crate) variable: Variable,
+    pub(crate) range: [f64; 2],
+}
+
+impl Over<'_> {
+    /// Whether solutions with odd harmonics only exist.
+    pub(crate) fn is_odd(&self) -> bool {
+        self.coefficients().all(|values| {
+            vanish(&self.layout.load, &values, 0)
+                && vanish(&self.layout.stiffness, &values, 1)
+                && contacts::are_symmetric(self.system, self.layout, &values)
+        })
+    }
+
+    /// Coefficients at the values that are looked at.
+    fn coefficients(&self) -> impl Iterator<Item = Vec<f64>> {
+        let [from, to] = self.range;
+        LOOKED_AT.iter().map(move |part| {
+            let value = from + part * (to - from);
+            let (mut parameters, mut omega) = (self.parameters.to_vec(), self.omega);
+            match self.variable {
+                Variable::Omega => omega = value,
+                Variable::Parameter(index) => parameters[index] = value,
+            }
+            let mut values = vec![0.0; self.layout.coefficients];
+            self.system.coefficients(&parameters, omega, &mut values);
+            values
+        })
+    }
 }
 
 /// Whether the waves of one parity, even or odd, cancel in a matrix or in the load.
 fn vanish(entries: &[Entry], values: &[f64], parity: u32) -> bool {
-    let place = |entry: &Entry| (entry.row, entry.column, entry.wave);
     let of_parity = |entry: &&Entry| entry.wave.harmonic % 2 == parity;
-    entries.iter().filter(of_parity).all(|entry| {
-        let same = entries.iter().filter(|other| place(other) == place(entry));
-        let (sum, size) = same.fold((0.0, 0.0), |(sum, size), other| {
-            let value = values[other.coefficient];
-            (sum + value, size + value.abs())
-        });
-        sum.abs() <= ROUNDING * size
-    })
+    let mut of_parity = entries.iter().filter(of_parity);
+    of_parity.all(|entry| cancels(entries, values, entry))
+}
+
+/// Whether the terms at the place of an entry cancel.
+fn cancels(entries: &[Entry], values: &[f64], entry: &Entry) -> bool {
+    let place = |entry: &Entry| (entry.row, entry.column, entry.wave);
+    let same = entries.iter().filter(|other| place(other) == place(entry));
+    let (sum, size) = same.fold((0.0, 0.0), |(sum, size), other| {
+        let value = values[other.coefficient];
+        (sum + value, size + value.abs())
+    });
+    sum.abs() <= ROUNDING * size
 }

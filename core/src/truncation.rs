@@ -93,8 +93,13 @@ impl<'a> Finer<'a> {
     ) -> Self {
         let fine = Resolution {
             // An orbit of one odd harmonic has its next one at three, whether the system is odd or the orbit alone.
-            harmonics: (2 * coarse.harmonics + usize::from(coarse.parity == Parity::Odd))
-                .max(coarse.harmonics + 2 * coarse.period),
+            harmonics: (2 * coarse.harmonics
+                + if coarse.parity == Parity::Odd {
+                    coarse.stride
+                } else {
+                    0
+                })
+            .max(coarse.harmonics + 2 * coarse.period * coarse.stride),
             core: 0,
             samples: 2 * coarse.samples,
             ..coarse
@@ -251,7 +256,9 @@ impl<'a> Finer<'a> {
         let n = self.balance.layout().coordinates;
         let base = self.balance.base();
         let [mass, damping, stiffness] = &self.linear;
-        for k in self.coarse.harmonics + 1..=self.balance.resolution().harmonics {
+        let stride = self.coarse.stride;
+        let last = self.balance.resolution().harmonics;
+        for k in (self.coarse.harmonics + 1..=last).filter(|k| k.is_multiple_of(stride)) {
             let frequency = base * k as f64;
             let real = |entry: usize| stiffness[entry] - frequency * frequency * mass[entry];
             let imaginary = |entry: usize| frequency * damping[entry];

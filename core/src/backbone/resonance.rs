@@ -261,6 +261,7 @@ impl<'a> PhaseResonance<'a> {
             harmonics: self.harmonics,
             core: self.harmonics,
             parity: Parity::All,
+            stride: 1,
             samples: 8 * self.harmonics,
             aft: Aft::Switched,
             period: 1,

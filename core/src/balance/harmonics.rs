@@ -1,7 +1,7 @@
 //! Which harmonics are unknowns, and how their equations are coupled.
 
+use super::Resolution;
 use super::blocks::places;
-use super::{Parity, Resolution};
 use crate::fourier::series;
 use crate::jacobian::Partition;
 
@@ -17,16 +17,9 @@ pub(super) struct Harmonics {
 impl Harmonics {
     pub(super) fn of(resolution: Resolution) -> Self {
         let Resolution {
-            harmonics,
-            core,
-            parity,
-            ..
+            harmonics, core, ..
         } = resolution;
-        let (first, step) = match parity {
-            Parity::All => (0, 1),
-            Parity::Odd => (1, 2),
-            Parity::Even => (0, 2),
-        };
+        let (first, step) = resolution.lattice();
         let (core, tail) = (first..=harmonics)
             .step_by(step)
             .partition(|&k| k <= core.max(first));

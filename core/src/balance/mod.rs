@@ -66,12 +66,25 @@ pub struct Resolution {
     pub core: usize,
     /// Which harmonics are unknowns.
     pub parity: Parity,
+    /// The unknowns are multiples of this harmonic, and `parity` speaks of the multiples.
+    pub stride: usize,
     /// Samples of one period of the orbit, for methods that sample.
     pub samples: usize,
     /// How contact forces are found.
     pub aft: Aft,
     /// Number of excitation periods in one period of the orbit.
     pub period: usize,
+}
+
+impl Resolution {
+    /// The lowest harmonic that is an unknown, and from one to the next.
+    pub(crate) fn lattice(&self) -> (usize, usize) {
+        match self.parity {
+            Parity::All => (0, self.stride),
+            Parity::Odd => (self.stride, 2 * self.stride),
+            Parity::Even => (0, 2 * self.stride),
+        }
+    }
 }
 
 /// The harmonic balance of a system, as a function of one variable.

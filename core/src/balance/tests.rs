@@ -211,6 +211,7 @@ pub(super) const RESOLUTION: Resolution = Resolution {
     harmonics: 3,
     core: 3,
     parity: Parity::All,
+    stride: 1,
     samples: 64,
     aft: Aft::Sampled,
     period: 2,
@@ -254,7 +255,7 @@ proptest! {
     #[test]
     fn jacobian_is_the_derivative_in_an_exponent(u in state(9, 9, 0.9)) {
         let by_hand = PowerForm::new(false, 2.5, 0.05, 1.0, 0.3);
-        let resolution = Resolution { harmonics: 4, core: 4, parity: Parity::All, samples: 64, aft: Aft::Sampled, period: 1 };
+        let resolution = Resolution { harmonics: 4, core: 4, parity: Parity::All, stride: 1, samples: 64, aft: Aft::Sampled, period: 1 };
         let error = jacobian_error(&by_hand, Variable::Parameter(1), resolution, &{
             let mut u = u;
             u[9] = 2.5;

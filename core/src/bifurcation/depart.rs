@@ -10,7 +10,7 @@
 //! Renson, Masset and Kerschen (2015), The harmonic balance method for bifurcation analysis, section 4.
 
 use crate::balance::Parity;
-use crate::block::Block;
+use crate::block::{Block, Part};
 use crate::branch::{Event, EventKind};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::problem::Problem;
@@ -26,13 +26,15 @@ const DEPARTURES: [f64; 4] = [0.02, 0.05, 0.01, 0.1];
 /// Part of the component that must be left for the orbit to be one of the new branch.
 const LEFT: f64 = 0.5;
 
-/// The first orbit of the branch that begins at an event, with its direction, in the resolution of the new branch's follower.
+/// The first orbit of the branch that begins at an event, with its direction, in the resolution of the new branch's follower. The
+/// harmonics of the old branch are multiples of a stride.
 ///
 /// # Errors
 /// [`Error::NoBranch`] if no branch begins there, or its first orbit was not found.
 pub(crate) fn depart(
     follower: &Follower<'_>,
     event: &Event,
+    stride: usize,
     side: f64,
 ) -> Result<CurvePoint, Error> {
     let nothing = Error::NoBranch {
@@ -42,16 +44,18 @@ pub(crate) fn depart(
     let orbit = &event.point.orbit;
     let mut u = orbit.series.clone();
     u.push(event.point.value);
-    let parity = match event.kind {
-        EventKind::PeriodDoubling => Parity::All,
-        EventKind::SymmetryBreaking => Parity::Odd,
-        EventKind::BranchPoint if !event.tangent.is_empty() => Parity::All,
+    let halved = stride == 2 * follower.resolution.stride;
+    let (part, parity) = match event.kind {
+        EventKind::PeriodDoubling => (Part::Doubled, Parity::All),
+        EventKind::SymmetryBreaking => (Part::Even, Parity::Odd),
+        EventKind::BranchPoint if !event.tangent.is_empty() => (Part::Own, Parity::All),
+        EventKind::BranchPoint if halved => (Part::Between, Parity::All),
         _ => return Err(nothing),
     };
     let mut old = follower.with_harmonics(orbit.harmonics(), orbit.harmonics());
-    (old.parity, old.period) = (parity, orbit.period);
+    (old.parity, old.stride, old.period) = (parity, stride, orbit.period);
     let mut block = Block::new(
-        event.kind,
+        part,
         follower.system,
         &follower.parameters,
         follower.omega,
@@ -66,7 +70,7 @@ pub(crate) fn depart(
     let mut balance = follower.balance(follower.with_harmonics(harmonics, harmonics));
     let mut newton = Newton::new(&balance);
     let range = (follower.to - follower.from).abs();
-    if event.kind == EventKind::BranchPoint {
+    if part == Part::Own {
         let norm = newton.norm();
         let scale = norm.scale_at(&start, range, &mut [0.0; 2]);
         let tangent = of_branch(&event.tangent);

@@ -44,6 +44,7 @@ fn updates(core: usize) -> Vec<f64> {
         harmonics: HARMONICS,
         core,
         parity: Parity::All,
+        stride: 1,
         samples: 256,
         period: 1,
         aft: Aft::Switched,

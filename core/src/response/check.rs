@@ -12,7 +12,7 @@ use crate::harmonics::Chooser;
 use crate::layout::{ContactLayout, Layout};
 use crate::newton::NewtonOptions;
 use crate::rigid::{self, Place};
-use crate::symmetry::{is_broken, is_odd};
+use crate::symmetry::{Over, has_stride, is_broken};
 use crate::system::{Bound, Variable};
 use crate::validate;
 
@@ -65,14 +65,15 @@ impl<'a> FrequencyResponse<'a> {
         self.check_near()?;
         let mut resolution = self.resolution()?;
         let layout = Layout::of(self.system);
-        let symmetric = is_odd(
-            self.system,
-            &layout,
-            &parameters,
+        let over = Over {
+            system: self.system,
+            layout: &layout,
+            parameters: &parameters,
             omega,
             variable,
-            [from, to],
-        );
+            range: [from, to],
+        };
+        let symmetric = over.is_odd();
         let given = self.near.as_ref();
         let kept = self.symmetric && !given.is_some_and(lacks_symmetry);
         if symmetric && self.period == 1 && kept {
@@ -81,6 +82,9 @@ impl<'a> FrequencyResponse<'a> {
                 // An even number is as good as the one below it.
                 resolution.harmonics |= 1;
             }
+        }
+        if self.period == 1 && self.symmetric {
+            self.take_stride(over.stride(), &mut resolution);
         }
         let place = Place {
             system: self.system,
@@ -236,9 +240,28 @@ impl<'a> FrequencyResponse<'a> {
                 self.tolerance,
                 least.min(resolution.harmonics),
                 most.min(unknowns_allow),
-                resolution.parity == Parity::Odd,
+                resolution.lattice(),
             )
         })
+    }
+
+    /// Takes multiples of a harmonic as unknowns, where the orbit that is given has no others and some are below the highest.
+    fn take_stride(&self, stride: usize, resolution: &mut Resolution) {
+        // What is odd of a sum of even harmonics is nothing.
+        let odd = resolution.parity == Parity::Odd && stride.is_multiple_of(2);
+        let given = self.near.as_ref();
+        let has = given.is_none_or(|orbit| has_stride(orbit, stride));
+        let few = stride > resolution.harmonics;
+        if stride == 1 || odd || few || !has {
+            return;
+        }
+        resolution.stride = stride;
+        resolution.core *= stride;
+        if self.harmonics.is_none() {
+            let (first, step) = resolution.lattice();
+            let beyond = resolution.harmonics - first;
+            resolution.harmonics = first + beyond.next_multiple_of(step);
+        }
     }
 
     fn resolution(&self) -> Result<Resolution, Error> {
@@ -307,6 +330,7 @@ impl<'a> FrequencyResponse<'a> {
             harmonics,
             core: CORE_AT_START * self.period,
             parity: Parity::All,
+            stride: 1,
             samples,
             aft: self.aft,
             period: self.period,

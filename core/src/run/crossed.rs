@@ -64,7 +64,7 @@ impl<'a> Run<'_, 'a> {
         let width = BESIDE * newton.norm().length(before.scale, &step);
         let fine = self.reader.finer.balance().resolution();
         let resolutions = [fine, three_quarters(fine)];
-        let mut watches = resolutions.map(|of| self.watch_at(EventKind::BranchPoint, of));
+        let mut watches = resolutions.map(|of| self.watch_like(test, of));
         let mut coarse = [[0.0; 2]; 2];
         let mut finer = [[[0.0; 2]; 2]; 2];
         for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {

@@ -21,7 +21,7 @@ use std::cell::RefCell;
 use super::Run;
 use super::touch::{Extreme, Touches};
 use crate::balance::{Balance, Resolution};
-use crate::block::Block;
+use crate::block::{Block, Part};
 use crate::branch::{Event, EventKind, Point, Turn};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::Located;
@@ -142,7 +142,7 @@ impl<'a> Run<'_, 'a> {
         between: Between<'_>,
         block: &mut Block<'a>,
     ) {
-        let kind = block.kind;
+        let part = block.part;
         let mut at = |point: &CurvePoint| block.determinant_along(&point.u, &point.tangent);
         let (a, b) = (at(between.0), at(between.1));
         // A block that is singular at a point counts for one side, so that its event belongs to one step.
@@ -150,10 +150,10 @@ impl<'a> Run<'_, 'a> {
             return;
         }
         let mut test = Test::Block(block, Some(a.1.max(b.1)));
-        if kind == EventKind::BranchPoint {
+        if part == Part::Own {
             self.branch_point(balance, newton, between, &mut test);
         } else {
-            self.event(balance, newton, between, kind, &mut test);
+            self.event(balance, newton, between, part.kind(), &mut test);
         }
     }
 
@@ -238,7 +238,7 @@ impl<'a> Run<'_, 'a> {
             let pairs = behind.u.iter().zip(&before.u);
             let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
             let length = newton.norm().length(before.scale, &step);
-            left + self.event_error(&located.point, DIFFERENCE * length, kind, test)
+            left + self.event_error(&located.point, DIFFERENCE * length, test)
         } else {
             f64::INFINITY
         };
@@ -256,16 +256,10 @@ impl<'a> Run<'_, 'a> {
 
     /// Estimated error of an event, from the corrected orbit that is held. What the first half of the harmonics that were left out
     /// does and what the second half does may cancel, and are taken by their sizes.
-    fn event_error(
-        &mut self,
-        point: &CurvePoint,
-        step: f64,
-        kind: EventKind,
-        test: &Test<'_, 'a>,
-    ) -> f64 {
+    fn event_error(&mut self, point: &CurvePoint, step: f64, test: &Test<'_, 'a>) -> f64 {
         let fine = self.reader.finer.balance().resolution();
         let some = three_quarters(fine);
-        let mut by = |of| self.moved(point, step, (kind, of), test);
+        let mut by = |of| self.moved(point, step, of, test);
         let (all, half) = (by(fine), by(some));
         let change = half.abs() + (all - half).abs();
         known(BEYOND * change + ROUNDING * point.parameter().abs())
@@ -276,10 +270,10 @@ impl<'a> Run<'_, 'a> {
         &mut self,
         point: &CurvePoint,
         step: f64,
-        (kind, resolution): (EventKind, Resolution),
+        resolution: Resolution,
         test: &Test<'_, 'a>,
     ) -> f64 {
-        let mut watch = self.watch_at(kind, resolution);
+        let mut watch = self.watch_like(test, resolution);
         let Some(mut test) = watch.test(test) else {
             return f64::INFINITY;
         };
@@ -306,18 +300,18 @@ impl<'a> Run<'_, 'a> {
         self.statistics.monodromies += monodromies;
     }
 
-    /// What is watched for one kind of event, in some resolution.
-    pub(super) fn watch_at(&self, kind: EventKind, resolution: Resolution) -> Watch<'a> {
+    /// What is watched for a test function, in some resolution.
+    pub(super) fn watch_like(&self, test: &Test<'_, 'a>, resolution: Resolution) -> Watch<'a> {
         let follower = self.follower;
         let mut watch = Watch::default();
-        match kind {
-            EventKind::Grazing { .. } => {
+        match test {
+            Test::Touch(..) => {
                 watch.touches = Some(Touches::new(follower.balance(resolution)));
             }
-            EventKind::NeimarkSacker => {
+            Test::Pairs(_) => {
                 watch.pairs = Some(Pairs::new(follower.balance(resolution)));
             }
-            _ => watch.blocks.push(follower.block(kind, resolution)),
+            Test::Block(block, _) => watch.blocks.push(follower.block(block.part, resolution)),
         }
         watch
     }

@@ -439,6 +439,7 @@ fn the_hill_matrix_contains_the_jacobian_of_the_balance() {
             harmonics: 3,
             core: 3,
             parity: Parity::All,
+            stride: 1,
             samples: 64,
             aft: Aft::Switched,
             period: 1,

@@ -20,12 +20,13 @@ pub(super) fn equivalent_linearisation(
     effort: &mut Effort,
 ) -> Vec<Vec<f64>> {
     let load = Layout::of(request.system).load_harmonic();
-    let harmonics = load.clamp(1, request.resolution.harmonics.max(1));
+    let stride = request.resolution.stride;
+    let harmonics = load.clamp(stride, request.resolution.harmonics.max(stride));
     let mut fixed = Fixed::new(request, harmonics);
     let origin = rest.map_or_else(|| fixed.zeros(), |rest| spread(rest, &fixed));
     let mut pattern = load_pattern(&mut fixed);
     if pattern.iter().all(|x| *x == 0.0) {
-        pattern[1] = 1.0;
+        pattern[2 * stride - 1] = 1.0;
     }
     let mut found: Vec<Vec<f64>> = Vec::new();
     for mut u in valleys(&mut fixed, &origin, &pattern, effort) {

@@ -13,6 +13,9 @@
 //! Whether two laws are related so is known where they are one law, with equal arguments. Others are compared by their values:
 //! a piece is analytic, so that two that agree to rounding at many gaps and rates, near their ends and far away, are one.
 
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+
 use super::ROUNDING;
 use crate::law::{Derivatives, On};
 use crate::layout::{ContactLayout, Layout, Term};
@@ -66,7 +69,63 @@ pub(super) fn are_symmetric(system: &dyn System, layout: &Layout, values: &[f64]
     true
 }
 
+/// Whether a shift by a part of the period, one of so many, takes the contacts into each other; and if it does, whether it moves
+/// any, that is, takes it into one that it is not itself.
+pub(super) fn shifted(
+    system: &dyn System,
+    layout: &Layout,
+    values: &[f64],
+    parts: usize,
+) -> Option<bool> {
+    let contacts = layout.contacts.iter();
+    let all: Vec<Contact> = contacts
+        .map(|contact| Contact::of(contact, values))
+        .filter(|contact| !contact.force.is_empty())
+        .collect();
+    let mut left: Vec<&Contact> = all.iter().collect();
+    let mut moved = false;
+    for contact in &all {
+        let turned = contact.turned(parts);
+        let is_image = |other: &Contact| {
+            let mut signs = SIGNS.into_iter();
+            signs.any(|signs| turned.is_like(system, other, signs))
+        };
+        let image = left.iter().position(|other| is_image(other))?;
+        moved |= !is_image(contact);
+        left.swap_remove(image);
+    }
+    Some(moved)
+}
+
+/// Harmonics of the waves of all contacts, each once.
+pub(super) fn harmonics(layout: &Layout) -> BTreeSet<usize> {
+    let contacts = layout.contacts.iter();
+    let terms = contacts.flat_map(|contact| [&contact.gap, &contact.offset, &contact.force]);
+    let terms = terms.flatten();
+    terms.map(|term| term.wave.harmonic as usize).collect()
+}
+
 impl Contact {
+    /// A part of the period later.
+    fn turned(&self, parts: usize) -> Self {
+        let turned = |waves: &Vec<Wave>| turned(waves, parts);
+        Self {
+            law: self.law,
+            arguments: self.arguments.clone(),
+            gap: turned(&self.gap),
+            offset: turned(&self.offset),
+            force: turned(&self.force),
+        }
+    }
+
+    /// Whether `d* = s d`, `delta* = s delta`, `e* = t e` and `phi*(g, r) = t phi(s g, s r)` for the other contact.
+    fn is_like(&self, system: &dyn System, other: &Self, [s, t]: [f64; 2]) -> bool {
+        are_equal(&self.gap, s, &other.gap)
+            && are_equal(&self.offset, s, &other.offset)
+            && are_equal(&self.force, t, &other.force)
+            && self.law_becomes(system, other, [s, t])
+    }
+
     fn of(layout: &ContactLayout, values: &[f64]) -> Self {
         let mut arguments = vec![0.0; layout.argument_count];
         layout.arguments(values, &mut arguments);
@@ -196,4 +255,40 @@ fn are_times(waves: &[Wave], factor: f64, others: &[Wave]) -> bool {
         other.is_some_and(|(_, other)| (factor * value - other).abs() <= ROUNDING * size)
     };
     waves.len() == others.len() && waves.iter().all(equal)
+}
+
+/// The waves a part of the period later, one of so many.
+fn turned(waves: &[Wave], parts: usize) -> Vec<Wave> {
+    let mut turned: Vec<Wave> = Vec::new();
+    let mut add = |place: (usize, u32, Part), value: f64| match turned
+        .iter_mut()
+        .find(|(other, _)| *other == place)
+    {
+        Some((_, sum)) => *sum += value,
+        None => turned.push((place, value)),
+    };
+    for &((index, harmonic, part), value) in waves {
+        let angle = TAU * (harmonic as usize % parts) as f64 / parts as f64;
+        let (sine, cosine) = angle.sin_cos();
+        let (other, sign) = match part {
+            Part::Cosine => (Part::Sine, -1.0),
+            Part::Sine => (Part::Cosine, 1.0),
+        };
+        add((index, harmonic, part), value * cosine);
+        if harmonic > 0 {
+            add((index, harmonic, other), sign * value * sine);
+        }
+    }
+    turned
+}
+
+/// Whether the waves times a factor are those of another list, where one that is missing is zero.
+fn are_equal(waves: &[Wave], factor: f64, others: &[Wave]) -> bool {
+    let size = largest(waves).max(largest(others));
+    let at = |waves: &[Wave], place: &(usize, u32, Part)| {
+        let found = waves.iter().find(|(other, _)| other == place);
+        found.map_or(0.0, |(_, value)| *value)
+    };
+    let mut places = waves.iter().chain(others).map(|(place, _)| place);
+    places.all(|place| (factor * at(waves, place) - at(others, place)).abs() <= ROUNDING * size)
 }

@@ -39,7 +39,7 @@ impl Finer<'_> {
         newton: &mut Newton,
     ) -> f64 {
         let first = self.largest_change(u, phases, units);
-        let most = if self.coarse.harmonics <= FEW * self.coarse.period {
+        let most = if self.coarse.harmonics <= FEW * self.coarse.period * self.coarse.stride {
             NOTHING
         } else {
             SMALL

@@ -14,7 +14,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::balance::{Balance, Parity};
+use crate::balance::Balance;
 use crate::stability::eigenvalues;
 
 /// Beyond so many times the highest harmonic of the correction nothing is said: next to nothing is left there of a power.
@@ -82,20 +82,12 @@ impl Modes {
                 parts.fold(0.0, f64::max)
             })
             .collect();
-        let step = if balance.resolution().parity == Parity::Odd {
-            2
-        } else {
-            1
-        };
+        let (first, step) = balance.resolution().lattice();
         let mut known = top;
         for frequency in met {
+            // The two harmonics of the orbit on either side of it.
             let below = (frequency / base).floor() as usize;
-            // Odd harmonics are on either side of it, two apart.
-            let below = if step == 2 && below.is_multiple_of(2) {
-                below - 1
-            } else {
-                below
-            };
+            let below = below - below.saturating_sub(first) % step;
             for k in [below, below + step].into_iter().filter(|k| *k > known) {
                 let w = base * k as f64;
                 let part = (top as f64 / k as f64).powi(power);

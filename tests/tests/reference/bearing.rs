@@ -1,13 +1,13 @@
 //! A rotor on eight balls that move with the cage, in the manner of Sunnersjo (1978).
 //!
 //! The balls are alike, so the orbits come back after the passage of one, a sixteenth of the period of the declaration. There a
-//! doubling of the period of a passage is a multiplier of one: a branch point. Shooting is the method: the balance needs hundreds of
-//! harmonics of the declared period.
+//! doubling of the period of a passage is a multiplier of one: a branch point. The balance knows of the balls that they are alike,
+//! and has the harmonics of a passage only.
 
 use hertzian::EventKind::{BranchPoint, Fold};
-use hertzian::{EventKind, Shooting};
+use hertzian::{EventKind, FrequencyResponse, Shooting};
 
-use crate::{all_found, of_shooting};
+use crate::{Found, all_found, of_shooting};
 
 hertzian::oscillator! {
     /// Balls at angles that are two fifths of those of the rotor, with a clearance.
@@ -46,6 +46,25 @@ fn the_upper_doubling_of_a_passage_is_found() {
 #[test]
 fn the_lower_doubling_of_a_passage_is_found() {
     run([0.664, 0.666], &LOWER, 1e-11);
+}
+
+#[test]
+fn the_balance_finds_them_too() {
+    let model = Bearing { load: 1.0 };
+    for (range, known, digits) in [
+        ([0.352, 0.3585], &FOLDS[..], 1e-13),
+        ([0.7352, 0.734], &UPPER[..], 1e-11),
+    ] {
+        let request = FrequencyResponse::of(&model).from(range[0]).to(range[1]);
+        let request = request.stability(false).bifurcations(range[0] > 0.7);
+        let branch = request.run().unwrap();
+        let events = branch.events.iter().map(|event| Found {
+            kind: event.kind,
+            value: event.point.value,
+            error: event.error,
+        });
+        all_found(&events.collect::<Vec<_>>(), known, digits);
+    }
 }
 
 fn run([from, to]: [f64; 2], known: &[(EventKind, f64)], digits: f64) {

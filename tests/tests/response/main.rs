@@ -1,6 +1,7 @@
 //! The public interface of the runtime: closed forms, edges, errors, and what comes back.
 
 mod closed_forms;
+mod copies;
 mod first_orbits;
 mod free;
 mod given;

@@ -11,7 +11,7 @@ use crate::flow::{self, Options};
 use crate::labels::Labels;
 use crate::layout::Layout;
 use crate::response::FrequencyResponse;
-use crate::symmetry::is_odd;
+use crate::symmetry::Over;
 use crate::system::Variable;
 use crate::validate;
 
@@ -134,7 +134,15 @@ impl<'a> Shooting<'a> {
         let omega = given.unwrap_or(from);
         let layout = Layout::of(self.system);
         let range = [from, to];
-        let odd = is_odd(self.system, &layout, &parameters, omega, variable, range);
+        let over = Over {
+            system: self.system,
+            layout: &layout,
+            parameters: &parameters,
+            omega,
+            variable,
+            range,
+        };
+        let odd = over.is_odd();
         let varied = self.vary.clone().unwrap_or_else(|| "omega".to_owned());
         Ok(Setting {
             source: self.source(&parameters, omega),

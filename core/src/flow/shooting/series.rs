@@ -46,6 +46,7 @@ pub(super) fn point(
         harmonics,
         core: harmonics,
         parity: Parity::All,
+        stride: 1,
         samples: count,
         aft: Aft::Switched,
         period: cycle.period,
