@@ -308,7 +308,7 @@ impl<'f, 'a> Run<'f, 'a> {
             self.core += self.core.div_ceil(2);
         }
         let chosen = self.chooser.as_mut().and_then(|chooser| {
-            let error = point.error.unwrap_or(f64::INFINITY);
+            let error = point.error.map_or(f64::INFINITY, |_| self.reader.across);
             // What rounding leaves, no harmonics take away.
             let error = if error <= ROUNDINGS * self.reader.rounding {
                 0.0

@@ -70,6 +70,13 @@ impl Newton {
         refined
     }
 
+    /// The same with what the Jacobian has, and how steeply the curve runs along the parameter there: from zero at a fold to one.
+    pub fn direction(&mut self, tangent: &mut [f64]) -> f64 {
+        self.unit_of_border(tangent);
+        let slope = tangent[self.norm.unknowns()] / self.scale.parameter;
+        slope.abs() / self.norm.length(self.scale, tangent)
+    }
+
     /// Writes the solution of (1) for a right-hand side that is one in the border and zero elsewhere.
     fn unit_of_border(&mut self, tangent: &mut [f64]) {
         let n = self.norm.unknowns();
