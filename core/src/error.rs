@@ -125,6 +125,11 @@ pub enum Error {
         /// The direction, as a sum of coordinates.
         direction: String,
     },
+    /// Nothing holds the system along a direction: where its orbits are along it, shooting has no equation for.
+    Free {
+        /// The direction, as a sum of coordinates.
+        direction: String,
+    },
     /// A branch passes a value between two of its points, but the orbit there could not be computed.
     Lost {
         /// The value.
@@ -259,6 +264,7 @@ sentence_as_debug! {
     NegativeMass { coordinate, mass }
     IndefiniteMass { eigenvalue }
     CarriedAway { value, load, direction }
+    Free { direction }
     Lost { value, from, to }
     NoStart { value, reason }
     State { entries, expected }

@@ -246,6 +246,22 @@ pub(crate) fn held(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> 
     Ok(())
 }
 
+/// Refuses a system with rigid motions, for methods whose equations are singular along them.
+///
+/// # Errors
+/// [`Error::CarriedAway`] or [`Error::Free`]
+pub(crate) fn none(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> {
+    held(place, [from, to])?;
+    let coefficients = LOOKED_AT.map(|part| place.coefficients(from + part * (to - from)));
+    Directions::of(place.layout, &coefficients).map_or(Ok(()), |directions| {
+        let names = &place.system.facts().coordinates;
+        let direction = directions.right.column(0);
+        Err(Error::Free {
+            direction: null_space::described(names, direction.as_slice()),
+        })
+    })
+}
+
 fn is_finite(values: &[f64]) -> bool {
     values.iter().all(|x| x.is_finite())
 }

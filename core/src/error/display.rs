@@ -60,6 +60,10 @@ impl Error {
                 f,
                 "no periodic orbit at {value}: the mean load along {direction} is {load:.6e}, and nothing holds the system there, so that it is carried away"
             ),
+            Self::Free { direction } => write!(
+                f,
+                "nothing holds the system along {direction}, so that its orbits may be anywhere along it, and shooting finds none: `FrequencyResponse` does"
+            ),
             Self::NotAffine => write!(
                 f,
                 "the motion has no closed form: a force is not affine on one of its pieces, or a stiffness or a direction varies in time"
@@ -185,6 +189,7 @@ impl fmt::Display for Error {
             Self::State { .. }
             | Self::Values { .. }
             | Self::CarriedAway { .. }
+            | Self::Free { .. }
             | Self::NotAffine => self.of_motions(f),
             Self::Beyond { value, fold } => write!(
                 f,

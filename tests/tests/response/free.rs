@@ -1,7 +1,7 @@
 //! Systems that nothing holds along some direction, against the same systems in relative coordinates, and closed forms.
 
 use hertzian::error::Error;
-use hertzian::{Branch, FrequencyResponse, Stability, Verdict};
+use hertzian::{Branch, FrequencyResponse, Shooting, Stability, Verdict};
 
 hertzian::oscillator! {
     /// Two gears, coupled by their teeth only.
@@ -177,6 +177,16 @@ fn unbalanced_gears_are_carried_away() {
     let error = varied.from(0.1).to(0.2).run().unwrap_err();
     assert!(
         matches!(error, Error::CarriedAway { load, .. } if (load - 0.0137).abs() < 1e-12),
+        "{error}"
+    );
+}
+
+/// The equations of shooting are singular along the direction: it is refused by its name.
+#[test]
+fn shooting_refuses_what_is_free() {
+    let error = Shooting::of(&FREE).orbit(0.7).unwrap_err();
+    assert!(
+        matches!(&error, Error::Free { direction } if direction == "a + b"),
         "{error}"
     );
 }

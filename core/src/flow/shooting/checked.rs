@@ -11,6 +11,7 @@ use crate::flow::{self, Options};
 use crate::labels::Labels;
 use crate::layout::Layout;
 use crate::response::FrequencyResponse;
+use crate::rigid::{self, Place};
 use crate::symmetry::Over;
 use crate::system::Variable;
 use crate::validate;
@@ -134,6 +135,14 @@ impl<'a> Shooting<'a> {
         let omega = given.unwrap_or(from);
         let layout = Layout::of(self.system);
         let range = [from, to];
+        let place = Place {
+            system: self.system,
+            layout: &layout,
+            parameters: &parameters,
+            omega,
+            variable,
+        };
+        rigid::none(place, range)?;
         let over = Over {
             system: self.system,
             layout: &layout,
