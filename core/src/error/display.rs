@@ -42,6 +42,50 @@ impl Error {
         }
     }
 
+    /// What is written of systems, and of the balances they ask for.
+    fn of_systems(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Samples {
+                samples,
+                least,
+                harmonics,
+            } => write!(
+                f,
+                "{samples} samples are too few for {harmonics} harmonics: take {least} or more"
+            ),
+            Self::Unknowns { unknowns, most } => write!(
+                f,
+                "{unknowns} unknowns are too many, at most {most}: take fewer harmonics or a shorter period"
+            ),
+            Self::Levels { law, levels } => {
+                write!(
+                    f,
+                    "the levels of law {law} are not in increasing order: {levels:?}"
+                )
+            }
+            Self::Harmonics { harmonics, highest } => write!(
+                f,
+                "the declaration has harmonic {highest} of the orbit, and the balance only {harmonics}: take more harmonics"
+            ),
+            Self::NoCoordinates => write!(f, "the system has no coordinates"),
+            Self::SingularMass { determinant } => {
+                write!(
+                    f,
+                    "the mass matrix is singular: its determinant is {determinant:e}"
+                )
+            }
+            Self::NegativeMass { coordinate, mass } => write!(
+                f,
+                "the mass of {coordinate} is {mass:e}, and a mass is positive: change the parameters, or the signs of the equation"
+            ),
+            Self::IndefiniteMass { eigenvalue } => write!(
+                f,
+                "the mass matrix is symmetric and has the eigenvalue {eigenvalue:e}: kinetic energy is positive"
+            ),
+            _ => Ok(()),
+        }
+    }
+
     /// What is written of flows and states.
     fn of_motions(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -58,7 +102,8 @@ impl Error {
                 direction,
             } => write!(
                 f,
-                "no periodic orbit at {value}: the mean load along {direction} is {load:.6e}, and nothing holds the system there, so that it is carried away"
+                "no periodic orbit at {}: the mean load along {direction} is {load:.6e}, and nothing holds the system there, so that it is carried away",
+                Decimal::plain(*value)
             ),
             Self::Free { direction } => write!(
                 f,
@@ -133,43 +178,14 @@ impl fmt::Display for Error {
             | Self::Missing { .. }
             | Self::Varied { .. }
             | Self::EmptyRange { .. } => self.of_requests(f),
-            Self::Samples {
-                samples,
-                least,
-                harmonics,
-            } => write!(
-                f,
-                "{samples} samples are too few for {harmonics} harmonics: take {least} or more"
-            ),
-            Self::Unknowns { unknowns, most } => write!(
-                f,
-                "{unknowns} unknowns are too many, at most {most}: take fewer harmonics or a shorter period"
-            ),
-            Self::Levels { law, levels } => {
-                write!(
-                    f,
-                    "the levels of law {law} are not in increasing order: {levels:?}"
-                )
-            }
-            Self::Harmonics { harmonics, highest } => write!(
-                f,
-                "the declaration has harmonic {highest} of the orbit, and the balance only {harmonics}: take more harmonics"
-            ),
-            Self::NoCoordinates => write!(f, "the system has no coordinates"),
-            Self::SingularMass { determinant } => {
-                write!(
-                    f,
-                    "the mass matrix is singular: its determinant is {determinant:e}"
-                )
-            }
-            Self::NegativeMass { coordinate, mass } => write!(
-                f,
-                "the mass of {coordinate} is {mass:e}, and a mass is positive: change the parameters, or the signs of the equation"
-            ),
-            Self::IndefiniteMass { eigenvalue } => write!(
-                f,
-                "the mass matrix is symmetric and has the eigenvalue {eigenvalue:e}: kinetic energy is positive"
-            ),
+            Self::Samples { .. }
+            | Self::Unknowns { .. }
+            | Self::Levels { .. }
+            | Self::Harmonics { .. }
+            | Self::NoCoordinates
+            | Self::SingularMass { .. }
+            | Self::NegativeMass { .. }
+            | Self::IndefiniteMass { .. } => self.of_systems(f),
             Self::Lost { value, from, to } => {
                 write!(
                     f,
