@@ -128,7 +128,7 @@ fn error(model: &Declaration, orbit: &Point) -> Option<f64> {
 #[test]
 fn stated_errors_of_peak_to_peak_hold() {
     let models = std::env::var("HERTZIAN_PEAKS").map_or(MODELS, |count| count.parse().unwrap());
-    let (mut all, mut within, mut within_three, mut lost) = (0, 0, 0, 0);
+    let (mut all, mut within, mut within_three, mut lost) = (0_usize, 0, 0, 0);
     for index in 0..models {
         let mut random = Random(index.wrapping_mul(0xd134_2543_de82_ef95));
         random.bits();
