@@ -220,6 +220,11 @@ impl Jacobian {
         self.lu.factorise(&mut self.core)
     }
 
+    /// How large an update of one in every unit makes the equation of the core that it changes least.
+    pub(crate) fn smallest_equation(&self) -> f64 {
+        self.lu.smallest_row()
+    }
+
     /// Factorises, and gives the sign of the determinant and the logarithm of its size; the sign is zero where that fails.
     pub(crate) fn determinant(&mut self) -> (f64, f64) {
         if self.factorise().is_err() {

@@ -162,6 +162,26 @@ impl Lu {
         result
     }
 
+    /// The largest entry of that row, the last one aside, whose largest entry is smallest; of the matrix before it was factorised.
+    pub fn smallest_row(&self) -> f64 {
+        let mut last = self.pivots.len().saturating_sub(1);
+        for (column, &pivot) in self.pivots.iter().enumerate() {
+            if pivot == last {
+                last = column;
+            } else if column == last {
+                last = pivot;
+            }
+        }
+        let others = self
+            .scales
+            .iter()
+            .enumerate()
+            .filter(|(row, _)| *row != last);
+        others
+            .fold(0.0_f64, |most, (_, scale)| most.max(*scale))
+            .recip()
+    }
+
     /// Sign of the determinant and logarithm of its size, from the factors that [`Lu::factorise`] left in `matrix`.
     pub fn determinant(&self, matrix: &Matrix) -> (f64, f64) {
         let pivots = self.pivots.iter().enumerate();

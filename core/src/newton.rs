@@ -199,7 +199,7 @@ impl Newton {
                 });
             }
             let stagnates = size > options.tolerance && size > STEADY * previous;
-            if stagnates && self.is_rounding(problem, u) {
+            if stagnates && self.is_rounding(problem, u, size, options.tolerance) {
                 subtract(u, &self.update, 1.0);
                 self.drift += size;
                 self.left = size.max(self.rounding);

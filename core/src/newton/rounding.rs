@@ -9,12 +9,23 @@
 use super::Newton;
 use crate::continuation::problem::Problem;
 
+/// So many times what rounding makes of an update is still its doing. Beside a branch point updates halve, and are larger.
+const EXPLAINED: f64 = 16.0;
+/// What conditioning may make of rounding. Where it takes more, as beside a branch point, it is the matrix and not the size of the terms
+/// that keeps updates from shrinking.
+const CONDITION: f64 = 1e3;
 /// A residual of so many roundings of its terms is nothing but rounding: sums over harmonics and nodes add up.
 const ROUNDINGS: f64 = 64.0;
 
 impl Newton {
-    /// Whether the residual at `u` is nothing but rounding. If so, keeps what it makes of an update.
-    pub(super) fn is_rounding(&mut self, problem: &mut impl Problem, u: &[f64]) -> bool {
+    /// Whether the residual at `u` is nothing but rounding, and an update of this size what it makes of it. If so, keeps the latter.
+    pub(super) fn is_rounding(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &[f64],
+        update: f64,
+        tolerance: f64,
+    ) -> bool {
         let n = self.norm.unknowns();
         let before = problem.operations();
         let known = problem.terms(u, &mut self.trial[..n]);
@@ -23,15 +34,23 @@ impl Newton {
         if !known || !self.residual[..n].iter().zip(&self.trial).all(within) {
             return false;
         }
+        let largest = self.trial[..n].iter().copied().fold(0.0, f64::max);
+        if CONDITION * f64::EPSILON * largest <= tolerance * self.jacobian.smallest_equation() {
+            return false;
+        }
         for (to, r) in self.trial[..n].iter_mut().zip(&self.residual) {
             *to = (f64::EPSILON * *to).copysign(*r);
         }
         self.trial[n] = 0.0;
         let mut made = std::mem::take(&mut self.trial);
         self.solve(&mut made);
-        self.rounding = self.norm.length(self.scale, &made);
+        let size = self.norm.length(self.scale, &made);
         self.trial = made;
-        self.rounding.is_finite()
+        let explained = size.is_finite() && update <= EXPLAINED * size;
+        if explained {
+            self.rounding = size;
+        }
+        explained
     }
 
     /// What rounding of the residual makes of an update, in the units of what oscillates, where the last correction ended there; zero

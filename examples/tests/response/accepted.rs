@@ -146,7 +146,7 @@ fn an_oscillator_is_read_from_a_file() {
     let outcome = coarse(&folder, &arguments).expect("a branch");
     assert!(outcome.complete);
     let peak_to_peak = 2e-5 / (1.0 - 0.36_f64).hypot(0.06);
-    let found = format!("at         omega 0.6: peak-to-peak {peak_to_peak:.6}, stable");
+    let found = format!("at         omega 0.6: peak-to-peak {peak_to_peak:.6e}, stable");
     assert!(
         outcome.summary.contains(&found),
         "{found} in\n{}",
