@@ -3,14 +3,21 @@
 //! Dormand and Prince's formulas of order eight with an error of order seven (Prince and Dormand 1981, J. Comput. Appl. Math. 7, 67,
 //! table 2: RK8(7)13M). A step ends where a gap meets a level: it is taken again, shorter, until it ends there to rounding, so
 //! that nothing is interpolated. Within a step every contact keeps the force of its piece.
+//!
+//! Where a smooth force changes on a width far below the motion, all stages of a step, and its error with them, may pass the change
+//! without a trace: a step is so short that the variable of the force goes by no more than a part of its width, or of its distance
+//! from where the change is.
 
-use crate::model::{CONTACTS, COORDINATES, Model, Pieces, State};
+use crate::model::{CONTACTS, COORDINATES, Model, Pieces, State, Variable};
 use crate::tableau::{A, B, C, LOWER, STAGES};
 
 /// Steps of one motion at most.
 const STEPS: usize = 400_000;
 /// Steps in a period at least.
 const LEAST: f64 = 24.0;
+/// Parts of the width of a sharp force, and of the distance from it, that its variable may go by within a step.
+const WIDTH: f64 = 1.0;
+const DISTANCE: f64 = 0.3;
 
 /// How motions are computed.
 pub struct Motions<'a> {
@@ -21,6 +28,8 @@ pub struct Motions<'a> {
     pub sizes: State,
     pub tolerance: f64,
     levels: Vec<Vec<f64>>,
+    /// By contact: what its force changes fast with, and the width.
+    sharp: Vec<Option<(Variable, f64)>>,
 }
 
 /// Where a motion went.
@@ -62,6 +71,9 @@ impl<'a> Motions<'a> {
         });
         Self {
             model,
+            sharp: (0..model.contacts.len())
+                .map(|contact| model.sharp(contact, &values))
+                .collect(),
             levels: levels.collect(),
             values,
             omega,
@@ -95,7 +107,17 @@ impl<'a> Motions<'a> {
                 pieces,
                 slope: self.slope(time, &course.state, &pieces),
             };
+            let sight = self.sight(&here);
+            let shortest = 1e-12 * end;
+            if length > sight && length > shortest {
+                step = sight.max(shortest);
+                continue;
+            }
             let (mut to, error) = self.step(&here, length);
+            if error <= 1.0 && length > shortest && self.passed(&here, &to, length) {
+                step = 0.5 * length;
+                continue;
+            }
             if !(error <= 1.0 || length < 1e-14 * end && error.is_finite()) {
                 if !error.is_finite() && length < 1e-14 * end {
                     return Err(Lost::Diverged);
@@ -131,6 +153,46 @@ impl<'a> Motions<'a> {
             course.state = to;
         }
         Err(Lost::Long)
+    }
+
+    /// What the force of a contact changes fast with, less where it changes.
+    fn variable(&self, contact: usize, of: Variable, time: f64, state: &State) -> f64 {
+        let [value, rate] = self.gap(contact, time, state);
+        match of {
+            Variable::Gap => value,
+            Variable::Rate => rate,
+        }
+    }
+
+    /// The longest step that does not pass a sharp force unseen, as its variable moves in the beginning.
+    fn sight(&self, here: &Step) -> f64 {
+        let ahead = 1e-7 / self.omega;
+        let mut moved = here.from;
+        for (x, slope) in moved.iter_mut().zip(here.slope) {
+            *x += ahead * slope;
+        }
+        let sharp = self.sharp.iter().enumerate();
+        let steps = sharp.filter_map(|(contact, sharp)| {
+            let (of, width) = (*sharp)?;
+            let from = self.variable(contact, of, here.time, &here.from);
+            let to = self.variable(contact, of, here.time + ahead, &moved);
+            let speed = (to - from).abs() / ahead;
+            Some((WIDTH * width + DISTANCE * from.abs()) / speed)
+        });
+        steps.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a step that was taken went by a sharp force faster than it began to.
+    fn passed(&self, here: &Step, to: &State, length: f64) -> bool {
+        let mut sharp = self.sharp.iter().enumerate();
+        sharp.any(|(contact, sharp)| {
+            let Some((of, width)) = *sharp else {
+                return false;
+            };
+            let from = self.variable(contact, of, here.time, &here.from);
+            let to = self.variable(contact, of, here.time + length, to);
+            (to - from).abs() > 2.0 * (WIDTH * width + DISTANCE * from.abs())
+        })
     }
 
     /// Periods of omega in a time.

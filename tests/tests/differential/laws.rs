@@ -2,7 +2,7 @@
 
 use crate::draw::{DAMPING, Draft, FORCE, LENGTH, SPEED, STIFFNESS};
 use crate::expression::Expression;
-use crate::model::Law;
+use crate::model::{Law, Sharp, Variable};
 
 fn zero() -> Expression {
     Expression::Number(0.0)
@@ -29,8 +29,16 @@ pub fn law(draft: &mut Draft) -> Law {
 
 fn whole(expression: Expression) -> Law {
     Law {
-        levels: Vec::new(),
         pieces: vec![expression],
+        ..Law::default()
+    }
+}
+
+/// One that changes with a ratio of a variable to a width.
+fn sharp(expression: Expression, of: Variable, width: Expression) -> Law {
+    Law {
+        sharp: Some(Sharp { of, width }),
+        ..whole(expression)
     }
 }
 
@@ -88,6 +96,7 @@ pub fn one_sided(draft: &mut Draft) -> Law {
     Law {
         levels: vec![zero()],
         pieces: vec![zero(), above],
+        ..Law::default()
     }
 }
 
@@ -108,6 +117,7 @@ fn backlash(draft: &mut Draft) -> Law {
             zero(),
             power(draft, above, sizes[1]),
         ],
+        ..Law::default()
     }
 }
 
@@ -128,6 +138,7 @@ fn surface(draft: &mut Draft) -> Law {
             square(outside).negative(),
             spring.plus(square(a).negative()),
         ],
+        ..Law::default()
     }
 }
 
@@ -150,6 +161,7 @@ fn slopes(draft: &mut Draft) -> Law {
         return Law {
             levels: vec![zero()],
             pieces: vec![low.times(gap()), middle.times(gap())],
+            ..Law::default()
         };
     }
     let high = slope(draft);
@@ -160,6 +172,7 @@ fn slopes(draft: &mut Draft) -> Law {
     Law {
         levels: vec![zero(), level],
         pieces: vec![low.times(gap()), middle.times(gap()), above],
+        ..Law::default()
     }
 }
 
@@ -171,23 +184,24 @@ fn sharpness(draft: &mut Draft) -> f64 {
 }
 
 fn sharp_of_gap(draft: &mut Draft) -> Law {
-    let sharp = sharpness(draft);
+    let sharpness = sharpness(draft);
     let size = draft.random.magnitude(0.05, 1.0);
     let force = draft.quantity("s", size, FORCE);
-    let sharp = sharp * draft.unit(LENGTH);
-    let scale = draft.parameter("w", sharp);
-    let ratio = Expression::Gap.over(scale);
+    let width = sharpness * draft.unit(LENGTH);
+    let scale = draft.parameter("w", width);
+    let ratio = Expression::Gap.over(scale.clone());
     let square = ratio.clone().to(Expression::Number(2.0));
-    whole(match draft.random.below(5) {
+    let force = match draft.random.below(5) {
         0 | 1 => force.times(ratio.tanh()),
         2 => Expression::Product(vec![force, ratio, square.negative().exp()]),
         3 => force.times(square.negative().exp()),
         _ => force.times(ratio.over(one().plus(square))),
-    })
+    };
+    sharp(force, Variable::Gap, scale)
 }
 
 fn sharp_of_rate(draft: &mut Draft) -> Law {
-    let sharp = sharpness(draft);
+    let sharpness = sharpness(draft);
     let size = draft.random.magnitude(0.02, 0.4);
     let size = if draft.random.once_in(4) {
         -0.3 * size
@@ -195,14 +209,15 @@ fn sharp_of_rate(draft: &mut Draft) -> Law {
         size
     };
     let force = draft.quantity("s", size, FORCE);
-    let sharp = sharp * draft.unit(SPEED);
-    let scale = draft.parameter("v", sharp);
-    let ratio = Expression::Rate.over(scale);
+    let width = sharpness * draft.unit(SPEED);
+    let scale = draft.parameter("v", width);
+    let ratio = Expression::Rate.over(scale.clone());
     let square = ratio.clone().to(Expression::Number(2.0));
-    whole(match draft.random.below(3) {
+    let force = match draft.random.below(3) {
         0 | 1 => force.times(ratio.tanh()),
         _ => force.times(ratio.over(one().plus(square))),
-    })
+    };
+    sharp(force, Variable::Rate, scale)
 }
 
 /// Forces of the rate that are not smooth.

@@ -26,12 +26,28 @@ pub struct Parameter {
 }
 
 /// A force of a gap and its rate.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Law {
     /// In increasing order.
     pub levels: Vec<Expression>,
     /// One more than levels, from below.
     pub pieces: Vec<Expression>,
+    /// Where it changes fast, if it does.
+    pub sharp: Option<Sharp>,
+}
+
+/// A force that changes near zero of one of its variables, on a length of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sharp {
+    pub of: Variable,
+    pub width: Expression,
+}
+
+/// What a force depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variable {
+    Gap,
+    Rate,
 }
 
 /// A term of a gap: a coordinate times a number, and a wave where the direction turns.
@@ -239,6 +255,22 @@ impl Model {
         levels.clear();
         let law = &self.laws[self.contacts[contact].law];
         levels.extend(law.levels.iter().map(|level| level.value(&place)));
+    }
+
+    /// What the law of a contact changes fast with, and its width.
+    pub fn sharp(&self, contact: usize, values: &[f64]) -> Option<(Variable, f64)> {
+        let sharp = self.laws[self.contacts[contact].law].sharp.as_ref()?;
+        let place = Place {
+            parameters: values,
+            omega: 0.0,
+            phase: 0.0,
+            positions: &[],
+            velocities: &[],
+            gap: 0.0,
+            rate: 0.0,
+            forces: &[],
+        };
+        Some((sharp.of, sharp.width.value(&place)))
     }
 
     /// Derivative of a state by time, with every contact on its piece.

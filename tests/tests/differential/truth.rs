@@ -272,6 +272,7 @@ fn a_gear_pair_is_what_another_program_says() {
                 number(0.0),
                 Expression::Gap.plus(number(1.0).negative()),
             ],
+            ..Law::default()
         }],
         contacts: vec![Contact {
             law: 0,
