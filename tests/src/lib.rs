@@ -1,5 +1,6 @@
 //! Tests of hertzian across its crates, and what several of them need.
 
+pub mod dormand_prince;
 pub mod random;
 
 use hertzian::Complex;

@@ -19,8 +19,9 @@ use hertzian::generic::{Interpreted, LawData, PieceData};
 use hertzian::law::{Derivatives, Law, On, Parts};
 use hertzian::power::{Accuracy, Instructions};
 use hertzian::system::{Place, System};
+use hertzian_tests::random::Random;
 use models::MODELS;
-use random::Random;
+use random::magnitude;
 
 /// Points of each model, unless `HERTZIAN_POINTS` says otherwise.
 const DEFAULT_POINTS: usize = 100_000;
@@ -31,7 +32,7 @@ const BATCH: usize = 1000;
 fn generated_interpreted_and_dual_numbers_agree() {
     let batches = points().div_ceil(BATCH);
     for (name, model) in MODELS {
-        let mut random = Random::new(20_210_603);
+        let mut random = Random::seeded(20_210_603);
         for batch in 0..batches {
             // On those that the processor has, in turns, with both accuracies: the bound holds for either.
             let sets = Instructions::ALL;
@@ -121,7 +122,7 @@ fn check_law(name: &str, laws: [&dyn Law; 2], arguments: &[f64], random: &mut Ra
 fn check_whole(name: &str, law: &dyn Law, parts: Parts, arguments: &[f64], random: &mut Random) {
     let levels = levels(law, arguments);
     let gaps = gaps(&levels, random);
-    let rates: Vec<f64> = gaps.iter().map(|_| random.magnitude(-6.0, 6.0)).collect();
+    let rates: Vec<f64> = gaps.iter().map(|_| magnitude(random, -6.0, 6.0)).collect();
     let of = |law| evaluate(law, On::AllPieces, arguments, &gaps, &rates);
     let (whole, spring, primitive) = (of(law), of(parts.spring), of(parts.primitive));
     for (i, (&gap, &rate)) in gaps.iter().zip(&rates).enumerate() {
@@ -196,7 +197,7 @@ fn gaps(levels: &[f64], random: &mut Random) -> Vec<f64> {
         .collect();
     while gaps.len() < BATCH {
         let centre = centres[random.below(centres.len())];
-        gaps.push(centre + random.magnitude(-300.0, 6.0));
+        gaps.push(centre + magnitude(random, -300.0, 6.0));
     }
     gaps
 }
@@ -243,7 +244,7 @@ fn check_pieces(
     gaps: &[f64],
     random: &mut Random,
 ) {
-    let rate = std::iter::repeat_with(|| random.magnitude(-6.0, 6.0));
+    let rate = std::iter::repeat_with(|| magnitude(random, -6.0, 6.0));
     let rates: Vec<f64> = rate.take(gaps.len()).collect();
     let [generated, interpreted] = laws.map(|law| evaluate(law, on, arguments, gaps, &rates));
     let data = data(laws[0]);

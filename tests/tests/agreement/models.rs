@@ -2,8 +2,7 @@
 
 use hertzian::oscillator;
 use hertzian::system::System;
-
-use crate::random::Random;
+use hertzian_tests::random::Random;
 
 type Model = fn(&mut Random) -> Box<dyn System>;
 
@@ -11,126 +10,126 @@ type Model = fn(&mut Random) -> Box<dyn System>;
 pub const MODELS: &[(&str, Model)] = &[
     ("one-sided Hertz", |r| {
         Box::new(Hertz {
-            zeta: r.within(0.0, 0.5),
+            zeta: r.between(0.0, 0.5),
         })
     }),
     ("continuous power", |r| {
         Box::new(Continuous {
-            alpha: r.within(0.05, 4.0),
+            alpha: r.between(0.05, 4.0),
         })
     }),
     ("one-sided, exponent 0.6", |r| {
         Box::new(Soft {
-            zeta: r.within(0.0, 0.5),
+            zeta: r.between(0.0, 0.5),
         })
     }),
     ("backlash", |r| {
         Box::new(Backlash {
-            play: r.within(0.0, 2.0),
+            play: r.between(0.0, 2.0),
         })
     }),
     ("Hunt-Crossley", |r| {
         Box::new(HuntCrossley {
-            k: r.within(0.1, 9.0),
-            c: r.within(0.0, 0.9),
+            k: r.between(0.1, 9.0),
+            c: r.between(0.0, 0.9),
         })
     }),
     ("linear contact", |r| {
         Box::new(LinearContact {
-            k: r.within(0.1, 9.0),
-            c: r.within(0.0, 0.9),
+            k: r.between(0.1, 9.0),
+            c: r.between(0.0, 0.9),
         })
     }),
     ("two powers", |r| {
         Box::new(TwoPowers {
-            alpha: r.within(0.05, 2.0),
-            beta: r.within(2.0, 4.0),
-            weight: r.within(-1.0, 1.0),
+            alpha: r.between(0.05, 2.0),
+            beta: r.between(2.0, 4.0),
+            weight: r.between(-1.0, 1.0),
         })
     }),
     ("rough layer", |r| {
         Box::new(RoughLayer {
-            n: r.within(1.6, 4.0),
-            layer: r.within(0.01, 1.0),
+            n: r.between(1.6, 4.0),
+            layer: r.between(0.01, 1.0),
         })
     }),
     ("flanks", |r| {
         Box::new(Flanks {
-            play: r.within(0.0, 2.0),
-            drive_side: r.within(0.5, 3.0),
-            coast_side: r.within(0.5, 3.0),
+            play: r.between(0.0, 2.0),
+            drive_side: r.between(0.5, 3.0),
+            coast_side: r.between(0.5, 3.0),
         })
     }),
     ("thirds and fourths", |r| {
         Box::new(Fractions {
-            k: r.within(-2.0, 2.0),
-            play: r.within(0.0, 2.0),
+            k: r.between(-2.0, 2.0),
+            play: r.between(0.0, 2.0),
         })
     }),
     ("seal", |r| {
         Box::new(Seal {
-            c: r.within(0.0, 0.9),
-            n: r.within(1.05, 4.0),
+            c: r.between(0.0, 0.9),
+            n: r.between(1.05, 4.0),
         })
     }),
     ("Hunt-Crossley without tension", |r| {
         Box::new(NoTension {
-            k: r.within(0.1, 9.0),
-            c: r.within(0.0, 0.9),
+            k: r.between(0.1, 9.0),
+            c: r.between(0.0, 0.9),
         })
     }),
     ("backlash with different sides", |r| {
         Box::new(Gears {
-            drive_side: r.within(0.1, 9.0),
-            coast_side: r.within(0.1, 9.0),
-            front: r.within(0.0, 2.0),
-            back: r.within(0.0, 2.0),
+            drive_side: r.between(0.1, 9.0),
+            coast_side: r.between(0.1, 9.0),
+            front: r.between(0.0, 2.0),
+            back: r.between(0.0, 2.0),
         })
     }),
     ("bilinear", |r| {
         Box::new(Bilinear {
-            pushed: r.within(0.1, 9.0),
-            pulled: r.within(0.1, 9.0),
+            pushed: r.between(0.1, 9.0),
+            pulled: r.between(0.1, 9.0),
         })
     }),
     ("preloaded stop", |r| {
         Box::new(PreloadedStop {
-            k: r.within(0.1, 9.0),
-            preload: r.within(0.0, 2.0),
+            k: r.between(0.1, 9.0),
+            preload: r.between(0.0, 2.0),
         })
     }),
     ("attraction and contact", |r| {
         Box::new(Tip {
-            h: r.within(0.01, 1.0),
-            a: r.within(0.01, 1.0),
-            k: r.within(0.1, 9.0),
+            h: r.between(0.01, 1.0),
+            a: r.between(0.01, 1.0),
+            k: r.between(0.1, 9.0),
         })
     }),
     ("Duffing", |r| {
         Box::new(Duffing {
-            beta: r.within(-1.0, 1.0),
+            beta: r.between(-1.0, 1.0),
         })
     }),
     ("van der Pol", |r| {
         Box::new(VanDerPol {
-            mu: r.within(-1.0, 5.0),
+            mu: r.between(-1.0, 5.0),
         })
     }),
     ("quadratic damping", |r| {
         Box::new(QuadraticDamping {
-            c: r.within(0.0, 2.0),
+            c: r.between(0.0, 2.0),
         })
     }),
     ("smooth friction", |r| {
         Box::new(SmoothFriction {
-            friction: r.within(0.0, 2.0),
-            speed: r.within(0.01, 1.0),
+            friction: r.between(0.0, 2.0),
+            speed: r.between(0.01, 1.0),
         })
     }),
     ("exponential well", |r| {
         Box::new(Well {
-            depth: r.within(0.0, 2.0),
-            width: r.within(0.1, 2.0),
+            depth: r.between(0.0, 2.0),
+            width: r.between(0.1, 2.0),
         })
     }),
 ];

@@ -1,34 +1,13 @@
-//! Numbers that look random and are the same in every run (`SplitMix64`, Steele, Lea and Flood 2014).
+//! Numbers of any size and sign.
 
-pub struct Random(u64);
+use hertzian_tests::random::Random;
 
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn below(&mut self, count: usize) -> usize {
-        self.next() as usize % count
-    }
-
-    /// Either sign, with a logarithm to base ten that is uniform in the given range.
-    pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        let magnitude = 10_f64.powf(self.within(low, high));
-        if self.next().is_multiple_of(2) {
-            magnitude
-        } else {
-            -magnitude
-        }
+/// Either sign, with a logarithm to base ten that is uniform in the given range.
+pub fn magnitude(random: &mut Random, low: f64, high: f64) -> f64 {
+    let magnitude = 10_f64.powf(random.between(low, high));
+    if random.once_in(2) {
+        magnitude
+    } else {
+        -magnitude
     }
 }

@@ -4,6 +4,7 @@
 use hertzian::generic::Declaration;
 use hertzian::observe::Motion;
 use hertzian::{FrequencyResponse, Point, Shooting};
+use hertzian_tests::random::Random;
 
 /// Models, unless the variable `HERTZIAN_PEAKS` says how many.
 const MODELS: u64 = 12;
@@ -13,32 +14,6 @@ const SHOT: f64 = 1e-9;
 const VALUES: usize = 3;
 /// Another orbit of the same model is farther than this, relative to the size.
 const OTHER: f64 = 0.3;
-
-/// `SplitMix64`, Steele, Lea and Flood (2014).
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count
-    }
-
-    /// Every order of magnitude between two is as probable.
-    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-}
 
 /// A law, as it is written.
 fn law(random: &mut Random) -> String {
@@ -130,8 +105,7 @@ fn stated_errors_of_peak_to_peak_hold() {
     let models = std::env::var("HERTZIAN_PEAKS").map_or(MODELS, |count| count.parse().unwrap());
     let (mut all, mut within, mut within_three, mut lost) = (0_usize, 0, 0, 0);
     for index in 0..models {
-        let mut random = Random(index.wrapping_mul(0xd134_2543_de82_ef95));
-        random.bits();
+        let mut random = Random::of(index);
         let text = model(&mut random);
         let model = Declaration::parse(&text).unwrap_or_else(|error| panic!("{text}: {error}"));
         let from = random.magnitude(0.3, 4.0);

@@ -3,18 +3,7 @@
 use hertzian::flow::Tangent;
 use hertzian::flow::stroboscope::Stroboscope;
 use hertzian::{FrequencyResponse, Shooting, System};
-
-/// `SplitMix64`, by Steele, Lea and Flood (2014): numbers between zero and one.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
+use hertzian_tests::random::Random;
 
 hertzian::oscillator! {
     /// Gear pair with backlash and a stiffness of the mesh that varies in time, Kahraman and Singh (1991).
@@ -300,10 +289,10 @@ const UNITS: [(f64, f64); 3] = [(1.0, 1.0), (1e-5, 1e5), (1e5, 1e-5)];
 
 #[test]
 fn whatever_settles_has_a_start_in_any_units() {
-    let random = &mut Random(17);
+    let random = &mut Random::seeded(17);
     let mut settled = 0;
     for case in 0..30 {
-        let mut draw = |low: f64, high: f64| low + (high - low) * random.next();
+        let mut draw = |low: f64, high: f64| random.between(low, high);
         let (zeta, drive) = (draw(0.02, 0.2), draw(0.05, 1.0));
         let (steady, mesh) = (draw(0.05, 1.0), draw(0.0, 0.4));
         let steady = if case % 2 == 0 { steady } else { -steady };

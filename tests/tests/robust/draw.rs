@@ -1,8 +1,7 @@
 //! Models, parameters and requests, drawn at random.
-//!
-//! Source of the random numbers: Steele, Lea and Flood (2014), Fast splittable pseudorandom number generators.
 
 use hertzian::{Aft, FrequencyResponse, System};
+use hertzian_tests::random::Random;
 
 hertzian::oscillator! {
     /// A contact that opens, with damping that ends with it.
@@ -148,64 +147,26 @@ hertzian::oscillator! {
     }
 }
 
-/// `SplitMix64`.
-pub(crate) struct Random(u64);
+/// Six decades about one.
+fn decades(random: &mut Random) -> f64 {
+    random.magnitude(1e-3, 1e3)
+}
 
-impl Random {
-    /// Of one case: neighbours have nothing in common.
-    pub(crate) fn of(index: u64) -> Self {
-        let mut random = Self(index.wrapping_mul(0xd134_2543_de82_ef95));
-        random.bits();
-        random
+/// Six decades of either sign, or zero.
+fn signed(random: &mut Random) -> f64 {
+    let size = decades(random);
+    match random.below(6) {
+        0 => 0.0,
+        1 => -size,
+        _ => size,
     }
+}
 
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count
-    }
-
-    /// True once in so many times.
-    fn once_in(&mut self, count: u64) -> bool {
-        self.below(count) == 0
-    }
-
-    /// Every order of magnitude between two is as probable.
-    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    /// Six decades about one.
-    fn decades(&mut self) -> f64 {
-        self.magnitude(1e-3, 1e3)
-    }
-
-    /// Six decades of either sign, or zero.
-    fn signed(&mut self) -> f64 {
-        let size = self.decades();
-        match self.below(6) {
-            0 => 0.0,
-            1 => -size,
-            _ => size,
-        }
-    }
-
-    fn exponent(&mut self) -> f64 {
-        match self.below(8) {
-            0 => 1.0,
-            1 => 1.5,
-            _ => self.between(0.3, 4.0),
-        }
+fn exponent(random: &mut Random) -> f64 {
+    match random.below(8) {
+        0 => 1.0,
+        1 => 1.5,
+        _ => random.between(0.3, 4.0),
     }
 }
 
@@ -219,10 +180,10 @@ macro_rules! with {
 /// A model, and a frequency that has to do with it.
 pub(crate) fn model(random: &mut Random) -> (Box<dyn System + Send>, f64) {
     let kind = random.below(9);
-    let (k, alpha, beta) = (random.decades(), random.exponent(), random.exponent());
-    let (load, drive) = (random.signed(), random.decades());
-    let (base, play) = (random.decades(), random.decades());
-    let distance = random.signed();
+    let (k, alpha, beta) = (decades(random), exponent(random), exponent(random));
+    let (load, drive) = (signed(random), decades(random));
+    let (base, play) = (decades(random), decades(random));
+    let distance = signed(random);
     // The stiffness that a static force of that size meets, as a line through the origin.
     let force = if load == 0.0 { drive } else { load.abs() };
     let secant = force / (force / k).powf(alpha.recip());
@@ -243,8 +204,8 @@ pub(crate) fn model(random: &mut Random) -> (Box<dyn System + Send>, f64) {
         _ => 2.0 * zeta * natural,
     };
     let mesh = random.between(0.0, 1.0);
-    let preload = random.signed().max(0.0);
-    let (h, a) = (random.decades(), random.decades());
+    let preload = signed(random).max(0.0);
+    let (h, a) = (decades(random), decades(random));
     let model: Box<dyn System + Send> = match kind {
         0 => with!(OneSided: k, alpha, c, load, drive),
         1 => with!(Continuous: k, alpha, c, load, drive),
@@ -266,7 +227,7 @@ fn any_parameter(random: &mut Random, system: &dyn System) -> (String, f64) {
     system.values(&mut values);
     let named = parameters.iter().zip(&values);
     let usable: Vec<_> = named.filter(|(_, value)| **value != 0.0).collect();
-    let chosen = usize::try_from(random.below(usable.len() as u64)).unwrap();
+    let chosen = random.below(usable.len());
     let (parameter, value) = usable[chosen];
     (parameter.name.to_string(), *value)
 }
@@ -288,7 +249,7 @@ pub(crate) struct Request {
 impl Request {
     pub(crate) fn draw(random: &mut Random, system: &dyn System, natural: f64) -> Self {
         let centre = if random.once_in(4) {
-            random.decades()
+            decades(random)
         } else {
             natural
         };
@@ -310,14 +271,12 @@ impl Request {
         }
         // A range takes some 70 points or more, so that few come to its end; most cases are about the start.
         let most = if random.once_in(8) { 400 } else { 10 };
-        let points = 3 + usize::try_from(random.below(most)).unwrap();
+        let points = 3 + random.below(most);
         Self {
             parameter,
             from,
             to,
-            harmonics: random
-                .once_in(3)
-                .then(|| 1 + usize::try_from(random.below(40)).unwrap()),
+            harmonics: random.once_in(3).then(|| 1 + random.below(40)),
             aft: match random.below(8) {
                 0 => Aft::Sampled,
                 1 => Aft::Primitive,

@@ -15,9 +15,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use draw::{Random, Request, model};
+use draw::{Request, model};
 use hertzian::error::NewtonError;
 use hertzian::{Branch, Error, Point, Stop, System};
+use hertzian_tests::random::Random;
 
 /// Cases by default.
 const MODELS: u64 = 300;

@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use hertzian::flow::{self, Options};
 use hertzian::{Shooting, System};
+use hertzian_tests::dormand_prince;
 
 hertzian::oscillator! {
     /// A stop on one side of a spring, its exponent in the law.
@@ -189,8 +190,7 @@ fn random_powers_agree_with_an_integration_of_their_own() {
     }
 }
 
-/// A motion of one coordinate by the pair of orders 5 and 4 of Dormand and Prince (1980), J. Comput. Appl. Math. 6, 19-26. Steps end
-/// on both sides of every level, at most 1e-10 apart.
+/// A motion of one coordinate. Steps end on both sides of every level, at most 1e-10 apart.
 fn integrate(
     mut state: [f64; 2],
     end: f64,
@@ -237,58 +237,8 @@ fn step(
     width: f64,
     acceleration: &impl Fn(f64, [f64; 2]) -> f64,
 ) -> ([f64; 2], f64) {
-    const A: [&[f64]; 6] = [
-        &[1.0 / 5.0],
-        &[3.0 / 40.0, 9.0 / 40.0],
-        &[44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0],
-        &[
-            19372.0 / 6561.0,
-            -25360.0 / 2187.0,
-            64448.0 / 6561.0,
-            -212.0 / 729.0,
-        ],
-        &[
-            9017.0 / 3168.0,
-            -355.0 / 33.0,
-            46732.0 / 5247.0,
-            49.0 / 176.0,
-            -5103.0 / 18656.0,
-        ],
-        &[
-            35.0 / 384.0,
-            0.0,
-            500.0 / 1113.0,
-            125.0 / 192.0,
-            -2187.0 / 6784.0,
-            11.0 / 84.0,
-        ],
-    ];
-    const C: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
-    const E: [f64; 7] = [
-        71.0 / 57600.0,
-        0.0,
-        -71.0 / 16695.0,
-        71.0 / 1920.0,
-        -17253.0 / 339_200.0,
-        22.0 / 525.0,
-        -1.0 / 40.0,
-    ];
-    let rates = |time: f64, state: [f64; 2]| [state[1], acceleration(time, state)];
-    let mut slopes = [[0.0; 2]; 7];
-    slopes[0] = rates(time, state);
-    let mut next = state;
-    for (stage, row) in A.iter().enumerate() {
-        next = state;
-        for (a, slope) in row.iter().zip(&slopes) {
-            for (x, dx) in next.iter_mut().zip(slope) {
-                *x += width * a * dx;
-            }
-        }
-        slopes[stage + 1] = rates(time + C[stage] * width, next);
-    }
-    let difference = |i: usize| {
-        let terms = E.iter().zip(&slopes).map(|(e, slope)| e * slope[i]);
-        (width * terms.sum::<f64>()).abs()
-    };
-    (next, difference(0).max(difference(1)))
+    let slope = |time: f64, state: &[f64; 2]| [state[1], acceleration(time, *state)];
+    let first = slope(time, &state);
+    let (next, apart) = dormand_prince::step(time, (&state, first), width, slope);
+    (next, apart[0].max(apart[1]))
 }

@@ -6,6 +6,7 @@
 //! five orbits are taken: the neighbours of up to two bifurcations, and others anywhere.
 
 use hertzian::{Branch, FrequencyResponse, Point, System, Verdict};
+use hertzian_tests::random::Random;
 
 hertzian::oscillator! {
     /// A contact that opens, with damping that ends with it.
@@ -42,38 +43,6 @@ hertzian::oscillator! {
 pub const ORBITS: usize = 5;
 /// Points of one branch at most.
 const POINTS: usize = 150;
-
-/// `SplitMix64` (Steele, Lea and Flood 2014).
-pub struct Random(u64);
-
-impl Random {
-    /// Of one case: neighbours have nothing in common.
-    pub fn of(index: u64) -> Self {
-        let mut random = Self(index.wrapping_mul(0xd134_2543_de82_ef95));
-        random.bits();
-        random
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.bits() % count as u64) as usize
-    }
-}
 
 /// An oscillator, and where its branch runs.
 pub struct Case {

@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 
 use hertzian::stability::Method;
 use hertzian::{Branch, Verdict};
+use hertzian_tests::random::Random;
 
-use crate::draw::{Bifurcation, Case, ORBITS, Random, choose};
+use crate::draw::{Bifurcation, Case, ORBITS, choose};
 use crate::truth::{distance, growth, refined, refined_at, refined_beside};
 
 /// Orbits by default.

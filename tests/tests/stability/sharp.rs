@@ -7,6 +7,7 @@
 use std::f64::consts::TAU;
 
 use hertzian::{Complex, FrequencyResponse, System, Verdict};
+use hertzian_tests::dormand_prince::step;
 
 use crate::truth::distance;
 
@@ -219,47 +220,6 @@ fn slope(law: ByHand, width: f64, omega: f64, t: f64, y: &Motion) -> Motion {
     [y[1], (omega * t).cos() - force, y[3], a, y[5], b]
 }
 
-/// Nodes and weights of Dormand and Prince (1980), RK5(4)7M.
-const STAGES: [[f64; 6]; 6] = [
-    [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
-    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-    [
-        19372.0 / 6561.0,
-        -25360.0 / 2187.0,
-        64448.0 / 6561.0,
-        -212.0 / 729.0,
-        0.0,
-        0.0,
-    ],
-    [
-        9017.0 / 3168.0,
-        -355.0 / 33.0,
-        46732.0 / 5247.0,
-        49.0 / 176.0,
-        -5103.0 / 18656.0,
-        0.0,
-    ],
-    [
-        35.0 / 384.0,
-        0.0,
-        500.0 / 1113.0,
-        125.0 / 192.0,
-        -2187.0 / 6784.0,
-        11.0 / 84.0,
-    ],
-];
-const NODES: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
-/// The fifth order less the fourth.
-const ERRORS: [f64; 7] = [
-    71.0 / 57600.0,
-    0.0,
-    -71.0 / 16695.0,
-    71.0 / 1920.0,
-    -17253.0 / 339_200.0,
-    22.0 / 525.0,
-    -1.0 / 40.0,
-];
 const TOLERANCE: f64 = 1e-11;
 
 /// A period: steps by their error, and so short that the operand changes by a part of what it is.
@@ -274,18 +234,9 @@ fn period(law: ByHand, width: f64, omega: f64, state: [f64; 2]) -> Motion {
         h = f64::min(h, 0.05)
             .min(0.3 * (1.0 + u.abs()) / passing)
             .min(end - t);
-        let mut stages = [first; 7];
-        let mut last = y;
-        for (stage, (row, node)) in STAGES.iter().zip(NODES).enumerate() {
-            last = std::array::from_fn(|i| {
-                let sum: f64 = row.iter().zip(&stages).map(|(a, k)| a * k[i]).sum();
-                y[i] + h * sum
-            });
-            stages[stage + 1] = slope(law, width, omega, t + node * h, &last);
-        }
+        let (last, apart) = step(t, (&y, first), h, |t, y| slope(law, width, omega, t, y));
         let error = (0..6).fold(0.0_f64, |most, i| {
-            let sum: f64 = ERRORS.iter().zip(&stages).map(|(e, k)| e * k[i]).sum();
-            most.max((h * sum).abs() / (1.0 + y[i].abs().max(last[i].abs())))
+            most.max(apart[i] / (1.0 + y[i].abs().max(last[i].abs())))
         });
         // Where a slope bends, no step is short enough for the error in relation to its width.
         if error <= TOLERANCE || h < 1e-9 {

@@ -5,8 +5,7 @@ use std::f64::consts::TAU;
 use hertzian::flow::shooting::Cycle;
 use hertzian::flow::{self, FlowError, Options};
 use hertzian::{Complex, Event, Point, Shooting, System};
-
-use crate::draw::Random;
+use hertzian_tests::random::Random;
 
 /// Tolerance of the flow, relative to the size of the motion.
 const TOLERANCE: f64 = 1e-11;
