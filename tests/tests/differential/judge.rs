@@ -24,6 +24,57 @@ const UNITS: [f64; 2] = [1e5, 1e5];
 /// Periods in which a motion from rest has to settle where no orbit was found.
 const SETTLING: usize = 1000;
 
+/// How two branches of a model are compared: what is counted, and what is said.
+struct Pair {
+    pairs: &'static str,
+    events: &'static str,
+    /// What an event is that only one of them has.
+    alone: Kind,
+    /// Where the other one of two events was found.
+    other: &'static str,
+}
+
+/// The same of two branches that are compared only if both go from end to end.
+struct Whole {
+    /// One of them does not.
+    early: &'static str,
+    /// They are not one branch.
+    apart: &'static str,
+    pair: Pair,
+}
+
+/// A branch, and the same backwards.
+const DIRECTIONS: Whole = Whole {
+    early: "pairs of directions with a branch that ends early",
+    apart: "pairs of directions on two branches",
+    pair: Pair {
+        pairs: "pairs of directions",
+        events: "events, forth and back",
+        alone: Kind::OneDirection,
+        other: "backwards",
+    },
+};
+
+/// By the balance, and by shooting.
+const METHODS: Whole = Whole {
+    early: "pairs of methods with a branch that ends early",
+    apart: "pairs of methods on two branches",
+    pair: Pair {
+        pairs: "pairs of methods",
+        events: "events, balance and shooting",
+        alone: Kind::OneMethod,
+        other: "by shooting",
+    },
+};
+
+/// A branch, and the same in other units.
+const IN_UNITS: Pair = Pair {
+    pairs: "pairs of units",
+    events: "events, in two units",
+    alone: Kind::OtherUnits,
+    other: "in other units",
+};
+
 /// One model at work.
 pub struct Case {
     index: u64,
@@ -113,17 +164,17 @@ impl Case {
         };
         let back = self.balance("balance, backwards", system, [to, from], false);
         if let Some(back) = &back {
-            self.directions(&forth, back);
+            self.whole(&DIRECTIONS, &forth, back);
         }
         let shot = self.shooting("shooting", system, [from, to], true);
         if let Some(shot) = &shot {
-            self.methods(&forth, shot);
+            self.whole(&METHODS, &forth, shot);
         }
         self.other_units(&forth);
         if let Some(shot) = &shot
             && let Some(back) = self.shooting("shooting, backwards", system, [to, from], false)
         {
-            self.directions(shot, &back);
+            self.whole(&DIRECTIONS, shot, &back);
         }
     }
 
@@ -229,57 +280,30 @@ impl Case {
         }
     }
 
-    /// Events of a branch against those of the same branch backwards.
-    fn directions(&mut self, forth: &Passage, back: &Passage) {
-        if !(forth.whole && back.whole) {
-            return self
-                .report
-                .count("pairs of directions with a branch that ends early");
+    /// Events of a branch against those of the other one, where both go from end to end.
+    fn whole(&mut self, whole: &Whole, one: &Passage, other: &Passage) {
+        if !(one.whole && other.whole) {
+            return self.report.count(whole.early);
         }
-        if !forth.shares_ends(back) {
-            return self.report.count("pairs of directions on two branches");
+        if !one.shares_ends(other) {
+            return self.report.count(whole.apart);
         }
-        self.report.count("pairs of directions");
-        let matched = matched(forth, back, self.model.range);
-        for (alone, missing) in matched.alone.iter().zip([back, forth]) {
-            for event in alone {
-                let text = format!("{event} is missing by {}", missing.name);
-                self.find(Kind::OneDirection, text);
-            }
-        }
-        for (ratio, event, other) in matched.both {
-            self.event(
-                "events, forth and back",
-                ratio,
-                &format!("{event}, backwards {other}"),
-            );
-        }
+        self.events(&whole.pair, one, other);
     }
 
-    /// Events by the balance against those by shooting.
-    fn methods(&mut self, balance: &Passage, shooting: &Passage) {
-        if !(balance.whole && shooting.whole) {
-            return self
-                .report
-                .count("pairs of methods with a branch that ends early");
-        }
-        if !balance.shares_ends(shooting) {
-            return self.report.count("pairs of methods on two branches");
-        }
-        self.report.count("pairs of methods");
-        let matched = matched(balance, shooting, self.model.range);
-        for (alone, missing) in matched.alone.iter().zip([shooting, balance]) {
+    /// Events of two branches that are one.
+    fn events(&mut self, pair: &Pair, one: &Passage, other: &Passage) {
+        self.report.count(pair.pairs);
+        let matched = matched(one, other, self.model.range);
+        for (alone, missing) in matched.alone.iter().zip([other, one]) {
             for event in alone {
                 let text = format!("{event} is missing by {}", missing.name);
-                self.find(Kind::OneMethod, text);
+                self.find(pair.alone, text);
             }
         }
-        for (ratio, event, other) in matched.both {
-            self.event(
-                "events, balance and shooting",
-                ratio,
-                &format!("{event}, by shooting {other}"),
-            );
+        for (ratio, event, seen) in matched.both {
+            let text = format!("{event}, {} {seen}", pair.other);
+            self.event(pair.events, ratio, &text);
         }
     }
 
@@ -325,20 +349,6 @@ impl Case {
             );
             return self.find(Kind::OtherUnits, text);
         }
-        self.report.count("pairs of units");
-        let matched = matched(passage, &other, self.model.range);
-        for (alone, missing) in matched.alone.iter().zip([&other, passage]) {
-            for event in alone {
-                let text = format!("{event} is missing by {}", missing.name);
-                self.find(Kind::OtherUnits, text);
-            }
-        }
-        for (ratio, event, other) in matched.both {
-            self.event(
-                "events, in two units",
-                ratio,
-                &format!("{event}, in other units {other}"),
-            );
-        }
+        self.events(&IN_UNITS, passage, &other);
     }
 }

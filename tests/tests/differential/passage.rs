@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hertzian::{Branch, CycleBranch, End, EventKind, Stop, Turn, Verdict};
+use hertzian::{Branch, CycleBranch, End, EventKind, Stability, Stop, Turn, Verdict};
 
 /// An event of a branch.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +25,18 @@ pub struct Place {
     pub modulus: [f64; 2],
 }
 
+impl Place {
+    fn of(value: f64, peak_to_peak: f64, stability: &Stability) -> Self {
+        let largest = stability.multipliers.first();
+        Self {
+            value,
+            peak_to_peak,
+            verdict: stability.verdict,
+            modulus: [largest.map_or(f64::NAN, |m| m.norm()), stability.error],
+        }
+    }
+}
+
 /// A branch from one end of the range on.
 #[derive(Debug, Clone)]
 pub struct Passage {
@@ -40,19 +52,8 @@ pub struct Passage {
 
 impl Passage {
     pub fn of_balance(name: &'static str, branch: &Branch<'_>) -> Self {
-        let places = branch.points.iter().map(|point| Place {
-            value: point.value,
-            peak_to_peak: point.peak_to_peak(),
-            verdict: point.stability.verdict,
-            modulus: [
-                point
-                    .stability
-                    .multipliers
-                    .first()
-                    .map_or(f64::NAN, |m| m.norm()),
-                point.stability.error,
-            ],
-        });
+        let points = branch.points.iter();
+        let places = points.map(|p| Place::of(p.value, p.peak_to_peak(), &p.stability));
         let events = branch.events.iter().map(|event| Seen {
             kind: event.kind,
             value: event.point.value,
@@ -71,19 +72,8 @@ impl Passage {
     }
 
     pub fn of_shooting(name: &'static str, branch: &CycleBranch) -> Self {
-        let places = branch.cycles.iter().map(|cycle| Place {
-            value: cycle.value,
-            peak_to_peak: cycle.peak_to_peak(),
-            verdict: cycle.stability.verdict,
-            modulus: [
-                cycle
-                    .stability
-                    .multipliers
-                    .first()
-                    .map_or(f64::NAN, |m| m.norm()),
-                cycle.stability.error,
-            ],
-        });
+        let cycles = branch.cycles.iter();
+        let places = cycles.map(|c| Place::of(c.value, c.peak_to_peak(), &c.stability));
         let events = branch.events.iter().map(|event| Seen {
             kind: event.kind,
             value: event.cycle.value,
