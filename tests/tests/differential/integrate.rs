@@ -8,6 +8,8 @@
 //! without a trace: a step is so short that the variable of the force goes by no more than a part of its width, or of its distance
 //! from where the change is.
 
+use std::f64::consts::TAU;
+
 use crate::model::{CONTACTS, COORDINATES, Model, Pieces, State, Variable};
 use crate::tableau::{A, B, C, LOWER, STAGES};
 
@@ -82,8 +84,8 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// The motion from a state at time zero until a time.
-    pub fn course(&self, state: &State, end: f64) -> Result<Course, Lost> {
+    /// The motion from a state at a time until another one.
+    pub fn course(&self, state: &State, [begin, end]: [f64; 2]) -> Result<Course, Lost> {
         let count = self.model.coordinates;
         let mut course = Course {
             state: *state,
@@ -91,9 +93,9 @@ impl<'a> Motions<'a> {
             switches: 0,
             slowest: f64::INFINITY,
         };
-        let largest = end / LEAST / self.turns(end);
-        let (mut time, mut step) = (0.0, 0.1 * largest);
-        let mut pieces = self.pieces(state);
+        let largest = f64::min(TAU / self.omega, end - begin) / LEAST;
+        let (mut time, mut step) = (begin, 0.1 * largest);
+        let mut pieces = self.pieces(begin, state);
         for _ in 0..STEPS {
             let left = end - time;
             if left <= 1e-14 * end {
@@ -195,11 +197,6 @@ impl<'a> Motions<'a> {
         })
     }
 
-    /// Periods of omega in a time.
-    fn turns(&self, time: f64) -> f64 {
-        (time * self.omega / std::f64::consts::TAU).max(1.0)
-    }
-
     fn slope(&self, time: f64, state: &State, pieces: &Pieces) -> State {
         self.model
             .derivative(&self.values, self.omega, time, (state, pieces))
@@ -221,11 +218,11 @@ impl<'a> Motions<'a> {
         })
     }
 
-    /// The piece of every contact at time zero; on a level the one that the gap moves to.
-    fn pieces(&self, state: &State) -> Pieces {
+    /// The piece of every contact at a time; on a level the one that the gap moves to.
+    fn pieces(&self, time: f64, state: &State) -> Pieces {
         let mut pieces = [0; CONTACTS];
         for (contact, levels) in self.levels.iter().enumerate() {
-            let [value, rate] = self.gap(contact, 0.0, state);
+            let [value, rate] = self.gap(contact, time, state);
             let above = |level: &&f64| value > **level || value == **level && rate > 0.0;
             pieces[contact] = levels.iter().filter(above).count();
         }

@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use hertzian::{Branch, CycleBranch, Stability, Verdict};
 
+use crate::integrate::Lost;
 use crate::judge::Case;
 use crate::model::{COORDINATES, State};
 use crate::report::Kind;
@@ -38,15 +39,19 @@ impl Case {
         let model = Rc::clone(&self.model);
         for index in self.chosen(&verdicts, ORBITS[0]) {
             let point = &branch.points[index];
-            let mut state = State::default();
-            for i in 0..model.coordinates {
-                (state[i], state[COORDINATES + i]) = point.orbit.state(i, 0.0);
-            }
             let motions = point.observed.motions.iter();
             let size = motions.fold(0.0, |size: f64, m| size.max(0.5 * m.peak_to_peak()));
             let name = format!("balance at {:?}", point.value);
             let question = Question::of(&model, point.value, point.orbit.period, size);
-            let Some(truth) = self.truth(&question, &state, &name, &point.stability) else {
+            let state = |part: f64| {
+                let mut state = State::default();
+                for i in 0..model.coordinates {
+                    let time = part * question.time;
+                    (state[i], state[COORDINATES + i]) = point.orbit.state(i, time);
+                }
+                Ok(state)
+            };
+            let Some(truth) = self.truth(&question, state, &name, &point.stability) else {
                 continue;
             };
             let Some(stated) = point.error.filter(|error| error.is_finite()) else {
@@ -78,7 +83,8 @@ impl Case {
             let size = extremes.fold(0.0, |size: f64, e| size.max(0.5 * e.peak_to_peak()));
             let name = format!("shooting at {:?}", cycle.value);
             let question = Question::of(&model, cycle.value, cycle.period, size);
-            self.truth(&question, &state, &name, &cycle.stability);
+            let state = |part: f64| question.after(&state, part);
+            self.truth(&question, state, &name, &cycle.stability);
         }
     }
 
@@ -86,7 +92,7 @@ impl Case {
     fn truth(
         &mut self,
         question: &Question<'_>,
-        state: &State,
+        state: impl Fn(f64) -> Result<State, Lost>,
         name: &str,
         stability: &Stability,
     ) -> Option<Truth> {
@@ -107,7 +113,7 @@ impl Case {
                     "{name}: the true one is {:.1e} of its size away",
                     truth.correction
                 );
-                self.find(Kind::NotClosed, text);
+                self.find(Kind::Elsewhere, text);
             }
             self.report.count("orbits, the truth of which is not sure");
             return None;
@@ -121,6 +127,7 @@ impl Case {
             Unsure::Lost(_) => "orbits, the motion of which was lost",
             Unsure::Singular => "orbits with a multiplier of one",
             Unsure::Open(_) => "orbits that did not close",
+            Unsure::Growing(_) => "orbits of a multiplier too large to close",
         });
         if let Unsure::Open(left) = unsure
             && left > NEAR

@@ -12,6 +12,8 @@ pub enum Kind {
     FalseVerdict,
     /// No orbit is near one that was found.
     NotClosed,
+    /// The orbit near one that was found is farther than an orbit may err.
+    Elsewhere,
     /// The error of peak-to-peak is more than three times the one stated.
     PeakToPeak,
     /// Values of one event differ by more than three times the errors stated.
@@ -39,7 +41,12 @@ impl Kind {
     pub fn fails(self) -> bool {
         matches!(
             self,
-            Self::Panic | Self::FalseVerdict | Self::NotClosed | Self::NotFinite | Self::Refused
+            Self::Panic
+                | Self::FalseVerdict
+                | Self::NotClosed
+                | Self::Elsewhere
+                | Self::NotFinite
+                | Self::Refused
         )
     }
 }
@@ -50,6 +57,7 @@ impl Display for Kind {
             Self::Panic => "panicked",
             Self::FalseVerdict => "false verdict",
             Self::NotClosed => "no orbit is there",
+            Self::Elsewhere => "the true orbit is elsewhere",
             Self::PeakToPeak => "error of peak-to-peak beyond three times the stated one",
             Self::EventValue => "values of an event beyond three times the stated errors",
             Self::NotFinite => "not a number",

@@ -1,7 +1,8 @@
 //! What is true of a periodic orbit: where it is, how large, and its multipliers, each with an error of its own.
 //!
 //! The orbit is the state that its motion comes back to, by Newton's method; the monodromy matrix is that of differences on both
-//! sides of it, at two distances.
+//! sides of it, at two distances. Where perturbations grow much in a period it is divided into segments: multiple shooting, Keller
+//! (1968), Numerical methods for two-point boundary-value problems.
 
 use std::f64::consts::TAU;
 
@@ -20,6 +21,10 @@ const APART: f64 = 3e-5;
 const MOTIONS: usize = 12;
 /// A correction of the state below this is none.
 const CLOSED: f64 = 1e-11;
+/// A multiplier may be so large for each segment.
+const GROWTH: f64 = 100.0;
+/// Segments of an orbit at most.
+const SEGMENTS: usize = 16;
 
 /// A periodic orbit.
 #[derive(Debug, Clone)]
@@ -42,6 +47,8 @@ pub enum Unsure {
     Lost(Lost),
     /// A multiplier is one, to what is known of it.
     Singular,
+    /// A multiplier, as far as it is known, is too large for the segments.
+    Growing(f64),
     /// States came nearer to none: this far it was from coming back at the end, relative to the size.
     Open(f64),
 }
@@ -81,30 +88,50 @@ impl<'a> Question<'a> {
         sizes
     }
 
-    /// The orbit near a state.
-    pub fn truth(&self, guess: &State) -> Result<Truth, Unsure> {
+    /// The state after a part of the time.
+    pub fn after(&self, state: &State, part: f64) -> Result<State, Lost> {
+        let motions = Motions::of(self.model, self.omega, self.sizes(), TOLERANCE);
+        let course = motions.course(state, [0.0, part * self.time])?;
+        Ok(course.state)
+    }
+
+    /// The orbit near one, the states of which are given at parts of the time.
+    pub fn truth(&self, guess: impl Fn(f64) -> Result<State, Lost>) -> Result<Truth, Unsure> {
         let motions = Motions::of(self.model, self.omega, self.sizes(), TOLERANCE);
         let apart = APART * self.model.sharpest.sqrt();
-        let there = Periodic {
-            motions: &motions,
-            time: self.time,
-        };
-        let (state, course, left) = there.closed(guess, apart)?;
-        let near = there.monodromy(&state, apart)?;
-        let far = there.monodromy(&state, 2.0 * apart)?;
+        let start = guess(0.0)?;
+        let (there, closed) = Periodic::found(&motions, self.time, apart, guess)?;
+        let Closed {
+            states,
+            courses,
+            left,
+        } = closed;
+        let near = there.slopes(&states, apart)?;
+        let far = there.slopes(&states, 2.0 * apart)?;
         // Where perturbed motions are exact to a tolerance; and, by another tolerance, what the motion itself is exact to.
         let loose = Motions::of(self.model, self.omega, self.sizes(), 10.0 * TOLERANCE);
-        let other = loose.course(&state, self.time)?;
-        let motion = there.difference(&course.state, &other.state).amax();
-        let inverse = (&near - identity(&near)).try_inverse();
-        let inverse = inverse.ok_or(Unsure::Singular)?;
+        let loose = Periodic {
+            motions: &loose,
+            ..there
+        };
+        let mut motion = 0.0_f64;
+        for (course, other) in courses.iter().zip(loose.courses(&states)?) {
+            motion = motion.max(there.difference(&course.state, &other.state).amax());
+        }
+        let inverse = jacobian(&near).try_inverse().ok_or(Unsure::Singular)?;
         let error = row_sum(&inverse) * (left + motion + TOLERANCE);
-        let [least, most] = course.extremes[0];
-        let grown = 4.0 * row_sum(&near).max(1.0);
-        let multipliers = eigenvalues(&near);
+        let [least, most] = courses
+            .iter()
+            .map(|course| course.extremes[0])
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| {
+                [low.min(a), high.max(b)]
+            });
+        let grown = 4.0 * near.iter().map(row_sum).fold(1.0, f64::max);
+        let multipliers = eigenvalues(&product(&near));
         let noise = 4.0 * (motion + TOLERANCE) / apart + grown * error;
-        let multiplier_error = hertzian_tests::distance(&multipliers, &eigenvalues(&far)) + noise;
-        let correction = there.difference(&state, guess).amax();
+        let multiplier_error = hertzian_tests::distance(&multipliers, &eigenvalues(&product(&far)))
+            + amplified(&near) * noise;
+        let correction = there.difference(&states[0], &start).amax();
         Ok(Truth {
             correction,
             error,
@@ -115,19 +142,67 @@ impl<'a> Question<'a> {
     }
 }
 
-/// Motions over a period.
+/// Motions over a period, in segments of equal length.
+#[derive(Clone, Copy)]
 struct Periodic<'a> {
     motions: &'a Motions<'a>,
     time: f64,
+    segments: usize,
 }
 
-impl Periodic<'_> {
+/// States at the beginnings of the segments, the motions from there, and how far they are from the next ones at most.
+struct Closed {
+    states: Vec<State>,
+    courses: Vec<Course>,
+    left: f64,
+}
+
+impl<'a> Periodic<'a> {
+    /// The orbit in as many segments as are needed, and a distance of perturbed states.
+    ///
+    /// Over a period of a large multiplier no state is exact enough to come back, and no perturbation so small that what
+    /// becomes of it is.
+    fn found(
+        motions: &'a Motions<'a>,
+        time: f64,
+        apart: f64,
+        guess: impl Fn(f64) -> Result<State, Lost>,
+    ) -> Result<(Self, Closed), Unsure> {
+        let (mut segments, mut reason) = (1, None);
+        loop {
+            let there = Self {
+                motions,
+                time,
+                segments,
+            };
+            let parts = (0..segments).map(|i| i as f64 / segments as f64);
+            let states = parts.map(&guess).collect::<Result<Vec<_>, _>>();
+            let closed = states
+                .map_err(Unsure::Lost)
+                .and_then(|states| there.closed(states, apart));
+            match closed {
+                Ok(closed) => return Ok((there, closed)),
+                Err(unsure) => {
+                    // What was the matter where a multiplier allowed to see it.
+                    reason = match reason {
+                        None | Some(Unsure::Growing(_)) => Some(unsure),
+                        reason => reason,
+                    };
+                    segments *= 2;
+                    if segments > SEGMENTS {
+                        return Err(reason.unwrap_or(unsure));
+                    }
+                }
+            }
+        }
+    }
+
     fn coordinates(&self) -> usize {
         self.motions.model.coordinates
     }
 
     /// Places of what the model has in a state.
-    fn places(&self) -> impl Iterator<Item = usize> {
+    fn places(&self) -> impl Iterator<Item = usize> + use<> {
         let count = self.coordinates();
         (0..count).chain(COORDINATES..COORDINATES + count)
     }
@@ -139,81 +214,148 @@ impl Periodic<'_> {
         DVector::from_iterator(2 * self.coordinates(), parts)
     }
 
-    fn moved(&self, state: &State, by: &DVector<f64>) -> State {
+    fn moved<'b>(&self, state: &State, by: impl IntoIterator<Item = &'b f64>) -> State {
         let mut moved = *state;
-        for (i, by) in self.places().zip(by.iter()) {
+        for (i, by) in self.places().zip(by) {
             moved[i] += by * self.motions.sizes[i];
         }
         moved
     }
 
-    fn course(&self, state: &State) -> Result<Course, Lost> {
-        self.motions.course(state, self.time)
+    /// Over a segment.
+    fn course(&self, segment: usize, state: &State) -> Result<Course, Lost> {
+        let ends = [segment, segment + 1].map(|i| self.time * i as f64 / self.segments as f64);
+        self.motions.course(state, ends)
     }
 
-    /// Derivative of the state after the period by the state, both relative to the sizes.
-    fn monodromy(&self, state: &State, apart: f64) -> Result<DMatrix<f64>, Lost> {
+    fn courses(&self, states: &[State]) -> Result<Vec<Course>, Lost> {
+        let states = states.iter().enumerate();
+        states
+            .map(|(segment, state)| self.course(segment, state))
+            .collect()
+    }
+
+    /// How far the ends of the segments are from the next beginnings.
+    fn open(&self, states: &[State], courses: &[Course]) -> DVector<f64> {
+        let next = states.iter().cycle().skip(1);
+        let gaps = courses.iter().zip(next).flat_map(|(course, next)| {
+            let gap = self.difference(&course.state, next);
+            gap.data.as_vec().clone()
+        });
+        DVector::from_vec(gaps.collect())
+    }
+
+    /// Derivatives of the state after each segment by the state before it, both relative to the sizes.
+    fn slopes(&self, states: &[State], apart: f64) -> Result<Vec<DMatrix<f64>>, Lost> {
         let size = 2 * self.coordinates();
-        let mut matrix = DMatrix::zeros(size, size);
-        for column in 0..size {
-            let mut by = DVector::zeros(size);
-            by[column] = apart;
-            let ahead = self.course(&self.moved(state, &by))?;
-            let behind = self.course(&self.moved(state, &-by))?;
-            let slope = self.difference(&ahead.state, &behind.state) / (2.0 * apart);
-            matrix.set_column(column, &slope);
+        let mut slopes = Vec::with_capacity(self.segments);
+        for (segment, state) in states.iter().enumerate() {
+            let mut matrix = DMatrix::zeros(size, size);
+            for column in 0..size {
+                let mut by = DVector::zeros(size);
+                by[column] = apart;
+                let ahead = self.course(segment, &self.moved(state, &by))?;
+                let behind = self.course(segment, &self.moved(state, &-by))?;
+                let slope = self.difference(&ahead.state, &behind.state) / (2.0 * apart);
+                matrix.set_column(column, &slope);
+            }
+            slopes.push(matrix);
         }
-        Ok(matrix)
+        Ok(slopes)
     }
 
-    /// The state that comes back, its motion, and how far it is from coming back.
-    fn closed(&self, guess: &State, apart: f64) -> Result<(State, Course, f64), Unsure> {
-        let mut state = *guess;
-        let mut course = self.course(&state)?;
-        let mut open = self.difference(&course.state, &state);
-        let mut inverse = self.inverse(&state, apart)?;
+    /// The states that come back, by Newton's method.
+    fn closed(&self, mut states: Vec<State>, apart: f64) -> Result<Closed, Unsure> {
+        let slopes = self.slopes(&states, apart)?;
+        let largest = eigenvalues(&product(&slopes))[0].norm();
+        if largest > GROWTH.powi(self.segments as i32) {
+            return Err(Unsure::Growing(largest));
+        }
+        let mut courses = self.courses(&states)?;
+        let mut open = self.open(&states, &courses);
+        let mut inverse = jacobian(&slopes).try_inverse().ok_or(Unsure::Singular)?;
+        let renewed = |states: &[State]| {
+            let slopes = self.slopes(states, apart)?;
+            jacobian(&slopes).try_inverse().ok_or(Unsure::Singular)
+        };
+        let mut small = false;
         for _ in 0..MOTIONS {
             let by = -(&inverse * &open);
-            let next = self.moved(&state, &by);
-            let after = self.course(&next)?;
-            let left = self.difference(&after.state, &next);
-            let (was, is) = (open.amax(), left.amax());
-            if is >= was {
-                if by.amax() < CLOSED || was < CLOSED {
-                    return Ok((state, course, was));
+            let parts = by.as_slice().chunks(2 * self.coordinates());
+            let next = states
+                .iter()
+                .zip(parts)
+                .map(|(state, by)| self.moved(state, by));
+            let next: Vec<_> = next.collect();
+            let after = self.courses(&next)?;
+            let gaps = self.open(&next, &after);
+            let (was, left) = (open.amax(), gaps.amax());
+            if left >= was {
+                small |= by.amax() < CLOSED;
+                if small || was < CLOSED {
+                    break;
                 }
-                inverse = self.inverse(&state, apart)?;
+                inverse = renewed(&states)?;
                 let again = -(&inverse * &open);
                 if (&again - &by).amax() < 1e-6 * again.amax() {
                     return Err(Unsure::Open(was));
                 }
                 continue;
             }
-            (state, course, open) = (next, after, left);
-            if by.amax() < CLOSED {
-                return Ok((state, course, is));
+            (states, courses, open) = (next, after, gaps);
+            small = by.amax() < CLOSED;
+            if small {
+                break;
             }
-            if is > 0.2 * was {
-                inverse = self.inverse(&state, apart)?;
+            if left > 0.2 * was {
+                inverse = renewed(&states)?;
             }
         }
         let left = open.amax();
-        if left < CLOSED {
-            Ok((state, course, left))
+        let closed = Closed {
+            states,
+            courses,
+            left,
+        };
+        if small || left < CLOSED {
+            Ok(closed)
         } else {
             Err(Unsure::Open(left))
         }
     }
-
-    fn inverse(&self, state: &State, apart: f64) -> Result<DMatrix<f64>, Unsure> {
-        let monodromy = self.monodromy(state, apart)?;
-        let inverse = (&monodromy - identity(&monodromy)).try_inverse();
-        inverse.ok_or(Unsure::Singular)
-    }
 }
 
-fn identity(like: &DMatrix<f64>) -> DMatrix<f64> {
-    DMatrix::identity(like.nrows(), like.nrows())
+/// Derivative of the gaps between segments by the states at their beginnings.
+fn jacobian(slopes: &[DMatrix<f64>]) -> DMatrix<f64> {
+    let (count, size) = (slopes.len(), slopes[0].nrows());
+    let mut matrix = DMatrix::zeros(count * size, count * size);
+    for (segment, slope) in slopes.iter().enumerate() {
+        let next = (segment + 1) % count;
+        matrix
+            .view_mut((segment * size, segment * size), (size, size))
+            .copy_from(slope);
+        for i in 0..size {
+            matrix[(segment * size + i, next * size + i)] -= 1.0;
+        }
+    }
+    matrix
+}
+
+/// Over all segments.
+fn product(slopes: &[DMatrix<f64>]) -> DMatrix<f64> {
+    let identity = DMatrix::identity(slopes[0].nrows(), slopes[0].nrows());
+    slopes
+        .iter()
+        .fold(identity, |product, slope| slope * product)
+}
+
+/// What an error of each derivative becomes in their product.
+fn amplified(slopes: &[DMatrix<f64>]) -> f64 {
+    let norm = |slopes: &[DMatrix<f64>]| slopes.first().map_or(1.0, |_| row_sum(&product(slopes)));
+    let places = 0..slopes.len();
+    places
+        .map(|i| norm(&slopes[..i]) * norm(&slopes[i + 1..]))
+        .sum()
 }
 
 fn row_sum(matrix: &DMatrix<f64>) -> f64 {
@@ -234,6 +376,7 @@ pub fn settles(question: &Question<'_>, periods: usize, until: impl Fn() -> bool
     let there = Periodic {
         motions: &motions,
         time: question.time,
+        segments: 1,
     };
     let mut state = State::default();
     let mut still = 0;
@@ -241,7 +384,7 @@ pub fn settles(question: &Question<'_>, periods: usize, until: impl Fn() -> bool
         if until() {
             return None;
         }
-        let Ok(course) = there.course(&state) else {
+        let Ok(course) = there.course(0, &state) else {
             return Some(false);
         };
         let apart = there.difference(&course.state, &state).amax();
@@ -297,7 +440,7 @@ fn a_gear_pair_is_what_another_program_says() {
     let mut state = State::default();
     (state[0], state[COORDINATES]) = (0.441, 0.1205);
     let question = Question::of(&model, 0.7, 1, 0.5);
-    let truth = question.truth(&state).unwrap();
+    let truth = question.truth(|part| question.after(&state, part)).unwrap();
     let [size, error] = truth.peak_to_peak;
     assert!(error < 1e-9 && (size - 1.065_351_188_531_121_3).abs() < 1e-11 + error);
     let exact = Complex::new(-0.282_447_013_736_739_14, 0.572_513_003_034_731_6);
