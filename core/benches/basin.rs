@@ -6,8 +6,9 @@
 
 use std::time::Instant;
 
-use hertzian::flow::basin::{Axis, Basin, Basins, Grid};
-use hertzian::flow::{self, Flow, Options};
+use hertzian::attractors::basin::{Axis, Basin, Basins, Grid};
+use hertzian::time;
+use hertzian::time::{Flow, Options};
 
 hertzian::oscillator! {
     OneSided(x) {
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let compute = |threads: usize| -> Result<(f64, Basins), Box<dyn std::error::Error>> {
         let flows: Result<Vec<Box<dyn Flow>>, _> = (0..threads)
-            .map(|_| flow::of(&model, 1.0, Options::default()))
+            .map(|_| time::of(&model, 1.0, Options::default()))
             .collect();
         let start = Instant::now();
         let basins = basin.compute(flows?, None, &|_| true)?;

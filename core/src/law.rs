@@ -8,7 +8,7 @@
 
 use std::borrow::Cow;
 
-use crate::generic::LawData;
+use crate::laws::generic::LawData;
 use crate::system::{Bound, is_within};
 
 /// A law as the runtime sees it. Generated types, the interpreter and laws written by hand implement it alike.

@@ -28,13 +28,13 @@
 //! | What is wanted | Where it is |
 //! |---|---|
 //! | curves of periodic orbits, by harmonic balance | [`FrequencyResponse`], which gives a [`Branch`]: module [`branch`] |
-//! | the same in the time domain, without truncation | [`Shooting`], which gives a [`CycleBranch`]: module [`flow::shooting`] |
+//! | the same in the time domain, without truncation | [`Shooting`], which gives a [`CycleBranch`]: module [`shooting`] |
 //! | what an orbit is like: amplitudes, phases, contact, power | [`observe`] |
 //! | multipliers by other methods, and what they cost | [`stability`] |
 //! | all branches connected by bifurcations | [`Bifurcations`], which gives a [`Diagram`](bifurcation::Diagram) |
 //! | curves of bifurcations in two parameters | [`Shooting::track`] |
 //! | free oscillation, phase resonance | [`backbone`] |
-//! | motions in time, and what they settle to | [`flow`]: histories, sections, sweeps, Lyapunov exponents, basins |
+//! | motions in time, and what they settle to | [`time`]: histories, sections; [`attractors`]: sweeps, Lyapunov exponents, basins |
 //! | a structure given as matrices, with contacts | [`structure`], whose laws [`law!`] declares |
 //! | pictures and tables | `chart` (feature `plot`), [`export`] |
 //! | what can go wrong, and what is unusual about a system | [`error`], [`remarks`] |
@@ -66,70 +66,50 @@
 // Generated code names this crate `::hertzian`; inside the crate itself that name must exist too.
 extern crate self as hertzian;
 
-mod aft;
-#[cfg(test)]
-mod allocations;
-pub mod backbone;
+pub mod attractors;
 mod balance;
 pub mod bifurcation;
-mod block;
-pub mod branch;
-#[cfg(test)]
-mod by_hand;
+mod branches;
 #[cfg(feature = "plot")]
 pub mod chart;
 mod continuation;
-mod decimal;
-#[doc(hidden)]
-pub mod emitted;
 pub mod error;
-pub mod export;
-pub mod flow;
-mod follower;
-pub mod fourier;
-pub mod generic;
 #[cfg(doctest)]
 mod guide;
-mod harmonics;
-mod jacobian;
-mod labels;
 pub mod law;
-mod layout;
-mod linear;
-mod newton;
-pub mod observe;
-#[cfg(feature = "plot")]
-mod picture;
-pub mod power;
-#[cfg(test)]
-mod random;
-mod reader;
-pub mod remarks;
+mod laws;
+mod model;
+mod numeric;
+mod orbit;
+mod report;
 mod response;
-mod rigid;
-mod run;
-pub mod stability;
-#[doc(hidden)]
-pub mod stages;
-mod start;
-mod statistics;
-pub mod structure;
-mod subharmonics;
-mod symmetry;
+pub mod shooting;
 pub mod system;
-mod truncation;
-mod validate;
+#[cfg(test)]
+mod testing;
+pub mod time;
 
-pub use aft::Aft;
+pub use balance::aft::Aft;
 pub use bifurcation::Bifurcations;
-pub use branch::{Branch, Event, EventKind, Orbit, Point, Turn};
+pub use bifurcation::backbone;
+pub use branches::branch;
+pub use branches::branch::{Branch, Event, EventKind, Orbit, Point, Turn};
 pub use continuation::follow::Stop;
+pub use continuation::statistics::Statistics;
 pub use error::Error;
-pub use flow::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
+#[doc(hidden)]
+pub use laws::emitted;
+pub use laws::generic;
+pub use model::{remarks, structure};
 pub use nalgebra::Complex;
+pub use numeric::{fourier, power};
+pub use orbit::stability::{Method, Stability, Verdict};
+pub use orbit::{observe, stability};
+pub use report::export;
 pub use response::FrequencyResponse;
-pub use stability::{Method, Stability, Verdict};
-pub use statistics::Statistics;
+#[doc(hidden)]
+pub use response::stages;
+pub use shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
 pub use system::System;
 
 /// ```

@@ -5,7 +5,7 @@ mod folder;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use hertzian::flow::basin::Axis;
+use hertzian::attractors::basin::Axis;
 use hertzian_examples::response::models::model;
 use hertzian_examples::response::options::Options;
 use hertzian_examples::response::progress::Progress;

@@ -23,9 +23,9 @@
 //!
 //! Source: Grebogi, Ott, Romeiras and Yorke (1987), Critical exponents for crisis-induced intermittency, Phys. Rev. A 36, 5365.
 
-use hertzian::flow::Tangent;
-use hertzian::flow::affine::Affine;
-use hertzian::flow::stroboscope::Stroboscope;
+use hertzian::time::Tangent;
+use hertzian::time::affine::Affine;
+use hertzian::time::stroboscope::Stroboscope;
 use hertzian_tests::OneSidedLinear;
 
 type State = [f64; 2];

@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 
 // The module is private to the runtime; what the benchmark does not call is not a mistake here.
 #[allow(dead_code, unused_imports)]
-#[path = "../../../core/src/linear.rs"]
+#[path = "../../../core/src/numeric/linear/mod.rs"]
 mod linear;
 
 const ORDERS: [usize; 6] = [11, 21, 41, 81, 161, 321];

@@ -19,8 +19,8 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 use hertzian::System;
-use hertzian::flow::affine::Affine;
-use hertzian::flow::{Flow, Integrated};
+use hertzian::time::affine::Affine;
+use hertzian::time::{Flow, Integrated};
 use libraries::Force;
 
 /// Turns of each contender; the median is taken over them.

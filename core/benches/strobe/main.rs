@@ -17,10 +17,10 @@ use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Instant;
 
-use hertzian::flow::affine::Affine;
-use hertzian::flow::{Flow, Integrated, Tangent};
 use hertzian::oscillator;
 use hertzian::system::Variable;
+use hertzian::time::affine::Affine;
+use hertzian::time::{Flow, Integrated, Tangent};
 
 /// Turns of each contender; the median is taken over them.
 const TURNS: usize = 301;

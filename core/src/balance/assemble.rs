@@ -2,8 +2,8 @@
 
 use super::terms::stretched;
 use super::{Balance, blocks};
+use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::problem::Problem;
-use crate::jacobian::{Jacobian, Partition};
 
 impl Balance<'_> {
     /// Clears the blocks and puts the linear stiffness and damping into them.
@@ -56,7 +56,7 @@ impl Balance<'_> {
         jacobian.set_column(&self.scratch.column);
     }
 
-    /// Adds what holds the mean along rigid motions: see [`rigid`](crate::rigid).
+    /// Adds what holds the mean along rigid motions: see [`rigid`](crate::model::rigid).
     fn add_gauge_to(&self, jacobian: &mut Jacobian) {
         let (n, length) = (
             self.layout.coordinates,

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::harmonics::Harmonics;
-use crate::fourier::series;
-use crate::jacobian::Jacobian;
-use crate::layout::Layout;
-use crate::linear::Matrix;
+use crate::continuation::jacobian::Jacobian;
+use crate::model::layout::Layout;
+use crate::numeric::fourier::series;
+use crate::numeric::linear::Matrix;
 use crate::system::Wave;
 
 /// The part of the Jacobian that couples one equation to one coordinate.

@@ -2,9 +2,9 @@
 
 use super::terms::{block_mut, gap_series, rate_series, stretched};
 use super::{Balance, Resolution, blocks};
-use crate::aft::{Change, ContactDerivatives, ContactInput};
-use crate::fourier::series;
-use crate::layout::Layout;
+use crate::balance::aft::{Change, ContactDerivatives, ContactInput};
+use crate::model::layout::Layout;
+use crate::numeric::fourier::series;
 
 /// Series that an evaluation needs, allocated once.
 #[derive(Debug)]
@@ -33,12 +33,12 @@ impl Scratch {
         let Resolution {
             harmonics, period, ..
         } = resolution;
-        let highest = |of: fn(&crate::layout::ContactLayout) -> usize| {
+        let highest = |of: fn(&crate::model::layout::ContactLayout) -> usize| {
             layout.contacts.iter().map(of).max().unwrap_or(0) * period
         };
-        let force_wave = highest(crate::layout::ContactLayout::force_harmonic);
-        let gap_wave = highest(crate::layout::ContactLayout::gap_harmonic);
-        let offset_wave = highest(crate::layout::ContactLayout::offset_harmonic);
+        let force_wave = highest(crate::model::layout::ContactLayout::force_harmonic);
+        let gap_wave = highest(crate::model::layout::ContactLayout::gap_harmonic);
+        let offset_wave = highest(crate::model::layout::ContactLayout::offset_harmonic);
         let zeros = |harmonics| vec![0.0; series::length(harmonics)];
         let gap = || zeros((harmonics + gap_wave).max(offset_wave));
         let force = || zeros(harmonics + force_wave);

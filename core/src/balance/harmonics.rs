@@ -2,8 +2,8 @@
 
 use super::Resolution;
 use super::blocks::places;
-use crate::fourier::series;
-use crate::jacobian::Partition;
+use crate::continuation::jacobian::Partition;
+use crate::numeric::fourier::series;
 
 /// The harmonics of every coordinate, in increasing order.
 #[derive(Debug, Clone, PartialEq, Eq)]

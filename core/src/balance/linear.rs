@@ -2,7 +2,7 @@
 
 use super::Balance;
 use super::terms::{add_derivative, add_inertia, block, block_mut, stretched};
-use crate::fourier::series;
+use crate::numeric::fourier::series;
 
 impl Balance<'_> {
     /// Adds `Omega^2 M D^2 u + Omega C D u + K u - f` for given coefficients.

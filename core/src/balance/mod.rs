@@ -8,7 +8,7 @@
 //! ```
 //!
 //! where `D` differentiates by phase, `(c_k, s_k) -> (k s_k, -k c_k)`, and `F_c` is the series of the force of contact
-//! `c` that [`aft`](crate::aft) makes from the series of its gap. Its derivative needs the series of
+//! `c` that [`aft`](crate::balance::aft) makes from the series of its gap. Its derivative needs the series of
 //! `S = e_c phi_g d_c + Omega e_c phi_r D d_c` and `T = e_c phi_r d_c`: multiplying by a periodic function is a
 //! Toeplitz plus a Hankel matrix of its coefficients,
 //!
@@ -23,6 +23,14 @@
 //! chapter 2 and appendix on Toeplitz and Hankel blocks. Unknowns are ordered coordinate by coordinate, each
 //! `[mean, cos 1, sin 1, ..., cos K, sin K]`.
 
+pub(crate) mod aft;
+pub(crate) mod block;
+pub(crate) mod resolution;
+pub(crate) mod start;
+pub(crate) mod subharmonics;
+pub(crate) mod symmetry;
+pub(crate) mod truncation;
+
 mod assemble;
 mod blocks;
 mod contacts;
@@ -35,11 +43,11 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-use crate::aft::{Aft, Engine};
-use crate::fourier::series;
-use crate::jacobian::Partition;
-use crate::layout::Layout;
-use crate::rigid::{Place, Rigid};
+use crate::balance::aft::{Aft, Engine};
+use crate::continuation::jacobian::Partition;
+use crate::model::layout::Layout;
+use crate::model::rigid::{Place, Rigid};
+use crate::numeric::fourier::series;
 use crate::system::{System, Variable};
 use blocks::Block;
 use contacts::Scratch;

@@ -3,11 +3,11 @@
 
 use super::tests::{RESOLUTION, jacobian_error, values};
 use super::*;
-use crate::allocations::count;
+use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::continuation::problem::Scale;
-use crate::fourier::crossings::crossings;
-use crate::newton::{Border, Newton, NewtonOptions};
-use crate::random::Random;
+use crate::numeric::fourier::crossings::crossings;
+use crate::testing::allocations::count;
+use crate::testing::random::Random;
 
 hertzian::oscillator! {
     /// Two coordinates and two stops, one of which moves, the other with a direction that turns. Force and damping jump, at a level

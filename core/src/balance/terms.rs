@@ -1,7 +1,7 @@
 //! Series of gaps and rates, and the linear terms of the balance.
 
-use crate::fourier::series;
-use crate::layout::{ContactLayout, Term};
+use crate::model::layout::{ContactLayout, Term};
+use crate::numeric::fourier::series;
 use crate::system::Wave;
 
 /// A wave of the declaration in harmonics of the orbit's own period.

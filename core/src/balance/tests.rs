@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use proptest::prelude::*;
 
 use super::*;
-use crate::by_hand::PowerForm;
+use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
-use crate::jacobian::Jacobian;
 use crate::law::On;
+use crate::testing::by_hand::PowerForm;
 
 hertzian::oscillator! {
     /// Two coordinates, contacts whose direction turns with the excitation, a parametric stiffness, an unbalance.
@@ -286,9 +286,9 @@ fn generated_and_interpreted_balances_agree() {
 /// From the second correction on, Newton's method and everything below it reuse what they have.
 #[test]
 fn iterations_do_not_allocate() {
-    use crate::allocations::count;
+    use crate::continuation::newton::{Border, Newton, NewtonOptions};
     use crate::continuation::problem::Scale;
-    use crate::newton::{Border, Newton, NewtonOptions};
+    use crate::testing::allocations::count;
     let mut balance = Balance::new(&ROTOR, &values(&ROTOR), 0.7, Variable::Omega, RESOLUTION);
     let mut newton = Newton::new(&balance);
     let mut row = [0.0; 15];
@@ -327,7 +327,7 @@ fn iterations_do_not_allocate() {
 /// What the core and the tail leave out, the directional derivative has.
 #[test]
 fn the_derivative_in_a_direction_is_that_of_the_whole_jacobian() {
-    let mut random = crate::random::Random::new(5);
+    let mut random = crate::testing::random::Random::new(5);
     for aft in [Aft::Sampled, Aft::Switched] {
         let dense = Resolution { aft, ..RESOLUTION };
         let split = Resolution { core: 1, ..dense };

@@ -9,10 +9,10 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use super::known;
-use crate::branch::EventKind;
+use crate::branches::branch::EventKind;
 use crate::continuation::follow::Stop;
 use crate::error::Error;
-use crate::flow::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
+use crate::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,7 +26,10 @@ pub struct Diagram {
     /// Attractors whose branch was not followed, and searches that failed: the value and why.
     pub missed: Vec<(f64, Reason)>,
     /// Time of the computation.
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::seconds"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::report::export::seconds")
+    )]
     pub elapsed: Duration,
 }
 
@@ -113,7 +116,10 @@ pub enum Reason {
     /// The caller asked to stop before.
     Interrupted,
     /// Its first orbit was not found.
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::export::text"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::report::export::text")
+    )]
     Failed(Error),
 }
 

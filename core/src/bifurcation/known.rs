@@ -1,7 +1,7 @@
 //! Recognising what is known already.
 
 use super::diagram::Limb;
-use crate::flow::shooting::{Cycle, CycleEvent, Shooting};
+use crate::shooting::{Cycle, CycleEvent, Shooting};
 
 /// Values of one event, found on two branches, differ by no more than this part of the range, or by their stated errors.
 const SAME: f64 = 1e-6;

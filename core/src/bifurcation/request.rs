@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
+use crate::attractors::basin::{Basin, Basins, Progress};
 use crate::error::Error;
-use crate::flow;
-use crate::flow::basin::{Basin, Basins, Progress};
-use crate::flow::shooting::{Cycle, Shooting};
+use crate::model::validate;
+use crate::shooting::{Cycle, Shooting};
 use crate::system::{System, Variable};
-use crate::validate;
+use crate::time;
 
 /// Branches beyond this many are not followed.
 const BRANCHES: usize = 64;
@@ -279,8 +279,8 @@ impl<'a> Bifurcations<'a> {
                 self.omega.ok_or(Error::Missing { name: "omega" })?
             }
         };
-        let options = flow::Options::default().tolerance(SETTLED);
-        let flow = flow::at(self.system, &parameters, omega, options)?;
+        let options = time::Options::default().tolerance(SETTLED);
+        let flow = time::at(self.system, &parameters, omega, options)?;
         let watch = self.watch.unwrap_or(&|_| true);
         let found = basin.compute(vec![flow], None, watch);
         found.map_err(|reason| Error::Search { value, reason })

@@ -11,7 +11,7 @@
 
 use super::follow::CurvePoint;
 use super::problem::Problem;
-use crate::newton::{Border, Newton, NewtonOptions};
+use crate::continuation::newton::{Border, Newton, NewtonOptions};
 
 /// Orbits on each side.
 const SIDE: usize = 4;
@@ -50,7 +50,7 @@ pub(crate) fn locate_crossing<P: Problem>(
 ) -> Option<Crossing> {
     let mut border = vec![0.0; a.u.len()];
     newton.norm().linear_form(a.scale, &a.tangent, &mut border);
-    let dot = crate::linear::dot;
+    let dot = crate::numeric::linear::dot;
     let origin = dot(&border, &a.u);
     let ends = [a, b].map(|point| {
         let along = dot(&border, &point.tangent);
@@ -129,7 +129,7 @@ fn newton_update<P: Problem>(
     options: NewtonOptions,
 ) -> Option<f64> {
     let mut near = nodes.first()?.u.clone();
-    let value = crate::linear::dot(border, &near);
+    let value = crate::numeric::linear::dot(border, &near);
     let row = Border { row: border, value };
     let corrected = newton.correct(problem, &mut near, row, point.scale, options);
     corrected.ok()?;

@@ -15,8 +15,8 @@
 use super::problem::{Problem, Scale};
 use super::step::StepControl;
 use super::walk::{Begun, Walk};
-use crate::decimal::Decimal;
-use crate::newton::{Newton, NewtonError, NewtonOptions};
+use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
+use crate::numeric::decimal::Decimal;
 
 /// What to follow, and how far.
 #[derive(Debug, Clone, Copy, PartialEq)]

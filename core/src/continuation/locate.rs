@@ -9,7 +9,7 @@
 
 use super::follow::CurvePoint;
 use super::problem::{Problem, Scale};
-use crate::newton::{Border, Newton, NewtonOptions};
+use crate::continuation::newton::{Border, Newton, NewtonOptions};
 
 /// A point where the test function vanishes.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,7 @@ pub(crate) fn locate<P: Problem>(
     let length = newton.norm().product(a.scale, &a.tangent, &difference);
     let mut border = vec![0.0; a.u.len()];
     newton.norm().linear_form(a.scale, &a.tangent, &mut border);
-    let origin = crate::linear::dot(&border, &a.u);
+    let origin = crate::numeric::linear::dot(&border, &a.u);
     let side = |s, point: &CurvePoint| Side {
         s,
         value: test(point),
@@ -125,7 +125,7 @@ pub(crate) fn inside<P: Problem>(
     let trial = between((&from, &to), part * length, &border);
     let row = Border {
         row: &border,
-        value: crate::linear::dot(&border, &a.u) + part * length,
+        value: crate::numeric::linear::dot(&border, &a.u) + part * length,
     };
     corrected(problem, newton, trial, row, a.scale, options)
 }
@@ -177,7 +177,7 @@ fn corrected<P: Problem>(
 fn between((a, b): (&Side, &Side), s: f64, border: &[f64]) -> Vec<f64> {
     let width = b.s - a.s;
     let x = (s - a.s) / width;
-    let ahead = |side: &Side| crate::linear::dot(border, &side.point.tangent);
+    let ahead = |side: &Side| crate::numeric::linear::dot(border, &side.point.tangent);
     let (first, last) = (ahead(a), ahead(b));
     let (share, start, end) = if first.min(last) > 0.5 * first.max(last) {
         let y = 1.0 - x;

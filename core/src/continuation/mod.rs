@@ -1,5 +1,9 @@
 //! Following a curve of solutions as one parameter varies. Knows problems, not balances.
 
+pub(crate) mod jacobian;
+pub(crate) mod newton;
+pub(crate) mod statistics;
+
 pub(crate) mod crossing;
 pub(crate) mod follow;
 pub(crate) mod locate;

@@ -1,7 +1,7 @@
 //! What continuation knows of the equations it follows.
 
-use crate::jacobian::{Jacobian, Partition};
-use crate::linear::weighted_dot;
+use crate::continuation::jacobian::{Jacobian, Partition};
+use crate::numeric::linear::weighted_dot;
 
 /// `n` equations in `n` unknowns and one parameter.
 ///

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use super::follow::{FollowOptions, Outcome, Start, Stop, Visit, follow};
 use super::problem::Problem;
 use super::step::StepControl;
-use crate::jacobian::Jacobian;
-use crate::newton::{Newton, NewtonOptions};
+use crate::continuation::jacobian::Jacobian;
+use crate::continuation::newton::{Newton, NewtonOptions};
 
 /// `lambda = x - 1.5 w tanh((x - c) / w)`: a line with a pair of folds at `c +- 0.658 w`, where the slope vanishes.
 struct Bend {

@@ -4,7 +4,7 @@
 
 use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
 use super::problem::{Norm, Problem, Scale};
-use crate::newton::{Border, Newton, NewtonError};
+use crate::continuation::newton::{Border, Newton, NewtonError};
 
 /// Least scale of what oscillates, in sizes of what rounding makes of an update.
 const ROUNDINGS: f64 = 1e3;
@@ -128,7 +128,7 @@ impl Walk {
                 .linear_form(point.scale, &point.tangent, &mut self.border);
             let border = Border {
                 row: &self.border,
-                value: crate::linear::dot(&self.border, &point.u),
+                value: crate::numeric::linear::dot(&self.border, &point.u),
             };
             let options = self.options.newton;
             newton.correct(problem, &mut self.trial, border, self.scale, options)?;
@@ -359,7 +359,7 @@ impl Walk {
         newton
             .norm()
             .linear_form(from.scale, &from.tangent, &mut self.border);
-        let value = crate::linear::dot(&self.border, &self.trial);
+        let value = crate::numeric::linear::dot(&self.border, &self.trial);
         let border = Border {
             row: &self.border,
             value,

@@ -29,12 +29,13 @@ pub(crate) use sentence_as_debug;
 
 #[cfg(test)]
 mod tests {
-    use crate::flow::FlowError;
-    use crate::flow::basin::BasinError;
-    use crate::flow::log::LogError;
-    use crate::linear::Singular;
-    use crate::structure::StructureError;
-    use crate::{Error, FrequencyResponse};
+    use crate::attractors::basin::BasinError;
+    use crate::attractors::log::LogError;
+    use crate::error::Error;
+    use crate::model::structure::StructureError;
+    use crate::numeric::linear::Singular;
+    use crate::response::FrequencyResponse;
+    use crate::time::FlowError;
 
     crate::oscillator! {
         Linear(x) {

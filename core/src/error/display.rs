@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Error;
-use crate::decimal::Decimal;
+use crate::numeric::decimal::Decimal;
 
 impl Error {
     /// What is written of names, options and ranges.

@@ -1,20 +1,21 @@
 //! Whether a request can be followed, and with what resolution.
 
 use super::FrequencyResponse;
-use crate::aft::Aft;
+use crate::balance::aft::Aft;
+use crate::balance::resolution::Chooser;
+use crate::balance::symmetry::{Over, has_stride, is_broken};
 use crate::balance::{Parity, Resolution};
-use crate::branch::{Event, Orbit};
+use crate::branches::branch::{Event, Orbit};
 use crate::continuation::follow::FollowOptions;
+use crate::continuation::newton::NewtonOptions;
 use crate::error::Error;
-use crate::follower::Follower;
-use crate::fourier::series;
-use crate::harmonics::Chooser;
-use crate::layout::{ContactLayout, Layout};
-use crate::newton::NewtonOptions;
-use crate::rigid::{self, Place};
-use crate::symmetry::{Over, has_stride, is_broken};
+use crate::model::layout::{ContactLayout, Layout};
+use crate::model::rigid;
+use crate::model::rigid::Place;
+use crate::model::validate;
+use crate::numeric::fourier::series;
+use crate::response::follower::Follower;
 use crate::system::{Bound, Variable};
-use crate::validate;
 
 /// More samples of an orbit would take more than a gigabyte.
 const MOST_SAMPLES: usize = 10_000_000;

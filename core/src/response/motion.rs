@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use crate::flow::{self, Flow, FlowError, Options, Stretch};
-use crate::follower::Follower;
-use crate::start::{Moved, Moving};
+use crate::balance::start::{Moved, Moving};
+use crate::response::follower::Follower;
 use crate::system::{System, Variable};
+use crate::time;
+use crate::time::{Flow, FlowError, Options, Stretch};
 
 /// Tolerance of motions that only lead to a guess.
 const TOLERANCE: f64 = 1e-7;
@@ -21,7 +22,7 @@ pub(super) fn moved(follower: &Follower<'_>, moving: Moving<'_>) -> Moved {
         Variable::Parameter(index) => parameters[index] = moving.value,
     }
     let options = Options::default().tolerance(TOLERANCE);
-    let Ok(mut flow) = flow::at(follower.system, &parameters, omega, options) else {
+    let Ok(mut flow) = time::at(follower.system, &parameters, omega, options) else {
         return Moved {
             positions: None,
             operations: 0,

@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 use std::fmt::Write;
 
 use hertzian::Complex;
+use hertzian::attractors::basin::{Attractor, Axis, Basin, Basins, Fate, Grid};
 use hertzian::chart::{Chart, Colour, Markers, Raster};
 use hertzian::export::Npy;
-use hertzian::flow::basin::{Attractor, Axis, Basin, Basins, Fate, Grid};
 
 use super::output::{Results, entries, number};
 use super::run::{Failure, Task};

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
-use hertzian::flow::history::{self, Span};
+use hertzian::time::history;
+use hertzian::time::history::Span;
 
 use super::output::{Results, Table, entries};
 use super::run::{Failure, Task};

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
+use hertzian::attractors::lyapunov::{Exponents, Lyapunov};
 use hertzian::chart::{Chart, Cloud, Page, Trace};
-use hertzian::flow::divergence::Divergence;
-use hertzian::flow::lyapunov::{Exponents, Lyapunov};
+use hertzian::time::divergence::Divergence;
 
 use super::output::{Results, Table};
 use super::run::{Failure, Task};

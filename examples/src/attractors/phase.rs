@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
+use hertzian::attractors::basin::{Attractor, Basins, Fate};
 use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
-use hertzian::flow::basin::{Attractor, Basins, Fate};
-use hertzian::flow::history::{self, Span};
-use hertzian::flow::stroboscope::Stroboscope;
+use hertzian::time::history;
+use hertzian::time::history::Span;
+use hertzian::time::stroboscope::Stroboscope;
 
 use super::basin::{name, request};
 use super::output::{Results, Table, entries};

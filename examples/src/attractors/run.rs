@@ -6,10 +6,11 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hertzian::flow::basin::BasinError;
-use hertzian::flow::log::{Log, LogError};
-use hertzian::flow::stroboscope::Stroboscope;
-use hertzian::flow::{self, Flow, FlowError};
+use hertzian::attractors::basin::BasinError;
+use hertzian::attractors::log::{Log, LogError};
+use hertzian::time;
+use hertzian::time::stroboscope::Stroboscope;
+use hertzian::time::{Flow, FlowError};
 use hertzian::{Error, System};
 
 use super::options::{Options, Swept};
@@ -319,9 +320,9 @@ impl<'t> Task<'t> {
     /// # Errors
     /// If the values or the tolerance are outside of their ranges.
     pub fn flow(&self, drive: Option<f64>) -> Result<Box<dyn Flow + 't>, Failure> {
-        let how = flow::Options::default().tolerance(self.options.tolerance);
+        let how = time::Options::default().tolerance(self.options.tolerance);
         let values = self.values(drive)?;
-        Ok(flow::at(
+        Ok(time::at(
             self.system,
             &values,
             self.options.model.frequency(),

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
+use hertzian::attractors::sweep::{Ended, Row, Sweep};
 use hertzian::chart::{Chart, Cloud};
-use hertzian::flow::poincare::{Direction, Section};
-use hertzian::flow::sweep::{Ended, Row, Sweep};
 use hertzian::system::Variable;
+use hertzian::time::poincare::{Direction, Section};
 
 use super::options::Swept;
 use super::output::{Results, Table, entries};

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use hertzian::flow::shooting::Cycle;
+use hertzian::shooting::Cycle;
 use hertzian::stability::{Method, Projection, Sorting};
 use hertzian::{Branch, Complex, Error, FrequencyResponse, Shooting, System};
 

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use hertzian::chart::{Chart, Curve, Reference, Scale};
 use hertzian::export;
-use hertzian::flow::shooting::Side;
+use hertzian::shooting::Side;
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop, System};
 
 use super::exact;

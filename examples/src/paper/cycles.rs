@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering;
 
 use hertzian::bifurcation::Bifurcations;
 use hertzian::chart::{Chart, Curve, Markers, Scale};
-use hertzian::flow::shooting::{Cycle, CycleBranch, CycleEvent};
+use hertzian::shooting::{Cycle, CycleBranch, CycleEvent};
 use hertzian::{Error, EventKind, Shooting};
 
 use super::exact;

@@ -3,11 +3,11 @@
 use std::fmt::{self, Write};
 use std::ops::ControlFlow;
 
+use hertzian::attractors::basin::Progress;
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
 use hertzian::export::{Decimal, Table};
-use hertzian::flow::basin::Progress;
-use hertzian::flow::shooting::{CycleEvent, Track};
+use hertzian::shooting::{CycleEvent, Track};
 use hertzian::{Error, EventKind, Shooting, System};
 
 use super::options::{Options, Tracked};
@@ -248,7 +248,7 @@ impl Found {
             .branches
             .iter()
             .flat_map(|limb| &limb.branch.cycles);
-        let sizes = cycles.map(hertzian::flow::shooting::Cycle::peak_to_peak);
+        let sizes = cycles.map(hertzian::shooting::Cycle::peak_to_peak);
         let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
             (low.min(size), high.max(size))
         });

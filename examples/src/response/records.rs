@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use hertzian::flow::shooting::{CycleEvent, Track};
 use hertzian::observe::{amplitudes, phases};
+use hertzian::shooting::{CycleEvent, Track};
 use hertzian::system::SystemFacts;
 use hertzian::{Branch, Event, Point, Statistics};
 use serde::Serialize;

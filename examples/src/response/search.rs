@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hertzian::System;
-use hertzian::flow::basin::{Axis, Basin, Grid};
+use hertzian::attractors::basin::{Axis, Basin, Grid};
 use hertzian::system::{Place, Wave};
 
 use super::options::Options;

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use cpu_time::ThreadTime;
-use hertzian::flow::shooting::CycleBranch;
+use hertzian::shooting::CycleBranch;
 use hertzian::system::System;
 use hertzian::{Aft, Branch, Complex, EventKind, FrequencyResponse, Shooting};
 

@@ -6,8 +6,8 @@
 use std::ops::ControlFlow;
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Reason};
-use hertzian::flow;
-use hertzian::flow::stroboscope::Stroboscope;
+use hertzian::time;
+use hertzian::time::stroboscope::Stroboscope;
 use hertzian::{CycleEvent, End, EventKind, Stop};
 use hertzian_tests::{OneSidedLinear, nearest};
 
@@ -161,7 +161,7 @@ fn as_far_as_period_16() {
         drive: cycle.value,
         ..MODEL
     };
-    let mut map = Stroboscope::new(flow::of(&model, 1.0, flow::Options::default()).unwrap());
+    let mut map = Stroboscope::new(time::of(&model, 1.0, time::Options::default()).unwrap());
     let mut state = cycle.state().to_vec();
     let apart = |state: &[f64]| (state[0] - cycle.state()[0]).hypot(state[1] - cycle.state()[1]);
     for passed in 1..=16 {

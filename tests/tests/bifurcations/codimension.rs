@@ -1,6 +1,6 @@
 //! Curves of grazing in two parameters, and points of codimension two on curves of doublings.
 
-use hertzian::flow::shooting::{CycleEvent, Side, SpecialKind};
+use hertzian::shooting::{CycleEvent, Side, SpecialKind};
 use hertzian::{EventKind, Shooting};
 use hertzian_tests::OneSidedLinear;
 

@@ -4,9 +4,9 @@
 
 use std::f64::consts::PI;
 
+use hertzian::attractors::basin::{Axis, Basin, Grid};
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin};
-use hertzian::flow::basin::{Axis, Basin, Grid};
-use hertzian::flow::shooting::Cycle;
+use hertzian::shooting::Cycle;
 use hertzian::{Complex, Shooting, Verdict};
 use hertzian_tests::OneSidedLinear;
 

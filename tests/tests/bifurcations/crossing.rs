@@ -1,7 +1,7 @@
 //! Crossings of branches without a symmetry: beside a driven oscillator, another one has equilibria that are known.
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
-use hertzian::flow::shooting::{Cycle, Side};
+use hertzian::shooting::{Cycle, Side};
 use hertzian::{Error, EventKind, Shooting, System};
 
 hertzian::oscillator! {

@@ -1,7 +1,7 @@
 //! Curves of bifurcations in two parameters: points of them are found again by following branches, where another test function
 //! decides.
 
-use hertzian::flow::shooting::{SpecialKind, Track};
+use hertzian::shooting::{SpecialKind, Track};
 use hertzian::{Error, EventKind, Shooting, System};
 use hertzian_tests::{OneSidedLinear, nearest};
 

@@ -1,6 +1,6 @@
 //! Doublings of the period and crossings located by the harmonic balance itself, and the branches that begin there.
 
-use hertzian::flow::shooting::Side;
+use hertzian::shooting::Side;
 use hertzian::{Error, Event, EventKind, FrequencyResponse, Stop, System};
 use hertzian_tests::{TwoMasses, nearest};
 

@@ -1,6 +1,6 @@
 //! Where a gap touches a level.
 
-use hertzian::flow::shooting::{CycleEvent, Track, TrackEnd};
+use hertzian::shooting::{CycleEvent, Track, TrackEnd};
 use hertzian::{EventKind, Shooting, System};
 
 use crate::cascade::MODEL;

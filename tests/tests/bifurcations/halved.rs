@@ -1,7 +1,7 @@
 //! Where curves of folds of twice the period end, and closed ones, which are followed once.
 
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::flow::shooting::{Side, Special, SpecialKind, TrackEnd};
+use hertzian::shooting::{Side, Special, SpecialKind, TrackEnd};
 use hertzian::{End, EventKind, FrequencyResponse, Shooting, Stop};
 
 use crate::codimension::Bending;

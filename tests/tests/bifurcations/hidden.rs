@@ -1,7 +1,7 @@
 //! Bifurcations that the signs of test functions at the ends of a step do not show, or show as something else.
 
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::flow::shooting::{CycleBranch, CycleEvent};
+use hertzian::shooting::{CycleBranch, CycleEvent};
 use hertzian::{End, EventKind, Shooting};
 
 use crate::cascade::A1;

@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use hertzian::attractors::basin::{Axis, Basin, Grid, Progress};
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::flow::basin::{Axis, Basin, Grid, Progress};
-use hertzian::flow::shooting::TrackEnd;
+use hertzian::shooting::TrackEnd;
 use hertzian::{Shooting, Stop};
 
 use crate::cascade::MODEL;

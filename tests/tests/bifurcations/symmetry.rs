@@ -5,7 +5,7 @@
 //! (`frequency_response` of the reference values).
 
 use hertzian::bifurcation::Bifurcations;
-use hertzian::flow::shooting::{CycleEvent, End};
+use hertzian::shooting::{CycleEvent, End};
 use hertzian::{EventKind, System};
 use hertzian_tests::nearest;
 

@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::flow::{self, Options, Tangent};
 use hertzian::stability::Method;
+use hertzian::time;
+use hertzian::time::{Options, Tangent};
 use hertzian::{Complex, FrequencyResponse};
 use nalgebra::DMatrix;
 
@@ -33,7 +34,7 @@ fn a_product_forgets_small_multipliers() {
             (root.scale(sign) - 0.5 * model.c).scale(TAU / omega).exp()
         };
         let [largest, smallest] = [exponent(-1.0, 1.0), exponent(-1.0, -1.0)];
-        let mut flow = flow::of(&model, omega, Options::default()).unwrap();
+        let mut flow = time::of(&model, omega, Options::default()).unwrap();
         let mut tangent = Tangent::of_state(2, None);
         flow.advance(0.0, TAU, &mut [0.0; 4], Some(&mut tangent), None)
             .unwrap();

@@ -3,7 +3,7 @@
 //! Every piece is affine, so shooting is the method: its motions have closed forms, and its events are exact to rounding.
 
 use hertzian::EventKind::{Fold, NeimarkSacker, PeriodDoubling};
-use hertzian::flow::shooting::End;
+use hertzian::shooting::End;
 use hertzian::{EventKind, Shooting, Stop};
 use hertzian_tests::TwoMasses;
 

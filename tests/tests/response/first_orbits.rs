@@ -1,7 +1,7 @@
 //! First orbits where nothing stiff is near rest, of motions that are tiny beside their static state, and of whatever settles.
 
-use hertzian::flow::Tangent;
-use hertzian::flow::stroboscope::Stroboscope;
+use hertzian::time::Tangent;
+use hertzian::time::stroboscope::Stroboscope;
 use hertzian::{FrequencyResponse, Shooting, System};
 use hertzian_tests::random::Random;
 

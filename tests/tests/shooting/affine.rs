@@ -9,7 +9,7 @@
     reason = "numbers as they were published, to be searched for"
 )]
 
-use hertzian::flow::shooting::{Cycle, CycleBranch, CycleEvent};
+use hertzian::shooting::{Cycle, CycleBranch, CycleEvent};
 use hertzian::{Complex, Error, EventKind, FrequencyResponse, Shooting, Verdict};
 use hertzian_tests::OneSidedLinear;
 

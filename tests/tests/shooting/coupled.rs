@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::stated::assert_stated;
-use hertzian::flow::shooting::End;
-use hertzian::flow::{self, Options};
+use hertzian::shooting::End;
+use hertzian::time;
+use hertzian::time::Options;
 use hertzian::{EventKind, FrequencyResponse, Shooting, Stop, Verdict};
 use hertzian_tests::TwoMasses;
 
@@ -77,7 +78,7 @@ fn a_period_is_that_of_the_declaration() {
     let cycle = Shooting::of(&model).orbit(0.9).unwrap();
     assert_eq!(cycle.period, 1);
     // The phase of the flow is that of the declaration too.
-    let mut flow = flow::of(&model, 0.9, Options::default()).unwrap();
+    let mut flow = time::of(&model, 0.9, Options::default()).unwrap();
     let mut state = [0.0, 0.0];
     for _ in 0..40 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();

@@ -1,6 +1,6 @@
 //! What is stated of errors: orbits at a coarse tolerance against the same orbits at a fine one.
 
-use hertzian::flow::shooting::Cycle;
+use hertzian::shooting::Cycle;
 use hertzian::{Shooting, System, Verdict};
 use hertzian_tests::distance;
 

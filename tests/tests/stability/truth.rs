@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::flow::shooting::Cycle;
-use hertzian::flow::{self, FlowError, Options};
+use hertzian::shooting::Cycle;
+use hertzian::time;
+use hertzian::time::{FlowError, Options};
 use hertzian::{Complex, Event, Point, Shooting, System};
 use hertzian_tests::random::Random;
 
@@ -60,7 +61,7 @@ pub fn growth(system: &dyn System, cycle: &Cycle, random: &mut Random) -> Result
     let largest = cycle.stability.multipliers[0].norm();
     let periods = (FACTOR.ln() / largest.ln().abs()).ceil() as usize;
     let options = Options::default().tolerance(TOLERANCE);
-    let mut flow = flow::of(system, cycle.omega, options).unwrap();
+    let mut flow = time::of(system, cycle.omega, options).unwrap();
     let small = if largest < 1.0 { FACTOR * SMALL } else { SMALL };
     let [x, v] = [cycle.state()[0], cycle.state()[1]];
     let [length, speed] = [cycle.peak_to_peak(), cycle.omega * cycle.peak_to_peak()];

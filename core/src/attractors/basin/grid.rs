@@ -1,0 +1,165 @@
+//! The states that motions start from, and the order in which they are looked at.
+
+/// Initial states: two entries of the state vary, the others stay.
+///
+/// ```
+/// use hertzian::attractors::basin::{Axis, Grid};
+///
+/// // One coordinate and its rate, 64 cells each.
+/// let position = Axis::of(0).from(-2.0).to(2.0).cells(64);
+/// let rate = Axis::of(1).from(-1.0).to(1.0).cells(64);
+/// let grid = Grid::new(vec![0.0, 0.0], position, rate);
+/// assert_eq!(grid.cells(), 4096);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Grid {
+    /// The state whose two entries are varied.
+    pub start: Vec<f64>,
+    /// The entry that varies along a row, from column to column.
+    pub columns: Axis,
+    /// The entry that varies from row to row.
+    pub rows: Axis,
+}
+
+/// One direction of a grid. Its cells divide the range evenly; motions start from their middles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Axis {
+    /// Which entry of the state: a coordinate, or with `entry >= n` its rate.
+    pub entry: usize,
+    /// Where the first cell begins.
+    pub from: f64,
+    /// Where the last one ends.
+    pub to: f64,
+    /// Number of cells.
+    pub count: usize,
+}
+
+/// Each round of the work has a sixteenth of the cells of the next one.
+const COARSER: usize = 4;
+/// Cells along the longer side that the first round may have.
+const FIRST: usize = 8;
+
+impl Axis {
+    /// An entry of the state, from -1 to 1 in 256 cells.
+    pub fn of(entry: usize) -> Self {
+        Self {
+            entry,
+            from: -1.0,
+            to: 1.0,
+            count: 256,
+        }
+    }
+
+    /// Where the first cell begins.
+    #[must_use]
+    pub fn from(mut self, value: f64) -> Self {
+        self.from = value;
+        self
+    }
+
+    /// Where the last cell ends.
+    #[must_use]
+    pub fn to(mut self, value: f64) -> Self {
+        self.to = value;
+        self
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn cells(mut self, count: usize) -> Self {
+        self.count = count;
+        self
+    }
+
+    /// The middle of a cell.
+    pub fn middle(&self, cell: usize) -> f64 {
+        let part = (cell as f64 + 0.5) / self.count as f64;
+        (1.0 - part) * self.from + part * self.to
+    }
+}
+
+impl Grid {
+    /// States that differ from `start` in the entries of two axes.
+    pub fn new(start: Vec<f64>, columns: Axis, rows: Axis) -> Self {
+        Self {
+            start,
+            columns,
+            rows,
+        }
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.columns.count.saturating_mul(self.rows.count)
+    }
+
+    /// Writes the state that the motion of a cell starts from. Cells are counted row by row.
+    pub fn state(&self, cell: usize, state: &mut [f64]) {
+        state.copy_from_slice(&self.start);
+        state[self.columns.entry] = self.columns.middle(cell % self.columns.count);
+        state[self.rows.entry] = self.rows.middle(cell / self.columns.count);
+    }
+
+    /// The cells in rounds, from coarse to fine; every cell is in one of them. Later rounds find most attractors known.
+    pub(super) fn rounds(&self) -> Vec<Vec<usize>> {
+        let most = self.columns.count.max(self.rows.count);
+        let mut stride = 1;
+        while most.div_ceil(stride) > FIRST {
+            stride *= COARSER;
+        }
+        let mut rounds = Vec::new();
+        let mut coarser = usize::MAX;
+        loop {
+            let on = |row: usize, column: usize, stride| {
+                row.is_multiple_of(stride) && column.is_multiple_of(stride)
+            };
+            let rows = (0..self.rows.count).step_by(stride);
+            let cells = rows.flat_map(|row| {
+                let columns = (0..self.columns.count).step_by(stride);
+                let new = columns
+                    .filter(move |&column| coarser == usize::MAX || !on(row, column, coarser));
+                new.map(move |column| row * self.columns.count + column)
+            });
+            rounds.push(cells.collect());
+            if stride == 1 {
+                return rounds;
+            }
+            coarser = stride;
+            stride /= COARSER;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(columns: usize, rows: usize) -> Grid {
+        let axis = |entry, count| Axis::of(entry).from(-1.0).to(1.0).cells(count);
+        Grid::new(vec![0.0; 2], axis(0, columns), axis(1, rows))
+    }
+
+    #[test]
+    fn every_cell_is_in_one_round() {
+        for (columns, rows) in [(1, 1), (8, 8), (9, 3), (33, 70), (512, 512)] {
+            let grid = grid(columns, rows);
+            let rounds = grid.rounds();
+            assert!(rounds[0].len() <= 64);
+            let mut cells: Vec<usize> = rounds.concat();
+            cells.sort_unstable();
+            assert!(cells.into_iter().eq(0..columns * rows), "{columns} {rows}");
+        }
+    }
+
+    #[test]
+    fn motions_start_from_the_middles() {
+        let grid = grid(4, 2);
+        let mut state = [0.0; 2];
+        grid.state(0, &mut state);
+        assert_eq!(state, [-0.75, -0.5]);
+        grid.state(7, &mut state);
+        assert_eq!(state, [0.75, 0.5]);
+    }
+}

@@ -1,0 +1,6 @@
+//! What motions settle to: sweeps, Lyapunov exponents, basins of attraction.
+
+pub mod basin;
+pub mod log;
+pub mod lyapunov;
+pub mod sweep;

@@ -1,0 +1,224 @@
+//! Orbits that stay on one piece: equally spaced samples.
+//!
+//! The trapezoidal rule errs by what lies beyond the Nyquist frequency, and for an analytic integrand that falls
+//! exponentially (Trefethen and Weideman (2014), The exponentially convergent trapezoidal rule). The samples are doubled until
+//! the upper end of the spectrum has fallen to rounding, or to the largest number.
+
+use super::{Changing, Sums, Wanted, overlooks};
+use crate::balance::aft::{ContactInput, PER_SAMPLE};
+use crate::law::{Derivatives, On, Variation};
+use crate::laws::generic::scales::Scales;
+use crate::numeric::fourier::sampled::SampledTransform;
+use crate::numeric::fourier::series;
+
+/// The upper end of the spectrum, relative to the largest coefficient, at which samples suffice: aliases of the harmonics
+/// asked for lie as far above Nyquist as those lie below, and are smaller still. It is the upper eighth, or twice the spacing of the gap's
+/// harmonics where that is more: an orbit of a shorter period than the balance's has a spectrum with holes.
+const RESOLVED: f64 = 1e-10;
+/// More samples are never taken.
+const MOST: usize = 1 << 15;
+
+/// Transforms of increasing length, made when they are first needed.
+#[derive(Debug, Default)]
+pub(super) struct Whole {
+    grids: Vec<Grid>,
+    /// Multiplications so far, about.
+    pub(super) operations: u64,
+}
+
+#[derive(Debug)]
+struct Grid {
+    transform: SampledTransform,
+    gap: Vec<f64>,
+    rate: Vec<f64>,
+    force: Vec<f64>,
+    by_gap: Vec<f64>,
+    by_rate: Vec<f64>,
+    by_argument: Vec<f64>,
+    by_parameter: Vec<f64>,
+    series: Vec<f64>,
+    /// So much of the upper end of the spectrum must be empty.
+    window: usize,
+}
+
+impl Whole {
+    /// Adds a period on one piece.
+    pub(super) fn add(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        sums: &mut Sums<'_>,
+        scales: &mut Option<Scales>,
+    ) {
+        let slopes = sums.slopes.as_ref().map_or(0, |s| s.by_gap.len() / 2);
+        let top = (sums.force.len() / 2).max(slopes);
+        let least = (top + series::harmonics(input.gap) + 8).next_power_of_two();
+        let spacing = spacing(input.gap);
+        let mut samples = least;
+        loop {
+            let index = self.grid(samples);
+            let grid = &mut self.grids[index];
+            grid.window = (samples / 16 + 1).max(2 * spacing);
+            self.operations += PER_SAMPLE * samples as u64;
+            let resolved = grid.evaluate(input, piece, Wanted::of(sums), scales);
+            if resolved || samples >= MOST.max(least) {
+                grid.add(sums);
+                return;
+            }
+            samples *= 2;
+        }
+    }
+
+    fn grid(&mut self, samples: usize) -> usize {
+        let known = self
+            .grids
+            .iter()
+            .position(|grid| grid.transform.samples() == samples);
+        known.unwrap_or_else(|| {
+            self.grids.push(Grid::new(samples));
+            self.grids.len() - 1
+        })
+    }
+}
+
+impl Grid {
+    fn new(samples: usize) -> Self {
+        let room = || vec![0.0; samples];
+        Self {
+            transform: SampledTransform::new(samples),
+            gap: room(),
+            rate: room(),
+            force: room(),
+            by_gap: room(),
+            by_rate: room(),
+            by_argument: room(),
+            by_parameter: room(),
+            series: vec![0.0; series::length((samples - 1) / 2)],
+            window: samples / 16 + 1,
+        }
+    }
+
+    /// The law at all samples. Returns whether the samples suffice.
+    fn evaluate(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        wanted: Wanted<'_>,
+        scales: &mut Option<Scales>,
+    ) -> bool {
+        self.transform.sample(input.gap, &mut self.gap);
+        self.transform.sample(input.rate, &mut self.rate);
+        let seen = !overlooks(scales, piece, [&self.gap, &self.rate]);
+        let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
+        let changing = match wanted {
+            Wanted::Force => {
+                input
+                    .law
+                    .force(on, input.arguments, gap, rate, &mut self.force);
+                return seen
+                    && self
+                        .transform
+                        .is_resolved(&self.force, RESOLVED, self.window);
+            }
+            Wanted::Slopes => None,
+            Wanted::Changes(changing) => Some(changing),
+        };
+        let out = Derivatives {
+            force: &mut self.force,
+            by_gap: &mut self.by_gap,
+            by_rate: &mut self.by_rate,
+        };
+        input.law.derivatives(on, input.arguments, gap, rate, out);
+        let facts = &input.law.facts().pieces[piece];
+        let varying = |variation| variation == Variation::Varying;
+        self.by_parameter(input, piece, changing);
+        seen && self
+            .transform
+            .is_resolved(&self.force, RESOLVED, self.window)
+            && (!varying(facts.by_gap)
+                || self
+                    .transform
+                    .is_resolved(&self.by_gap, RESOLVED, self.window))
+            && (!varying(facts.by_rate)
+                || self
+                    .transform
+                    .is_resolved(&self.by_rate, RESOLVED, self.window))
+            && self
+                .transform
+                .is_resolved(&self.by_parameter, RESOLVED, self.window)
+    }
+
+    /// `phi_g dg + phi_r dr + phi_a da`
+    fn by_parameter(
+        &mut self,
+        input: ContactInput<'_>,
+        piece: usize,
+        changing: Option<Changing<'_>>,
+    ) {
+        self.by_parameter.fill(0.0);
+        let Some(changing) = changing else {
+            return;
+        };
+        for (argument, by) in changing.arguments() {
+            let out = Derivatives {
+                force: &mut self.force,
+                by_gap: &mut self.by_gap,
+                by_rate: &mut self.by_rate,
+            };
+            input.law.derivatives_and_by(
+                argument,
+                On::Piece(piece),
+                input.arguments,
+                &self.gap,
+                &self.rate,
+                out,
+                &mut self.by_argument,
+            );
+            for (sum, slope) in self.by_parameter.iter_mut().zip(&self.by_argument) {
+                *sum += by * slope;
+            }
+        }
+        if changing.motion {
+            self.transform.sample(changing.change.gap, &mut self.gap);
+            self.transform.sample(changing.change.rate, &mut self.rate);
+            for (j, sum) in self.by_parameter.iter_mut().enumerate() {
+                *sum += self.by_gap[j] * self.gap[j] + self.by_rate[j] * self.rate[j];
+            }
+        }
+    }
+
+    /// Adds the harmonics of what was evaluated.
+    fn add(&mut self, sums: &mut Sums<'_>) {
+        let (transform, room) = (&mut self.transform, &mut self.series);
+        add(transform, &self.force, room, sums.force);
+        if let Some(slopes) = &mut sums.slopes {
+            add(transform, &self.by_gap, room, slopes.by_gap);
+            add(transform, &self.by_rate, room, slopes.by_rate);
+            if slopes.change.is_some() {
+                add(transform, &self.by_parameter, room, slopes.by_parameter);
+            }
+        }
+    }
+}
+
+fn add(transform: &mut SampledTransform, samples: &[f64], room: &mut [f64], sum: &mut [f64]) {
+    transform.analyse(samples, room);
+    for (to, from) in sum.iter_mut().zip(room) {
+        *to += *from;
+    }
+}
+
+/// The greatest common divisor of the harmonics that a series has, but for rounding; one if it has none.
+fn spacing(series: &[f64]) -> usize {
+    let size = |pair: &[f64]| pair[0].abs().max(pair[1].abs());
+    let pairs = || series[1..].chunks_exact(2);
+    let nothing = RESOLVED * pairs().map(size).fold(0.0, f64::max);
+    let present = pairs().enumerate().filter(|(_, pair)| size(pair) > nothing);
+    let common = present.fold(0, |common, (index, _)| divisor(common, index + 1));
+    common.max(1)
+}
+
+/// The greatest common divisor (Euclid).
+fn divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { divisor(b, a % b) }
+}

@@ -1,0 +1,111 @@
+//! Odd symmetry, and where a branch loses it.
+//!
+//! Let `S` take an orbit `q(tau)` to `-q(tau + pi)`. If `S` takes solutions of the system to solutions, there are solutions
+//! with `q = S q`, which have odd harmonics only. It does if, besides odd loads and even waves of the stiffness, it takes the
+//! contacts into one another ([`contacts`]).
+//!
+//! At a symmetric solution the Jacobian falls apart into a block of the odd and one of the even harmonics. Where the determinant
+//! of the even block changes its sign, a branch of solutions without the symmetry crosses: a symmetry-breaking branch point.
+//!
+//! Source: Swift and Wiesenfeld (1984), Suppression of period doubling in symmetric systems (the symmetry `S`); Golubitsky,
+//! Stewart and Schaeffer (1988), Singularities and Groups in Bifurcation Theory II, chapter XIII (block structure).
+
+mod contacts;
+mod stride;
+
+use crate::balance::subharmonics::Addition;
+use crate::branches::branch::Orbit;
+use crate::model::layout::{Entry, Layout};
+use crate::system::{System, Variable};
+
+/// Values of the variable, as parts of its range, at which coefficients are looked at: the symmetry that a system has at all of
+/// them it is taken to have throughout.
+const LOOKED_AT: [f64; 6] = [0.0, 0.137, 0.36, 0.618, 0.83, 1.0];
+/// Terms that cancel to this part of their sizes cancel.
+const ROUNDING: f64 = 1e-14;
+
+pub(crate) use stride::has_stride;
+
+/// What an orbit has beyond the odd symmetry, beside that of another one.
+pub(crate) fn broken(from: &Orbit, u: &[f64]) -> Addition {
+    Addition::of(from, u, |harmonic| harmonic.is_multiple_of(2))
+}
+
+/// Least share of the mean square that the mean and the even harmonics of an orbit without the symmetry have: the rest is what
+/// Newton's method leaves.
+const BROKEN_SHARE: f64 = 1e-8;
+
+/// Whether an orbit, of series of a length each, lacks the odd symmetry. What comes behind the last whole series does not count.
+pub(crate) fn is_broken(u: &[f64], length: usize) -> bool {
+    broken_share(u, length) > BROKEN_SHARE
+}
+
+/// The share of the mean square that the mean and the even harmonics have.
+pub(crate) fn broken_share(u: &[f64], length: usize) -> f64 {
+    let (mut even, mut all) = (0.0, 0.0);
+    for series in u.chunks_exact(length) {
+        for (index, x) in series.iter().enumerate() {
+            all += x * x;
+            if index.div_ceil(2).is_multiple_of(2) {
+                even += x * x;
+            }
+        }
+    }
+    even / all
+}
+
+/// A system over a range of its variable.
+#[derive(Clone, Copy)]
+pub(crate) struct Over<'s> {
+    pub(crate) system: &'s dyn System,
+    pub(crate) layout: &'s Layout,
+    pub(crate) parameters: &'s [f64],
+    pub(crate) omega: f64,
+    pub(crate) variable: Variable,
+    pub(crate) range: [f64; 2],
+}
+
+impl Over<'_> {
+    /// Whether solutions with odd harmonics only exist.
+    pub(crate) fn is_odd(&self) -> bool {
+        self.coefficients().all(|values| {
+            vanish(&self.layout.load, &values, 0)
+                && vanish(&self.layout.stiffness, &values, 1)
+                && contacts::are_symmetric(self.system, self.layout, &values)
+        })
+    }
+
+    /// Coefficients at the values that are looked at.
+    fn coefficients(&self) -> impl Iterator<Item = Vec<f64>> {
+        let [from, to] = self.range;
+        LOOKED_AT.iter().map(move |part| {
+            let value = from + part * (to - from);
+            let (mut parameters, mut omega) = (self.parameters.to_vec(), self.omega);
+            match self.variable {
+                Variable::Omega => omega = value,
+                Variable::Parameter(index) => parameters[index] = value,
+            }
+            let mut values = vec![0.0; self.layout.coefficients];
+            self.system.coefficients(&parameters, omega, &mut values);
+            values
+        })
+    }
+}
+
+/// Whether the waves of one parity, even or odd, cancel in a matrix or in the load.
+fn vanish(entries: &[Entry], values: &[f64], parity: u32) -> bool {
+    let of_parity = |entry: &&Entry| entry.wave.harmonic % 2 == parity;
+    let mut of_parity = entries.iter().filter(of_parity);
+    of_parity.all(|entry| cancels(entries, values, entry))
+}
+
+/// Whether the terms at the place of an entry cancel.
+fn cancels(entries: &[Entry], values: &[f64], entry: &Entry) -> bool {
+    let place = |entry: &Entry| (entry.row, entry.column, entry.wave);
+    let same = entries.iter().filter(|other| place(other) == place(entry));
+    let (sum, size) = same.fold((0.0, 0.0), |(sum, size), other| {
+        let value = values[other.coefficient];
+        (sum + value, size + value.abs())
+    });
+    sum.abs() <= ROUNDING * size
+}

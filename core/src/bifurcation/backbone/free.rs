@@ -1,0 +1,284 @@
+//! Free oscillation of a conservative system.
+//!
+//! Without damping and excitation, a motion that starts at rest and is at rest again half a period later goes back the way it came
+//! (the equations do not change when time is turned round). So an orbit is a position `q_0` and a frequency `omega` with
+//!
+//! ```text
+//! v(pi / omega; q_0, 0) = 0                                                                                  (1)
+//! ```
+//!
+//! Rest at the beginning is the phase condition. The first coordinate of `q_0` is what is varied, so that a frequency that does not
+//! depend on the amplitude, or turns back, is followed as any other.
+//!
+//! Source: Kerschen, Peeters, Golinval and Vakakis (2009), Nonlinear normal modes, part I, Mech. Syst. Signal Process. 23, section
+//! 3.2 (shooting with a phase condition); Lamb and Roberts (1998), Time-reversal symmetry in dynamical systems, Physica D 112
+//! (orbits that return on their way).
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use super::Backbone;
+use super::oscillation::Equations;
+use crate::continuation::follow::{
+    Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
+};
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::step::StepControl;
+use crate::error::Error;
+use crate::model::validate;
+use crate::shooting::End;
+use crate::system::System;
+use crate::time;
+use crate::time::Options;
+
+/// A motion that has not come back to this part of its size is not free.
+const RETURNED: f64 = 1e-6;
+const POINTS: usize = 5000;
+
+/// The frequency of free oscillation over its amplitude: set up step by step, then [run](FreeOscillation::run).
+///
+/// ```
+/// use hertzian::backbone::FreeOscillation;
+///
+/// hertzian::oscillator! {
+///     Hertz(x) {
+///         ddot(x) + sgn(x)*|x|^1.5 = 0;
+///     }
+/// }
+///
+/// let curve = FreeOscillation::of(&Hertz {}).from(0.5).to(2.0).run()?;
+/// // omega = 0.95469357 a^(1/4), by a quadrature of the period.
+/// let last = curve.points.last().unwrap();
+/// assert!((last.omega - 0.95469356972851 * 2_f64.powf(0.25)).abs() < 1e-9);
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct FreeOscillation<'a> {
+    system: &'a dyn System,
+    from: Option<f64>,
+    to: Option<f64>,
+    near: Option<(Vec<f64>, f64)>,
+    tolerance: f64,
+    max_points: usize,
+    largest_step: f64,
+}
+
+impl std::fmt::Debug for FreeOscillation<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("FreeOscillation")
+            .field("system", &self.system.facts().name)
+            .field("from", &self.from)
+            .field("to", &self.to)
+            .finish_non_exhaustive()
+    }
+}
+
+/// One free oscillation.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct FreePoint {
+    /// Its frequency.
+    pub omega: f64,
+    /// Positions at rest, where it begins and half a period later.
+    pub ends: [Vec<f64>; 2],
+}
+
+impl FreePoint {
+    /// Distance between the ends of the first coordinate.
+    pub fn peak_to_peak(&self) -> f64 {
+        (self.ends[0][0] - self.ends[1][0]).abs()
+    }
+}
+
+impl<'a> FreeOscillation<'a> {
+    /// Of this system, whose damping and excitation must be zero at the parameters it has.
+    pub fn of(system: &'a dyn System) -> Self {
+        Self {
+            system,
+            from: None,
+            to: None,
+            near: None,
+            tolerance: 1e-12,
+            max_points: POINTS,
+            largest_step: StepControl::default().largest,
+        }
+    }
+
+    /// Position of the first coordinate at rest where the curve begins.
+    #[must_use]
+    pub fn from(mut self, position: f64) -> Self {
+        self.from = Some(position);
+        self
+    }
+
+    /// The same where it ends.
+    #[must_use]
+    pub fn to(mut self, position: f64) -> Self {
+        self.to = Some(position);
+        self
+    }
+
+    /// The first oscillation is near these positions at rest and this frequency: needed where there are several coordinates.
+    #[must_use]
+    pub fn near_rest(mut self, positions: &[f64], omega: f64) -> Self {
+        self.near = Some((positions.to_vec(), omega));
+        self
+    }
+
+    /// Tolerance of the flow, where it is not in closed form. Default: 1e-12.
+    #[must_use]
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Largest step along the curve, as [`FrequencyResponse::largest_step`](crate::response::FrequencyResponse::largest_step) measures
+    /// it. Default: 0.1.
+    #[must_use]
+    pub fn largest_step(mut self, step: f64) -> Self {
+        self.largest_step = step;
+        self
+    }
+
+    /// Stop after this many points. Default: 5000.
+    #[must_use]
+    pub fn max_points(mut self, points: usize) -> Self {
+        self.max_points = points;
+        self
+    }
+
+    /// Follows the curve from one position to the other.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, nothing oscillates at the first position, or a motion does not come back because
+    /// the system has damping or an excitation. A curve that ends early is not an error: it comes back with what was computed and
+    /// with [`Backbone::end`].
+    pub fn run(&self) -> Result<Backbone<FreePoint>, Error> {
+        self.run_with(|_| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Self::run), and calls `visit` at every point as it is found: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with(
+        &self,
+        mut visit: impl FnMut(&FreePoint) -> ControlFlow<()>,
+    ) -> Result<Backbone<FreePoint>, Error> {
+        let started = Instant::now();
+        let options = self.options()?;
+        let mut equations = self.equations()?;
+        let mut u = self.first(&mut equations, options.from)?;
+        u.push(options.from);
+        equations.measure(&u);
+        let mut newton = Newton::new(&equations);
+        let mut points = Vec::new();
+        let mut failure = None;
+        let outcome = follow(
+            &mut equations,
+            &mut newton,
+            Start::Near(u),
+            options,
+            &mut |equations, _, seen| {
+                let Visit::Point(at) = seen else {
+                    return Continue::Continue(());
+                };
+                let point = match equations.read(&at.u) {
+                    Ok((point, apart)) if apart <= RETURNED => point,
+                    found => {
+                        failure = Some(found.map(|(_, apart)| apart));
+                        return Continue::Break(Halt::Stop);
+                    }
+                };
+                let answer = visit(&point);
+                points.push(point);
+                if answer.is_break() {
+                    Continue::Break(Halt::Stop)
+                } else {
+                    Continue::Continue(())
+                }
+            },
+        );
+        let value = points
+            .last()
+            .map_or(options.from, |last: &FreePoint| last.ends[0][0]);
+        let end = match (failure, outcome) {
+            (Some(Ok(apart)), _) => return Err(Error::NotFree { apart }),
+            (Some(Err(reason)), _) if points.is_empty() => {
+                return Err(Error::Motion { value, reason });
+            }
+            (Some(Err(reason)), _) => End::Motion { value, reason },
+            (None, Err(reason)) => return Err(Error::NoStart { value, reason }),
+            (None, Ok(Outcome::Stopped(stop))) => End::Stopped(stop),
+            // A walk along free oscillations is never resized.
+            (None, Ok(Outcome::Halted(_))) => End::Stopped(Stop::Interrupted),
+        };
+        Ok(Backbone {
+            points,
+            end,
+            statistics: newton.statistics,
+            work: equations.flow.work(),
+            elapsed: started.elapsed(),
+        })
+    }
+
+    /// Range and accuracy, checked.
+    fn options(&self) -> Result<FollowOptions, Error> {
+        let from = self.from.ok_or(Error::Missing { name: "from" })?;
+        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        for (name, value) in [("from", from), ("to", to)] {
+            validate::option(name, value, -1e300..=1e300, "must be finite")?;
+        }
+        if from == to {
+            return Err(Error::EmptyRange { value: from });
+        }
+        Ok(FollowOptions {
+            from,
+            to,
+            points: validate::max_points(self.max_points)?,
+            steps: validate::largest_step(self.largest_step)?,
+            newton: NewtonOptions {
+                tolerance: (100.0 * self.tolerance).clamp(1e-11, 1e-6),
+                iterations: 12,
+                damped: false,
+            },
+        })
+    }
+
+    /// The equations of the system, checked.
+    fn equations(&self) -> Result<Equations<'a>, Error> {
+        let facts = self.system.facts();
+        if facts.coordinates.is_empty() {
+            return Err(Error::NoCoordinates);
+        }
+        let mut parameters = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut parameters);
+        let tolerance = self.tolerance;
+        let flow = time::at(
+            self.system,
+            &parameters,
+            1.0,
+            Options::default().tolerance(tolerance),
+        )?;
+        Ok(Equations::new(flow, f64::from(facts.divisor)))
+    }
+
+    /// The unknowns of the first oscillation.
+    fn first(&self, equations: &mut Equations<'_>, from: f64) -> Result<Vec<f64>, Error> {
+        let n = equations.flow.coordinates();
+        let Some((positions, omega)) = &self.near else {
+            let time = equations.half_period(from)?;
+            return Ok((1..n).map(|_| 0.0).chain([PI / time]).collect());
+        };
+        if positions.len() != n {
+            return Err(Error::State {
+                entries: positions.len(),
+                expected: n,
+            });
+        }
+        let omega = validate::omega(*omega)?;
+        Ok(positions[1..].iter().copied().chain([omega]).collect())
+    }
+}

@@ -1,0 +1,420 @@
+//! Phase resonance of the damped and driven system.
+//!
+//! At phase resonance the first harmonic of a coordinate lags a quarter of a period behind that of its load, so that the load
+//! balances damping alone. With the load `a cos tau + b sin tau` and the harmonic `c cos tau + s sin tau`, the balance gets an
+//! unknown more, the frequency, and an equation more:
+//!
+//! ```text
+//! R(u, omega; A) = 0,      a c + b s = 0                                                                     (1)
+//! ```
+//!
+//! `A` is what is varied, usually the amplitude of the load; the derivative of `R` by it is a central difference.
+//!
+//! Source: Peeters, Kerschen and Golinval (2011), Dynamic testing of nonlinear vibrating structures using nonlinear normal modes,
+//! J. Sound Vib. 330 (phase lag quadrature); Volvert and Kerschen (2021), Phase resonance nonlinear modes of mechanical systems,
+//! J. Sound Vib. 511.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use super::Backbone;
+use crate::balance::aft::Aft;
+use crate::balance::resolution::resize;
+use crate::balance::{Balance, Parity, Resolution};
+use crate::branches::branch::Orbit;
+use crate::continuation::follow::{
+    Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
+};
+use crate::continuation::jacobian::Jacobian;
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::Problem;
+use crate::continuation::statistics::Statistics;
+use crate::continuation::step::StepControl;
+use crate::error::Error;
+use crate::model::validate;
+use crate::numeric::fourier::series;
+use crate::orbit::observe::Motion;
+use crate::response::FrequencyResponse;
+use crate::shooting::End;
+use crate::system::{System, Variable};
+use crate::time::Work;
+
+#[cfg(test)]
+mod tests;
+
+const HARMONICS: usize = 20;
+const POINTS: usize = 5000;
+/// Step of the difference by what is varied, relative to its value or its range, whichever is larger.
+const STEP: f64 = 1e-6;
+
+/// Where the first coordinate is in phase resonance with its load, as a parameter varies from the value that it has: set up step by
+/// step, then [run](PhaseResonance::run).
+///
+/// ```
+/// use hertzian::backbone::PhaseResonance;
+///
+/// hertzian::oscillator! {
+///     Linear(x) {
+///         param drive;
+///         ddot(x) + 0.1*dot(x) + x = drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Linear { drive: 0.1 };
+/// let curve = PhaseResonance::of(&model).vary("drive").to(0.2).between(0.5, 2.0).run()?;
+/// // The load balances damping alone: omega = 1, amplitude = drive / 0.1.
+/// for point in &curve.points {
+///     assert!((point.orbit.omega - 1.0).abs() < 1e-9);
+///     assert!((point.motion.peak_to_peak() - 20.0 * point.value).abs() < 1e-8);
+/// }
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct PhaseResonance<'a> {
+    system: &'a dyn System,
+    vary: Option<String>,
+    to: Option<f64>,
+    between: Option<[f64; 2]>,
+    harmonics: usize,
+    max_points: usize,
+    largest_step: f64,
+}
+
+impl std::fmt::Debug for PhaseResonance<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PhaseResonance")
+            .field("system", &self.system.facts().name)
+            .field("vary", &self.vary)
+            .field("to", &self.to)
+            .finish_non_exhaustive()
+    }
+}
+
+/// One orbit in phase resonance.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct ResonancePoint {
+    /// What is varied.
+    pub value: f64,
+    /// The orbit.
+    pub orbit: Orbit,
+    /// Motion of the first coordinate.
+    pub motion: Motion,
+}
+
+impl<'a> PhaseResonance<'a> {
+    /// Of this system, at the parameters it has when the computation starts.
+    pub fn of(system: &'a dyn System) -> Self {
+        Self {
+            system,
+            vary: None,
+            to: None,
+            between: None,
+            harmonics: HARMONICS,
+            max_points: POINTS,
+            largest_step: StepControl::default().largest,
+        }
+    }
+
+    /// The parameter that varies, usually the amplitude of the load.
+    #[must_use]
+    pub fn vary(mut self, parameter: impl Into<String>) -> Self {
+        self.vary = Some(parameter.into());
+        self
+    }
+
+    /// Where it ends. It starts at the value that the system has.
+    #[must_use]
+    pub fn to(mut self, value: f64) -> Self {
+        self.to = Some(value);
+        self
+    }
+
+    /// The first orbit has an excitation frequency between these two: there the frequency response is computed, and searched for
+    /// phase resonance.
+    #[must_use]
+    pub fn between(mut self, low: f64, high: f64) -> Self {
+        self.between = Some([low, high]);
+        self
+    }
+
+    /// Number of harmonics. Default: 20.
+    #[must_use]
+    pub fn harmonics(mut self, harmonics: usize) -> Self {
+        self.harmonics = harmonics;
+        self
+    }
+
+    /// Largest step along the curve, as [`FrequencyResponse::largest_step`] measures it. Default: 0.1.
+    #[must_use]
+    pub fn largest_step(mut self, step: f64) -> Self {
+        self.largest_step = step;
+        self
+    }
+
+    /// Stop after this many points. Default: 5000.
+    #[must_use]
+    pub fn max_points(mut self, points: usize) -> Self {
+        self.max_points = points;
+        self
+    }
+
+    /// Follows the curve.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, or no orbit in phase resonance is found at the first value. A curve that ends
+    /// early is not an error: it comes back with what was computed and with [`Backbone::end`].
+    pub fn run(&self) -> Result<Backbone<ResonancePoint>, Error> {
+        self.run_with(|_| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Self::run), and calls `visit` at every point as it is found: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with(
+        &self,
+        mut visit: impl FnMut(&ResonancePoint) -> ControlFlow<()>,
+    ) -> Result<Backbone<ResonancePoint>, Error> {
+        let started = Instant::now();
+        let (index, parameters, options) = self.options()?;
+        let value = options.from;
+        let (first, mut statistics) = self.first(&parameters, value)?;
+        let motion = Motion::of(first.series(0));
+        let mut u = first.series.clone();
+        u.push(first.omega);
+        let mut u = resize(&u, first.coordinates(), series::length(self.harmonics));
+        u.push(value);
+        let balance = self.balance(&parameters, first.omega);
+        let units = (motion.peak_to_peak(), (options.to - value).abs());
+        let mut equations = Resonance::new(balance, index, units);
+        let mut newton = Newton::new(&equations);
+        let mut points = Vec::new();
+        let see = &mut |equations: &mut Resonance<'_>, _: &mut Newton, seen: Visit<'_>| {
+            let Visit::Point(at) = seen else {
+                return Continue::Continue(());
+            };
+            let point = equations.read(&at.u);
+            let answer = visit(&point);
+            points.push(point);
+            if answer.is_break() {
+                Continue::Break(Halt::Stop)
+            } else {
+                Continue::Continue(())
+            }
+        };
+        let outcome = follow(&mut equations, &mut newton, Start::Near(u), options, see);
+        let stop = match outcome.map_err(|reason| Error::NoStart { value, reason })? {
+            Outcome::Stopped(stop) => stop,
+            // A walk of one number of harmonics is never resized.
+            Outcome::Halted(_) => Stop::Interrupted,
+        };
+        statistics += newton.statistics;
+        Ok(Backbone {
+            points,
+            end: End::Stopped(stop),
+            statistics,
+            work: Work::default(),
+            elapsed: started.elapsed(),
+        })
+    }
+
+    /// What varies, the parameters where it starts, and how far it goes, checked.
+    fn options(&self) -> Result<(usize, Vec<f64>, FollowOptions), Error> {
+        let facts = self.system.facts();
+        let name = self.vary.as_deref();
+        let name = name.ok_or(Error::Missing { name: "vary" })?;
+        let Variable::Parameter(index) = validate::variable(facts, Some(name))? else {
+            let name = name.to_owned();
+            let must = "must be a parameter: the frequency follows from the resonance";
+            return Err(Error::Varied { name, must });
+        };
+        let mut parameters = vec![0.0; facts.parameters.len()];
+        self.system.values(&mut parameters);
+        let from = parameters[index];
+        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        validate::range(facts, Variable::Parameter(index), from, to)?;
+        let harmonics = self.harmonics as f64;
+        validate::option(
+            "harmonics",
+            harmonics,
+            f64::from(facts.divisor)..=1000.0,
+            "must be at most 1000, and at least the divisor of the declaration",
+        )?;
+        let options = FollowOptions {
+            from,
+            to,
+            points: validate::max_points(self.max_points)?,
+            steps: validate::largest_step(self.largest_step)?,
+            newton: NewtonOptions {
+                tolerance: 1e-10,
+                iterations: 20,
+                damped: false,
+            },
+        };
+        Ok((index, parameters, options))
+    }
+
+    fn balance(&self, parameters: &[f64], omega: f64) -> Balance<'a> {
+        let resolution = Resolution {
+            harmonics: self.harmonics,
+            core: self.harmonics,
+            parity: Parity::All,
+            stride: 1,
+            samples: 8 * self.harmonics,
+            aft: Aft::Switched,
+            period: 1,
+        };
+        Balance::new(self.system, parameters, omega, Variable::Omega, resolution)
+    }
+
+    /// The orbit of the frequency response that is next to phase resonance, and what it cost.
+    fn first(&self, parameters: &[f64], value: f64) -> Result<(Orbit, Statistics), Error> {
+        let [low, high] = self.between.ok_or(Error::Missing { name: "between" })?;
+        let response = FrequencyResponse::of(self.system).from(low).to(high);
+        let response = response.harmonics(self.harmonics).stability(false);
+        let branch = response.run()?;
+        let mut balance = self.balance(parameters, low);
+        let mut room = vec![0.0; balance.unknowns()];
+        if load(&balance, &mut room).1 == [0.0; 2] {
+            return Err(Error::NoLoad);
+        }
+        let mut lag = |orbit: &Orbit| {
+            balance.set(orbit.omega);
+            let (place, [a, b]) = load(&balance, &mut room);
+            let series = orbit.series(0);
+            a * series[place] + b * series[place + 1]
+        };
+        let lags: Vec<f64> = branch.points.iter().map(|p| lag(&p.orbit)).collect();
+        let change = (1..lags.len()).find(|&i| lags[i - 1] * lags[i] <= 0.0);
+        let nearest = change.map(|i| {
+            let nearer = lags[i - 1].abs() < lags[i].abs();
+            branch.points[i - usize::from(nearer)].orbit.clone()
+        });
+        let between = [low, high];
+        let nearest = nearest.ok_or(Error::NoResonance { value, between })?;
+        Ok((nearest, branch.statistics))
+    }
+}
+
+/// Where the harmonic of the excitation is in the series of the first coordinate, and the load there. The room is as long as the
+/// unknowns of the balance.
+fn load(balance: &Balance<'_>, load: &mut [f64]) -> (usize, [f64; 2]) {
+    load.fill(0.0);
+    balance.add_load(balance.coefficients(), 1.0, load);
+    let divisor = balance.system().facts().divisor as usize;
+    let place = 2 * divisor - 1;
+    (place, [load[place], load[place + 1]])
+}
+
+/// The equations (1). The last of the extended unknowns is what is varied, the one before the frequency.
+struct Resonance<'a> {
+    balance: Balance<'a>,
+    index: usize,
+    /// What counts as one for displacements.
+    size: f64,
+    /// How far the parameter goes.
+    range: f64,
+    inner: Jacobian,
+    ahead: Vec<f64>,
+    behind: Vec<f64>,
+    column: Vec<f64>,
+    load: Vec<f64>,
+}
+
+impl<'a> Resonance<'a> {
+    fn new(balance: Balance<'a>, index: usize, (size, range): (f64, f64)) -> Self {
+        let n = balance.unknowns();
+        Self {
+            inner: Jacobian::new(balance.partition()),
+            ahead: vec![0.0; n],
+            behind: vec![0.0; n],
+            column: vec![0.0; n + 1],
+            load: vec![0.0; n],
+            balance,
+            index,
+            size: if size > 0.0 { size } else { 1.0 },
+            range,
+        }
+    }
+
+    fn read(&mut self, u: &[f64]) -> ResonancePoint {
+        let n = self.ahead.len();
+        self.balance.set_parameter(self.index, u[n + 1]);
+        self.balance.set(u[n]);
+        let orbit = Orbit {
+            series: u[..n].to_vec(),
+            coordinates: self.balance.layout().coordinates,
+            omega: u[n],
+            base: self.balance.base(),
+            period: 1,
+        };
+        ResonancePoint {
+            value: u[n + 1],
+            motion: Motion::of(orbit.series(0)),
+            orbit,
+        }
+    }
+}
+
+impl Problem for Resonance<'_> {
+    fn unknowns(&self) -> usize {
+        self.ahead.len() + 1
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
+        let n = self.ahead.len();
+        let value = u[n + 1];
+        if jacobian.is_some() {
+            let step = STEP * value.abs().max(self.range);
+            let varied = Variable::Parameter(self.index);
+            let facts = self.balance.system().facts();
+            let [below, above] = validate::around(facts, varied, value, step);
+            for (at, to) in [(above, &mut self.ahead), (below, &mut self.behind)] {
+                self.balance.set_parameter(self.index, at);
+                self.balance.evaluate(&u[..=n], to, None);
+            }
+            let pairs = self.ahead.iter().zip(&self.behind);
+            for (to, (a, b)) in self.column.iter_mut().zip(pairs) {
+                *to = (a - b) / (above - below);
+            }
+        }
+        self.balance.set_parameter(self.index, value);
+        self.inner.clear();
+        let inner = jacobian.is_some().then_some(&mut self.inner);
+        self.balance.evaluate(&u[..=n], &mut residual[..n], inner);
+        let (place, [a, b]) = load(&self.balance, &mut self.load);
+        let size = a.hypot(b);
+        let (a, b) = if size > 0.0 {
+            (a / size, b / size)
+        } else {
+            (1.0, 0.0)
+        };
+        residual[n] = a * u[place] + b * u[place + 1];
+        let Some(jacobian) = jacobian else {
+            return;
+        };
+        for i in 0..n {
+            let (from, to) = (self.inner.core_mut().row_mut(i), jacobian.core_mut());
+            to.row_mut(i)[..=n].copy_from_slice(&from[..=n]);
+        }
+        let row = jacobian.core_mut().row_mut(n);
+        row[place] = a;
+        row[place + 1] = b;
+        self.column[n] = 0.0;
+        jacobian.set_column(&self.column);
+    }
+
+    fn weights(&self, weights: &mut [f64]) {
+        let n = self.ahead.len();
+        self.balance.weights(&mut weights[..n]);
+        // The frequency counts relative to itself.
+        let unit = self.size / self.balance.omega();
+        weights[n] = unit * unit;
+    }
+
+    fn is_mean(&self, unknown: usize) -> bool {
+        unknown < self.ahead.len() && self.balance.is_mean(unknown)
+    }
+}

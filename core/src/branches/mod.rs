@@ -1,0 +1,3 @@
+//! Branches of periodic orbits, as data.
+
+pub mod branch;

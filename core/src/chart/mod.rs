@@ -1,0 +1,293 @@
+//! Charts of response curves, as SVG.
+//!
+//! Stable parts of a curve are solid, unstable ones dashed, undecided ones dotted, so that a chart says the same in
+//! black and white; the colours are ones that colour-blind readers tell apart as well, and the first four
+//! differ in lightness.
+//!
+//! The SVG is written here, by a small writer of its own, rather than through a plotting library. By its source, the
+//! one considered (plotters 0.3) would have rounded every point to a whole pixel, which puts steps into a smooth curve,
+//! written each dash as an element of its own, and estimated the width of text by its number of bytes, so that a label
+//! with a Greek letter is misplaced.
+//!
+//! ```
+//! use hertzian::chart::{Chart, Curve, Line, Run};
+//!
+//! let stable = Run { line: Line::Stable, points: vec![[0.6, 0.2], [0.9, 1.0]] };
+//! let unstable = Run { line: Line::Unstable, points: vec![[0.9, 1.0], [0.8, 1.4]] };
+//! let svg = Chart::new("Response")
+//!     .x("excitation frequency ω")
+//!     .y("peak-to-peak")
+//!     .curve(Curve { label: String::new(), runs: vec![stable, unstable] })
+//!     .to_svg();
+//! assert!(svg.starts_with("<svg"));
+//! ```
+
+mod axis;
+mod cloud;
+mod drawing;
+mod glyphs;
+mod legend;
+mod note;
+mod page;
+mod polyline;
+mod raster;
+mod shape;
+mod svg;
+#[cfg(test)]
+mod tests;
+
+use std::path::{Path, PathBuf};
+
+pub use axis::Scale;
+pub use page::Page;
+pub use raster::{Colour, Raster};
+
+/// A chart that is put together by parts and then written. Without any part it is an empty frame.
+///
+/// Points that are not finite are not drawn and interrupt their line. The axes show all curves and markers; a
+/// reference line is cut off at the frame.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Chart {
+    title: String,
+    x: Axis,
+    y: Axis,
+    curves: Vec<Curve>,
+    references: Vec<Reference>,
+    markers: Vec<Markers>,
+    traces: Vec<Trace>,
+    clouds: Vec<Cloud>,
+    notes: Vec<Note>,
+    raster: Option<Raster>,
+    limits: Option<[[f64; 2]; 2]>,
+}
+
+/// A curve made of runs, each of one stability.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Curve {
+    /// What the legend says of it, if there are several curves.
+    pub label: String,
+    /// Its parts. Where two of them join, both have the common point.
+    pub runs: Vec<Run>,
+}
+
+/// A part of a curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// What the line says.
+    pub line: Line,
+    /// Points `[x, y]` in the order of the curve.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// What a line says of the solutions it shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Line {
+    /// Stable: solid.
+    Stable,
+    /// Unstable: dashed.
+    Unstable,
+    /// Neither is certain: dotted.
+    Undecided,
+}
+
+/// A line to compare with, such as the limit of permanent contact: thin, grey and dash-dotted.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reference {
+    /// What the legend says of it; nothing if it is empty.
+    pub label: String,
+    /// Points `[x, y]` in the order of the line.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A plain line, such as a motion: the first solid, the others dashed or dotted.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trace {
+    /// What the legend says of it; nothing if it is empty.
+    pub label: String,
+    /// Points `[x, y]` in the order of the line.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Many points, drawn as dots. Of several clouds the last is dark and drawn over the others, which are lighter and have larger
+/// dots.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Cloud {
+    /// What the legend says of it; nothing if it is empty.
+    pub label: String,
+    /// Points `[x, y]` in any order.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Points marked by a shape: circles for the first kind added to a chart, then squares, diamonds, triangles, and these upside
+/// down or crossed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Markers {
+    /// What the legend says of them.
+    pub label: String,
+    /// Points `[x, y]`.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A point with its name written beside it, where it covers nothing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Note {
+    /// The name.
+    pub label: String,
+    /// The point `[x, y]`.
+    pub point: [f64; 2],
+}
+
+/// Why a chart was not written.
+#[non_exhaustive]
+pub enum ChartError {
+    /// The file could not be written.
+    Write {
+        /// Its path.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+}
+
+crate::error::sentence_as_debug! {
+    ChartError:
+    Write { path, source }
+    ;
+}
+
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Axis {
+    label: String,
+    scale: Scale,
+}
+
+impl Chart {
+    /// An empty chart.
+    pub fn new(title: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Changes the title.
+    #[must_use]
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.title = title.into();
+        self
+    }
+
+    /// Labels the horizontal axis; a unit belongs to the label.
+    #[must_use]
+    pub fn x(mut self, label: impl Into<String>) -> Self {
+        self.x.label = label.into();
+        self
+    }
+
+    /// Labels the vertical axis; a unit belongs to the label.
+    #[must_use]
+    pub fn y(mut self, label: impl Into<String>) -> Self {
+        self.y.label = label.into();
+        self
+    }
+
+    /// Chooses the scale of each axis; both are linear unless said otherwise.
+    #[must_use]
+    pub fn scales(mut self, x: Scale, y: Scale) -> Self {
+        self.x.scale = x;
+        self.y.scale = y;
+        self
+    }
+
+    /// Shows this part of the plane, whatever there is to show. An end that has no place on a logarithmic axis is ignored.
+    #[must_use]
+    pub fn limits(mut self, x: [f64; 2], y: [f64; 2]) -> Self {
+        self.limits = Some([x, y]);
+        self
+    }
+
+    /// Adds a curve.
+    #[must_use]
+    pub fn curve(mut self, curve: Curve) -> Self {
+        self.curves.push(curve);
+        self
+    }
+
+    /// Adds a line to compare with.
+    #[must_use]
+    pub fn reference(mut self, reference: Reference) -> Self {
+        self.references.push(reference);
+        self
+    }
+
+    /// Adds one kind of markers.
+    #[must_use]
+    pub fn markers(mut self, markers: Markers) -> Self {
+        self.markers.push(markers);
+        self
+    }
+
+    /// Adds a plain line.
+    #[must_use]
+    pub fn trace(mut self, trace: Trace) -> Self {
+        self.traces.push(trace);
+        self
+    }
+
+    /// Adds a cloud of dots.
+    #[must_use]
+    pub fn cloud(mut self, cloud: Cloud) -> Self {
+        self.clouds.push(cloud);
+        self
+    }
+
+    /// Adds a named point.
+    #[must_use]
+    pub fn note(mut self, note: Note) -> Self {
+        self.notes.push(note);
+        self
+    }
+
+    /// Puts coloured cells behind everything else. The axes then show them and nothing beyond.
+    #[must_use]
+    pub fn raster(mut self, raster: Raster) -> Self {
+        self.raster = Some(raster);
+        self
+    }
+
+    /// Writes the chart to a file.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ChartError> {
+        let path = path.as_ref();
+        crate::report::export::write(path, self.to_svg()).map_err(|source| ChartError::Write {
+            path: path.to_path_buf(),
+            source,
+        })
+    }
+
+    /// The chart as the text of an SVG document.
+    pub fn to_svg(&self) -> String {
+        drawing::draw(self)
+    }
+}
+
+impl std::fmt::Display for ChartError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Write { path, source } => {
+                write!(f, "cannot write the chart {}: {source}", path.display())
+            }
+        }
+    }
+}
+
+impl std::error::Error for ChartError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Write { source, .. } => Some(source),
+        }
+    }
+}

@@ -1,0 +1,440 @@
+//! Newton's method on a bordered system.
+//!
+//! For `n` equations `R(u) = 0` in `n + 1` extended unknowns and one linear condition `b . u = beta`:
+//!
+//! ```text
+//! [ R_u ]        [ R(u)         ]
+//! [ b^T ] du = - [ b . u - beta ]                                                                            (1)
+//! ```
+//!
+//! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems; the border is the
+//! unit vector of the parameter to solve at a fixed parameter, and a tangent for a step of pseudo-arclength.
+
+mod broyden;
+mod error;
+mod rounding;
+mod tangent;
+#[cfg(test)]
+mod tests;
+
+use broyden::Broyden;
+pub use error::NewtonError;
+
+use crate::continuation::jacobian::Jacobian;
+use crate::continuation::problem::{Norm, Problem, Scale};
+use crate::continuation::statistics::Statistics;
+use crate::numeric::linear::dot;
+
+/// When to stop, and how carefully to go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonOptions {
+    /// Converged when the update, in units of the scale, is at most this.
+    pub tolerance: f64,
+    /// Give up after this many updates; after twice as many, if updates share factors.
+    pub iterations: usize,
+    /// Halve updates that do not reduce the residual: for starts far from the solution.
+    pub damped: bool,
+}
+
+/// A successful iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Converged {
+    /// Number of updates.
+    pub iterations: usize,
+    /// Length of the first update: how far the start was off.
+    pub first: f64,
+    /// Length of the last update.
+    pub update: f64,
+}
+
+/// Room for one problem; no method allocates.
+#[derive(Debug)]
+pub struct Newton {
+    jacobian: Jacobian,
+    residual: Vec<f64>,
+    update: Vec<f64>,
+    trial: Vec<f64>,
+    border: Vec<f64>,
+    norm: Norm,
+    /// The updates made with the factors at hand.
+    memory: Broyden,
+    /// What counts as one for each extended unknown.
+    units: Vec<f64>,
+    /// The scale of the factors at hand.
+    scale: Scale,
+    /// How far the unknowns have moved since the factors were made, in units of the scale.
+    drift: f64,
+    /// Largest ratio of successive updates in the last correction, where the Jacobian leaves something out.
+    contraction: f64,
+    /// What the last correction left, estimated, in units of the scale.
+    left: f64,
+    /// What rounding of the residual makes of an update, where the last correction ended there; zero otherwise.
+    rounding: f64,
+    /// Work done so far.
+    pub statistics: Statistics,
+    /// The same in multiplications, estimated.
+    pub operations: u64,
+}
+
+/// What may be left after the last update, as a part of the tolerance.
+const REMAINDER: f64 = 1e-5;
+/// Updates that shrink by at least this factor keep the factors they were made with (a chord iteration).
+const CHORD: f64 = 0.2;
+/// The first update must be at most this long for the second to use its factors.
+const CHORD_START: f64 = 0.05;
+/// Further updates that a chord iteration is allowed for each that Newton's method is.
+const CHORD_PATIENCE: usize = 2;
+/// So much of a contraction is remembered after a correction that was too short to show it.
+const LASTING: f64 = 0.5;
+/// Updates that shrink by less than this do not shrink: that is rounding.
+const STAGNANT: f64 = 0.9;
+/// Where an update above the tolerance is more than this part of the one before, the residual may be nothing but rounding.
+const STEADY: f64 = 0.1;
+/// The last row of (1).
+#[derive(Debug, Clone, Copy)]
+pub struct Border<'a> {
+    /// `b`
+    pub row: &'a [f64],
+    /// `beta`
+    pub value: f64,
+}
+
+impl Newton {
+    /// Room for `n` unknowns and a parameter.
+    pub fn new(problem: &impl Problem) -> Self {
+        let n = problem.unknowns();
+        Self {
+            jacobian: Jacobian::new(problem.partition()),
+            residual: vec![0.0; n + 1],
+            update: vec![0.0; n + 1],
+            trial: vec![0.0; n + 1],
+            border: vec![0.0; n + 1],
+            norm: Norm::of(problem),
+            memory: Broyden::new(n + 1),
+            units: vec![1.0; n + 1],
+            scale: Scale::UNIT,
+            drift: f64::INFINITY,
+            contraction: 0.0,
+            left: 0.0,
+            rounding: 0.0,
+            statistics: Statistics::default(),
+            operations: 0,
+        }
+    }
+
+    /// The problem's norm.
+    pub fn norm(&self) -> &Norm {
+        &self.norm
+    }
+
+    /// Size of the residual of the equations alone, which is written.
+    pub fn size_of_residual(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &[f64],
+        values: &mut [f64],
+    ) -> f64 {
+        let work = (&mut self.statistics, &mut self.operations);
+        residual(problem, u, values, work);
+        norm(values)
+    }
+
+    /// Solves (1) repeatedly until the update is small; `u` is the start and becomes the solution. The factors of the
+    /// last matrix are kept for [`Newton::solve`].
+    ///
+    /// As long as the updates shrink fast, the factors of the first are used again (Deuflhard (2011), Newton Methods for
+    /// Nonlinear Problems, section 2.1.3: the simplified Newton method and its contraction).
+    ///
+    /// # Errors
+    /// [`NewtonError`]; `u` then holds the last iterate.
+    pub fn correct(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &mut [f64],
+        border: Border<'_>,
+        scale: Scale,
+        options: NewtonOptions,
+    ) -> Result<Converged, NewtonError> {
+        self.scale = scale;
+        self.norm.write_units(scale, &mut self.units);
+        self.memory.clear();
+        self.rounding = 0.0;
+        // Until this correction shows its own, what is left out contracts as it did last.
+        let usual = self.contraction;
+        self.contraction = 0.0;
+        let (mut before, mut previous) = (f64::INFINITY, f64::INFINITY);
+        let mut size = f64::INFINITY;
+        let mut renew = true;
+        let mut first = None;
+        let most = options.iterations * if options.damped { 1 } else { CHORD_PATIENCE };
+        let mut updates = 0;
+        for iteration in 0..most {
+            let renewed = renew;
+            if renew {
+                self.linearise(problem, u, border)
+                    .map_err(|error| error.after(iteration))?;
+            } else {
+                self.evaluate(problem, u, border)
+                    .map_err(|error| error.after(iteration))?;
+            }
+            self.next_update(options.damped);
+            size = self.norm.length(scale, &self.update);
+            if !size.is_finite() {
+                return Err(NewtonError::NotFinite {
+                    iterations: iteration,
+                });
+            }
+            first = first.or(Some(size));
+            if size <= options.tolerance
+                && self.is_last(size, (previous, before), usual, options.tolerance)
+            {
+                self.contraction = self.contraction.max(usual * LASTING);
+                subtract(u, &self.update, 1.0);
+                self.drift += size;
+                self.left = left(size, previous);
+                return Ok(Converged {
+                    iterations: iteration + 1,
+                    first: first.unwrap_or(size),
+                    update: size,
+                });
+            }
+            let stagnates = size > options.tolerance && size > STEADY * previous;
+            if stagnates && self.is_rounding(problem, u, size, options.tolerance) {
+                subtract(u, &self.update, 1.0);
+                self.drift += size;
+                self.left = size.max(self.rounding);
+                return Ok(Converged {
+                    iterations: iteration + 1,
+                    first: first.unwrap_or(size),
+                    update: size,
+                });
+            }
+            if options.damped {
+                self.damped_update(problem, u, border);
+            } else {
+                // What core and tail leave out need not contract in every norm at once.
+                let grows = if self.jacobian.is_exact() {
+                    2.0 * previous
+                } else {
+                    4.0 * before.max(previous)
+                };
+                if iteration > 1 && size > grows {
+                    break;
+                }
+                subtract(u, &self.update, 1.0);
+                self.memory.remember(&self.norm, scale, &self.update);
+                let ratio = size / previous;
+                renew = if previous.is_finite() {
+                    ratio > CHORD && (self.jacobian.is_exact() || !renewed)
+                } else {
+                    size > CHORD_START
+                };
+                if !self.jacobian.is_exact() && previous.is_finite() {
+                    self.contraction = self.contraction.max(ratio);
+                }
+            }
+            self.drift += size;
+            updates = iteration + 1;
+            (before, previous) = (previous, size);
+        }
+        if size <= options.tolerance {
+            // They shrink slowly, but what was asked for is reached.
+            self.left = left(size, before);
+            return Ok(Converged {
+                iterations: updates,
+                first: first.unwrap_or(size),
+                update: size,
+            });
+        }
+        Err(NewtonError::NotConverged {
+            iterations: updates,
+            update: size,
+            residual: largest(&self.residual),
+        })
+    }
+
+    /// Writes the update that the residual asks for.
+    fn next_update(&mut self, plain: bool) {
+        self.update.copy_from_slice(&self.residual);
+        self.jacobian.solve(&mut self.update);
+        unscale(&self.units, &mut self.update);
+        if !plain {
+            self.memory
+                .improve(&self.norm, self.scale, &mut self.update);
+        }
+    }
+
+    /// Whether an update is the last one worth making: what is left after it, as the updates shrink, is far below the
+    /// tolerance, or rounding keeps them from shrinking. What the Jacobian leaves out need not contract in every norm at once.
+    fn is_last(
+        &self,
+        size: f64,
+        (previous, before): (f64, f64),
+        usual: f64,
+        tolerance: f64,
+    ) -> bool {
+        if !previous.is_finite() {
+            return size <= REMAINDER * tolerance;
+        }
+        let ratio = size / previous;
+        let (ratio, largest) = if self.jacobian.is_exact() {
+            (ratio, 0.5 / STAGNANT * previous)
+        } else if before.is_finite() {
+            (ratio.max(usual), previous.max(before))
+        } else {
+            (ratio.max(usual), f64::INFINITY)
+        };
+        size * ratio <= REMAINDER * tolerance || size > STAGNANT * largest
+    }
+
+    /// Largest ratio of successive updates in the last correction where the Jacobian leaves something out; zero otherwise.
+    pub fn contraction(&self) -> f64 {
+        self.contraction
+    }
+
+    /// How far from the solution the last correction ended, estimated, in the units of what oscillates: a mean over coordinates and time.
+    pub fn left_in_oscillation(&self) -> f64 {
+        self.left * self.scale.oscillation
+    }
+
+    /// The same as a change of the parameter.
+    pub fn left_in_parameter(&self) -> f64 {
+        self.left * self.scale.parameter
+    }
+
+    /// Solves with the matrix of the last [`Newton::correct`], in place.
+    pub fn solve(&mut self, vector: &mut [f64]) {
+        self.jacobian.solve(vector);
+        unscale(&self.units, vector);
+    }
+
+    /// Writes `psi` with `psi^T R_u = 0` and `psi^T R_lambda = 1`, which exists at a fold: there a small residual `r`
+    /// moves the parameter of the fold by `-psi . r`. The last entry is the defect, zero at the fold itself.
+    pub fn left_null_vector(&mut self, psi: &mut [f64]) {
+        psi.fill(0.0);
+        if let Some(last) = psi.last_mut() {
+            *last = self.scale.parameter;
+        }
+        self.jacobian.solve_transposed(psi);
+    }
+
+    /// Fills and factorises the bordered matrix at `u`, with columns in units of the scale.
+    fn linearise(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &[f64],
+        border: Border<'_>,
+    ) -> Result<(), NewtonError> {
+        let n = self.norm.unknowns();
+        self.jacobian.clear();
+        let before = problem.operations();
+        problem.evaluate(u, &mut self.residual[..n], Some(&mut self.jacobian));
+        self.statistics.jacobians += 1;
+        self.operations += problem.operations() - before + self.jacobian.operations();
+        self.close(u, border)?;
+        self.border.copy_from_slice(border.row);
+        self.jacobian.set_border(border.row);
+        self.jacobian.scale_columns(&self.units);
+        self.statistics.factorisations += 1;
+        self.drift = 0.0;
+        self.memory.clear();
+        self.jacobian
+            .factorise()
+            .map_err(|at| NewtonError::Singular { iterations: 0, at })
+    }
+
+    /// Evaluates the residual at `u` alone.
+    fn evaluate(
+        &mut self,
+        problem: &mut impl Problem,
+        u: &[f64],
+        border: Border<'_>,
+    ) -> Result<(), NewtonError> {
+        let n = self.norm.unknowns();
+        let work = (&mut self.statistics, &mut self.operations);
+        residual(problem, u, &mut self.residual[..n], work);
+        self.close(u, border)
+    }
+
+    /// The residual of the border; an error if any is not finite.
+    fn close(&mut self, u: &[f64], border: Border<'_>) -> Result<(), NewtonError> {
+        let n = self.norm.unknowns();
+        self.residual[n] = dot(border.row, u) - border.value;
+        if largest(&self.residual).is_finite() {
+            Ok(())
+        } else {
+            Err(NewtonError::NotFinite { iterations: 0 })
+        }
+    }
+
+    /// Takes the longest of the halved updates that reduces the residual, or the shortest.
+    fn damped_update(&mut self, problem: &mut impl Problem, u: &mut [f64], border: Border<'_>) {
+        let n = self.norm.unknowns();
+        let before = norm(&self.residual);
+        let mut factor = 1.0;
+        for _ in 0..12 {
+            self.trial.copy_from_slice(u);
+            subtract(&mut self.trial, &self.update, factor);
+            let work = (&mut self.statistics, &mut self.operations);
+            residual(problem, &self.trial, &mut self.residual[..n], work);
+            self.residual[n] = dot(border.row, &self.trial) - border.value;
+            if norm(&self.residual) < (1.0 - 1e-4 * factor) * before {
+                break;
+            }
+            factor *= 0.5;
+        }
+        u.copy_from_slice(&self.trial);
+    }
+}
+
+/// What is left behind an update, if those to come go on shrinking at the same rate: `q / (1 - q)` times its size. The first and only
+/// one was small enough for all of it, and updates that do not shrink are rounding, of their own size.
+fn left(size: f64, previous: f64) -> f64 {
+    let ratio = size / previous;
+    if ratio < STAGNANT {
+        size * ratio / (1.0 - ratio)
+    } else {
+        size
+    }
+}
+
+/// Evaluates the residual alone, and counts that.
+fn residual(
+    problem: &mut impl Problem,
+    u: &[f64],
+    residual: &mut [f64],
+    (statistics, operations): (&mut Statistics, &mut u64),
+) {
+    let before = problem.operations();
+    problem.evaluate(u, residual, None);
+    statistics.residuals += 1;
+    *operations += problem.operations() - before;
+}
+
+/// From units of the scale to the units of the unknowns.
+fn unscale(units: &[f64], vector: &mut [f64]) {
+    for (x, unit) in vector.iter_mut().zip(units) {
+        *x *= unit;
+    }
+}
+
+fn subtract(u: &mut [f64], update: &[f64], factor: f64) {
+    for (x, d) in u.iter_mut().zip(update) {
+        *x -= factor * d;
+    }
+}
+
+/// Largest entry by size; not a number as soon as one entry is not.
+fn largest(v: &[f64]) -> f64 {
+    v.iter().fold(0.0, |m: f64, x| {
+        if x.abs() <= m || m.is_nan() {
+            m
+        } else {
+            x.abs()
+        }
+    })
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}

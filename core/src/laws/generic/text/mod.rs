@@ -1,0 +1,175 @@
+//! Declarations read from text at run time.
+
+mod convert;
+
+use std::cell::RefCell;
+use std::fmt;
+
+use hertzian_compiler::interpret::{Coefficients, Family};
+use hertzian_compiler::text::compile_text;
+
+pub use hertzian_compiler::text::Fault;
+
+use super::InterpretedLaw;
+use super::law::{constant, evaluate_constant};
+use super::program::Program;
+use crate::error::Error;
+use crate::law::Law;
+use crate::model::validate;
+use crate::system::{System, SystemFacts, Variable};
+
+/// A system declared by text: the same language as [`oscillator!`](crate::oscillator), read at run time and interpreted.
+///
+/// ```
+/// use hertzian::generic::Declaration;
+/// use hertzian::system::System;
+///
+/// let mut model = Declaration::parse(
+///     "Stop(x) {
+///         param k > 0;
+///         ddot(x) + x + H(x - 1)*k*(x - 1) = 0.1*cos(omega*t);
+///     }",
+/// )?;
+/// model.set("k", 30.0)?;
+/// assert_eq!(model.facts().parameters[0].name, "k");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// A parameter without a default that has not been set is not a number, and a run refuses it by name.
+#[derive(Debug, Clone)]
+pub struct Declaration {
+    facts: SystemFacts,
+    values: Vec<f64>,
+    coefficients: Program,
+    by_omega: Program,
+    by_parameter: Vec<Program>,
+    laws: Vec<InterpretedLaw>,
+}
+
+/// Everything that is wrong with a declaration; at least one fault.
+#[derive(Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct DeclarationError {
+    /// What is wrong, and where.
+    pub faults: Vec<Fault>,
+}
+
+thread_local! {
+    /// Parameters and, after them, the frequency: what the programs of coefficients take as arguments.
+    static ARGUMENTS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Declaration {
+    /// Reads a declaration.
+    ///
+    /// # Errors
+    /// Every fault, with its place in the text.
+    pub fn parse(text: &str) -> Result<Self, DeclarationError> {
+        let mut model = compile_text(text).map_err(|faults| DeclarationError { faults })?;
+        let facts = convert::system(&model);
+        let laws = model.laws.clone();
+        let laws = laws
+            .iter()
+            .map(|law| convert::law(Family::of(&mut model.dag, law)))
+            .collect();
+        let coefficients = Coefficients::of(&mut model);
+        let parameters = model.parameters.iter();
+        let defaults = parameters.map(|parameter| parameter.default.unwrap_or(f64::NAN));
+        let nodes = convert::nodes(&coefficients.nodes);
+        let program = |outputs: &Vec<usize>| constant(&nodes, outputs);
+        Ok(Self {
+            values: defaults.collect(),
+            coefficients: program(&coefficients.values),
+            by_omega: program(&coefficients.by_omega),
+            by_parameter: coefficients.by_parameter.iter().map(program).collect(),
+            facts,
+            laws,
+        })
+    }
+
+    /// Sets a parameter. Whether the value is within its range is checked when a run starts, as for any system.
+    ///
+    /// # Errors
+    /// If there is no parameter of that name.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), Error> {
+        let parameters = self.facts.parameters.iter();
+        let mut names = parameters.map(|parameter| parameter.name.as_ref());
+        if let Some(index) = names.position(|known| known == name) {
+            self.values[index] = value;
+            return Ok(());
+        }
+        Err(validate::unknown(&self.facts, name))
+    }
+
+    /// Names and values of all parameters, in order of declaration.
+    pub fn parameters(&self) -> Vec<(&str, f64)> {
+        let parameters = self.facts.parameters.iter();
+        let names = parameters.map(|parameter| parameter.name.as_ref());
+        names.zip(self.values.iter().copied()).collect()
+    }
+}
+
+impl System for Declaration {
+    fn facts(&self) -> &SystemFacts {
+        &self.facts
+    }
+
+    fn values(&self, values: &mut [f64]) {
+        values.copy_from_slice(&self.values);
+    }
+
+    fn coefficients(&self, parameters: &[f64], omega: f64, coefficients: &mut [f64]) {
+        run(&self.coefficients, parameters, omega, coefficients);
+    }
+
+    fn coefficients_by(
+        &self,
+        variable: Variable,
+        parameters: &[f64],
+        omega: f64,
+        derivatives: &mut [f64],
+    ) {
+        let program = match variable {
+            Variable::Omega => &self.by_omega,
+            Variable::Parameter(index) => &self.by_parameter[index],
+        };
+        run(program, parameters, omega, derivatives);
+    }
+
+    fn law(&self, index: usize) -> &dyn Law {
+        &self.laws[index]
+    }
+}
+
+fn run(program: &Program, parameters: &[f64], omega: f64, out: &mut [f64]) {
+    ARGUMENTS.with_borrow_mut(|arguments| {
+        arguments.clear();
+        arguments.extend_from_slice(parameters);
+        arguments.push(omega);
+        evaluate_constant(program, arguments, out);
+    });
+}
+
+impl fmt::Display for DeclarationError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, fault) in self.faults.iter().enumerate() {
+            let separator = if index == 0 { "" } else { "\n" };
+            write!(formatter, "{separator}{fault}")?;
+        }
+        Ok(())
+    }
+}
+
+// As of every error: the sentence, and with `{:#?}` what it consists of.
+impl fmt::Debug for DeclarationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !f.alternate() {
+            return fmt::Display::fmt(self, f);
+        }
+        f.debug_struct("DeclarationError")
+            .field("faults", &self.faults)
+            .finish()
+    }
+}
+
+impl std::error::Error for DeclarationError {}

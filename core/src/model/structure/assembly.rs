@@ -1,0 +1,189 @@
+//! Coefficients and parameters of a structure, gathered and checked one by one.
+
+use std::collections::HashMap;
+
+use super::{Coefficient, Contact, StructureError, Value};
+use crate::law::ArgumentFacts;
+use crate::model::validate;
+use crate::system::{Bound, ParameterFacts, Place, Wave};
+
+/// Coefficients and parameters as they are gathered.
+#[derive(Default)]
+pub(super) struct Assembly {
+    pub(super) places: Vec<Place>,
+    pub(super) coefficients: Vec<Coefficient>,
+    pub(super) parameters: Vec<ParameterFacts>,
+    pub(super) values: Vec<f64>,
+    known: HashMap<String, usize>,
+}
+
+impl Assembly {
+    /// Adds a coefficient, unless it is zero.
+    pub(super) fn add(&mut self, place: Place, value: &Value) -> Result<(), StructureError> {
+        let not_finite = |value: f64| StructureError::NotFinite {
+            place: format!("{place:?}"),
+            value,
+        };
+        if !value.factor.is_finite() {
+            return Err(not_finite(value.factor));
+        }
+        let parameter = match &value.parameter {
+            None if value.factor == 0.0 => return Ok(()),
+            None => None,
+            Some((_, present)) if !present.is_finite() => return Err(not_finite(*present)),
+            Some((name, present)) => Some(self.parameter(name, *present)?),
+        };
+        self.places.push(place);
+        self.coefficients.push(Coefficient {
+            factor: value.factor,
+            parameter,
+        });
+        Ok(())
+    }
+
+    /// The position of a parameter, which is new or has the same value as before.
+    fn parameter(&mut self, name: &str, value: f64) -> Result<usize, StructureError> {
+        if name.is_empty() || name == "omega" {
+            return Err(StructureError::Name {
+                parameter: name.to_owned(),
+            });
+        }
+        if let Some(&index) = self.known.get(name) {
+            let first = self.values[index];
+            if first == value {
+                return Ok(index);
+            }
+            return Err(StructureError::TwoValues {
+                parameter: name.to_owned(),
+                first,
+                second: value,
+            });
+        }
+        let index = self.values.len();
+        self.known.insert(name.to_owned(), index);
+        self.values.push(value);
+        self.parameters.push(ParameterFacts {
+            name: name.to_owned().into(),
+            documentation: "".into(),
+            minimum: Bound::Unbounded,
+            maximum: Bound::Unbounded,
+        });
+        Ok(index)
+    }
+
+    /// Adds the coefficients of a contact.
+    pub(super) fn contact(
+        &mut self,
+        index: usize,
+        contact: &Contact,
+        coordinates: usize,
+    ) -> Result<(), StructureError> {
+        let law = contact.law.facts();
+        if law.arguments.len() != contact.arguments.len() {
+            return Err(StructureError::Arguments {
+                law: law.name.to_string(),
+                expected: law.arguments.len(),
+                given: contact.arguments.len(),
+            });
+        }
+        let force = contact.force.as_ref().unwrap_or(&contact.gap);
+        for direction in [&contact.gap, force] {
+            if direction.len() != coordinates {
+                return Err(StructureError::DirectionSize {
+                    contact: index,
+                    entries: direction.len(),
+                    coordinates,
+                });
+            }
+        }
+        let wave = Wave::CONSTANT;
+        for (row, (&force, &gap)) in force.iter().zip(&contact.gap).enumerate() {
+            let along = Place::ForceDirection {
+                contact: index,
+                row,
+                wave,
+            };
+            self.add(along, &force.into())?;
+            let across = Place::GapDirection {
+                contact: index,
+                column: row,
+                wave,
+            };
+            self.add(across, &gap.into())?;
+        }
+        let offset = Place::Offset {
+            contact: index,
+            wave,
+        };
+        self.add(offset, &contact.offset)?;
+        for (argument, value) in contact.arguments.iter().enumerate() {
+            let place = Place::Argument {
+                contact: index,
+                index: argument,
+            };
+            self.add(place, value)?;
+            self.argument(&law.name, &law.arguments[argument], value)?;
+        }
+        Ok(())
+    }
+
+    /// An argument lies in its range. What that asks of a parameter becomes the range of the parameter, which a run
+    /// checks before it varies one.
+    fn argument(
+        &mut self,
+        law: &str,
+        facts: &ArgumentFacts,
+        value: &Value,
+    ) -> Result<(), StructureError> {
+        let Value { factor, parameter } = value;
+        let present = parameter.as_ref().map_or(1.0, |(_, present)| *present);
+        if !facts.admits(factor * present) {
+            return Err(StructureError::Range {
+                law: law.to_owned(),
+                argument: facts.name.to_string(),
+                value: factor * present,
+                range: validate::described(facts.minimum, facts.maximum),
+            });
+        }
+        let known = parameter
+            .as_ref()
+            .and_then(|(name, _)| self.known.get(name));
+        if let (Some(&index), true) = (known, *factor != 0.0) {
+            let own = &mut self.parameters[index];
+            let [low, high] = [facts.minimum, facts.maximum].map(|end| divided(end, *factor));
+            let [low, high] = if *factor > 0.0 {
+                [low, high]
+            } else {
+                [high, low]
+            };
+            own.minimum = narrower(own.minimum, low, |a, b| a > b);
+            own.maximum = narrower(own.maximum, high, |a, b| a < b);
+        }
+        Ok(())
+    }
+}
+
+/// The end of a range whose values are divided by a number.
+fn divided(end: Bound, by: f64) -> Bound {
+    match end {
+        Bound::Unbounded => Bound::Unbounded,
+        Bound::Included(value) => Bound::Included(value / by),
+        Bound::Excluded(value) => Bound::Excluded(value / by),
+    }
+}
+
+/// Of two ends of one side of a range the one that admits less.
+fn narrower(a: Bound, b: Bound, is_inside: impl Fn(f64, f64) -> bool) -> Bound {
+    let [
+        Bound::Included(of_a) | Bound::Excluded(of_a),
+        Bound::Included(of_b) | Bound::Excluded(of_b),
+    ] = [a, b]
+    else {
+        return if a == Bound::Unbounded { b } else { a };
+    };
+    if is_inside(of_b, of_a) || (of_a == of_b && matches!(b, Bound::Excluded(_))) {
+        b
+    } else {
+        a
+    }
+}

@@ -1,0 +1,134 @@
+//! A structure being described.
+
+use super::assembly::Assembly;
+use super::{Contact, DMatrix, Structure, StructureError, Value};
+use crate::model::validate;
+use crate::system::{ContactFacts, Part, Place, SystemFacts, Wave};
+
+/// A structure being described; nothing is checked before [`Builder::build`].
+#[derive(Debug)]
+pub struct Builder {
+    pub(super) name: String,
+    pub(super) matrices: [DMatrix<f64>; 3],
+    pub(super) loads: Vec<(usize, Wave, Value)>,
+    pub(super) contacts: Vec<Contact>,
+}
+
+impl Builder {
+    /// A name, for reports and pictures.
+    #[must_use]
+    pub fn name(mut self, name: &str) -> Self {
+        name.clone_into(&mut self.name);
+        self
+    }
+
+    /// A load that does not change with time, on one coordinate.
+    #[must_use]
+    pub fn constant(self, coordinate: usize, load: impl Into<Value>) -> Self {
+        self.load(coordinate, Wave::CONSTANT, load)
+    }
+
+    /// A load `amplitude * cos(harmonic * omega * t)` on one coordinate.
+    #[must_use]
+    pub fn cosine(self, coordinate: usize, harmonic: u32, amplitude: impl Into<Value>) -> Self {
+        let part = Part::Cosine;
+        self.load(coordinate, Wave { harmonic, part }, amplitude)
+    }
+
+    /// A load `amplitude * sin(harmonic * omega * t)` on one coordinate; `harmonic` zero is no load.
+    #[must_use]
+    pub fn sine(self, coordinate: usize, harmonic: u32, amplitude: impl Into<Value>) -> Self {
+        let part = Part::Sine;
+        if harmonic == 0 {
+            return self;
+        }
+        self.load(coordinate, Wave { harmonic, part }, amplitude)
+    }
+
+    fn load(mut self, coordinate: usize, wave: Wave, value: impl Into<Value>) -> Self {
+        self.loads.push((coordinate, wave, value.into()));
+        self
+    }
+
+    /// A contact.
+    #[must_use]
+    pub fn contact(mut self, contact: Contact) -> Self {
+        self.contacts.push(contact);
+        self
+    }
+
+    /// Checks the description and makes a system of it.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its numbers.
+    pub fn build(self) -> Result<Structure, StructureError> {
+        let coordinates = self.matrices[0].nrows();
+        let mut assembly = Assembly::default();
+        self.assemble_matrices(&mut assembly)?;
+        validate::regular(&self.matrices[0])
+            .map_err(|pivot| StructureError::SingularMass { pivot })?;
+        for &(row, wave, ref value) in &self.loads {
+            if row >= coordinates {
+                return Err(StructureError::NoCoordinate {
+                    coordinate: row,
+                    coordinates,
+                });
+            }
+            assembly.add(Place::Load { row, wave }, value)?;
+        }
+        for (index, contact) in self.contacts.iter().enumerate() {
+            assembly.contact(index, contact, coordinates)?;
+        }
+        let contacts = (0..self.contacts.len()).map(|law| ContactFacts { law });
+        let names = (1..=coordinates).map(|number| format!("q{number}").into());
+        Ok(Structure {
+            facts: SystemFacts {
+                name: self.name.into(),
+                equation: "M ddot(q) + C dot(q) + K q + contacts = loads".into(),
+                coordinates: names.collect(),
+                parameters: assembly.parameters.into(),
+                divisor: 1,
+                laws: self.contacts.len(),
+                contacts: contacts.collect(),
+                places: assembly.places.into(),
+            },
+            values: assembly.values,
+            coefficients: assembly.coefficients,
+            laws: self
+                .contacts
+                .into_iter()
+                .map(|contact| contact.law)
+                .collect(),
+        })
+    }
+
+    fn assemble_matrices(&self, assembly: &mut Assembly) -> Result<(), StructureError> {
+        let coordinates = self.matrices[0].nrows();
+        for (matrix, name) in self.matrices.iter().zip(["mass", "damping", "stiffness"]) {
+            let (rows, columns) = matrix.shape();
+            if rows != coordinates || columns != coordinates || coordinates == 0 {
+                return Err(StructureError::MatrixSize {
+                    matrix: name,
+                    rows,
+                    columns,
+                    coordinates,
+                });
+            }
+            for row in 0..rows {
+                for column in 0..columns {
+                    let place = match name {
+                        "mass" => Place::Mass { row, column },
+                        "damping" => Place::Damping { row, column },
+                        _ => Place::Stiffness {
+                            row,
+                            column,
+                            wave: Wave::CONSTANT,
+                        },
+                    };
+                    assembly.add(place, &matrix[(row, column)].into())?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

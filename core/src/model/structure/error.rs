@@ -1,0 +1,167 @@
+//! What can be wrong with a structure.
+
+use crate::numeric::decimal::Decimal;
+use std::fmt;
+
+/// What is wrong with a structure.
+#[derive(Clone, PartialEq)]
+#[non_exhaustive]
+pub enum StructureError {
+    /// A matrix is not as many rows and columns as the structure has coordinates.
+    MatrixSize {
+        /// Which one.
+        matrix: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        columns: usize,
+        /// Rows of the mass matrix.
+        coordinates: usize,
+    },
+    /// A direction of a contact has not as many entries as there are coordinates.
+    DirectionSize {
+        /// Which contact.
+        contact: usize,
+        /// How many entries.
+        entries: usize,
+        /// How many there must be.
+        coordinates: usize,
+    },
+    /// A number is infinite or not a number.
+    NotFinite {
+        /// Where it stands.
+        place: String,
+        /// The number.
+        value: f64,
+    },
+    /// The mass matrix has no inverse.
+    SingularMass {
+        /// Smallest pivot, as a share of the largest.
+        pivot: f64,
+    },
+    /// A load acts on a coordinate that is not there.
+    NoCoordinate {
+        /// The coordinate asked for, from zero.
+        coordinate: usize,
+        /// How many there are.
+        coordinates: usize,
+    },
+    /// A law has another number of arguments.
+    Arguments {
+        /// Its name.
+        law: String,
+        /// How many it has.
+        expected: usize,
+        /// How many were given.
+        given: usize,
+    },
+    /// An argument of a law is outside the range that the law declares for it.
+    Range {
+        /// Name of the law.
+        law: String,
+        /// Name of the argument.
+        argument: String,
+        /// Its value.
+        value: f64,
+        /// The range, as declared.
+        range: String,
+    },
+    /// A parameter has no name, or that of the excitation frequency, `omega`.
+    Name {
+        /// The name.
+        parameter: String,
+    },
+    /// One name was used with two values.
+    TwoValues {
+        /// The name.
+        parameter: String,
+        /// Its first value.
+        first: f64,
+        /// Another.
+        second: f64,
+    },
+}
+
+crate::error::sentence_as_debug! {
+    StructureError:
+    MatrixSize { matrix, rows, columns, coordinates }
+    DirectionSize { contact, entries, coordinates }
+    NotFinite { place, value }
+    SingularMass { pivot }
+    NoCoordinate { coordinate, coordinates }
+    Arguments { law, expected, given }
+    Range { law, argument, value, range }
+    Name { parameter }
+    TwoValues { parameter, first, second }
+    ;
+}
+
+impl fmt::Display for StructureError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MatrixSize {
+                matrix,
+                rows,
+                columns,
+                coordinates,
+            } => write!(
+                formatter,
+                "the {matrix} matrix is {rows} by {columns}; the mass matrix has {coordinates} rows, and all must be square, of one size, and not empty"
+            ),
+            Self::DirectionSize {
+                contact,
+                entries,
+                coordinates,
+            } => write!(
+                formatter,
+                "a direction of contact {contact} has {entries} entries; there are {coordinates} coordinates"
+            ),
+            Self::NotFinite { place, value } => {
+                write!(formatter, "{} in {place}", Decimal::plain(*value))
+            }
+            Self::SingularMass { pivot } => write!(
+                formatter,
+                "the mass matrix has no inverse: its smallest pivot is {pivot:e} of the largest"
+            ),
+            Self::NoCoordinate {
+                coordinate,
+                coordinates,
+            } => write!(
+                formatter,
+                "a load on coordinate {coordinate}, counted from zero; there are {coordinates}"
+            ),
+            Self::Arguments {
+                law,
+                expected,
+                given,
+            } => write!(
+                formatter,
+                "law `{law}` has {expected} arguments, and {given} were given"
+            ),
+            Self::Range {
+                law,
+                argument,
+                value,
+                range,
+            } => write!(
+                formatter,
+                "argument `{argument}` of law `{law}` is {}, outside its range {range}",
+                Decimal::plain(*value)
+            ),
+            Self::Name { parameter } => write!(
+                formatter,
+                "a parameter cannot be called `{parameter}`: it needs a name, and `omega` is the excitation frequency"
+            ),
+            Self::TwoValues {
+                parameter,
+                first,
+                second,
+            } => write!(
+                formatter,
+                "parameter `{parameter}` is {first} in one place and {second} in another"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for StructureError {}

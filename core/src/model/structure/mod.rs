@@ -1,0 +1,159 @@
+//! Structures given as matrices, with few contacts: finite-element models, modal models, test rigs.
+
+mod assembly;
+mod builder;
+mod contact;
+mod error;
+
+use std::sync::Arc;
+
+pub use nalgebra::DMatrix;
+
+pub use self::builder::Builder;
+pub use self::contact::Contact;
+pub use self::error::StructureError;
+
+use crate::error::Error;
+use crate::law::Law;
+use crate::model::validate;
+use crate::system::{System, SystemFacts, Variable};
+
+/// A linear structure with contacts, built at run time: equation (1) with constant `M`, `C`, `K` and directions.
+///
+/// Two masses, of which the first meets an elastic stop:
+///
+/// ```
+/// use hertzian::FrequencyResponse;
+/// use hertzian::structure::{Contact, DMatrix, Structure, parameter};
+///
+/// hertzian::law! {
+///     /// Force of a spring that is touched at gap zero.
+///     Spring(gap, k) { gap > 0 => k*gap, else => 0 }
+/// }
+///
+/// let stiffness = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 2.0]);
+/// let structure = Structure::of(&DMatrix::identity(2, 2), &(0.03 * &stiffness), &stiffness)
+///     .cosine(1, 1, parameter("drive", 0.1))
+///     .contact(Contact::new(Spring).arguments([100.0]).direction([1.0, 0.0]).offset(1.0))
+///     .build()?;
+/// let branch = FrequencyResponse::of(&structure).from(0.8).to(0.9).harmonics(7).samples(64).run()?;
+/// assert!(branch.points.len() > 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Structure {
+    facts: SystemFacts,
+    values: Vec<f64>,
+    coefficients: Vec<Coefficient>,
+    laws: Vec<Arc<dyn Law>>,
+}
+
+impl std::fmt::Debug for Structure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Structure")
+            .field("name", &self.facts.name)
+            .field("values", &self.values)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A number, or a named parameter that a continuation may vary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Value {
+    factor: f64,
+    parameter: Option<(String, f64)>,
+}
+
+/// A named parameter and its present value. One name stands for one parameter wherever it is used.
+pub fn parameter(name: &str, value: f64) -> Value {
+    Value {
+        factor: 1.0,
+        parameter: Some((name.to_owned(), value)),
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self {
+            factor: number,
+            parameter: None,
+        }
+    }
+}
+
+impl Value {
+    /// The same multiplied by a number.
+    #[must_use]
+    pub fn times(mut self, factor: f64) -> Self {
+        self.factor *= factor;
+        self
+    }
+}
+
+/// A coefficient of (1) or (2): a number, or a number times a parameter.
+#[derive(Clone, Copy)]
+struct Coefficient {
+    factor: f64,
+    parameter: Option<usize>,
+}
+
+impl Structure {
+    /// Begins a structure of given mass, damping and stiffness.
+    pub fn of(mass: &DMatrix<f64>, damping: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> Builder {
+        Builder {
+            name: "structure".to_owned(),
+            matrices: [mass.clone(), damping.clone(), stiffness.clone()],
+            loads: Vec::new(),
+            contacts: Vec::new(),
+        }
+    }
+
+    /// Sets a parameter. Whether the value is in the range of the arguments it is passed for is checked when a run
+    /// starts, as for any system.
+    ///
+    /// # Errors
+    /// If there is no parameter of that name.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), Error> {
+        let mut parameters = self.facts.parameters.iter();
+        let position = parameters.position(|parameter| parameter.name == name);
+        let index = position.ok_or_else(|| validate::unknown(&self.facts, name))?;
+        self.values[index] = value;
+        Ok(())
+    }
+}
+
+impl System for Structure {
+    fn facts(&self) -> &SystemFacts {
+        &self.facts
+    }
+
+    fn values(&self, values: &mut [f64]) {
+        values.copy_from_slice(&self.values);
+    }
+
+    fn coefficients(&self, parameters: &[f64], _omega: f64, coefficients: &mut [f64]) {
+        for (out, coefficient) in coefficients.iter_mut().zip(&self.coefficients) {
+            let parameter = coefficient.parameter.map_or(1.0, |index| parameters[index]);
+            *out = coefficient.factor * parameter;
+        }
+    }
+
+    fn coefficients_by(
+        &self,
+        variable: Variable,
+        _parameters: &[f64],
+        _omega: f64,
+        derivatives: &mut [f64],
+    ) {
+        for (out, coefficient) in derivatives.iter_mut().zip(&self.coefficients) {
+            let depends = match (variable, coefficient.parameter) {
+                (Variable::Parameter(by), Some(parameter)) => by == parameter,
+                _ => false,
+            };
+            *out = if depends { coefficient.factor } else { 0.0 };
+        }
+    }
+
+    fn law(&self, index: usize) -> &dyn Law {
+        self.laws[index].as_ref()
+    }
+}

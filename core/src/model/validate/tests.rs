@@ -1,0 +1,216 @@
+//! One row for each thing that can be asked for and cannot be: it is refused with a sentence, before any work.
+
+use crate::attractors::basin::{Axis, Basin, Grid};
+use crate::attractors::lyapunov::Lyapunov;
+use crate::attractors::sweep::Sweep;
+use crate::bifurcation::Bifurcations;
+use crate::bifurcation::backbone::{FreeOscillation, PhaseResonance};
+use crate::error::Error;
+use crate::response::FrequencyResponse;
+use crate::shooting::Shooting;
+use crate::system::Variable;
+use crate::time;
+use crate::time::Options;
+use crate::time::poincare::{Direction, Section};
+use crate::time::stroboscope::Stroboscope;
+
+crate::oscillator! {
+    Duffing(x) {
+        param bend in 0.0..10.0;
+        param drive;
+        ddot(x) + 0.1*dot(x) + x + bend*x^3 = drive*cos(omega*t);
+    }
+}
+
+const MODEL: Duffing = Duffing {
+    bend: 0.2,
+    drive: 0.2,
+};
+
+const NAN: f64 = f64::NAN;
+const INFINITY: f64 = f64::INFINITY;
+
+/// What is said of requests none of which can be used.
+fn refused<R, A>(request: R, rows: &[(A, &str)])
+where
+    R: Fn(&A) -> Result<(), Error>,
+    A: std::fmt::Debug,
+{
+    for (asked, sentence) in rows {
+        let error = request(asked).expect_err(&format!("{asked:?}"));
+        let text = error.to_string();
+        assert!(text.contains(sentence), "{asked:?}: {text}");
+        assert!(text.lines().count() == 1 && text.len() < 200, "{text}");
+    }
+}
+
+#[test]
+fn ends_of_ranges() {
+    let model = MODEL;
+    let rows = [
+        ([NAN, 1.0], "omega = NaN"),
+        ([1.0, INFINITY], "omega = inf"),
+        ([-1.0, 1.0], "omega = -1"),
+        ([1.0, 0.0], "omega = 0"),
+        ([1.0, 1.0], "range is empty"),
+    ];
+    let response = || FrequencyResponse::of(&model);
+    refused(|&[a, b]| response().from(a).to(b).run().map(drop), &rows);
+    let shooting = || Shooting::of(&model);
+    refused(|&[a, b]| shooting().from(a).to(b).run().map(drop), &rows);
+    let all = || Bifurcations::of(&model);
+    refused(|&[a, b]| all().from(a).to(b).run().map(drop), &rows);
+    let rows = [
+        ([NAN, 1.0], "bend = NaN"),
+        ([-1.0, 1.0], "bend = -1 is outside"),
+        ([0.1, 11.0], "bend = 11 is outside"),
+        ([0.1, 0.1], "range is empty"),
+    ];
+    let response = || FrequencyResponse::of(&model).vary("bend").omega(0.8);
+    refused(|&[a, b]| response().from(a).to(b).run().map(drop), &rows);
+    let shooting = || Shooting::of(&model).vary("bend").omega(0.8);
+    refused(|&[a, b]| shooting().from(a).to(b).run().map(drop), &rows);
+    let rows = [
+        ([NAN, 1.0], "from = NaN"),
+        ([0.1, INFINITY], "to = inf"),
+        ([0.1, 0.1], "range is empty"),
+    ];
+    let free = || FreeOscillation::of(&model);
+    refused(|&[a, b]| free().from(a).to(b).run().map(drop), &rows);
+    let rows = [
+        ([NAN, 1.0], "omega = NaN"),
+        ([0.5, -2.0], "omega = -2"),
+        ([0.5, 0.5], "range is empty"),
+    ];
+    let resonance = || PhaseResonance::of(&model).vary("drive").to(0.1);
+    refused(|&[a, b]| resonance().between(a, b).run().map(drop), &rows);
+}
+
+#[test]
+fn values_within_a_range() {
+    let model = MODEL;
+    let branch = FrequencyResponse::of(&model).from(0.5).to(0.6).run();
+    let branch = branch.expect("a branch");
+    let shooting = Shooting::of(&model).from(0.5).to(0.6);
+    let cycles = shooting.run().expect("a branch");
+    let single = [(NAN, "NaN"), (INFINITY, "inf")];
+    refused(|&value| branch.at(value).map(drop), &single);
+    refused(|&value| shooting.at(&cycles, value).map(drop), &single);
+    refused(|&value| shooting.orbit(value).map(drop), &single);
+    let response = FrequencyResponse::of(&model);
+    refused(|&value| response.orbit(value).map(drop), &single);
+    refused(|&value| shooting.through(value).map(drop), &single);
+    let near = |&value: &f64| shooting.clone().near(&[value, 0.0]).orbit(0.5).map(drop);
+    refused(near, &single);
+    let basin = |escape| Basin {
+        escape,
+        ..Basin::new(grid(1.0))
+    };
+    let all = || Bifurcations::of(&model).from(0.5).to(0.6);
+    let rows = [(NAN, "search = NaN"), (9.0, "must be in the range")];
+    refused(|&v| all().search(v, basin(1.0)).run().map(drop), &rows);
+    let rows = [(NAN, "escape must be"), (-1.0, "escape must be")];
+    refused(|&v| all().search(0.55, basin(v)).run().map(drop), &rows);
+}
+
+#[test]
+fn numbers_of_a_request() {
+    let model = MODEL;
+    let response = || FrequencyResponse::of(&model).from(0.5).to(0.6);
+    let shooting = || Shooting::of(&model).from(0.5).to(0.6);
+    let tolerances = [
+        (NAN, "tolerance = NaN"),
+        (0.0, "tolerance = 0"),
+        (-1.0, "tolerance = -1"),
+    ];
+    refused(|&v| response().tolerance(v).run().map(drop), &tolerances);
+    refused(|&v| shooting().tolerance(v).run().map(drop), &tolerances);
+    let flow = |&v: &f64| time::of(&model, 0.5, Options::default().tolerance(v)).map(drop);
+    refused(flow, &tolerances);
+    let steps = [(NAN, "largest_step = NaN"), (0.0, "largest_step = 0")];
+    refused(|&v| response().largest_step(v).run().map(drop), &steps);
+    refused(|&v| shooting().largest_step(v).run().map(drop), &steps);
+    let counts = [(0, "must be from"), (usize::MAX, "must be from")];
+    refused(|&n| response().period(n).run().map(drop), &counts);
+    refused(|&n| shooting().period(n).run().map(drop), &counts);
+    refused(|&n| response().max_points(n).run().map(drop), &counts);
+    refused(|&n| response().harmonics(n).run().map(drop), &counts);
+    let counts = [(0, "must be at least 1"), (usize::MAX, "3000 at most")];
+    refused(|&n| shooting().segments(n).run().map(drop), &counts);
+    let names = [("omego", "no parameter omego; there are bend, drive")];
+    let vary = |&name: &&str| response().vary(name).run().map(drop);
+    refused(vary, &names);
+}
+
+fn grid(high: f64) -> Grid {
+    let axis = |entry| Axis::of(entry).from(-1.0).to(high).cells(2);
+    Grid::new(vec![0.0, 0.0], axis(0), axis(1))
+}
+
+#[test]
+fn motions() {
+    let model = MODEL;
+    let map = || Stroboscope::of(&model, 0.5).expect("a map");
+    let sweep = |escape, start| Sweep {
+        variable: Variable::Omega,
+        values: vec![0.5],
+        start: vec![start, 0.0],
+        transient: 1,
+        periods: 1,
+        escape,
+    };
+    let rows = [
+        ([NAN, 0.0], "escape = NaN"),
+        ([0.0, 0.0], "escape = 0"),
+        ([-1.0, 0.0], "escape = -1"),
+        ([1e6, NAN], "start = NaN"),
+    ];
+    let run = |&[escape, start]: &[f64; 2]| {
+        let rows = sweep(escape, start).run(&mut map(), None, None, &mut |_| true);
+        rows.map(drop)
+    };
+    refused(run, &rows);
+    let section = |&value: &f64| {
+        let section = Section::entry(0, value, Direction::Rising);
+        let follow = section.follow(&mut map(), &mut [0.0, 0.0], 1, &mut |_| {});
+        follow.map_err(Error::from)
+    };
+    refused(section, &[(NAN, "the section is not a number")]);
+    let batch = |&periods: &usize| {
+        let mut map = map();
+        let mut motion = Lyapunov::new(&mut map, &[0.0, 0.0]);
+        motion.batch(periods).map(drop).map_err(Error::from)
+    };
+    refused(batch, &[(0, "no mean over no periods")]);
+    let start = |&entry: &f64| map().map(&mut [entry, 0.0]).map_err(Error::from);
+    refused(start, &[(NAN, "not finite"), (INFINITY, "not finite")]);
+    let phase = |&phase: &f64| map().phase(phase).map(&mut [0.0, 0.0]).map_err(Error::from);
+    refused(phase, &[(NAN, "phase NaN")]);
+}
+
+#[test]
+fn basins() {
+    let model = MODEL;
+    let flow = || time::of(&model, 0.5, Options::default()).expect("a flow");
+    let compute = |(basin, flows): &(Basin, usize)| {
+        let flows = (0..*flows).map(|_| flow()).collect();
+        let basins = basin.compute(flows, None, &|_| true);
+        let value = 0.5;
+        basins
+            .map(drop)
+            .map_err(|reason| Error::Search { value, reason })
+    };
+    let basin = |escape, longest| Basin {
+        longest,
+        escape,
+        ..Basin::new(grid(1.0))
+    };
+    let rows = [
+        ((basin(1.0, 1), 0), "flows must be at least one"),
+        ((basin(1.0, 1), 1025), "flows must be at most 1024"),
+        ((basin(NAN, 1), 1), "escape must be positive"),
+        ((basin(1.0, 0), 1), "longest and patience"),
+        ((Basin::new(grid(NAN)), 1), "grid must be finite"),
+    ];
+    refused(compute, &rows);
+}

@@ -1,0 +1,293 @@
+//! The largest force on a panel: by samples, both ends included, and then where the slope vanishes next to the best of them and to
+//! every other that might be exceeded by more.
+//!
+//! The slope by phase is `phi_g dg/dtau + phi_r dr/dtau`. The first step goes to the vertex of the parabola through the best
+//! sample and its neighbours, the further ones are secants of the slope, kept inside a bracket by bisection (Press et al.
+//! (2007), Numerical Recipes, sections 9.2 and 10.3).
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use super::contact::Panel;
+use super::reader::largest;
+use crate::balance::rate_series;
+use crate::law::{Derivatives, Law, On};
+use crate::numeric::fourier::kernels::{LANES, evaluate};
+use crate::numeric::fourier::series;
+
+/// A panel with fewer samples is sampled by itself.
+const FEWEST: usize = 8;
+/// Phases of a panel that is sampled by itself: two groups of lanes.
+const OWN: usize = 2 * LANES;
+/// The slope at an end is taken this part of the distance to the next sample inside, where no power is on its level.
+const INSIDE: f64 = 1e-6;
+/// The search ends when the next step would gain no more than this part of the force.
+const GAIN: f64 = 1e-14;
+const STEPS: usize = 60;
+
+/// The samples of one panel.
+#[derive(Debug, Default)]
+pub(super) struct Batch {
+    phases: Vec<f64>,
+    gap: Vec<f64>,
+    rate: Vec<f64>,
+    force: Vec<f64>,
+    /// Series of the rate of a panel that is sampled by itself.
+    series: Vec<f64>,
+    /// The first and the last sample are not ends, but repeat those at the other end of the period.
+    whole: bool,
+}
+
+/// The force at a phase, or its negative, and its derivative by the phase.
+#[derive(Debug, Clone, Copy)]
+struct Slope {
+    size: f64,
+    slope: f64,
+}
+
+/// An orbit under a law, on one piece.
+#[derive(Clone, Copy)]
+struct Motion<'a> {
+    law: &'a dyn Law,
+    piece: usize,
+    arguments: &'a [f64],
+    gap: &'a [f64],
+    base: f64,
+    /// One to look for the largest force, minus one for the smallest.
+    sign: f64,
+}
+
+impl Motion<'_> {
+    fn at(&self, tau: f64) -> Slope {
+        let (gap, by_phase, bend) = series::value_and_derivatives(self.gap, tau);
+        let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
+        let out = Derivatives {
+            force: &mut force,
+            by_gap: &mut by_gap,
+            by_rate: &mut by_rate,
+        };
+        let rate = [self.base * by_phase];
+        self.law
+            .derivatives(On::Piece(self.piece), self.arguments, &[gap], &rate, out);
+        let slope = by_gap[0] * by_phase + by_rate[0] * self.base * bend;
+        Slope {
+            size: self.sign * force[0],
+            slope: self.sign * slope,
+        }
+    }
+}
+
+impl Batch {
+    /// Gathers the samples of a panel from those of the period.
+    pub(super) fn take(
+        &mut self,
+        panel: &Panel,
+        [gaps, rates]: [&[f64]; 2],
+        gap: &[f64],
+        base: f64,
+    ) {
+        let count = gaps.len() as isize;
+        let step = TAU / count as f64;
+        self.whole = panel.levels.is_none();
+        let (first, last) = if self.whole {
+            (-1, count)
+        } else {
+            let first = (panel.start / step).floor() as isize + 1;
+            (first, (panel.end / step).ceil() as isize - 1)
+        };
+        for buffer in [&mut self.phases, &mut self.gap, &mut self.rate] {
+            buffer.clear();
+        }
+        if last - first + 1 < FEWEST as isize {
+            self.sample(panel, gap, base);
+            return;
+        }
+        if let Some([level, _]) = panel.levels {
+            self.push(panel.start, level, gap, base);
+        }
+        self.phases
+            .extend((first..=last).map(|index| index as f64 * step));
+        for index in first..=last {
+            let index = index.rem_euclid(count) as usize;
+            self.gap.push(gaps[index]);
+            self.rate.push(rates[index]);
+        }
+        if let Some([_, level]) = panel.levels {
+            self.push(panel.end, level, gap, base);
+        }
+    }
+
+    /// Adds an end, where the gap is on a level.
+    fn push(&mut self, tau: f64, level: f64, gap: &[f64], base: f64) {
+        let (_, by_phase, _) = series::value_and_derivatives(gap, tau);
+        self.phases.push(tau);
+        self.gap.push(level);
+        self.rate.push(base * by_phase);
+    }
+
+    /// Samples a panel that is short, from end to end.
+    fn sample(&mut self, panel: &Panel, gap: &[f64], base: f64) {
+        let step = (panel.end - panel.start) / (OWN - 1) as f64;
+        self.phases
+            .extend((0..OWN - 1).map(|index| panel.start + step * index as f64));
+        self.phases.push(panel.end);
+        let (mut sines, mut cosines) = ([0.0; OWN], [0.0; OWN]);
+        for (index, tau) in self.phases.iter().enumerate() {
+            (sines[index], cosines[index]) = tau.sin_cos();
+        }
+        self.series.resize(gap.len(), 0.0);
+        rate_series(gap, base, &mut self.series);
+        self.gap.resize(OWN, 0.0);
+        self.rate.resize(OWN, 0.0);
+        let both = [gap, &self.series];
+        evaluate(both, &cosines, &sines, &mut self.gap, &mut self.rate);
+        if let Some(levels) = panel.levels {
+            [self.gap[0], self.gap[OWN - 1]] = levels;
+        }
+    }
+
+    /// Smallest and largest force on the panel that was taken.
+    pub(super) fn extremes(
+        &mut self,
+        law: &dyn Law,
+        piece: usize,
+        arguments: &[f64],
+        gap: &[f64],
+        base: f64,
+    ) -> [f64; 2] {
+        self.force.resize(self.gap.len(), 0.0);
+        let on = On::Piece(piece);
+        law.force(on, arguments, &self.gap, &self.rate, &mut self.force);
+        let motion = Motion {
+            law,
+            piece,
+            arguments,
+            gap,
+            base,
+            sign: 1.0,
+        };
+        let most = self.largest(motion);
+        for force in &mut self.force {
+            *force = -*force;
+        }
+        let least = -self.largest(Motion {
+            sign: -1.0,
+            ..motion
+        });
+        [least, most]
+    }
+
+    /// The largest value of what has been sampled.
+    fn largest(&self, motion: Motion<'_>) -> f64 {
+        // The best first: few others can then be larger.
+        let best = self.best();
+        let mut peak = largest(self.force[best], self.refined(best, motion));
+        for index in self.inside() {
+            if index != best && self.promise(index) > peak {
+                peak = largest(peak, self.refined(index, motion));
+            }
+        }
+        peak
+    }
+
+    /// The samples that are in the panel.
+    fn inside(&self) -> Range<usize> {
+        let skip = usize::from(self.whole);
+        skip..self.force.len() - skip
+    }
+
+    fn best(&self) -> usize {
+        let Range { start, end } = self.inside();
+        let larger = |best, index| {
+            if self.force[index] > self.force[best] {
+                index
+            } else {
+                best
+            }
+        };
+        (start..end).fold(start, larger)
+    }
+
+    /// About the largest value near a sample if it is larger than its neighbours; else nothing. Between samples the parabola
+    /// through three of them rises by an eighth of their second difference at most; the double of that is allowed for.
+    fn promise(&self, index: usize) -> f64 {
+        let at = |index: usize| self.force.get(index).copied().unwrap_or(0.0);
+        let (before, here, after) = match index {
+            0 => (at(1), at(0), at(1)),
+            _ if index + 1 == self.force.len() => (at(index - 1), at(index), at(index - 1)),
+            _ => (at(index - 1), at(index), at(index + 1)),
+        };
+        if here < before || here < after {
+            return f64::NEG_INFINITY;
+        }
+        here + 0.25 * ((here - before) + (here - after))
+    }
+
+    /// The largest value next to a sample.
+    fn refined(&self, index: usize, motion: Motion<'_>) -> f64 {
+        let last = self.force.len() - 1;
+        match index {
+            0 => self.beside_end(motion, 0, 1),
+            _ if index == last => self.beside_end(motion, last, last - 1),
+            _ => {
+                let bracket = (self.phases[index - 1], self.phases[index + 1]);
+                search(motion, bracket, self.parabola(index))
+            }
+        }
+    }
+
+    /// An end is the largest of its samples: there is a larger force inside only if it grows from there.
+    fn beside_end(&self, motion: Motion<'_>, end: usize, next: usize) -> f64 {
+        let (end, next) = (self.phases[end], self.phases[next]);
+        let near = end + INSIDE * (next - end);
+        let Slope { size, slope } = motion.at(near);
+        if slope * (next - end) > 0.0 {
+            let bracket = (near.min(next), near.max(next));
+            search(motion, bracket, (0.5 * (near + next), f64::NAN))
+        } else {
+            size
+        }
+    }
+
+    /// Where the parabola through three samples has its peak, and its second derivative.
+    fn parabola(&self, best: usize) -> (f64, f64) {
+        let at = |index: usize| (self.phases[index], self.force[index]);
+        let ((a, fa), (b, fb), (c, fc)) = (at(best - 1), at(best), at(best + 1));
+        let (left, right) = ((fb - fa) / (b - a), (fc - fb) / (c - b));
+        // Both are slopes at the middle of an interval.
+        let bend = (right - left) / (0.5 * (c - a));
+        let vertex = 0.5 * (a + b) - left / bend;
+        let inside = vertex > a && vertex < c;
+        (if inside { vertex } else { b }, bend)
+    }
+}
+
+/// Largest value where the slope falls through zero inside a bracket, from a phase and a guess of the second derivative.
+fn search(motion: Motion<'_>, (mut a, mut b): (f64, f64), from: (f64, f64)) -> f64 {
+    let (mut tau, mut bend) = from;
+    let mut before: Option<(f64, f64)> = None;
+    let mut peak = f64::NEG_INFINITY;
+    for _ in 0..STEPS {
+        let Slope { size, slope } = motion.at(tau);
+        peak = largest(peak, size);
+        if slope > 0.0 {
+            a = tau;
+        } else {
+            b = tau;
+        }
+        if let Some((old, slope_there)) = before {
+            bend = (slope - slope_there) / (tau - old);
+        }
+        before = Some((tau, slope));
+        let step = -slope / bend;
+        // A parabola of this slope and bend gains so much on the way to its peak.
+        let gain = 0.5 * (slope * step).abs();
+        if gain <= GAIN * size.abs() || b - a <= 4.0 * f64::EPSILON * b.abs() {
+            break;
+        }
+        let next = tau + step;
+        let good = bend < 0.0 && next > a && next < b;
+        tau = if good { next } else { 0.5 * (a + b) };
+    }
+    peak
+}

@@ -1,0 +1,14 @@
+//! Results as files that other programs read.
+
+mod file;
+#[cfg(feature = "serde")]
+mod json;
+mod npy;
+mod table;
+
+pub use crate::numeric::decimal::Decimal;
+pub use file::{can_write, write};
+#[cfg(feature = "serde")]
+pub(crate) use json::{pairs, seconds, text};
+pub use npy::{Npy, Number};
+pub use table::{COLUMNS, Table, cells};

@@ -1,0 +1,243 @@
+//! Orbits as a table: one row for each, in text with commas (RFC 4180), numbers as short as they read back to the same bits.
+
+use std::fmt::Write;
+
+use crate::branches::branch::Point;
+
+/// Names of the columns that every table begins with; after them come the parameters of the system, by name, and then for each
+/// contact, counted from one, `contact_1_min_force` and `contact_1_max_force`, the extremes of its law with their signs, and
+/// `contact_1_piece_1` and so on, the part of the period on each piece of its law, from the lowest gaps to the highest.
+///
+/// | column | what it is |
+/// |---|---|
+/// | `omega` | frequency of the excitation, radians per unit of time |
+/// | `peak_to_peak`, `max`, `min`, `mean`, `rms` | of the first coordinate; the mean counts in `rms` |
+/// | `stability` | `stable`, `unstable` or `undecided` |
+/// | `multiplier_1_re` to `multiplier_2_im` | the two Floquet multipliers of largest modulus, over the period of the orbit |
+/// | `contact_fraction` | part of the period on pieces of the law of the first contact that are not zero: 1 for a law that acts everywhere |
+/// | `contacts` | intervals of contact in a period |
+/// | `peak_force` | largest value of the law of the first contact, by size, without factors outside of it: see [`ContactMotion`](crate::orbit::observe::ContactMotion) |
+/// | `dissipated_power` | mean over the period |
+/// | `harmonics` | of the base frequency `omega/period` |
+/// | `error` | estimated error of `peak_to_peak`, relative |
+/// | `branch` | number of the branch; 0 is the one that was asked for |
+/// | `period` | periods of the declaration in the period of the orbit |
+/// | `value` | of what varies along the branch |
+///
+/// What is not known, or is not there, is empty; a number that is not finite is `inf` or `NaN`.
+pub const COLUMNS: [&str; 20] = [
+    "omega",
+    "peak_to_peak",
+    "max",
+    "min",
+    "mean",
+    "rms",
+    "stability",
+    "multiplier_1_re",
+    "multiplier_1_im",
+    "multiplier_2_re",
+    "multiplier_2_im",
+    "contact_fraction",
+    "contacts",
+    "peak_force",
+    "dissipated_power",
+    "harmonics",
+    "error",
+    "branch",
+    "period",
+    "value",
+];
+
+/// A table of orbits of one system, perhaps of several branches.
+///
+/// ```
+/// use hertzian::FrequencyResponse;
+/// use hertzian::export::Table;
+///
+/// hertzian::oscillator! {
+///     Duffing(x) {
+///         param bend = 0.2;
+///         ddot(x) + 0.1*dot(x) + x + bend*x^3 = 0.2*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Duffing::default();
+/// let branch = FrequencyResponse::of(&model).from(0.5).to(1.5).run()?;
+/// let mut table = Table::of(&model);
+/// branch.points.iter().for_each(|point| table.add(0, point));
+/// assert_eq!(table.to_csv(), branch.to_csv());
+/// assert!(table.to_csv().lines().next().unwrap().contains(",value,bend,contact_1_min_force,"));
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Table {
+    text: String,
+    parameters: usize,
+    /// Pieces of the law of each contact.
+    pieces: Vec<usize>,
+}
+
+impl Table {
+    /// A table without rows. A parameter whose name is taken gets an underscore after it.
+    pub fn of(system: &dyn crate::system::System) -> Self {
+        let facts = system.facts();
+        let pieces = facts
+            .contacts
+            .iter()
+            .map(|contact| system.law(contact.law).facts().pieces.len());
+        let pieces: Vec<usize> = pieces.collect();
+        let mut names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
+        let of_contacts = of_contacts(&pieces);
+        for parameter in facts.parameters.iter() {
+            let mut name = parameter.name.to_string();
+            while names.contains(&name) || of_contacts.contains(&name) {
+                name.push('_');
+            }
+            names.push(name);
+        }
+        names.extend(of_contacts);
+        let mut table = Self {
+            text: String::new(),
+            parameters: facts.parameters.len(),
+            pieces,
+        };
+        table.line(names.iter().map(String::as_str));
+        table
+    }
+
+    /// Adds a row: an orbit, and the number of its branch.
+    pub fn add(&mut self, branch: usize, point: &Point) {
+        let parameters = point.parameters.iter().take(self.parameters);
+        let parameters: Vec<String> = parameters.map(|&value| number(value)).collect();
+        let cells = cells(branch, point);
+        let observed = &point.observed;
+        let contacts = observed.contacts.iter().zip(&observed.on_pieces);
+        let mut of_contacts: Vec<String> = Vec::new();
+        for ((contact, on_pieces), &pieces) in contacts.zip(&self.pieces) {
+            let forces = [contact.minimum_force, contact.maximum_force];
+            let values = forces.iter().chain(on_pieces.iter().take(pieces));
+            of_contacts.extend(values.map(|&value| number(value)));
+        }
+        let all = cells.iter().chain(&parameters).chain(&of_contacts);
+        self.line(all.map(String::as_str));
+    }
+
+    /// The text of the table, with a line break after every row.
+    pub fn to_csv(&self) -> String {
+        self.text.clone()
+    }
+
+    fn line<'c>(&mut self, cells: impl Iterator<Item = &'c str>) {
+        for (index, cell) in cells.enumerate() {
+            let comma = if index == 0 { "" } else { "," };
+            // Writing to a string does not fail.
+            let _ = if cell.contains([',', '"', '\n', '\r']) {
+                write!(self.text, "{comma}\"{}\"", cell.replace('"', "\"\""))
+            } else {
+                write!(self.text, "{comma}{cell}")
+            };
+        }
+        self.text.push('\n');
+    }
+}
+
+/// Names of the columns of contacts, whose laws have so many pieces.
+fn of_contacts(pieces: &[usize]) -> Vec<String> {
+    let contacts = pieces.iter().zip(1..);
+    let names = contacts.flat_map(|(&pieces, contact)| {
+        let forces = ["min", "max"].map(|which| format!("contact_{contact}_{which}_force"));
+        let pieces = (1..=pieces).map(move |piece| format!("contact_{contact}_piece_{piece}"));
+        forces.into_iter().chain(pieces)
+    });
+    names.collect()
+}
+
+/// An orbit of a branch with a number as the texts of [`COLUMNS`]: a row of a [`Table`] without its parameters and what is said of every contact.
+pub fn cells(branch: usize, point: &Point) -> [String; 20] {
+    let motion = point.motion();
+    let part = |index: usize, imaginary: bool| {
+        let multiplier = point.stability.multipliers.get(index);
+        let part = multiplier.map(|m| if imaginary { m.im } else { m.re });
+        part.map_or_else(String::new, number)
+    };
+    let contact = point.observed.contacts.first();
+    let of_contact = |value: Option<f64>| value.map_or_else(String::new, number);
+    [
+        number(point.omega()),
+        number(motion.peak_to_peak()),
+        number(motion.maximum),
+        number(motion.minimum),
+        number(motion.mean),
+        number(motion.rms),
+        point.stability.verdict.to_string(),
+        part(0, false),
+        part(0, true),
+        part(1, false),
+        part(1, true),
+        of_contact(contact.map(|contact| contact.fraction)),
+        contact.map_or_else(String::new, |contact| contact.count.to_string()),
+        of_contact(contact.map(|contact| contact.peak_force)),
+        number(point.observed.dissipated_power),
+        point.orbit.harmonics().to_string(),
+        point.error.map_or_else(String::new, number),
+        branch.to_string(),
+        point.orbit.period.to_string(),
+        number(point.value),
+    ]
+}
+
+/// As short as reads back to the same number.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::FrequencyResponse;
+
+    crate::oscillator! {
+        Named(x) {
+            param mean = 0.5;
+            param drive = 0.1;
+            ddot(x) + 0.2*dot(x) + x = drive*cos(omega*t) + mean;
+        }
+    }
+
+    #[test]
+    fn rows_are_the_closed_form_under_their_names() {
+        let model = Named::default();
+        let branch = FrequencyResponse::of(&model).from(0.5).to(1.5).run();
+        let text = branch.expect("a branch").to_csv();
+        let mut lines = text.lines();
+        let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+        assert_eq!(names[..20], COLUMNS);
+        assert_eq!(names[20..], ["mean_", "drive"]);
+        for line in lines {
+            let cells: Vec<&str> = line.split(',').collect();
+            let cell = |name: &str| {
+                let column = names.iter().position(|&other| other == name);
+                cells[column.expect("a column")]
+            };
+            let value = |name: &str| cell(name).parse::<f64>().expect("a number");
+            let omega = value("omega");
+            let stiffness = (1.0 - omega * omega).hypot(0.2 * omega);
+            assert!((value("peak_to_peak") * stiffness - 0.2).abs() < 1e-9);
+            assert!((value("mean") - 0.5).abs() < 1e-12);
+            assert_eq!((value("mean_"), value("drive")), (0.5, 0.1));
+            assert_eq!((cell("contacts"), cell("peak_force")), ("", ""));
+            assert_eq!((cell("stability"), value("value")), ("stable", omega));
+        }
+    }
+
+    #[test]
+    fn a_cell_with_a_comma_is_quoted() {
+        let mut table = Table {
+            text: String::new(),
+            parameters: 0,
+            pieces: Vec::new(),
+        };
+        table.line(["a,b", "\"", "c"].into_iter());
+        assert_eq!(table.to_csv(), "\"a,b\",\"\"\"\",c\n");
+    }
+}

@@ -1,0 +1,119 @@
+//! From an event of a branch of the balance onto the branch that begins there.
+//!
+//! At the event the block of harmonics that the orbits do not have is singular ([`block`](crate::balance::block)). Its null vector is the
+//! direction of the new branch, which leaves the old one at a right angle: for a step `e` the parameter changes by `e^2` only.
+//! So the first orbit is solved for with its component in that direction held. Where two branches of orbits with the same harmonics
+//! cross, the null vector is across the tangent of the known one, which has no component there but by its curvature; the other one
+//! has, at whatever angle it crosses.
+//!
+//! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 8 (branch switching); Detroux,
+//! Renson, Masset and Kerschen (2015), The harmonic balance method for bifurcation analysis, section 4.
+
+use crate::balance::Parity;
+use crate::balance::block::{Block, Part};
+use crate::balance::resolution::resize;
+use crate::branches::branch::{Event, EventKind};
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::newton::{Border, Newton};
+use crate::continuation::problem::Problem;
+use crate::error::Error;
+use crate::numeric::fourier::series;
+use crate::response::follower::Follower;
+
+/// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
+/// orbit of the new branch is taken.
+const DEPARTURES: [f64; 4] = [0.02, 0.05, 0.01, 0.1];
+/// Part of the component that must be left for the orbit to be one of the new branch.
+const LEFT: f64 = 0.5;
+
+/// The first orbit of the branch that begins at an event, with its direction, in the resolution of the new branch's follower. The
+/// harmonics of the old branch are multiples of a stride.
+///
+/// # Errors
+/// [`Error::NoBranch`] if no branch begins there, or its first orbit was not found.
+pub(crate) fn depart(
+    follower: &Follower<'_>,
+    event: &Event,
+    stride: usize,
+    side: f64,
+) -> Result<CurvePoint, Error> {
+    let nothing = Error::NoBranch {
+        kind: event.kind,
+        value: event.point.value,
+    };
+    let orbit = &event.point.orbit;
+    let mut u = orbit.series.clone();
+    u.push(event.point.value);
+    let halved = stride == 2 * follower.resolution.stride;
+    let (part, parity) = match event.kind {
+        EventKind::PeriodDoubling => (Part::Doubled, Parity::All),
+        EventKind::SymmetryBreaking => (Part::Even, Parity::Odd),
+        EventKind::BranchPoint if !event.tangent.is_empty() => (Part::Own, Parity::All),
+        EventKind::BranchPoint if halved => (Part::Between, Parity::All),
+        _ => return Err(nothing),
+    };
+    let mut old = follower.with_harmonics(orbit.harmonics(), orbit.harmonics());
+    (old.parity, old.stride, old.period) = (parity, stride, orbit.period);
+    let mut block = Block::new(
+        part,
+        follower.system,
+        &follower.parameters,
+        follower.omega,
+        follower.variable,
+        old,
+    );
+    let (on_block, direction) = block.null_vector(&u, &event.tangent);
+    let harmonics = follower.resolution.harmonics;
+    let length = series::length(harmonics);
+    let of_branch = |u: &[f64]| resize(u, orbit.coordinates, length);
+    let (start, mut direction) = (of_branch(&on_block), of_branch(&direction));
+    let mut balance = follower.balance(follower.with_harmonics(harmonics, harmonics));
+    let mut newton = Newton::new(&balance);
+    let range = (follower.to - follower.from).abs();
+    if part == Part::Own {
+        let norm = newton.norm();
+        let scale = norm.scale_at(&start, range, &mut [0.0; 2]);
+        let tangent = of_branch(&event.tangent);
+        let along = norm.product(scale, &direction, &tangent);
+        let part = along / norm.product(scale, &tangent, &tangent);
+        for (x, t) in direction.iter_mut().zip(&tangent) {
+            *x -= part * t;
+        }
+    }
+    for departure in DEPARTURES {
+        let scale = newton.norm().scale_at(&start, range, &mut [0.0; 2]);
+        let length = newton.norm().length(scale, &direction);
+        let unit: Vec<f64> = direction.iter().map(|x| x / length).collect();
+        let mut row = vec![0.0; unit.len()];
+        newton.norm().linear_form(scale, &unit, &mut row);
+        let step = side * departure;
+        let mut u: Vec<f64> = start.iter().zip(&unit).map(|(x, d)| x + step * d).collect();
+        let border = Border {
+            row: &row,
+            value: crate::numeric::linear::dot(&row, &u),
+        };
+        let options = follower.newton;
+        if newton
+            .correct(&mut balance, &mut u, border, scale, options)
+            .is_err()
+        {
+            continue;
+        }
+        let difference: Vec<f64> = u.iter().zip(&start).map(|(x, y)| x - y).collect();
+        let along = crate::numeric::linear::dot(&row, &difference);
+        if along.abs() < LEFT * departure
+            || newton.norm().length(scale, &difference) > 10.0 * departure
+        {
+            continue;
+        }
+        let mut tangent = vec![0.0; balance.unknowns() + 1];
+        newton.tangent(&mut balance, &u, &mut tangent, true);
+        let outwards = step * crate::numeric::linear::dot(&row, &tangent);
+        let length = newton.norm().length(scale, &tangent) * outwards.signum();
+        for t in &mut tangent {
+            *t /= length;
+        }
+        return Ok(CurvePoint { u, tangent, scale });
+    }
+    Err(nothing)
+}

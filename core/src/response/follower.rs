@@ -1,0 +1,306 @@
+//! What it takes to compute further orbits of a branch, and those at a value.
+
+use crate::balance::block::{Block, Part};
+use crate::balance::resolution::{Chooser, resize};
+use crate::balance::start::{Motion, StartRequest};
+use crate::balance::truncation::Finer;
+use crate::balance::{Balance, Parity, Resolution};
+use crate::branches::branch::{Event, Orbit, Point};
+use crate::continuation::follow::{CurvePoint, FollowOptions};
+use crate::continuation::jacobian::Jacobian;
+use crate::continuation::locate::locate;
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::{Norm, Problem};
+use crate::error::Error;
+use crate::numeric::fourier::series;
+use crate::orbit::stability::Method;
+use crate::response::reader::Reader;
+use crate::system::{System, Variable};
+
+/// What the core leaves out, relative to the diagonal of the tail.
+const COUPLING: f64 = 0.02;
+/// Harmonics that are always in the core, for each period of the excitation.
+const LEAST_CORE: usize = 6;
+/// A core pays when the harmonics are so many times as many.
+const WORTHWHILE: f64 = 1.5;
+/// A value asked for is met to this part of the range.
+const VALUE_TOLERANCE: f64 = 1e-13;
+
+/// Events that a run looks for. Where a symmetry breaks is located always.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sought {
+    Folds,
+    /// And doublings of the period.
+    Doublings,
+    /// And crossings of branches, tori, and touches of levels.
+    All,
+}
+
+/// What it takes to compute further orbits of a branch.
+#[derive(Clone)]
+pub(crate) struct Follower<'a> {
+    pub(crate) system: &'a dyn System,
+    pub(crate) parameters: Vec<f64>,
+    pub(crate) omega: f64,
+    pub(crate) variable: Variable,
+    pub(crate) resolution: Resolution,
+    pub(crate) newton: NewtonOptions,
+    /// The orbits lack the odd symmetry that others of the system have.
+    pub(crate) asymmetric: bool,
+    /// Which events are looked for.
+    pub(crate) sought: Sought,
+    /// How multipliers are computed, where they are.
+    pub(crate) stability: Option<Method>,
+    /// How harmonics follow the tolerance, where they do.
+    pub(crate) chooser: Option<Chooser>,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+}
+
+impl std::fmt::Debug for Follower<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Follower")
+            .field("variable", &self.variable)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Follower<'a> {
+    /// The balance at one of the branch's resolutions.
+    pub(crate) fn balance(&self, resolution: Resolution) -> Balance<'a> {
+        Balance::new(
+            self.system,
+            &self.parameters,
+            self.omega,
+            self.variable,
+            resolution,
+        )
+    }
+
+    /// A reader of orbits of that resolution.
+    pub(crate) fn reader(&self, resolution: Resolution) -> Reader<'a> {
+        let finer = Finer::new(
+            self.system,
+            &self.parameters,
+            self.omega,
+            self.variable,
+            resolution,
+        );
+        Reader::new(finer, self.stability, self.chooser.is_some())
+    }
+
+    /// What becomes singular at bifurcations of orbits of that resolution: the even harmonics where they have odd ones only, those
+    /// of twice the period, which are harmonics of the declared one where an even number of them is in it, and all, where that is
+    /// looked for.
+    pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<Block<'a>> {
+        let odd = resolution.parity == Parity::Odd;
+        let all = self.sought == Sought::All;
+        let halves = resolution.stride.is_multiple_of(2);
+        let wanted = [
+            (odd, Part::Even),
+            (
+                !odd && !halves && self.sought != Sought::Folds,
+                Part::Doubled,
+            ),
+            (!odd && halves && all, Part::Between),
+            (all, Part::Own),
+        ];
+        let wanted = wanted.into_iter().filter(|(wanted, _)| *wanted);
+        wanted
+            .map(|(_, part)| self.block(part, resolution))
+            .collect()
+    }
+
+    /// One part of the Jacobian.
+    pub(crate) fn block(&self, part: Part, resolution: Resolution) -> Block<'a> {
+        Block::new(
+            part,
+            self.system,
+            &self.parameters,
+            self.omega,
+            self.variable,
+            resolution,
+        )
+    }
+
+    /// An orbit as extended unknowns of the resolution asked for.
+    pub(crate) fn unknowns_of(&self, orbit: &Orbit, value: f64) -> Vec<f64> {
+        let mut u = orbit.series.clone();
+        u.push(value);
+        let length = series::length(self.resolution.harmonics);
+        let mut u = resize(&u, orbit.coordinates, length);
+        let partition = self.balance(self.resolution).partition();
+        partition.clear_others(&mut u);
+        u
+    }
+
+    /// The same resolution with another number of harmonics, and with a core if that pays.
+    pub(crate) fn with_harmonics(&self, harmonics: usize, core: usize) -> Resolution {
+        let pays = WORTHWHILE * core as f64 <= harmonics as f64;
+        Resolution {
+            harmonics,
+            core: if pays { core } else { harmonics },
+            ..self.resolution
+        }
+    }
+
+    /// The size of the core that an orbit asks for: large enough that the iteration converges fast.
+    pub(crate) fn core_for(&self, u: &[f64]) -> usize {
+        let mut balance = self.balance(self.resolution);
+        let mut jacobian = Jacobian::new(balance.partition());
+        let mut residual = vec![0.0; u.len() - 1];
+        balance.evaluate(u, &mut residual, Some(&mut jacobian));
+        let least = LEAST_CORE * self.resolution.period * self.resolution.stride;
+        balance.core_size(COUPLING).max(least)
+    }
+
+    /// What a start is asked for; `motion` moves states of the system in time.
+    pub(crate) fn start_request<'s>(
+        &'s self,
+        options: FollowOptions,
+        motion: &'s Motion<'s>,
+    ) -> StartRequest<'s> {
+        StartRequest {
+            system: self.system,
+            parameters: &self.parameters,
+            omega: self.omega,
+            variable: self.variable,
+            value: options.from,
+            resolution: self.resolution,
+            newton: options.newton,
+            motion: Some(motion),
+        }
+    }
+
+    /// See [`Branch::at`].
+    pub(crate) fn at(
+        &self,
+        points: &[Point],
+        events: &[Event],
+        value: f64,
+    ) -> Result<Vec<Point>, Error> {
+        let mut found: Vec<Point> = Vec::new();
+        // Between folds the branch is monotonic, so every part of this chain passes a value at most once.
+        let chain = chain(points, events);
+        for (index, point) in chain.iter().enumerate() {
+            let solution = if point.value == value {
+                Some((*point).clone())
+            } else {
+                match chain.get(index + 1) {
+                    Some(next)
+                        if next.value != value && (point.value < value) != (next.value < value) =>
+                    {
+                        Some(self.between((point, next), value)?)
+                    }
+                    _ => None,
+                }
+            };
+            // A closed branch ends where it began.
+            found.extend(
+                solution.filter(|new| !found.iter().any(|old| is_same(&old.orbit, &new.orbit))),
+            );
+        }
+        Ok(found)
+    }
+
+    /// The orbit at a value between those of two neighbours, with their harmonics, or more where the tolerance asks for them.
+    fn between(&self, (a, b): (&Point, &Point), value: f64) -> Result<Point, Error> {
+        let mut harmonics = a.orbit.harmonics().max(b.orbit.harmonics());
+        let mut point = self.searched((a, b), value, harmonics)?;
+        let mut chooser = self.chooser.clone();
+        loop {
+            let error = point.error.unwrap_or(f64::INFINITY);
+            let chosen = chooser.as_mut().and_then(|c| c.decide(harmonics, error));
+            let Some(more) = chosen.filter(|&chosen| chosen > harmonics) else {
+                return Ok(point);
+            };
+            harmonics = more;
+            match self.searched((a, b), value, harmonics) {
+                Ok(better) => point = better,
+                // What was found stands, with its error.
+                Err(_) => return Ok(point),
+            }
+        }
+    }
+
+    /// The orbit at a value between those of two neighbours, searched along the chord of the two.
+    fn searched(
+        &self,
+        (a, b): (&Point, &Point),
+        value: f64,
+        harmonics: usize,
+    ) -> Result<Point, Error> {
+        let mut balance = self.balance(self.with_harmonics(harmonics, harmonics));
+        let newton = &mut Newton::new(&balance);
+        let extended = |point: &Point| {
+            let mut u = point.orbit.series.clone();
+            u.push(point.value);
+            resize(&u, point.orbit.coordinates, series::length(harmonics))
+        };
+        let (from, to) = (extended(a), extended(b));
+        let range = (self.to - self.from).abs();
+        let norm: &Norm = newton.norm();
+        let mut largest = [0.0; 2];
+        norm.scale_at(&to, range, &mut largest);
+        let scale = norm.scale_at(&from, range, &mut largest);
+        let mut tangent: Vec<f64> = to.iter().zip(&from).map(|(x, y)| x - y).collect();
+        let length = norm.length(scale, &tangent);
+        for t in &mut tangent {
+            *t /= length;
+        }
+        let first = CurvePoint {
+            u: from,
+            tangent: tangent.clone(),
+            scale,
+        };
+        let second = CurvePoint {
+            u: to,
+            tangent,
+            scale,
+        };
+        let offset = |point: &CurvePoint| (point.parameter() - value) / range;
+        let located = locate(
+            &mut balance,
+            newton,
+            (&first, &second),
+            self.newton,
+            VALUE_TOLERANCE,
+            offset,
+        );
+        let lost = Error::Lost {
+            value,
+            from: a.value,
+            to: b.value,
+        };
+        let mut u = located
+            .filter(|located| located.vanishes)
+            .ok_or(lost)?
+            .point
+            .u;
+        let last = u.len() - 1;
+        u[last] = value;
+        let mut reader = self.reader(balance.resolution());
+        Ok(reader.read(&mut balance, newton, &u))
+    }
+}
+
+/// Points of a branch, and where it turns back, in their order along it.
+fn chain<'p>(points: &'p [Point], events: &'p [Event]) -> Vec<&'p Point> {
+    let mut chain = Vec::with_capacity(points.len() + events.len());
+    for (index, point) in points.iter().enumerate() {
+        let turns = events
+            .iter()
+            .filter(|event| event.after == index && event.kind.turns());
+        chain.extend(turns.map(|event| &event.point));
+        chain.push(point);
+    }
+    chain
+}
+
+/// Whether two orbits are one to nine digits.
+fn is_same(a: &Orbit, b: &Orbit) -> bool {
+    let size = a.series.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let near = |(x, y): (&f64, &f64)| (x - y).abs() <= 1e-9 * size;
+    let same = |i| a.series(i).iter().zip(b.series(i)).all(near);
+    a.omega == b.omega && (0..a.coordinates).all(same)
+}

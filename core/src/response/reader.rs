@@ -1,0 +1,170 @@
+//! Everything that is read off an orbit.
+
+use crate::balance::Balance;
+use crate::balance::truncation::{BEYOND, Finer};
+use crate::branches::branch::{Orbit, Point};
+use crate::continuation::newton::Newton;
+use crate::continuation::problem::Problem;
+use crate::numeric::fourier::series;
+use crate::orbit::observe::{Motion, Observed, Observer};
+use crate::orbit::stability::judge::Judge;
+use crate::orbit::stability::{Method, Stability};
+
+/// Relative error of peak-to-peak that rounding leaves.
+const ROUNDING: f64 = 1e-14;
+/// A first coordinate that moves by less than this part of the largest motion is at rest beside it.
+const STILL: f64 = 1e-6;
+/// A branch less steep than this is at a fold that was located.
+const FOLD: f64 = 1e-6;
+/// Roundings of the two extremes.
+const EXTREMES: f64 = 4.0;
+
+/// Reads orbits of one resolution.
+#[derive(Debug)]
+pub(crate) struct Reader<'a> {
+    pub(crate) finer: Finer<'a>,
+    pub(crate) judge: Option<Judge>,
+    observer: Observer,
+    /// What errors of the coordinates are measured by.
+    units: Vec<f64>,
+    tangent: Vec<f64>,
+    /// The last error, without what lies along the branch: near a fold no harmonics take that away soon.
+    pub(crate) across: f64,
+    /// The error is wanted, whether or not the stability is.
+    estimate: bool,
+    /// What rounding of the equations makes of the last orbit, relative to its peak-to-peak, where that exceeds the tolerance of Newton's
+    /// method; zero otherwise.
+    pub(crate) rounding: f64,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(finer: Finer<'a>, stability: Option<Method>, estimate: bool) -> Self {
+        Self {
+            finer,
+            judge: stability.map(Judge::new),
+            observer: Observer::default(),
+            units: Vec::new(),
+            tangent: Vec::new(),
+            across: f64::INFINITY,
+            estimate,
+            rounding: 0.0,
+        }
+    }
+
+    /// Everything that is read off a solution, whose factors Newton's method holds.
+    pub(crate) fn read(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        u: &[f64],
+    ) -> Point {
+        let n = balance.unknowns();
+        balance.set(u[n]);
+        let wanted = self.estimate || self.judge.is_some();
+        let corrected = wanted && self.finer.correct(u, newton);
+        let stability = self
+            .judge
+            .as_mut()
+            .map_or_else(Stability::unknown, |judge| {
+                judge.stability(balance, corrected.then_some(&self.finer), u)
+            });
+        let orbit = Orbit {
+            series: u[..n].to_vec(),
+            coordinates: balance.layout().coordinates,
+            omega: balance.omega(),
+            base: balance.base(),
+            period: balance.resolution().period,
+        };
+        let observed = self.observer.observe(balance, u);
+        self.across = f64::INFINITY;
+        let error = wanted.then(|| {
+            if corrected {
+                self.error(&observed, balance, u, newton)
+            } else {
+                f64::INFINITY
+            }
+        });
+        Point {
+            value: u[n],
+            parameters: balance.parameters().to_vec(),
+            orbit,
+            stability,
+            observed,
+            error,
+        }
+    }
+
+    /// Largest change of a coordinate's peak-to-peak by the correction, by what Newton's method left, and by rounding of its extremes:
+    /// of the first coordinate relative to its own, of the others to the largest.
+    fn error(
+        &mut self,
+        observed: &Observed,
+        balance: &Balance<'_>,
+        u: &[f64],
+        newton: &mut Newton,
+    ) -> f64 {
+        // Of the orbit itself, before the correction is computed.
+        let (left, rounding) = (newton.left_in_oscillation(), newton.rounding_size());
+        let largest = |of: fn(&Motion) -> f64| observed.motions.iter().map(of).fold(0.0, f64::max);
+        let size = largest(Motion::peak_to_peak);
+        self.units.clear();
+        if size == 0.0 {
+            self.units.resize(observed.motions.len(), 1.0);
+            self.across = self.truncation(balance, u, newton) + left;
+            return self.across;
+        }
+        self.units.resize(observed.motions.len(), size);
+        self.units[0] = observed.motions[0].peak_to_peak().max(STILL * size);
+        let along = self.along(u, newton);
+        let truncation = self.truncation(balance, u, newton);
+        // From a mean square over coordinates to the peak-to-peak of one of them.
+        let peak = 2.0 * (2.0 * observed.motions.len() as f64).sqrt();
+        self.rounding = peak * rounding / self.units[0];
+        let farthest = largest(|motion| motion.maximum.abs().max(motion.minimum.abs()));
+        let extremes = EXTREMES * f64::EPSILON * farthest;
+        self.across = truncation + (peak * left + extremes) / self.units[0] + ROUNDING;
+        self.across + along
+    }
+
+    /// What the peak-to-peak of the orbit at this very value differs from that of the corrected one, which lies across the branch and so at
+    /// another value: to first order, by the slope of the branch. Not at a fold, where there is none; its own error says where it lies.
+    fn along(&mut self, u: &[f64], newton: &mut Newton) -> f64 {
+        let n = u.len() - 1;
+        self.tangent.resize(u.len(), 0.0);
+        let steepness = newton.direction(&mut self.tangent);
+        if steepness < FOLD {
+            return 0.0;
+        }
+        let shift = self
+            .finer
+            .extended()
+            .last()
+            .map_or(0.0, |value| value - u[n])
+            / self.tangent[n];
+        let length = n / self.units.len();
+        let moved = |coordinate: usize, phase: f64| {
+            let series = &self.tangent[coordinate * length..][..length];
+            series::value_and_derivatives(series, phase).0
+        };
+        let coordinates = self.observer.phases().iter().zip(&self.units).enumerate();
+        let changes = coordinates.map(|(coordinate, (&[low, high], unit))| {
+            (moved(coordinate, high) - moved(coordinate, low)).abs() / unit
+        });
+        shift.abs() * changes.fold(0.0, f64::max)
+    }
+
+    /// The part of the harmonics that were left out, each coordinate in its unit.
+    ///
+    /// Where a law is too sharp for the series, and for the correction with it, an orbit closed by integration tells.
+    fn truncation(&mut self, balance: &Balance<'_>, u: &[f64], newton: &mut Newton) -> f64 {
+        let units = &self.units;
+        let phases = self.observer.phases();
+        let correction = BEYOND * self.finer.peak_to_peak_error(u, phases, units, newton);
+        let judge = self.judge.as_ref();
+        let refined = judge.and_then(|judge| judge.refined.as_ref());
+        let orbit = &u[..balance.unknowns()];
+        refined
+            .and_then(|refined| refined.peak_to_peak_error(balance, orbit, phases, units))
+            .unwrap_or(correction)
+    }
+}

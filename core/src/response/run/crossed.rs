@@ -1,0 +1,99 @@
+//! Where another branch crosses, which no zero of a test function can be driven to: see [`continuation::crossing`](crate::continuation::crossing).
+
+use super::Run;
+use super::watch::{Between, ROUNDING, Test, known, three_quarters};
+use crate::balance::Balance;
+use crate::balance::truncation::BEYOND;
+use crate::branches::branch::{Event, EventKind};
+use crate::continuation::crossing::locate_crossing;
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::newton::{Border, Newton};
+
+/// Derivatives along the branch are differences over this part of the step: close by, the matrix of a step is singular.
+const BESIDE: f64 = 0.1;
+/// What interpolation leaves of a determinant at a branch point, as a part of what it is at the ends of the step.
+const CROSSED: f64 = 1e-6;
+
+impl<'a> Run<'_, 'a> {
+    /// Locates where another branch crosses, by interpolation: close by, the matrix of a step is singular.
+    pub(super) fn branch_point(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        test: &mut Test<'_, 'a>,
+    ) {
+        let kind = EventKind::BranchPoint;
+        let options = self.options.newton;
+        let value = |point: &CurvePoint| test.at(&point.u, &point.tangent);
+        let found = locate_crossing(balance, newton, between, options, value);
+        let Some(found) = found.filter(|found| found.test.abs() <= CROSSED) else {
+            return self.omit(kind, between, f64::NAN);
+        };
+        let shift = self.crossing_shift(balance, newton, between, &found.point, test);
+        let error = BEYOND * shift + found.error + ROUNDING * found.point.parameter().abs();
+        let point = self.reader.read(balance, newton, &found.point.u);
+        self.events.push(Event {
+            kind,
+            point,
+            error: known(error),
+            test: found.test,
+            after: self.points.len() - 1,
+            contacts: 0,
+            tangent: found.point.tangent,
+        });
+    }
+
+    /// How far corrected orbits put a branch point from where it is: the zeros of straight lines through the test function
+    /// on both sides of it, before and after the correction. As with other events, both halves of the harmonics that were left
+    /// out are taken by their sizes.
+    fn crossing_shift(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): Between<'_>,
+        at: &CurvePoint,
+        test: &mut Test<'_, 'a>,
+    ) -> f64 {
+        let mut row = vec![0.0; at.u.len()];
+        newton
+            .norm()
+            .linear_form(before.scale, &at.tangent, &mut row);
+        let pairs = behind.u.iter().zip(&before.u);
+        let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+        let width = BESIDE * newton.norm().length(before.scale, &step);
+        let fine = self.reader.finer.balance().resolution();
+        let resolutions = [fine, three_quarters(fine)];
+        let mut watches = resolutions.map(|of| self.watch_like(test, of));
+        let mut coarse = [[0.0; 2]; 2];
+        let mut finer = [[[0.0; 2]; 2]; 2];
+        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            let pairs = at.u.iter().zip(&at.tangent);
+            let mut u: Vec<f64> = pairs.map(|(x, t)| x + sign * width * t).collect();
+            let border = Border {
+                row: &row,
+                value: crate::numeric::linear::dot(&row, &u),
+            };
+            let options = self.options.newton;
+            let corrected = newton.correct(balance, &mut u, border, before.scale, options);
+            if corrected.is_err() || !self.reader.finer.correct(&u, newton) {
+                return f64::INFINITY;
+            }
+            coarse[side] = [u[u.len() - 1], test.at(&u, &at.tangent)];
+            for ((watch, of), finer) in watches.iter_mut().zip(resolutions).zip(&mut finer) {
+                let u = self.with_harmonics_of(self.reader.finer.extended(), of);
+                let tangent = self.with_harmonics_of(&at.tangent, of);
+                let Some(mut test) = watch.test(test) else {
+                    return f64::INFINITY;
+                };
+                finer[side] = [u[u.len() - 1], test.at(&u, &tangent)];
+            }
+        }
+        for watch in &watches {
+            self.count(watch);
+        }
+        let zero = |[[p, a], [q, b]]: [[f64; 2]; 2]| p + (q - p) * a / (a - b);
+        let [all, half] = finer.map(|sides| zero(sides) - zero(coarse));
+        half.abs() + (all - half).abs()
+    }
+}

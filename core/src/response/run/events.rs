@@ -1,0 +1,213 @@
+//! Folds between two points of a branch, and the end of a branch of longer orbits.
+
+use super::Run;
+use crate::balance::subharmonics::{is_shifted, passes_shorter_period};
+use crate::balance::symmetry::{broken, broken_share};
+use crate::balance::{Balance, Resolution};
+use crate::branches::branch::{Event, EventKind, Turn};
+use crate::continuation::follow::{CurvePoint, Stop};
+use crate::continuation::locate::{Located, locate};
+use crate::continuation::newton::Newton;
+use crate::continuation::problem::Norm;
+
+/// The test function of a fold is driven below this.
+pub(super) const FOLD_TOLERANCE: f64 = 1e-10;
+/// What the orbits of a longer period have in addition vanishes as the square root of the distance in the parameter, so that
+/// this part of it is as good as nothing.
+const JOINED: f64 = 1e-5;
+
+/// What Newton's method leaves is below so many times its tolerance.
+const BEYOND_NEWTON: f64 = 100.0;
+/// An orbit that has more than this part of it left is not one of the more regular branch.
+const LEFT: f64 = 0.05;
+
+impl Run<'_, '_> {
+    /// Locates the fold between two points, or the jump that is there instead, behind so many points of the branch: the one behind the
+    /// turn has been stored already.
+    pub(super) fn turn(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+        after: usize,
+    ) {
+        let slope = CurvePoint::parameter_slope;
+        let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, fold: &Located| {
+            run.fold(b, n, fold, after);
+        };
+        let Err(jump) = self.locate_zero(balance, newton, between, slope, read) else {
+            return;
+        };
+        let (value, test) = jump.map_or_else(
+            || {
+                let (a, b) = between;
+                (0.5 * (a.parameter() + b.parameter()), a.parameter_slope())
+            },
+            |jump| (jump.point.parameter(), jump.test),
+        );
+        self.turns.push(Turn {
+            kind: EventKind::Fold,
+            value,
+            test,
+            after,
+        });
+    }
+
+    /// Locates the zero of a test function between two points, with core and tail, or else with the whole system, and has it read
+    /// while Newton's method holds its factors.
+    ///
+    /// # Errors
+    /// Where it jumps instead, if that was found.
+    pub(super) fn locate_zero(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+        test: impl Fn(&CurvePoint) -> f64,
+        mut read: impl FnMut(&mut Self, &mut Balance<'_>, &mut Newton, &Located),
+    ) -> Result<(), Option<Located>> {
+        let options = self.options.newton;
+        let found = locate(balance, newton, between, options, FOLD_TOLERANCE, &test);
+        if let Some(zero) = found.as_ref().filter(|located| located.vanishes) {
+            read(self, balance, newton, zero);
+            return Ok(());
+        }
+        let whole = Resolution {
+            core: self.resolution.harmonics,
+            ..self.resolution
+        };
+        if self.resolution.core < whole.core {
+            let mut balance = self.follower.balance(whole);
+            let mut newton = Newton::new(&balance);
+            let again = locate(
+                &mut balance,
+                &mut newton,
+                between,
+                options,
+                FOLD_TOLERANCE,
+                &test,
+            );
+            let zero = again.filter(|located| located.vanishes);
+            if let Some(zero) = &zero {
+                read(self, &mut balance, &mut newton, zero);
+            }
+            self.statistics += newton.statistics;
+            if zero.is_some() {
+                return Ok(());
+            }
+        }
+        Err(found)
+    }
+
+    /// Reads a fold that was located. One of longer orbits that was passed before, but for a shift in time, is the sign of a
+    /// branch that closes after a part of the period.
+    fn fold(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        located: &Located,
+        after: usize,
+    ) {
+        let u = &located.point.u;
+        let error = self.reader.finer.fold_error(u, newton);
+        let point = self.reader.read(balance, newton, u);
+        let turns = |after: usize, value: f64| self.points[after - 1].value < value;
+        let same_way = turns(after, point.value);
+        let near = |other: &&Event| {
+            let apart = (other.point.value - point.value).abs();
+            let errors = other.error + error;
+            let range = (self.options.to - self.options.from).abs();
+            // The two folds of a narrow hysteresis turn opposite ways.
+            let alike = turns(other.after, other.point.value) == same_way;
+            other.kind == EventKind::Fold
+                && alike
+                && errors.is_finite()
+                && apart <= errors + 1e-9 * range
+        };
+        let mut passed = self.events.iter().filter(near);
+        if point.orbit.period > 1
+            && passed.any(|other| is_shifted(&other.point.orbit, &point.orbit))
+        {
+            self.ended = Some(Stop::Closed);
+            return;
+        }
+        self.events.push(Event {
+            kind: EventKind::Fold,
+            point,
+            error,
+            test: located.test,
+            after,
+            contacts: 0,
+            tangent: Vec::new(),
+        });
+    }
+
+    /// Whether the branch has passed an orbit of a shorter period, or a symmetric one, since its last point: what its orbits have
+    /// in addition has changed its sign.
+    pub(super) fn joins(&self, u: &[f64]) -> bool {
+        let orbit = self.points.last().map(|point| &point.orbit);
+        orbit.is_some_and(|orbit| {
+            let length = orbit.series(0).len();
+            let least = BEYOND_NEWTON * self.options.newton.tolerance;
+            let symmetric = self.follower.asymmetric
+                && broken_share(&orbit.series, length) > least * least
+                && broken(orbit, u).vanished();
+            symmetric || passes_shorter_period(orbit, u).is_some()
+        })
+    }
+
+    /// Locates where a branch of longer orbits joins one of a shorter period, and ends it there: what would follow are the
+    /// same orbits again, one excitation period later. Says whether it does; what its orbits have in addition may also turn
+    /// without vanishing.
+    pub(super) fn join(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): (&CurvePoint, &CurvePoint),
+    ) -> bool {
+        let Some(last) = self.points.last() else {
+            return false;
+        };
+        let joined = passes_shorter_period(&last.orbit, &behind.u);
+        let addition = |point: &CurvePoint| match joined {
+            Some(joined) => joined.addition(&last.orbit, &point.u),
+            None => broken(&last.orbit, &point.u),
+        };
+        let period = joined.map_or(last.orbit.period, |joined| joined.period);
+        let options = self.options.newton;
+        let between = (before, behind);
+        let along = |point: &CurvePoint| addition(point).along();
+        let value = match locate(balance, newton, between, options, JOINED, along) {
+            // It turned, and did not vanish: the branch goes on.
+            Some(located) if addition(&located.point).size() > LEFT => return false,
+            Some(located) => located.point.parameter(),
+            None => vertex(newton.norm(), before, behind),
+        };
+        self.ended = Some(Stop::Joined { period, value });
+        true
+    }
+}
+
+/// The parameter where it turns back between two points, on the cubic through both with their slopes (Hermite's); in the middle if
+/// that does not turn.
+fn vertex(norm: &Norm, before: &CurvePoint, behind: &CurvePoint) -> f64 {
+    let pairs = behind.u.iter().zip(&before.u);
+    let difference: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+    let length = norm.length(before.scale, &difference);
+    let last = difference.len() - 1;
+    let change = difference[last];
+    let [a, b] = [before, behind]
+        .map(|point| length * point.tangent[last] / norm.length(before.scale, &point.tangent));
+    // The slope is a + 2 c x + 3 d x^2 for x from 0 to 1.
+    let (c, d) = (3.0 * change - 2.0 * a - b, a + b - 2.0 * change);
+    let root = (c * c - 3.0 * a * d).sqrt();
+    let turns = [-a / (c + root), -a / (c - root)];
+    let inside = turns.into_iter().find(|x| (0.0..=1.0).contains(x));
+    let x = inside.unwrap_or(0.5);
+    let turned = before.parameter() + x * (a + x * (c + x * d));
+    if inside.is_some() {
+        turned
+    } else {
+        0.5 * (before.parameter() + behind.parameter())
+    }
+}

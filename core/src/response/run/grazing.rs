@@ -1,0 +1,206 @@
+//! Grazing between two points of a branch.
+//!
+//! Where the force jumps at the level, or its slope does not exist there, the branch has a corner at the touch: beyond it the orbit
+//! moves as the root of the distance, and the branch may turn back. But up to the touch it is smooth, and the distance of the
+//! extreme from the level is a linear form of the orbit once its phase is known,
+//!
+//! ```text
+//! d(tau*) . q(tau*) - delta(tau*) - level = 0,                                                                 (1)
+//! ```
+//!
+//! which closes the equations of the orbit, as its value of the parameter or a step along the branch does. They are solved from the end of
+//! the step where the level is not crossed, with the phase of the extreme from the orbit before.
+//!
+//! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing), and 7.1
+//! (corners of branches).
+
+use super::Run;
+use super::events::FOLD_TOLERANCE;
+use super::touch::{Extreme, Touches, crossings, distinct, is_copy, passed};
+use super::watch::{Between, Test};
+use crate::balance::{Balance, Resolution};
+use crate::branches::branch::{Event, EventKind, Turn};
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::locate::Located;
+use crate::continuation::newton::{Border, Newton, NewtonOptions};
+
+/// Values that differ by this part of the range are one.
+const SAME: f64 = 1e-9;
+/// Extremes that are so near to their levels, in units of the gap, at an orbit that touches one, touch as well: Newton's method leaves
+/// less between copies.
+const AT_ONCE: f64 = 1e-8;
+/// A slope that is smaller where the branch turns does not jump there.
+const STEEP: f64 = 1e-6;
+/// The extreme is brought so close to its level, in units of the gap, from its side of it.
+const AIM: f64 = 1e-12;
+/// Each orbit is so much closer than the one before, so that none of them crosses the level on the way.
+const CLOSER: f64 = 0.03;
+/// Orbits on the way, at most.
+const ORBITS: usize = 16;
+/// An orbit farther from where it was sought than so many steps is another one.
+const FARTHEST: f64 = 3.0;
+
+impl<'a> Run<'_, 'a> {
+    /// Where an extreme of a gap reaches a level, and whether that is where the branch `turned` back without a fold.
+    pub(super) fn grazing(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        (touches, [before, behind]): (&mut Touches<'a>, &mut [Vec<Extreme>; 2]),
+        turned: Option<Turn>,
+    ) {
+        touches.read(&between.0.u, before);
+        touches.read(&between.1.u, behind);
+        let kind = EventKind::Grazing { turns: false };
+        let range = (self.options.to - self.options.from).abs();
+        let (first, after) = (self.events.len(), self.points.len() - 1);
+        let mut found = passed(before, behind);
+        if found.is_empty() && crossings(before) != crossings(behind) {
+            self.omit(kind, between, f64::NAN);
+        }
+        while let Some(&next) = found.first() {
+            let known = self.events.len();
+            self.touch(balance, newton, between, touches, [&next.0, &next.1]);
+            // Contacts that are copies of each other, and orbits with a symmetry, touch in several places at once: one event.
+            let Some(event) = self.events.get_mut(known) else {
+                found.retain(|other| !is_copy(&next, other));
+                continue;
+            };
+            let mut u = event.point.orbit.series.clone();
+            u.push(event.point.value);
+            touches.read(&u, before);
+            let (at_once, later): (Vec<_>, Vec<_>) = found.into_iter().partition(|other| {
+                let there = other.0.nearest(before).or(other.1.nearest(before));
+                *other == next || there.is_some_and(|there| there.above.abs() <= AT_ONCE)
+            });
+            event.contacts = distinct(&at_once);
+            found = later;
+            let value = event.point.value;
+            let is_known = |other: &Event| (other.point.value - value).abs() <= SAME * range;
+            if self.events[first..known].iter().any(is_known) {
+                self.events.truncate(known);
+            }
+        }
+        // What was located nowhere may be where the branch turned.
+        let omitted = self.turns.iter_mut().filter(|turn| turn.after == after);
+        for turn in omitted.filter(|turn| turn.kind == kind) {
+            turn.kind = EventKind::Grazing {
+                turns: turned.is_some(),
+            };
+        }
+        let Some(turned) = turned else {
+            return;
+        };
+        // At a corner the slope jumps, and the value there is beyond those of both ends.
+        let [a, b] = [between.0, between.1].map(CurvePoint::parameter);
+        let jumps = turned.test.abs() > STEEP;
+        let is_turn = |value: f64| {
+            (jumps && (value <= a.min(b) || value >= a.max(b)))
+                || (value - turned.value).abs() <= SAME * range
+        };
+        let mut events = self.events[first..].iter_mut();
+        if let Some(event) = events.find(|event| is_turn(event.point.value)) {
+            // That is where the branch turned, and why.
+            event.kind = EventKind::Grazing { turns: true };
+            self.turns.retain(|turn| turn != &turned);
+        }
+    }
+
+    /// Locates where one extreme reaches its level: from the end of the step where the level is not crossed there, or anywhere between
+    /// both ends.
+    fn touch(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        touches: &mut Touches<'a>,
+        [before, behind]: [&Extreme; 2],
+    ) {
+        let kind = EventKind::Grazing { turns: false };
+        let (from, extreme) = if before.is_clear() {
+            (between.0, before)
+        } else {
+            (between.1, behind)
+        };
+        let pairs = between.1.u.iter().zip(&between.0.u);
+        let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+        let farthest = FARTHEST * newton.norm().length(from.scale, &step);
+        let options = self.options.newton;
+        let mut closed_in = |balance: &mut Balance<'_>, newton: &mut Newton| {
+            let request = (from, *extreme, farthest);
+            close_in(balance, newton, touches, request, options)
+        };
+        if let Some(found) = closed_in(balance, newton) {
+            let mut test = Test::Touch(touches, *extreme);
+            return self.located(balance, newton, between, kind, (&mut test, &found));
+        }
+        if self.resolution.core < self.resolution.harmonics {
+            // What core and tail cannot locate, the whole system may.
+            let mut whole = self.follower.balance(Resolution {
+                core: self.resolution.harmonics,
+                ..self.resolution
+            });
+            let mut newton = Newton::new(&whole);
+            let found = closed_in(&mut whole, &mut newton);
+            if let Some(found) = &found {
+                let mut test = Test::Touch(touches, *extreme);
+                self.located(&mut whole, &mut newton, between, kind, (&mut test, found));
+            }
+            self.statistics += newton.statistics;
+            if found.is_some() {
+                return;
+            }
+        }
+        let mut test = Test::Touch(touches, *before);
+        self.event(balance, newton, between, kind, &mut test);
+    }
+}
+
+/// The orbit whose extreme reaches its level, by Newton's method with (1) as its border; `None` if that leads elsewhere.
+fn close_in(
+    balance: &mut Balance<'_>,
+    newton: &mut Newton,
+    touches: &mut Touches<'_>,
+    (from, mut extreme, farthest): (&CurvePoint, Extreme, f64),
+    options: NewtonOptions,
+) -> Option<Located> {
+    let scale = from.scale;
+    let mut u = from.u.clone();
+    let mut row = vec![0.0; u.len()];
+    let mut extremes = Vec::new();
+    for _ in 0..ORBITS {
+        let aim = extreme.above.signum() * (CLOSER * extreme.above.abs()).max(AIM);
+        touches.form(&u, &extreme, scale.parameter, &mut row);
+        let border = Border {
+            row: &row,
+            value: crate::numeric::linear::dot(&row, &u) + aim - extreme.above,
+        };
+        newton
+            .correct(balance, &mut u, border, scale, options)
+            .ok()?;
+        touches.read(&u, &mut extremes);
+        extreme = *extreme.nearest(&extremes)?;
+        if extreme.above.abs() > FOLD_TOLERANCE {
+            continue;
+        }
+        let pairs = u.iter().zip(&from.u);
+        let moved: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+        let mut tangent = vec![0.0; u.len()];
+        if newton.norm().length(scale, &moved) > farthest
+            || !newton.tangent(balance, &u, &mut tangent, true)
+        {
+            return None;
+        }
+        let length = newton.norm().length(scale, &tangent);
+        for t in &mut tangent {
+            *t /= length;
+        }
+        return Some(Located {
+            point: CurvePoint { u, tangent, scale },
+            test: extreme.above,
+            vanishes: true,
+        });
+    }
+    None
+}

@@ -1,0 +1,360 @@
+//! Events besides folds, and where they are between two points of a branch.
+//!
+//! | event | test function |
+//! |---|---|
+//! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`block`](crate::balance::block)) |
+//! | branch point ([`crossed`](super::crossed)) | the determinant of the Jacobian with the tangent as its border |
+//! | Neimark-Sacker | the product over pairs of multipliers ([`pairs`](crate::orbit::stability::pairs)), and a pair is complex |
+//! | grazing ([`grazing`](super::grazing)) | an extreme of a gap less the level ([`touch`](super::touch)) |
+//!
+//! All are functions of the discrete orbit, and driven to zero on the branch. The same functions of the orbit that is corrected for
+//! the harmonics left out say where the event would be then: with `s` along the unit tangent `t`, and `du` the correction,
+//!
+//! ```text
+//! ds = - T(u + du) / (dT/ds),      d lambda = du_l + ds t_l                                                    (1)
+//! ```
+//!
+//! What changes its sign and leads to no zero is recorded as a [`Turn`] of its kind.
+
+use std::cell::RefCell;
+
+use super::Run;
+use super::touch::{Extreme, Touches};
+use crate::balance::block::{Block, Part};
+use crate::balance::resolution::resize;
+use crate::balance::truncation::BEYOND;
+use crate::balance::{Balance, Resolution};
+use crate::branches::branch::{Event, EventKind, Point, Turn};
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::locate::Located;
+use crate::continuation::newton::Newton;
+use crate::numeric::fourier::series;
+use crate::orbit::stability::pairs::Pairs;
+use crate::response::follower::{Follower, Sought};
+
+/// Derivatives along the branch are differences over this part of the step.
+const DIFFERENCE: f64 = 1e-4;
+/// Relative error that rounding leaves in the value of an event.
+pub(super) const ROUNDING: f64 = 1e-12;
+/// Multipliers whose product is farther than this from one are not looked at more closely.
+const NEAR_CIRCLE: f64 = 0.5;
+
+/// A function of orbits that vanishes at an event.
+pub(super) enum Test<'t, 'a> {
+    /// In units of a size, given as its logarithm: that of the first if it is not given.
+    Block(&'t mut Block<'a>, Option<f64>),
+    Pairs(&'t mut Pairs<'a>),
+    /// Of one extreme, wherever it moves.
+    Touch(&'t mut Touches<'a>, Extreme),
+}
+
+impl Test<'_, '_> {
+    pub(super) fn at(&mut self, u: &[f64], tangent: &[f64]) -> f64 {
+        match self {
+            Self::Block(block, largest) => {
+                let (sign, size) = block.determinant_along(u, tangent);
+                sign * (size - *largest.get_or_insert(size)).exp()
+            }
+            Self::Pairs(pairs) => pairs.product(u).0,
+            Self::Touch(touches, extreme) => {
+                let mut extremes = Vec::new();
+                touches.read(u, &mut extremes);
+                extreme.nearest(&extremes).map_or(f64::NAN, |found| {
+                    // The next one is looked for where this one was.
+                    *extreme = *found;
+                    found.above
+                })
+            }
+        }
+    }
+}
+
+/// What is watched along a branch, at one resolution.
+#[derive(Debug, Default)]
+pub(super) struct Watch<'a> {
+    blocks: Vec<Block<'a>>,
+    pairs: Option<Pairs<'a>>,
+    touches: Option<Touches<'a>>,
+    /// Extremes at the ends of the step looked at.
+    extremes: [Vec<Extreme>; 2],
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(follower: &Follower<'a>, resolution: Resolution) -> Self {
+        let coordinates = follower.system.facts().coordinates.len();
+        let all = follower.sought == Sought::All;
+        // Two multipliers on the unit circle, of one coordinate, are there with no damping only.
+        let pairs = all && follower.stability.is_some() && coordinates > 1;
+        Self {
+            blocks: follower.blocks(resolution),
+            pairs: pairs.then(|| Pairs::new(follower.balance(resolution))),
+            touches: all.then(|| Touches::new(follower.balance(resolution))),
+            extremes: Default::default(),
+        }
+    }
+
+    /// Determinants, each a Jacobian and a factorisation, and monodromy matrices that were computed.
+    pub(super) fn computed(&self) -> (usize, usize) {
+        let determinants = self.blocks.iter().map(|block| block.computed).sum();
+        (
+            determinants,
+            self.pairs.as_ref().map_or(0, |pairs| pairs.computed),
+        )
+    }
+}
+
+/// Two successive points.
+pub(super) type Between<'b> = (&'b CurvePoint, &'b CurvePoint);
+
+impl<'a> Run<'_, 'a> {
+    /// Locates everything but folds between two points, and where the branch `turned` back without one.
+    pub(super) fn look_between(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        turned: Option<Turn>,
+    ) {
+        let mut watch = std::mem::take(&mut self.watch);
+        for block in &mut watch.blocks {
+            self.determinant(balance, newton, between, block);
+        }
+        if let Some(pairs) = &mut watch.pairs {
+            self.torus(balance, newton, between, pairs);
+        }
+        if let Some(touches) = &mut watch.touches {
+            self.grazing(
+                balance,
+                newton,
+                between,
+                (touches, &mut watch.extremes),
+                turned,
+            );
+        }
+        self.watch = watch;
+    }
+
+    /// Where the determinant of a block changes its sign.
+    fn determinant(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        block: &mut Block<'a>,
+    ) {
+        let part = block.part;
+        let mut at = |point: &CurvePoint| block.determinant_along(&point.u, &point.tangent);
+        let (a, b) = (at(between.0), at(between.1));
+        // A block that is singular at a point counts for one side, so that its event belongs to one step.
+        if (a.0 < 0.0) == (b.0 < 0.0) || a.0.is_nan() || b.0.is_nan() {
+            return;
+        }
+        let mut test = Test::Block(block, Some(a.1.max(b.1)));
+        if part == Part::Own {
+            self.branch_point(balance, newton, between, &mut test);
+        } else {
+            self.event(balance, newton, between, part.kind(), &mut test);
+        }
+    }
+
+    /// Where a pair of complex multipliers crosses the unit circle.
+    fn torus(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        pairs: &mut Pairs<'a>,
+    ) {
+        let count = self.points.len();
+        let near = |point: &Point| {
+            let multipliers = &point.stability.multipliers;
+            let complex = multipliers.iter().filter(|m| m.im > 0.0);
+            let mut distances = complex.map(|m| (m.norm_sqr() - 1.0).abs());
+            distances.any(|distance| distance < NEAR_CIRCLE)
+        };
+        // The points of the step are the last two.
+        if !self.points[count.saturating_sub(2)..].iter().any(near) {
+            return;
+        }
+        let (a, b) = (pairs.product(&between.0.u), pairs.product(&between.1.u));
+        if a.0 * b.0 < 0.0 && a.1 && b.1 {
+            let mut test = Test::Pairs(pairs);
+            self.event(
+                balance,
+                newton,
+                between,
+                EventKind::NeimarkSacker,
+                &mut test,
+            );
+        }
+    }
+
+    /// Records what could not be located.
+    pub(super) fn omit(&mut self, kind: EventKind, (a, b): Between<'_>, test: f64) {
+        self.turns.push(Turn {
+            kind,
+            value: 0.5 * (a.parameter() + b.parameter()),
+            test,
+            after: self.points.len() - 1,
+        });
+    }
+
+    /// Locates the zero of a test function, with core and tail, or else with the whole system.
+    pub(super) fn event(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        between: Between<'_>,
+        kind: EventKind,
+        test: &mut Test<'_, 'a>,
+    ) {
+        let ends = [between.0, between.1].map(|end| test.at(&end.u, &end.tangent));
+        let cell = RefCell::new(test);
+        let value = |point: &CurvePoint| cell.borrow_mut().at(&point.u, &point.tangent);
+        let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, found: &Located| {
+            let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
+            run.located(b, n, between, kind, (test, found));
+        };
+        if self
+            .locate_zero(balance, newton, between, value, read)
+            .is_err()
+        {
+            self.omit(kind, between, ends[0]);
+        }
+    }
+
+    /// Reads the orbit at an event, whose factors Newton's method holds.
+    pub(super) fn located(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        (before, behind): Between<'_>,
+        kind: EventKind,
+        (test, located): (&mut Test<'_, 'a>, &Located),
+    ) {
+        let u = &located.point.u;
+        let left = newton.left_in_parameter();
+        let error = if self.reader.finer.correct(u, newton) {
+            let pairs = behind.u.iter().zip(&before.u);
+            let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+            let length = newton.norm().length(before.scale, &step);
+            left + self.event_error(&located.point, DIFFERENCE * length, test)
+        } else {
+            f64::INFINITY
+        };
+        let point = self.reader.read(balance, newton, u);
+        self.events.push(Event {
+            kind,
+            point,
+            error,
+            test: located.test,
+            after: self.points.len() - 1,
+            contacts: usize::from(matches!(kind, EventKind::Grazing { .. })),
+            tangent: Vec::new(),
+        });
+    }
+
+    /// Estimated error of an event, from the corrected orbit that is held. What the first half of the harmonics that were left out
+    /// does and what the second half does may cancel, and are taken by their sizes.
+    fn event_error(&mut self, point: &CurvePoint, step: f64, test: &Test<'_, 'a>) -> f64 {
+        let fine = self.reader.finer.balance().resolution();
+        let some = three_quarters(fine);
+        let mut by = |of| self.moved(point, step, of, test);
+        let (all, half) = (by(fine), by(some));
+        let change = half.abs() + (all - half).abs();
+        known(BEYOND * change + ROUNDING * point.parameter().abs())
+    }
+
+    /// (1) with the harmonics of a resolution, and the derivative from differences over `step`.
+    fn moved(
+        &mut self,
+        point: &CurvePoint,
+        step: f64,
+        resolution: Resolution,
+        test: &Test<'_, 'a>,
+    ) -> f64 {
+        let mut watch = self.watch_like(test, resolution);
+        let Some(mut test) = watch.test(test) else {
+            return f64::INFINITY;
+        };
+        let finer = self.with_harmonics_of(self.reader.finer.extended(), resolution);
+        let tangent = self.with_harmonics_of(&point.tangent, resolution);
+        let mut at = |by: f64| {
+            let pairs = finer.iter().zip(&tangent);
+            let u: Vec<f64> = pairs.map(|(x, t)| x + by * t).collect();
+            test.at(&u, &tangent)
+        };
+        let (a, here, b) = (at(-step), at(0.0), at(step));
+        let along = -here / ((b - a) / (2.0 * step));
+        let last = finer.len() - 1;
+        let moved = finer[last] - point.parameter() + along * tangent[last];
+        self.count(&watch);
+        moved
+    }
+
+    /// Adds the work of a watch that was made for one event.
+    pub(super) fn count(&mut self, watch: &Watch<'_>) {
+        let (determinants, monodromies) = watch.computed();
+        self.statistics.jacobians += determinants;
+        self.statistics.factorisations += determinants;
+        self.statistics.monodromies += monodromies;
+    }
+
+    /// What is watched for a test function, in some resolution.
+    pub(super) fn watch_like(&self, test: &Test<'_, 'a>, resolution: Resolution) -> Watch<'a> {
+        let follower = self.follower;
+        let mut watch = Watch::default();
+        match test {
+            Test::Touch(..) => {
+                watch.touches = Some(Touches::new(follower.balance(resolution)));
+            }
+            Test::Pairs(_) => {
+                watch.pairs = Some(Pairs::new(follower.balance(resolution)));
+            }
+            Test::Block(block, _) => watch.blocks.push(follower.block(block.part, resolution)),
+        }
+        watch
+    }
+
+    /// A vector of the branch in another resolution.
+    pub(super) fn with_harmonics_of(&self, v: &[f64], resolution: Resolution) -> Vec<f64> {
+        let coordinates = self.follower.system.facts().coordinates.len();
+        resize(v, coordinates, series::length(resolution.harmonics))
+    }
+}
+
+impl<'a> Watch<'a> {
+    /// The same test function of other orbits, in units of its own.
+    pub(super) fn test(&mut self, like: &Test<'_, 'a>) -> Option<Test<'_, 'a>> {
+        match like {
+            Test::Block(..) => self
+                .blocks
+                .first_mut()
+                .map(|block| Test::Block(block, None)),
+            Test::Pairs(_) => self.pairs.as_mut().map(Test::Pairs),
+            Test::Touch(_, extreme) => {
+                let touches = self.touches.as_mut();
+                touches.map(|touches| Test::Touch(touches, *extreme))
+            }
+        }
+    }
+}
+
+/// With half of the harmonics that a correction adds.
+pub(super) fn three_quarters(fine: Resolution) -> Resolution {
+    let harmonics = fine.harmonics * 3 / 4;
+    Resolution {
+        harmonics,
+        core: fine.core.min(harmonics),
+        ..fine
+    }
+}
+
+/// An error, or infinity where nothing is known of it.
+pub(super) fn known(error: f64) -> f64 {
+    if error.is_finite() {
+        error
+    } else {
+        f64::INFINITY
+    }
+}

@@ -1,0 +1,153 @@
+//! What the error of the flow does to an orbit, its multipliers and its events.
+//!
+//! A flow with a tolerance is compared with a finer one: the orbit is corrected for it, and what that changes is the error. What
+//! is reported then is the corrected orbit, so that the error stated is rather that of the orbit before.
+//!
+//! Where no finer flow can be asked for, the companion is a coarser one; the orbit itself is reported then, and the error is that
+//! of the coarser one.
+//!
+//! A closed form errs by rounding only. What that does is seen from equations that are
+//! [disturbed](super::equations::Equations::disturbance) by much more. Besides, rounding moves the entries of `M` by `eps |M|`,
+//! and the orbit by `eps |M| / min |1 - mu|` relative to its size, which changes `M` by about `|M|` times as much.
+
+use nalgebra::{Complex, DMatrix};
+
+use super::equations::{Equations, Frame, Span};
+use super::setting::Setting;
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::error::Error;
+use crate::numeric::spectrum::{distance, eigenvalues};
+use crate::time::Work;
+
+/// Ratio of the two tolerances.
+const FINER: f64 = 1e-2;
+/// No flow is asked for a smaller tolerance.
+const FINEST: f64 = 1e-14;
+/// By how much an error may be larger than a tolerance.
+const SAFETY: f64 = 10.0;
+/// Rounding errors of a flow over a period, together, in units of the largest state.
+const ROUNDING: f64 = 50.0 * f64::EPSILON;
+/// Disturbance of a closed form, in the same units.
+const DISTURBANCE: f64 = 1e-9;
+/// An update of this size leaves the square of it.
+const ONE_UPDATE: f64 = 1e-3;
+
+/// Equations of the same orbits that are finer, or, of a closed form, disturbed.
+pub(super) struct Companion<'a> {
+    pub(super) equations: Equations<'a>,
+    pub(super) newton: Newton,
+    pub(super) options: NewtonOptions,
+    /// Errors of events are this part of what differs here.
+    pub(super) part: f64,
+    /// These equations are finer: what is reported are their orbits.
+    pub(super) finer: bool,
+    /// Errors that the flow leaves, in units of the oscillation.
+    pub(super) noise: f64,
+}
+
+/// An orbit of the companion's equations.
+pub(super) struct Corrected {
+    pub(super) u: Vec<f64>,
+    /// Multipliers before the correction.
+    pub(super) multipliers: Vec<Complex<f64>>,
+}
+
+impl<'a> Companion<'a> {
+    /// Of the equations over this span, at orbits of this size.
+    pub(super) fn new(
+        setting: &Setting<'a>,
+        span: Span,
+        frame: Frame,
+        size: f64,
+    ) -> Result<Self, Error> {
+        let exact = setting.source.exact;
+        let finer = !exact && FINER * setting.source.tolerance >= FINEST;
+        let ratio = if finer || exact { FINER } else { 1.0 / FINER };
+        let tolerance = (ratio * setting.source.tolerance).max(FINEST);
+        let rounding = ROUNDING * frame.ratio;
+        let mut equations = Equations::new(setting, tolerance, span, frame)?;
+        let (part, noise) = if exact {
+            equations.disturbance = DISTURBANCE * size;
+            ((SAFETY * rounding / DISTURBANCE).min(1.0), rounding)
+        } else {
+            (
+                1.0,
+                rounding + SAFETY * tolerance.min(setting.source.tolerance),
+            )
+        };
+        Ok(Self {
+            newton: Newton::new(&equations),
+            options: setting.newton(tolerance, equations.frame.ratio),
+            equations,
+            part,
+            finer,
+            noise,
+        })
+    }
+
+    /// The orbit of these equations near `u`, at the same parameter.
+    pub(super) fn correct(&mut self, u: &[f64]) -> Option<Corrected> {
+        let mut corrected = u.to_vec();
+        let options = NewtonOptions {
+            tolerance: self.options.tolerance.max(ONE_UPDATE),
+            ..self.options
+        };
+        let (equations, newton) = (&mut self.equations, &mut self.newton);
+        super::solve::at_value(equations, newton, &mut corrected, options).ok()?;
+        Some(Corrected {
+            u: corrected,
+            multipliers: multipliers(&equations.product, equations.span.half),
+        })
+    }
+
+    /// The multipliers that those of an orbit are compared with: before the correction, or of the other orbit.
+    pub(super) fn multipliers_beside(&mut self, corrected: &Corrected) -> Vec<Complex<f64>> {
+        if self.finer {
+            return corrected.multipliers.clone();
+        }
+        let map = self.equations.map(&corrected.u, &mut |_| {});
+        map.map_or_else(
+            |_| Vec::new(),
+            |map| multipliers(&map, self.equations.span.half),
+        )
+    }
+
+    /// Errors that the flow leaves in the multipliers of a map, and in the states relative to the size of their oscillation.
+    pub(super) fn errors(&self, map: &DMatrix<f64>, multipliers: &[Complex<f64>]) -> (f64, f64) {
+        let half = self.equations.span.half;
+        let size = map.norm().max(1.0);
+        let nearest = multipliers.iter().map(|m| (m - 1.0).norm());
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        // Where a multiplier is one, an error moves the orbit by its root only: the branch bends away.
+        let states = self.noise * size / nearest.max(self.noise.sqrt());
+        let delta = (self.noise + states) * size;
+        (moved(map, multipliers, half, delta), states)
+    }
+
+    pub(super) fn work(&self) -> Work {
+        self.equations.flow.work()
+    }
+}
+
+/// Multipliers over the whole period, largest first.
+pub(super) fn multipliers(map: &DMatrix<f64>, half: bool) -> Vec<Complex<f64>> {
+    let mut values = eigenvalues(map);
+    if half {
+        for value in &mut values {
+            *value *= *value;
+        }
+    }
+    values
+}
+
+/// How far multipliers move when the entries of their map do.
+pub(super) fn moved(map: &DMatrix<f64>, multipliers: &[Complex<f64>], half: bool, by: f64) -> f64 {
+    let disturbed = |sign: f64| {
+        let entries = DMatrix::from_fn(map.nrows(), map.ncols(), |i, j| {
+            let alternating = if (i + j).is_multiple_of(2) { 1.0 } else { sign };
+            map[(i, j)] + by * alternating
+        });
+        distance(multipliers, &self::multipliers(&entries, half))
+    };
+    disturbed(1.0).max(disturbed(-1.0))
+}

@@ -1,0 +1,177 @@
+//! Smallest and largest value of every coordinate along a motion.
+//!
+//! A smooth stretch is halved until the cubic through positions and velocities at the ends of a part (Hermite's) foretells its
+//! middle; then the velocity vanishes at most once in a half, and its zero is found by the Illinois rule.
+//!
+//! Source: Dowell and Jarratt (1971), A modified regula falsi method for computing the root of an equation.
+
+use crate::time::Stretch;
+
+/// Relative accuracy of the foretold middle.
+const FORETOLD: f64 = 1e-3;
+/// A stretch is divided into at most two to this power.
+const DEEPEST: usize = 12;
+/// Part of its bracket to which a zero of the velocity is located: the position is then exact to its square.
+const LOCATED: f64 = 1e-8;
+const STEPS: usize = 60;
+
+/// Smallest and largest value of one coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Extremes {
+    /// The smallest.
+    pub minimum: f64,
+    /// The largest.
+    pub maximum: f64,
+}
+
+impl Extremes {
+    pub(super) const NONE: Self = Self {
+        minimum: f64::INFINITY,
+        maximum: f64::NEG_INFINITY,
+    };
+
+    /// Largest less smallest value.
+    pub fn peak_to_peak(&self) -> f64 {
+        self.maximum - self.minimum
+    }
+
+    /// In the middle between them.
+    pub(super) fn middle(&self) -> f64 {
+        0.5 * (self.maximum + self.minimum)
+    }
+
+    fn include(&mut self, x: f64) {
+        self.minimum = self.minimum.min(x);
+        self.maximum = self.maximum.max(x);
+    }
+
+    /// Of an orbit of which this is half, `q(tau + pi n) = -q(tau)`.
+    pub(super) fn mirrored(self) -> Self {
+        let largest = self.maximum.max(-self.minimum);
+        Self {
+            minimum: -largest,
+            maximum: largest,
+        }
+    }
+}
+
+/// State at a phase.
+#[derive(Debug, Clone)]
+struct Sample {
+    phase: f64,
+    state: Vec<f64>,
+}
+
+fn sample(stretch: &dyn Stretch, phase: f64, order: usize) -> Sample {
+    let mut state = vec![0.0; order];
+    stretch.state(phase, &mut state);
+    Sample { phase, state }
+}
+
+/// Includes a stretch of a motion whose phase moves by `rate` per unit of time.
+pub(super) fn include(stretch: &dyn Stretch, rate: f64, extremes: &mut [Extremes]) {
+    let order = 2 * extremes.len();
+    let (from, to) = stretch.phases();
+    let ends = [from, to].map(|phase| sample(stretch, phase, order));
+    part(stretch, rate, &ends, DEEPEST, extremes);
+}
+
+fn part(
+    stretch: &dyn Stretch,
+    rate: f64,
+    [a, b]: &[Sample; 2],
+    depth: usize,
+    extremes: &mut [Extremes],
+) {
+    let n = extremes.len();
+    let middle = sample(stretch, 0.5 * (a.phase + b.phase), 2 * n);
+    let time = (b.phase - a.phase) / rate;
+    let foretold = (0..n).all(|i| {
+        let cubic =
+            0.5 * (a.state[i] + b.state[i]) + time / 8.0 * (a.state[n + i] - b.state[n + i]);
+        let travelled = [a, b, &middle].map(|s| time * s.state[n + i].abs());
+        let size = travelled.into_iter().fold(0.0, f64::max);
+        (cubic - middle.state[i]).abs() <= FORETOLD * size
+    });
+    if !foretold && depth > 0 {
+        let (left, right) = ([a.clone(), middle.clone()], [middle, b.clone()]);
+        part(stretch, rate, &left, depth - 1, extremes);
+        part(stretch, rate, &right, depth - 1, extremes);
+        return;
+    }
+    for (i, extremes) in extremes.iter_mut().enumerate() {
+        for (from, to) in [(a, &middle), (&middle, b)] {
+            extremes.include(from.state[i]);
+            extremes.include(to.state[i]);
+            if from.state[n + i] * to.state[n + i] < 0.0 {
+                extremes.include(turning(stretch, (from, to), i));
+            }
+        }
+    }
+}
+
+/// The position where the velocity of a coordinate vanishes.
+fn turning(stretch: &dyn Stretch, (a, b): (&Sample, &Sample), coordinate: usize) -> f64 {
+    let velocity = a.state.len() / 2 + coordinate;
+    let mut low = (a.phase, a.state[velocity]);
+    let mut high = (b.phase, b.state[velocity]);
+    let wanted = LOCATED * (b.phase - a.phase);
+    let mut state = a.state.clone();
+    let mut before = 0.0;
+    for _ in 0..STEPS {
+        let phase = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
+        stretch.state(phase, &mut state);
+        let value = state[velocity];
+        let same = value * before > 0.0;
+        let moved = if value * low.1 > 0.0 {
+            high.1 *= if same { 0.5 } else { 1.0 };
+            let moved = phase - low.0;
+            low = (phase, value);
+            moved
+        } else {
+            low.1 *= if same { 0.5 } else { 1.0 };
+            let moved = high.0 - phase;
+            high = (phase, value);
+            moved
+        };
+        before = value;
+        if value == 0.0 || moved <= wanted || high.0 - low.0 <= wanted {
+            break;
+        }
+    }
+    state[coordinate]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `x = cos(5 phase) + 2`, `y = phase (2 - phase)`, at `rate` one.
+    struct Known;
+
+    impl Stretch for Known {
+        fn phases(&self) -> (f64, f64) {
+            (0.1, 3.0)
+        }
+
+        fn state(&self, phase: f64, state: &mut [f64]) {
+            state[0] = (5.0 * phase).cos() + 2.0;
+            state[1] = phase * (2.0 - phase);
+            state[2] = -5.0 * (5.0 * phase).sin();
+            state[3] = 2.0 - 2.0 * phase;
+        }
+    }
+
+    #[test]
+    fn extremes_of_a_known_motion() {
+        let mut extremes = [Extremes::NONE; 2];
+        include(&Known, 1.0, &mut extremes);
+        let expected = [1.0, 3.0, -3.0, 1.0];
+        let found = extremes.map(|e| [e.minimum, e.maximum]);
+        for (found, expected) in found.as_flattened().iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Grazing on a branch: where a gap touches a level.
+//!
+//! There test functions have the root of the distance in them, or jump. But how often levels are crossed is known exactly, so
+//! the place is where that number changes, and is halved down to rounding. The numbers are compared between the orbits of the
+//! branch: what touches twice within one step, and then is as before, is not seen.
+
+use std::cell::RefCell;
+
+use super::cycle::CycleEvent;
+use super::equations::Equations;
+use super::run::{Run, add, observe};
+use crate::branches::branch::{EventKind, Turn};
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::locate::locate;
+use crate::continuation::newton::Newton;
+
+/// What rounding leaves in the value of a grazing, where the distance from a level has a root to be told apart from.
+const TOUCHED: f64 = 2e-12;
+/// So many levels may be touched in one step.
+const MOST: usize = 32;
+
+/// As near to a grazing as was looked: the last orbit before it, and the first behind it with its number of crossings, if its
+/// motion is known.
+struct Bracket {
+    before: CurvePoint,
+    behind: CurvePoint,
+    switches: Option<usize>,
+}
+
+impl<'a> Run<'_, 'a> {
+    /// Locates the places between two points where levels begin or cease to be crossed, one after the other.
+    pub(super) fn grazings(
+        &mut self,
+        equations: &mut Equations<'a>,
+        newton: &mut Newton,
+        (before, behind): (&CurvePoint, &CurvePoint),
+    ) {
+        let after = self.cycles.len() - 1;
+        let last = self.cycles[after].switches;
+        let mut switches = self.cycles[after - 1].switches;
+        let mut from = before.clone();
+        for _ in 0..MOST {
+            let Some(bracket) = self.bracket(equations, newton, (&from, behind), switches) else {
+                return;
+            };
+            self.grazing(equations, (before, behind), &bracket);
+            match bracket.switches {
+                Some(now) if now != last => switches = now,
+                _ => return,
+            }
+            from = bracket.behind;
+        }
+    }
+
+    /// Halves a step to where levels are not crossed so many times any more.
+    fn bracket(
+        &mut self,
+        equations: &mut Equations<'a>,
+        newton: &mut Newton,
+        between: (&CurvePoint, &CurvePoint),
+        many: usize,
+    ) -> Option<Bracket> {
+        let half = if equations.span.half { 2 } else { 1 };
+        let other = RefCell::new(equations.again(self.setting).ok()?);
+        let nearest = RefCell::new(Bracket {
+            before: between.0.clone(),
+            behind: between.1.clone(),
+            switches: None,
+        });
+        let side = |point: &CurvePoint| {
+            let mut other = other.borrow_mut();
+            let before = other.flow.work().switches;
+            let counted = other.trace(&point.u, &mut |_| {});
+            let switches = half * (other.flow.work().switches - before);
+            let switches = counted.is_ok().then_some(switches);
+            let mut nearest = nearest.borrow_mut();
+            if switches == Some(many) {
+                nearest.before = point.clone();
+                return 1.0;
+            }
+            (nearest.behind, nearest.switches) = (point.clone(), switches);
+            -1.0
+        };
+        // Near the place Newton's method may fail: then what is known is the bracket.
+        let _ = locate(equations, newton, between, self.options, 0.0, side);
+        add(&mut self.work, other.borrow().flow.work());
+        Some(nearest.into_inner())
+    }
+
+    /// The event, or what is known where its orbit cannot be read.
+    fn grazing(
+        &mut self,
+        equations: &mut Equations<'a>,
+        between: (&CurvePoint, &CurvePoint),
+        Bracket { before, behind, .. }: &Bracket,
+    ) {
+        let after = self.cycles.len() - 1;
+        let Ok((cycle, _)) = observe(self.setting, equations, &before.u) else {
+            let (value, test) = (before.parameter(), f64::NAN);
+            self.turns.push(Turn {
+                kind: EventKind::Grazing { turns: false },
+                value,
+                test,
+                after,
+            });
+            return;
+        };
+        // The orbits have the error of the flow: it is taken from states to the parameter by what both change in the step.
+        let change = (between.1.parameter() - between.0.parameter()).abs();
+        let rate = change / equations.apart(&between.0.u, &between.1.u);
+        let bracket = (behind.parameter() - before.parameter()).abs();
+        let of_orbit = self.cycles[after].error.unwrap_or(f64::NAN);
+        let error = bracket + of_orbit * rate + TOUCHED * cycle.value.abs();
+        self.events.push(CycleEvent {
+            kind: EventKind::Grazing {
+                turns: before.parameter_slope() * behind.parameter_slope() < 0.0,
+            },
+            cycle,
+            error,
+            test: 1.0,
+            after,
+            direction: before.tangent.clone(),
+        });
+    }
+}

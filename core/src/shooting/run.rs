@@ -1,0 +1,350 @@
+//! What is done with the curve of orbits that is followed: multipliers and extremes of every orbit, events, and where it ends.
+
+use std::ops::ControlFlow;
+
+use nalgebra::DMatrix;
+
+use super::between::{Earlier, Seen, distance as along};
+use super::companion::{Companion, multipliers};
+use super::cycle::{Cycle, CycleEvent, End};
+use super::equations::Equations;
+use super::extremes::{self, Extremes};
+use super::recurrence::{Recurrence, step_on_other_branch};
+use super::setting::Setting;
+use super::tested::{Change, Tests};
+use crate::branches::branch::{EventKind, Turn};
+use crate::continuation::follow::{
+    Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
+};
+use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
+use crate::continuation::statistics::Statistics;
+use crate::error::Error;
+use crate::numeric::spectrum::distance;
+use crate::orbit::stability::Stability;
+use crate::time::{FlowError, Stretch, Work};
+
+/// Test functions are noise below so many times of what must vanish.
+const NOISE: f64 = 10.0;
+
+/// What a run has gathered.
+pub(super) struct Run<'r, 'a> {
+    pub(super) setting: &'r Setting<'a>,
+    pub(super) options: NewtonOptions,
+    companion: Companion<'a>,
+    size: f64,
+    /// What the branch has met.
+    pub(super) joined: Option<Recurrence>,
+    /// Test functions at the last orbits, the newest last.
+    pub(super) earlier: Option<Earlier>,
+    before: Option<Tests>,
+    last: Option<Tests>,
+    pub(super) cycles: Vec<Cycle>,
+    pub(super) events: Vec<CycleEvent>,
+    pub(super) turns: Vec<Turn>,
+    /// Why an orbit that was found could not be read.
+    failure: Option<FlowError>,
+    pub(super) statistics: Statistics,
+    /// Work of flows that are no more.
+    pub(super) work: Work,
+}
+
+impl<'r, 'a> Run<'r, 'a> {
+    pub(super) fn new(
+        setting: &'r Setting<'a>,
+        options: NewtonOptions,
+        companion: Companion<'a>,
+        size: f64,
+    ) -> Self {
+        Self {
+            setting,
+            options,
+            companion,
+            size,
+            joined: None,
+            earlier: None,
+            before: None,
+            last: None,
+            cycles: Vec::new(),
+            events: Vec::new(),
+            turns: Vec::new(),
+            failure: None,
+            statistics: Statistics::default(),
+            work: Work::default(),
+        }
+    }
+
+    /// Follows the branch from where it starts to its end.
+    ///
+    /// # Errors
+    /// If there is no first orbit.
+    pub(super) fn follow(
+        &mut self,
+        equations: &mut Equations<'a>,
+        start: Start,
+        options: FollowOptions,
+        visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
+    ) -> Result<End, Error> {
+        let mut newton = Newton::new(equations);
+        let outcome = follow(
+            equations,
+            &mut newton,
+            start,
+            options,
+            &mut |equations, newton, seen| self.visit(equations, newton, &seen, visit),
+        );
+        let failure = self.failure.or(equations.failure);
+        self.statistics += newton.statistics;
+        self.statistics += self.companion.newton.statistics;
+        add(&mut self.work, equations.flow.work());
+        add(&mut self.work, self.companion.work());
+        if let Some(Recurrence { period, odd }) = self.joined {
+            return Ok(End::Joined {
+                period,
+                symmetric: odd,
+            });
+        }
+        let last = self.cycles.last().map_or(options.from, |cycle| cycle.value);
+        let end = match (outcome, failure) {
+            (Err(reason), failure) => return Err(no_orbit(options.from, reason, failure)),
+            (Ok(Outcome::Stopped(Stop::StepTooShort { .. })), Some(reason)) => {
+                let value = last;
+                End::Motion { value, reason }
+            }
+            (Ok(Outcome::Stopped(stop)), _) => End::Stopped(stop),
+            // A walk by shooting is never resized.
+            (Ok(Outcome::Halted(_)), _) => End::Stopped(Stop::Interrupted),
+        };
+        Ok(match self.failure {
+            Some(reason) => End::Motion {
+                value: last,
+                reason,
+            },
+            None => end,
+        })
+    }
+
+    fn visit(
+        &mut self,
+        equations: &mut Equations<'a>,
+        newton: &mut Newton,
+        seen: &Visit<'_>,
+        visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
+    ) -> Continue {
+        match seen {
+            Visit::Again(_) => Continue::Continue(()),
+            Visit::Point(at) => self.point(equations, at, visit).unwrap_or_else(|failure| {
+                self.failure = Some(failure);
+                Continue::Break(Halt::Stop)
+            }),
+            Visit::Between(before, behind) => self.between(equations, newton, before, behind),
+        }
+    }
+
+    fn point(
+        &mut self,
+        equations: &mut Equations<'a>,
+        at: &CurvePoint,
+        visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
+    ) -> Result<Continue, FlowError> {
+        let span = equations.span;
+        let odd = self.setting.odd;
+        if !self.cycles.is_empty() && (span.period > 1 || odd) {
+            let recurrence = Recurrence::of(equations, &at.u, self.regular(equations), odd)?;
+            if recurrence.period < span.period || recurrence.odd != span.half {
+                // The step that led here is seen next, and is the last one.
+                self.joined = Some(recurrence);
+                return Ok(Continue::Continue(()));
+            }
+        }
+        let (cycle, map) = self.read(equations, &at.u)?;
+        self.before = self.last.take();
+        self.last = Some(Tests::of(map.as_ref(), at.parameter_slope()));
+        let answer = visit(&cycle);
+        self.cycles.push(cycle);
+        Ok(if answer.is_break() {
+            Continue::Break(Halt::Stop)
+        } else {
+            Continue::Continue(())
+        })
+    }
+
+    fn between(
+        &mut self,
+        equations: &mut Equations<'a>,
+        newton: &mut Newton,
+        before: &CurvePoint,
+        behind: &CurvePoint,
+    ) -> Continue {
+        if self.joined.is_some() {
+            let options = self.options;
+            let other = step_on_other_branch(equations, newton, before, behind, options);
+            if let Some(other) = other {
+                self.event(equations, newton, (behind, &other), Change::BRANCHES);
+            }
+            return Continue::Break(Halt::Stop);
+        }
+        if let (Some(a), Some(b)) = (self.before, self.last) {
+            let ends = [(before, a), (behind, b)].map(|(point, tests)| Seen {
+                point: point.clone(),
+                tests,
+            });
+            let parts = self.parts(equations, newton, ends);
+            let noise = NOISE * self.setting.vanishing(equations.frame.ratio);
+            self.earlier = Some(Earlier {
+                distance: along(newton, before, behind),
+                tests: a,
+            });
+            for pair in parts.windows(2) {
+                let step = (&pair[0].point, &pair[1].point);
+                let half = equations.span.half;
+                for change in Tests::changes(pair[0].tests, pair[1].tests, half, noise) {
+                    let known = self.events.len();
+                    self.event(equations, newton, step, change);
+                    if change.kind == EventKind::BranchPoint
+                        && self.events.len() > known
+                        && self.meets(equations)
+                    {
+                        return Continue::Break(Halt::Stop);
+                    }
+                }
+            }
+        }
+        if self.setting.stability
+            && let [.., a, b] = &self.cycles[..]
+            && a.switches != b.switches
+        {
+            self.grazings(equations, newton, (before, behind));
+        }
+        Continue::Continue(())
+    }
+
+    /// The size of the orbits, and by what part of it two states differ that are one.
+    fn regular(&self, equations: &Equations<'_>) -> (f64, f64) {
+        (self.size, self.setting.same(equations.frame.ratio))
+    }
+
+    /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
+    /// same orbits again, looked at from elsewhere.
+    fn meets(&mut self, equations: &mut Equations<'a>) -> bool {
+        let odd = self.setting.odd;
+        let Some(event) = self.events.last() else {
+            return false;
+        };
+        if equations.span.period == 1 && !odd {
+            return false;
+        }
+        let u = equations.unknowns_of(&event.cycle.states, event.cycle.value);
+        let Ok(recurrence) = Recurrence::at_point(equations, &u, self.regular(equations), odd)
+        else {
+            return false;
+        };
+        let regular =
+            recurrence.period < equations.span.period || recurrence.odd != equations.span.half;
+        if regular {
+            // The orbit behind the point is one of those before it.
+            self.cycles.pop();
+            self.joined = Some(recurrence);
+        }
+        regular
+    }
+
+    /// An orbit with everything that is read off it, and its map if the stability is wanted. With a flow that has a tolerance, it
+    /// is the orbit corrected for that.
+    pub(super) fn read(
+        &mut self,
+        equations: &mut Equations<'a>,
+        u: &[f64],
+    ) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
+        let Self {
+            setting, companion, ..
+        } = self;
+        if !setting.stability {
+            return observe(setting, equations, u);
+        }
+        self.statistics.monodromies += 1;
+        let corrected = companion.correct(u);
+        let finer = corrected.as_ref().filter(|_| companion.finer);
+        let (at, known) = match finer {
+            Some(finer) => (&mut companion.equations, &finer.u[..]),
+            None => (equations, u),
+        };
+        let (mut cycle, map) = observe(setting, at, known)?;
+        let Some(map) = map else {
+            return Ok((cycle, None));
+        };
+        let found = multipliers(&map, companion.equations.span.half);
+        let (mut spread, relative) = companion.errors(&map, &found);
+        let mut error = relative * self.size;
+        if let Some(corrected) = &corrected {
+            let other = companion.multipliers_beside(corrected);
+            spread += companion.part * distance(&found, &other);
+            error += companion.part * companion.equations.apart(u, &corrected.u);
+        } else {
+            spread = f64::INFINITY;
+            error = f64::INFINITY;
+        }
+        cycle.error = Some(error);
+        cycle.stability = if found.is_empty() {
+            Stability::unknown()
+        } else {
+            Stability::of(found, spread)
+        };
+        Ok((cycle, Some(map)))
+    }
+}
+
+/// An orbit without its stability, and its map if the stability is wanted.
+pub(super) fn observe(
+    setting: &Setting<'_>,
+    equations: &mut Equations<'_>,
+    u: &[f64],
+) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
+    let value = u[u.len() - 1];
+    let rate = setting.rate_at(value);
+    let mut extremes = vec![Extremes::NONE; equations.order() / 2];
+    let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
+    let before = equations.flow.work().switches;
+    let map = if setting.stability {
+        Some(equations.map(u, see)?)
+    } else {
+        equations.trace(u, see)?;
+        None
+    };
+    let switches = equations.flow.work().switches - before;
+    let half = equations.span.half;
+    if half {
+        for extremes in &mut extremes {
+            *extremes = extremes.mirrored();
+        }
+    }
+    let cycle = Cycle {
+        value,
+        parameters: setting.parameters_at(value),
+        omega: setting.omega_at(value),
+        period: equations.span.period,
+        symmetric: half,
+        states: equations.states_of(u),
+        stability: Stability::unknown(),
+        extremes,
+        switches: switches * if half { 2 } else { 1 },
+        error: None,
+        iterations: 0,
+    };
+    Ok((cycle, map))
+}
+
+/// Why there is no orbit.
+pub(super) fn no_orbit(value: f64, reason: NewtonError, failure: Option<FlowError>) -> Error {
+    match failure {
+        Some(reason) => Error::Motion { value, reason },
+        None => Error::NoStart { value, reason },
+    }
+}
+
+/// Adds up work.
+pub(super) fn add(sum: &mut Work, other: Work) {
+    sum.steps += other.steps;
+    sum.rejected += other.rejected;
+    sum.forces += other.forces;
+    sum.switches += other.switches;
+}

@@ -1,0 +1,118 @@
+//! A cycle as a Fourier series, with everything that is read off one.
+//!
+//! Positions are sampled along the motion itself and transformed, so coefficients err by aliasing only: those of displacements
+//! fall at least as `k^-3`, and there are hundreds of samples for each harmonic that is kept.
+
+use super::cycle::Cycle;
+use super::setting::Setting;
+use crate::balance::aft::Aft;
+use crate::balance::{Balance, Parity, Resolution};
+use crate::branches::branch::{Orbit, Point};
+use crate::error::Error;
+use crate::numeric::fourier::sampled::SampledTransform;
+use crate::numeric::fourier::series;
+use crate::orbit::observe::Observer;
+use crate::system::System;
+use crate::time::history;
+use crate::time::history::Span;
+use crate::time::stroboscope::Stroboscope;
+
+/// Samples for each period of the declaration, and harmonics that are kept, for each unit of the divisor.
+const SAMPLES: usize = 1024;
+const HARMONICS: usize = 20;
+
+/// The point of a branch that a cycle is.
+///
+/// # Errors
+/// If the motion cannot be computed.
+pub(super) fn point(
+    system: &dyn System,
+    setting: &Setting<'_>,
+    cycle: &Cycle,
+) -> Result<Point, Error> {
+    let coordinates = cycle.extremes.len();
+    let divisor = setting.divisor as usize;
+    let samples = sampled(setting, cycle, SAMPLES * divisor)?;
+    let count = samples.len() / coordinates;
+    let harmonics = HARMONICS * divisor * cycle.period;
+    let mut transform = SampledTransform::new(count);
+    let mut u = vec![0.0; coordinates * series::length(harmonics) + 1];
+    let parts = u.chunks_exact_mut(series::length(harmonics));
+    for (samples, series) in samples.chunks_exact(count).zip(parts) {
+        transform.analyse(samples, series);
+    }
+    let n = u.len() - 1;
+    u[n] = cycle.value;
+    let resolution = Resolution {
+        harmonics,
+        core: harmonics,
+        parity: Parity::All,
+        stride: 1,
+        samples: count,
+        aft: Aft::Switched,
+        period: cycle.period,
+    };
+    let mut balance = Balance::new(
+        system,
+        &cycle.parameters,
+        cycle.omega,
+        setting.variable,
+        resolution,
+    );
+    balance.set(cycle.value);
+    let mut observed = Observer::default().observe(&mut balance, &u);
+    let parts = samples.chunks_exact(count).zip(&cycle.extremes);
+    for (motion, (samples, extremes)) in observed.motions.iter_mut().zip(parts) {
+        let square: f64 = samples.iter().map(|x| x * x).sum();
+        motion.maximum = extremes.maximum;
+        motion.minimum = extremes.minimum;
+        motion.rms = (square / count as f64).sqrt();
+    }
+    u.truncate(n);
+    let size = cycle.peak_to_peak();
+    Ok(Point {
+        value: cycle.value,
+        parameters: cycle.parameters.clone(),
+        orbit: Orbit {
+            series: u,
+            coordinates,
+            omega: cycle.omega,
+            base: balance.base(),
+            period: cycle.period,
+        },
+        stability: cycle.stability.clone(),
+        observed,
+        error: cycle.error.filter(|_| size > 0.0).map(|error| error / size),
+    })
+}
+
+/// Positions at equal distances over the period, so many in each period of the declaration, coordinate by coordinate.
+fn sampled(setting: &Setting<'_>, cycle: &Cycle, each: usize) -> Result<Vec<f64>, Error> {
+    let coordinates = cycle.extremes.len();
+    let count = each * cycle.period;
+    let mut flow = setting.flow(setting.source.tolerance)?;
+    let motion = |reason| Error::Motion {
+        value: cycle.value,
+        reason,
+    };
+    flow.set(setting.variable, cycle.value).map_err(motion)?;
+    let mut samples = vec![0.0; coordinates * count];
+    let mut index = 0;
+    let mut keep = |_: f64, state: &[f64]| {
+        // The last one is the first again.
+        if index < count {
+            for (i, x) in state[..coordinates].iter().enumerate() {
+                samples[i * count + index] = *x;
+            }
+        }
+        index += 1;
+    };
+    let mut map = Stroboscope::new(flow);
+    let mut state = cycle.state().to_vec();
+    let span = Span {
+        periods: cycle.period,
+        samples: each,
+    };
+    history::record(&mut map, &mut state, span, &mut keep).map_err(motion)?;
+    Ok(samples)
+}

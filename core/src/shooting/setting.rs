@@ -1,0 +1,133 @@
+//! What a computation by shooting works with: checked, and the same for all orbits of a branch.
+
+use crate::continuation::follow::FollowOptions;
+use crate::continuation::newton::NewtonOptions;
+use crate::continuation::step::StepControl;
+use crate::error::Error;
+use crate::model::labels::Labels;
+use crate::system::Variable;
+use crate::time::Flow;
+
+type Make<'a> = dyn Fn(f64) -> Result<Box<dyn Flow + 'a>, Error> + 'a;
+
+/// Where flows of one system come from.
+pub(super) struct Source<'a> {
+    /// Makes a flow of this tolerance.
+    pub(super) make: Box<Make<'a>>,
+    /// The flow is in closed form and has no tolerance.
+    pub(super) exact: bool,
+    /// The tolerance asked for.
+    pub(super) tolerance: f64,
+}
+
+/// The system, what is varied, and how.
+pub(super) struct Setting<'a> {
+    pub(super) source: Source<'a>,
+    /// Name of what is varied.
+    pub(super) varied: String,
+    /// What charts say.
+    pub(super) labels: Labels,
+    /// Parameters; what is varied has any value.
+    pub(super) parameters: Vec<f64>,
+    /// Frequency, unless it is varied.
+    pub(super) omega: f64,
+    pub(super) variable: Variable,
+    pub(super) divisor: u32,
+    /// Period of the orbits in periods of the system.
+    pub(super) period: usize,
+    pub(super) segments: usize,
+    /// Where the orbit has odd symmetry, half of it is followed.
+    pub(super) odd: bool,
+    pub(super) stability: bool,
+    pub(super) points: usize,
+    pub(super) steps: StepControl,
+}
+
+/// Updates of Newton's method at most.
+const ITERATIONS: usize = 12;
+/// The same from a guess, where they are halved as long as they do not help.
+const ITERATIONS_AT_START: usize = 40;
+
+impl<'a> Setting<'a> {
+    /// A flow of this tolerance at the parameters of the setting.
+    pub(super) fn flow(&self, tolerance: f64) -> Result<Box<dyn Flow + 'a>, Error> {
+        (self.source.make)(tolerance)
+    }
+
+    /// What the flow and rounding leave in a state, in units of the oscillation, of which the largest state is `ratio` times
+    /// the size.
+    fn noise(&self, tolerance: f64, ratio: f64) -> f64 {
+        let flow = if self.source.exact { 0.0 } else { tolerance };
+        (flow + f64::EPSILON) * ratio
+    }
+
+    /// Options of Newton's method on equations with a flow of this tolerance: an update as small as the noise means nothing.
+    pub(super) fn newton(&self, tolerance: f64, ratio: f64) -> NewtonOptions {
+        NewtonOptions {
+            tolerance: (100.0 * self.noise(tolerance, ratio)).clamp(1e-10, 1e-3),
+            iterations: ITERATIONS,
+            damped: false,
+        }
+    }
+
+    /// The same from a guess, when nothing is known of the oscillation.
+    pub(super) fn newton_at_start(&self) -> NewtonOptions {
+        NewtonOptions {
+            iterations: ITERATIONS_AT_START,
+            damped: true,
+            ..self.newton(self.source.tolerance, 1.0)
+        }
+    }
+
+    /// By what part of the size of an orbit two states differ that are one: half of an orbit, or one of its periods, is not integrated
+    /// in the same steps as all of it.
+    pub(super) fn same(&self, ratio: f64) -> f64 {
+        let noise = self.noise(self.source.tolerance, ratio);
+        (1e3 * noise).clamp(1e-7, 1e-2)
+    }
+
+    /// How exactly a test function must vanish.
+    pub(super) fn vanishing(&self, ratio: f64) -> f64 {
+        let noise = self.noise(self.source.tolerance, ratio);
+        (1e3 * noise).clamp(1e-10, 1e-3)
+    }
+
+    /// Options to follow a branch. Updates are relative to the range too, and the noise to the value.
+    pub(super) fn follow(&self, from: f64, to: f64, ratio: f64) -> FollowOptions {
+        let range = (to - from).abs();
+        let narrow = if range > 0.0 {
+            from.abs().max(to.abs()) / range
+        } else {
+            1.0
+        };
+        FollowOptions {
+            from,
+            to,
+            points: self.points,
+            steps: self.steps,
+            newton: self.newton(self.source.tolerance, ratio.max(narrow)),
+        }
+    }
+
+    /// The frequency where what is varied has a value.
+    pub(super) fn omega_at(&self, value: f64) -> f64 {
+        match self.variable {
+            Variable::Omega => value,
+            Variable::Parameter(_) => self.omega,
+        }
+    }
+
+    /// The parameters there.
+    pub(super) fn parameters_at(&self, value: f64) -> Vec<f64> {
+        let mut parameters = self.parameters.clone();
+        if let Variable::Parameter(index) = self.variable {
+            parameters[index] = value;
+        }
+        parameters
+    }
+
+    /// How fast the phase moves there.
+    pub(super) fn rate_at(&self, value: f64) -> f64 {
+        self.omega_at(value) / f64::from(self.divisor)
+    }
+}

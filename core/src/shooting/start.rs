@@ -1,0 +1,198 @@
+//! The first orbit: from a guess to a solution, with what is known of it.
+
+use super::cycle::Cycle;
+use super::equations::{Equations, Frame, Span};
+use super::extremes::{self, Extremes};
+use super::recurrence::Recurrence;
+use super::run::no_orbit;
+use super::setting::Setting;
+use super::{beyond, solve};
+use crate::branches::branch::Orbit;
+use crate::continuation::newton::Newton;
+use crate::error::{Attempts, Error};
+use crate::time::{FlowError, Stretch};
+
+/// What is known of an orbit beforehand.
+#[derive(Debug, Clone)]
+pub(super) enum Guess {
+    /// Its state at phase zero.
+    State(Vec<f64>),
+    /// Its Fourier series.
+    Series(Orbit),
+}
+
+/// A solution.
+pub(super) struct First<'a> {
+    pub(super) equations: Equations<'a>,
+    pub(super) u: Vec<f64>,
+    /// Updates that it took.
+    pub(super) iterations: usize,
+    /// Largest entry of its state, of velocities in units of the frequency, from the middle of the motion.
+    pub(super) size: f64,
+}
+
+/// The orbit at a value, from a guess; frequencies count by `omega`.
+pub(super) fn first<'a>(
+    setting: &Setting<'a>,
+    guess: &Guess,
+    value: f64,
+    omega: f64,
+) -> Result<First<'a>, Error> {
+    let span = Span {
+        period: setting.period,
+        half: false,
+        segments: setting.segments,
+    };
+    let coordinates = setting.flow(setting.source.tolerance)?.coordinates();
+    let frame = Frame::plain(setting.variable, coordinates, omega);
+    let mut equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
+    let motion = |reason| Error::Motion { value, reason };
+    let states = states(setting, &mut equations, guess, value).map_err(motion)?;
+    let mut u = equations.unknowns_of(&states, value);
+    let mut newton = Newton::new(&equations);
+    let options = setting.newton_at_start();
+    let solved = solve::at_value(&mut equations, &mut newton, &mut u, options);
+    let iterations = match solved {
+        Ok(converged) => converged.iterations,
+        Err(reason) => {
+            let reason = no_orbit(value, reason, equations.failure);
+            u = beyond::search(setting, &mut equations, &u, value, reason)?;
+            options.iterations
+        }
+    };
+    let mut first = First {
+        equations,
+        u,
+        iterations,
+        size: 1.0,
+    };
+    first.settle(setting).map_err(motion)?;
+    let size = first.size;
+    let same = (size, setting.same(first.equations.frame.ratio));
+    let recurrence = Recurrence::of(&mut first.equations, &first.u, same, setting.odd);
+    let recurrence = recurrence.map_err(motion)?;
+    if recurrence.period < setting.period {
+        return Err(Error::NoSuchPeriod {
+            period: setting.period,
+            value,
+            attempts: Attempts {
+                planned: 1,
+                made: 1,
+                shorter: 1,
+                evaluations: 0,
+            },
+        });
+    }
+    if recurrence.odd {
+        first.halve(setting)?;
+    }
+    Ok(first)
+}
+
+/// The equations of an orbit that is known, and the orbit as a solution of them.
+///
+/// # Errors
+/// If there is no flow.
+pub(super) fn known<'a>(
+    setting: &Setting<'a>,
+    cycle: &Cycle,
+) -> Result<(Equations<'a>, Vec<f64>), Error> {
+    through(
+        setting,
+        cycle,
+        (cycle.period, cycle.symmetric),
+        &cycle.states,
+    )
+}
+
+/// The same with other states at the beginnings of the segments, over another period, or half of it.
+///
+/// # Errors
+/// If there is no flow.
+pub(super) fn through<'a>(
+    setting: &Setting<'a>,
+    cycle: &Cycle,
+    (period, half): (usize, bool),
+    states: &[f64],
+) -> Result<(Equations<'a>, Vec<f64>), Error> {
+    let coordinates = cycle.extremes.len();
+    let span = Span {
+        period,
+        half,
+        segments: states.len() / (2 * coordinates),
+    };
+    let frame = Frame::plain(setting.variable, coordinates, cycle.omega);
+    let equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
+    let u = equations.unknowns_of(states, cycle.value);
+    Ok((equations, u))
+}
+
+/// States at the beginnings of the segments.
+fn states(
+    setting: &Setting<'_>,
+    equations: &mut Equations<'_>,
+    guess: &Guess,
+    value: f64,
+) -> Result<Vec<f64>, FlowError> {
+    let span = equations.span;
+    match guess {
+        Guess::Series(orbit) => {
+            let n = orbit.coordinates();
+            let mut states = Vec::with_capacity(2 * n * span.segments);
+            for segment in 0..span.segments {
+                let time = span.begins(segment) * f64::from(setting.divisor) / orbit.omega;
+                let motions = (0..n).map(|i| orbit.state(i, time));
+                let (positions, velocities): (Vec<f64>, Vec<f64>) = motions.unzip();
+                states.extend(positions);
+                states.extend(velocities);
+            }
+            Ok(states)
+        }
+        Guess::State(state) => equations.states_from(state, value),
+    }
+}
+
+impl First<'_> {
+    /// Counts positions from the middle of the motion, and finds its size.
+    pub(super) fn settle(&mut self, setting: &Setting<'_>) -> Result<(), FlowError> {
+        let value = self.u[self.u.len() - 1];
+        let n = self.equations.order() / 2;
+        let rate = setting.rate_at(value);
+        let mut extremes = vec![Extremes::NONE; n];
+        let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
+        self.equations.trace(&self.u, see)?;
+        let states = self.equations.states_of(&self.u);
+        self.equations.frame.reference = extremes.iter().map(Extremes::middle).collect();
+        self.u = self.equations.unknowns_of(&states, value);
+        let largest = |m: f64, extremes: &Extremes| m.max(0.5 * extremes.peak_to_peak());
+        let size = extremes.iter().fold(0.0, largest);
+        self.size = if size > 0.0 { size } else { 1.0 };
+        let frame = &mut self.equations.frame;
+        let farthest = |m: f64, x: &f64| m.max(x.abs());
+        frame.ratio = 1.0 + frame.reference.iter().fold(0.0, farthest) / self.size;
+        Ok(())
+    }
+
+    /// Goes over to the equations of half a period.
+    fn halve(&mut self, setting: &Setting<'_>) -> Result<(), Error> {
+        let value = self.u[self.u.len() - 1];
+        let motion = |reason| Error::Motion { value, reason };
+        let mut state = self.equations.states_of(&self.u);
+        state.truncate(self.equations.order());
+        self.equations.frame.reference.fill(0.0);
+        self.equations.frame.ratio = 1.0;
+        let span = Span {
+            half: true,
+            segments: self.equations.span.segments.div_ceil(2),
+            ..self.equations.span
+        };
+        self.equations.divide(span);
+        let states = self.equations.states_from(&state, value).map_err(motion)?;
+        self.u = self.equations.unknowns_of(&states, value);
+        let mut newton = Newton::new(&self.equations);
+        let options = setting.newton(setting.source.tolerance, 1.0);
+        solve::at_value(&mut self.equations, &mut newton, &mut self.u, options)
+            .map_err(|reason| no_orbit(value, reason, self.equations.failure))?;
+        Ok(())
+    }
+}

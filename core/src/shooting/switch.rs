@@ -1,0 +1,213 @@
+//! From an event of one branch onto the branch that begins there. Where branches cross without a symmetry, see
+//! [`crossed`](super::crossed).
+//!
+//! Let `P` be the derivative of the flow over the part of the orbit that is followed, and `S` as in
+//! [`equations`](super::equations). At a period doubling, and where an odd symmetry breaks, `M = S P` has the eigenvalue minus
+//! one, so
+//!
+//! ```text
+//! P v = -S v                                                                                                 (1)
+//! ```
+//!
+//! The orbit taken twice, `q` and then `S q`, is an orbit of the new branch too, and the direction of that branch is `v` along
+//! the first part and `-S v` along the second. It leaves the old branch at a right angle, as a pitchfork does: for a step `e`
+//! in that direction the parameter changes by `e^2` only. So the first orbit is solved for with its component in that direction
+//! held, from there, and not with the parameter held.
+//!
+//! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 8 (branch switching); Seydel
+//! (2010), Practical Bifurcation and Stability Analysis, section 5.6.
+
+use nalgebra::DMatrix;
+
+use super::cycle::{Cycle, CycleEvent};
+use super::equations::Equations;
+use super::recurrence::Recurrence;
+use super::setting::Setting;
+use super::start::{self, First};
+use crate::branches::branch::EventKind;
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::newton::{Border, Newton};
+use crate::continuation::problem::Scale;
+use crate::error::Error;
+
+/// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
+/// orbit of the new branch is taken.
+pub(super) const DEPARTURES: [f64; 5] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1];
+
+/// An orbit farther away than so many times its component in the direction is one of another branch.
+pub(super) const FARTHEST: f64 = 10.0;
+
+/// An orbit with the direction in which a branch is followed from it.
+pub(super) struct Begun<'a> {
+    pub(super) first: First<'a>,
+    pub(super) point: CurvePoint,
+}
+
+/// The first orbit of the branch that begins at an event, on one side of it; `range` is the length that counts as one for the
+/// parameter.
+///
+/// # Errors
+/// [`Error::NoBranch`] if no branch begins there, or its first orbit was not found.
+pub(super) fn depart<'a>(
+    setting: &Setting<'a>,
+    event: &CycleEvent,
+    side: f64,
+    range: f64,
+) -> Result<Begun<'a>, Error> {
+    let nothing = Error::NoBranch {
+        kind: event.kind,
+        value: event.cycle.value,
+    };
+    if event.kind == EventKind::BranchPoint {
+        return super::crossed::depart(setting, event, side, range);
+    }
+    if !matches!(
+        event.kind,
+        EventKind::PeriodDoubling | EventKind::SymmetryBreaking
+    ) {
+        return Err(nothing);
+    }
+    let (mut equations, u) = twice(setting, &event.cycle)?;
+    let Some(direction) = direction(&mut equations, &u, event.cycle.symmetric) else {
+        return Err(nothing);
+    };
+    let mut first = First {
+        equations,
+        u,
+        iterations: 0,
+        size: 1.0,
+    };
+    let motion = |reason| Error::Motion {
+        value: event.cycle.value,
+        reason,
+    };
+    first.settle(setting).map_err(motion)?;
+    for departure in DEPARTURES {
+        let step = (side * departure, range);
+        if let Some(found) = first_orbit(setting, &mut first, &direction, step) {
+            let (u, point) = found;
+            let same = (first.size, setting.same(first.equations.frame.ratio));
+            let recurrence = Recurrence::of(&mut first.equations, &u, same, setting.odd);
+            let is_new = |found: Recurrence| found.period == setting.period && !found.odd;
+            if recurrence.is_ok_and(is_new) {
+                first.u = u;
+                return Ok(Begun { first, point });
+            }
+        }
+    }
+    Err(nothing)
+}
+
+/// An orbit that is known, with the direction of its branch: to larger values of the parameter for a positive side.
+///
+/// # Errors
+/// If it does not solve the equations.
+pub(super) fn resume<'a>(
+    setting: &Setting<'a>,
+    mut first: First<'a>,
+    side: f64,
+    range: f64,
+) -> Result<Begun<'a>, Error> {
+    let mut newton = Newton::new(&first.equations);
+    let options = setting.newton(setting.source.tolerance, first.equations.frame.ratio);
+    let value = first.u[first.u.len() - 1];
+    super::solve::at_value(&mut first.equations, &mut newton, &mut first.u, options)
+        .map_err(|reason| super::run::no_orbit(value, reason, first.equations.failure))?;
+    let scale = scale_of(&newton, &first.u, range);
+    let mut tangent = vec![0.0; first.u.len()];
+    newton.tangent(&mut first.equations, &first.u, &mut tangent, true);
+    let sign = side * tangent[tangent.len() - 1];
+    let length = newton.norm().length(scale, &tangent) * sign.signum();
+    for t in &mut tangent {
+        *t /= length;
+    }
+    let point = CurvePoint {
+        u: first.u.clone(),
+        tangent,
+        scale,
+    };
+    Ok(Begun { first, point })
+}
+
+/// The equations of the new branch, and the orbit as a solution of them.
+fn twice<'a>(setting: &Setting<'a>, cycle: &Cycle) -> Result<(Equations<'a>, Vec<f64>), Error> {
+    let sign = if cycle.symmetric { -1.0 } else { 1.0 };
+    let mut states = cycle.states.clone();
+    states.extend(cycle.states.iter().map(|x| sign * x));
+    start::through(setting, cycle, (setting.period, false), &states)
+}
+
+/// The direction of the new branch in extended unknowns, from (1); its entry for the parameter is zero.
+pub(super) fn direction(
+    equations: &mut Equations<'_>,
+    u: &[f64],
+    symmetric: bool,
+) -> Option<Vec<f64>> {
+    let order = equations.order();
+    let maps = equations.segment_maps(u).ok()?;
+    let part = &maps[..maps.len() / 2];
+    let identity = DMatrix::<f64>::identity(order, order);
+    let whole = part.iter().fold(identity.clone(), |p, map| map * p);
+    let sign = if symmetric { -1.0 } else { 1.0 };
+    let svd = (whole + sign * identity).svd(false, true);
+    let smallest = svd.singular_values.imin();
+    let mut v = svd.v_t?.row(smallest).transpose();
+    let mut direction = Vec::with_capacity(u.len());
+    for map in &maps {
+        direction.extend(v.iter().enumerate().map(|(i, x)| x * equations.unit(i)));
+        v = map * v;
+    }
+    direction.push(0.0);
+    direction.iter().all(|x| x.is_finite()).then_some(direction)
+}
+
+/// The orbit whose component in the direction is `step.0` times the size, and the tangent there, away from the old branch.
+fn first_orbit(
+    setting: &Setting<'_>,
+    first: &mut First<'_>,
+    direction: &[f64],
+    (step, range): (f64, f64),
+) -> Option<(Vec<f64>, CurvePoint)> {
+    let equations = &mut first.equations;
+    let mut newton = Newton::new(equations);
+    let scale = scale_of(&newton, &first.u, range);
+    let length = newton.norm().length(scale, direction);
+    let unit: Vec<f64> = direction.iter().map(|x| x / length).collect();
+    let mut row = vec![0.0; unit.len()];
+    newton.norm().linear_form(scale, &unit, &mut row);
+    let mut u: Vec<f64> = first
+        .u
+        .iter()
+        .zip(&unit)
+        .map(|(x, d)| x + step * d)
+        .collect();
+    let border = Border {
+        row: &row,
+        value: crate::numeric::linear::dot(&row, &u),
+    };
+    let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
+    newton
+        .correct(equations, &mut u, border, scale, options)
+        .ok()?;
+    let moved: Vec<f64> = u.iter().zip(&first.u).map(|(x, y)| x - y).collect();
+    if newton.norm().length(scale, &moved) > FARTHEST * step.abs() {
+        return None;
+    }
+    let mut tangent = vec![0.0; u.len()];
+    newton.tangent(equations, &u, &mut tangent, true);
+    let outwards = step * crate::numeric::linear::dot(&row, &tangent);
+    let length = newton.norm().length(scale, &tangent) * outwards.signum();
+    for t in &mut tangent {
+        *t /= length;
+    }
+    let point = CurvePoint {
+        u: u.clone(),
+        tangent,
+        scale,
+    };
+    Some((u, point))
+}
+
+fn scale_of(newton: &Newton, u: &[f64], range: f64) -> Scale {
+    newton.norm().scale_at(u, range, &mut [0.0; 2])
+}

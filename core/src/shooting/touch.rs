@@ -1,0 +1,270 @@
+//! How far a gap is from touching a level, as a function of an orbit.
+//!
+//! Along the orbit the gap has extremes, where its rate vanishes. Grazing is an extreme on a level,
+//!
+//! ```text
+//! g(s, lambda, mu) = gap(tau*) - level = 0,    gap'(tau*) = 0                                                 (1)
+//! ```
+//!
+//! of the extreme that is nearest to where the last one was. Since the rate vanishes there, an error of `tau*` counts by its
+//! square only.
+//!
+//! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing).
+
+use std::f64::consts::TAU;
+
+use super::equations::Equations;
+use super::setting::Setting;
+use crate::model::layout::Layout;
+use crate::system::{System, Variable};
+use crate::time::Stretch;
+use crate::time::gap::Gap;
+
+/// Samples of the rate in one period of the system.
+const SAMPLES: f64 = 64.0;
+/// An extreme is closed in to this part of a sample, and in no more steps.
+const LOCATED: f64 = 1e-9;
+const STEPS: usize = 60;
+
+/// An extreme of a gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Extreme {
+    /// Phase since the beginning of the orbit.
+    passed: f64,
+    /// The gap there.
+    gap: f64,
+    largest: bool,
+}
+
+/// One gap and one of its levels.
+#[derive(Clone)]
+pub(super) struct Touch<'a> {
+    system: &'a dyn System,
+    layout: Layout,
+    contact: usize,
+    level: usize,
+    /// The last extreme.
+    near: Extreme,
+    gap: Gap,
+    base: f64,
+    parameters: Vec<f64>,
+    coefficients: Vec<f64>,
+    arguments: Vec<f64>,
+    levels: Vec<f64>,
+    state: Vec<f64>,
+}
+
+impl<'a> Touch<'a> {
+    /// The gap and the level that an orbit comes nearest to touching; `None` if it touches none.
+    pub(super) fn of(
+        system: &'a dyn System,
+        setting: &Setting<'a>,
+        equations: &mut Equations<'a>,
+        u: &[f64],
+    ) -> Option<Self> {
+        let layout = Layout::of(system);
+        let mut nearest: Option<(f64, Self)> = None;
+        for contact in 0..layout.contacts.len() {
+            let law = system.law(layout.contacts[contact].law);
+            for level in 0..law.facts().levels.len() {
+                let mut touch = Self {
+                    system,
+                    contact,
+                    level,
+                    near: Extreme {
+                        passed: 0.0,
+                        gap: 0.0,
+                        largest: false,
+                    },
+                    gap: Gap::default(),
+                    base: 0.0,
+                    parameters: setting.parameters.clone(),
+                    coefficients: vec![0.0; layout.coefficients],
+                    arguments: vec![0.0; layout.contacts[contact].argument_count],
+                    levels: vec![0.0; law.facts().levels.len()],
+                    state: vec![0.0; equations.order()],
+                    layout: layout.clone(),
+                };
+                let value = u[u.len() - 1];
+                touch.set(setting.omega_at(value), &[(setting.variable, value)]);
+                let at = touch.levels[level];
+                let mut extremes = Vec::new();
+                touch.extremes(equations, u, &mut |extreme| extremes.push(extreme))?;
+                for extreme in extremes {
+                    let apart = (extreme.gap - at).abs();
+                    if nearest.as_ref().is_none_or(|(least, _)| apart < *least) {
+                        touch.near = extreme;
+                        nearest = Some((apart, touch.clone()));
+                    }
+                }
+            }
+        }
+        nearest.map(|(_, touch)| touch)
+    }
+
+    /// Puts the gap and its levels where parameters have values.
+    fn set(&mut self, mut omega: f64, values: &[(Variable, f64)]) {
+        for &(variable, value) in values {
+            match variable {
+                Variable::Omega => omega = value,
+                Variable::Parameter(index) => self.parameters[index] = value,
+            }
+        }
+        let system = self.system;
+        system.coefficients(&self.parameters, omega, &mut self.coefficients);
+        let contact = &self.layout.contacts[self.contact];
+        self.base = omega / f64::from(system.facts().divisor);
+        self.gap.set(contact, &self.coefficients, self.base);
+        contact.arguments(&self.coefficients, &mut self.arguments);
+        let law = system.law(contact.law);
+        law.levels(&self.arguments, &mut self.levels);
+    }
+
+    /// `g` of (1); not a number if the extreme is not there any more. The last of the unknowns is a value of `second`.
+    pub(super) fn distance(
+        &mut self,
+        equations: &mut Equations<'_>,
+        u: &[f64],
+        omega: f64,
+        second: Variable,
+    ) -> f64 {
+        let near = self.nearest(equations, u, omega, second);
+        near.map_or(f64::NAN, |extreme| extreme.gap - self.levels[self.level])
+    }
+
+    /// Remembers where the extreme is at these unknowns.
+    pub(super) fn follow(
+        &mut self,
+        equations: &mut Equations<'_>,
+        u: &[f64],
+        omega: f64,
+        second: Variable,
+    ) {
+        if let Some(extreme) = self.nearest(equations, u, omega, second) {
+            self.near = extreme;
+        }
+    }
+
+    fn nearest(
+        &mut self,
+        equations: &mut Equations<'_>,
+        u: &[f64],
+        omega: f64,
+        second: Variable,
+    ) -> Option<Extreme> {
+        let last = u.len() - 1;
+        let first = equations.frame.variable;
+        self.set(omega, &[(first, u[last - 1]), (second, u[last])]);
+        equations.flow.set(second, u[last]).ok()?;
+        let near = self.near;
+        let (from, to) = equations.span.phases(0);
+        let whole = (to - from) * equations.span.segments as f64;
+        let away = |extreme: &Extreme| {
+            let apart = (extreme.passed - near.passed).rem_euclid(whole);
+            apart.min(whole - apart)
+        };
+        let mut found: Option<Extreme> = None;
+        self.extremes(equations, &u[..last], &mut |extreme| {
+            let nearer = found.is_none_or(|found| away(&extreme) < away(&found));
+            if extreme.largest == near.largest && nearer {
+                found = Some(extreme);
+            }
+        })?;
+        found
+    }
+
+    /// Shows all extremes of the gap along an orbit. As long as the orbit does not close, the rate has two values where it ends and
+    /// begins again, with an extreme between them if their signs differ.
+    fn extremes(
+        &mut self,
+        equations: &mut Equations<'_>,
+        u: &[f64],
+        see: &mut dyn FnMut(Extreme),
+    ) -> Option<()> {
+        let mut passed = 0.0;
+        // The rate is carried from stretch to stretch: where a step ends at an extreme, rounding could change its sign.
+        let mut last: Option<f64> = None;
+        let mut first: Option<(f64, f64)> = None;
+        let mut end = 0.0;
+        let (gap, state) = (&self.gap, &mut self.state);
+        let scan = &mut |stretch: &dyn Stretch| {
+            let (from, to) = stretch.phases();
+            let mut at = |phase: f64| {
+                stretch.state(phase, state);
+                gap.at(phase, state)
+            };
+            let parts = (SAMPLES * (to - from) / TAU).ceil().max(2.0);
+            let mut before = (from, last.unwrap_or_else(|| at(from).1));
+            let mut part = 1.0;
+            while part <= parts {
+                let phase = from + (to - from) * (part / parts);
+                let behind = (phase, at(phase).1);
+                if before.1 * behind.1 < 0.0 {
+                    let phase = turning(before, behind, &mut |phase| at(phase).1);
+                    see(Extreme {
+                        passed: passed + phase - from,
+                        gap: at(phase).0,
+                        largest: before.1 > 0.0,
+                    });
+                }
+                // Between two switches at one phase there is no rate.
+                if behind.1.abs() > 0.0 {
+                    before = behind;
+                }
+                part += 1.0;
+            }
+            if first.is_none() && last.is_none() {
+                first = Some(at(from));
+            }
+            last = Some(before.1);
+            end = at(to).0;
+            passed += to - from;
+        };
+        if let Err(failure) = equations.trace(u, scan) {
+            equations.failure = Some(failure);
+            return None;
+        }
+        let (rate, (gap, first)) = (last?, first?);
+        // Of half of an orbit with odd symmetry, all rates turn their signs at the end.
+        let half = equations.span.half;
+        let turned = if half { -first } else { first };
+        if rate * turned < 0.0 || turned == 0.0 && rate != 0.0 {
+            see(Extreme {
+                passed,
+                gap: end,
+                largest: rate > 0.0,
+            });
+            if half {
+                see(Extreme {
+                    passed: 0.0,
+                    gap,
+                    largest: first < 0.0,
+                });
+            }
+        }
+        Some(())
+    }
+}
+
+/// Where a rate vanishes between two phases, by the Illinois rule.
+fn turning(mut low: (f64, f64), mut high: (f64, f64), rate: &mut dyn FnMut(f64) -> f64) -> f64 {
+    let wanted = LOCATED * (high.0 - low.0);
+    let (mut phase, mut before) = (low.0, 0.0);
+    for _ in 0..STEPS {
+        phase = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
+        let value = rate(phase);
+        let same = value * before > 0.0;
+        let moved = if value * low.1 > 0.0 {
+            high.1 *= if same { 0.5 } else { 1.0 };
+            std::mem::replace(&mut low, (phase, value)).0 - phase
+        } else {
+            low.1 *= if same { 0.5 } else { 1.0 };
+            std::mem::replace(&mut high, (phase, value)).0 - phase
+        };
+        before = value;
+        if value == 0.0 || moved.abs() <= wanted {
+            break;
+        }
+    }
+    phase
+}

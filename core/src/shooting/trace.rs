@@ -1,0 +1,354 @@
+//! Following a curve of bifurcations in two parameters, both ways from one of them.
+//!
+//! What is special is looked for by [`watch`](super::watch).
+
+use std::ops::ControlFlow;
+
+use nalgebra::Complex;
+
+use super::cycle::CycleEvent;
+use super::run::no_orbit;
+use super::setting::Setting;
+use super::solve;
+use super::start;
+use super::touch::Touch;
+use super::track::{Condition, Curve};
+use super::watch::Watch;
+use crate::branches::branch::EventKind;
+use crate::continuation::follow::{
+    Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, follow,
+};
+use crate::continuation::newton::Newton;
+use crate::continuation::step::StepControl;
+use crate::error::Error;
+use crate::numeric::decimal::Decimal;
+use crate::system::{System, Variable};
+use crate::time::FlowError;
+
+/// A curve of bifurcations in the plane of two parameters.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Track {
+    /// What bifurcates.
+    pub kind: EventKind,
+    /// Names of the two parameters.
+    pub names: [String; 2],
+    /// Period of the orbits in periods of the declaration.
+    pub period: usize,
+    /// The curve in its order.
+    pub points: Vec<TrackPoint>,
+    /// Its special points, in the order of the curve.
+    pub special: Vec<Special>,
+    /// Why it ended on both sides.
+    pub ends: [TrackEnd; 2],
+}
+
+/// One bifurcation of a curve.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct TrackPoint {
+    /// Values of the two parameters.
+    pub values: [f64; 2],
+    /// The state `(q, dq/dt)` at phase zero.
+    pub state: Vec<f64>,
+    /// Floquet multipliers over the period, largest modulus first.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::report::export::pairs")
+    )]
+    pub multipliers: Vec<Complex<f64>>,
+    /// How often a gap crosses a level in a period.
+    pub switches: usize,
+}
+
+/// A special point of a curve.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Special {
+    /// What is special.
+    pub kind: SpecialKind,
+    /// Values of the two parameters.
+    pub values: [f64; 2],
+    /// Estimated error of them: what a flow of another accuracy makes of the place. Where the place was not located, half of the
+    /// step that passed it.
+    pub error: f64,
+    /// Number of points of the curve before it.
+    pub after: usize,
+}
+
+impl std::fmt::Display for Special {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [a, b] = self.values.map(|value| Decimal::rounded(value, 12));
+        write!(f, "{} at {a}, {b} (error {:.0e})", self.kind, self.error)
+    }
+}
+
+/// What is special about a point of a curve of bifurcations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SpecialKind {
+    /// Two folds meet and vanish.
+    Cusp,
+    /// A gap touches a level.
+    Grazing,
+    /// A multiplier is one and another minus one.
+    FoldFlip,
+    /// Two multipliers are one on a curve of folds, or minus one on one of period doublings or of broken symmetry (strong resonance
+    /// 1:1 or 1:2): a curve of Neimark-Sacker bifurcations may end there.
+    Double,
+    /// The branch that begins at a period doubling, or where a symmetry breaks, bends neither way: on one side of this point it
+    /// begins towards larger values, on the other towards smaller ones. A curve of its folds ends there.
+    Degenerate,
+}
+
+/// Why a curve ended on one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum TrackEnd {
+    /// A parameter left its range.
+    Left,
+    /// The curve closed upon itself.
+    Closed,
+    /// A curve of folds met the curve of doublings at which its orbits begin, at the degenerate point that is the special one there.
+    Joined,
+    /// The motion at the next point, or its derivatives, cannot be computed: beside a touch, a power below one half has none.
+    Motion(FlowError),
+    /// Following it ended otherwise.
+    Stopped(Stop),
+}
+
+impl std::fmt::Display for TrackEnd {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Left => f.write_str("left the range"),
+            Self::Closed => f.write_str("closed"),
+            Self::Joined => f.write_str("met the doublings at which its orbits begin"),
+            Self::Motion(reason) => write!(f, "no further motion computed: {reason}"),
+            Self::Stopped(stop) => stop.fmt(f),
+        }
+    }
+}
+
+impl std::fmt::Display for SpecialKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Cusp => "cusp",
+            Self::Grazing => "grazing",
+            Self::FoldFlip => "fold-flip",
+            Self::Double => "double",
+            Self::Degenerate => "degenerate",
+        })
+    }
+}
+
+/// Ranges of the two parameters: the first is what the setting varies.
+pub(super) struct Plane<'a> {
+    pub(super) system: &'a dyn System,
+    pub(super) second: Variable,
+    pub(super) name: String,
+    pub(super) ranges: [[f64; 2]; 2],
+}
+
+/// No half of a curve has more points.
+const POINTS: usize = 600;
+/// Shorter steps lead nowhere: where orbits graze, a determinant has the root of the distance in it, and no tangent.
+const SHORTEST: f64 = 1e-5;
+/// What is shown every bifurcation, and says whether to go on.
+pub(super) type See<'v> = &'v mut dyn FnMut(&TrackPoint) -> ControlFlow<()>;
+
+/// Half of a curve, as it is followed.
+struct Half {
+    points: Vec<TrackPoint>,
+    special: Vec<Special>,
+    end: TrackEnd,
+}
+
+/// The curve of bifurcations through an event.
+///
+/// # Errors
+/// If events of that kind are on no such curve, or the event does not solve its equations.
+pub(super) fn track<'a>(
+    setting: &Setting<'a>,
+    event: &CycleEvent,
+    plane: &Plane<'a>,
+    visit: See<'_>,
+) -> Result<Track, Error> {
+    let at = [event.cycle.value, second_of(event, plane.second)];
+    for ((value, range), name) in at.into_iter().zip(plane.ranges).zip(["from", "within"]) {
+        if value < range[0].min(range[1]) || value > range[0].max(range[1]) {
+            let must = "is the value at the event, and must be inside the range of the curve";
+            return Err(Error::Option { name, value, must });
+        }
+    }
+    let mut back = half(setting, event, plane, -1.0, visit)?;
+    if back.end == TrackEnd::Closed {
+        // The other way leads through the same points.
+        let first = back.points.first().cloned();
+        back.points.extend(first);
+        return Ok(Track {
+            kind: event.kind,
+            names: [setting.varied.clone(), plane.name.clone()],
+            period: event.cycle.period,
+            points: back.points,
+            special: back.special,
+            ends: [TrackEnd::Closed; 2],
+        });
+    }
+    let interrupted = matches!(back.end, TrackEnd::Stopped(Stop::Interrupted));
+    // The other half is then the event alone.
+    let end: See<'_> = &mut |_| ControlFlow::Break(());
+    let mut forth = half(
+        setting,
+        event,
+        plane,
+        1.0,
+        if interrupted { end } else { visit },
+    )?;
+    let count = back.points.len();
+    back.points.reverse();
+    back.special.reverse();
+    // The first point of both is the event.
+    let mut points = std::mem::take(&mut back.points);
+    points.extend(forth.points.drain(..).skip(1));
+    let mut special = std::mem::take(&mut back.special);
+    for special in &mut special {
+        special.after = count - special.after;
+    }
+    special.extend(forth.special.drain(..).map(|special| Special {
+        after: special.after + count - 1,
+        ..special
+    }));
+    Ok(Track {
+        kind: event.kind,
+        names: [setting.varied.clone(), plane.name.clone()],
+        period: event.cycle.period,
+        points,
+        special,
+        ends: [back.end, forth.end],
+    })
+}
+
+/// From the event towards larger values of the second parameter, or smaller ones.
+fn half<'a>(
+    setting: &Setting<'a>,
+    event: &CycleEvent,
+    plane: &Plane<'a>,
+    side: f64,
+    visit: See<'_>,
+) -> Result<Half, Error> {
+    let (mut curve, mut u) = curve(setting, event, plane)?;
+    let mut newton = Newton::new(&curve);
+    let options = setting.newton(setting.source.tolerance, 1.0);
+    solve::at_value(&mut curve, &mut newton, &mut u, options)
+        .map_err(|reason| no_orbit(event.cycle.value, reason, curve.equations.failure))?;
+    let [_, second] = plane.ranges;
+    let range = (second[1] - second[0]).abs();
+    let scale = newton.norm().scale_at(&u, range, &mut [0.0; 2]);
+    let mut tangent = vec![0.0; u.len()];
+    newton.tangent(&mut curve, &u, &mut tangent, true);
+    let sign = side * tangent[tangent.len() - 1];
+    let length = newton.norm().length(scale, &tangent) * sign.signum();
+    for t in &mut tangent {
+        *t /= length;
+    }
+    let start = Start::Along(Box::new(CurvePoint { u, tangent, scale }));
+    let options = FollowOptions {
+        from: second[0].min(second[1]),
+        to: second[0].max(second[1]),
+        points: setting.points.min(POINTS),
+        steps: StepControl {
+            smallest: SHORTEST,
+            ..setting.steps
+        },
+        newton: options,
+    };
+    let mut watch = Watch::new(
+        setting,
+        plane,
+        options.newton,
+        &curve,
+        event.cycle.symmetric,
+    );
+    let mut interrupted = false;
+    let outcome = follow(
+        &mut curve,
+        &mut newton,
+        start,
+        options,
+        &mut |curve, newton, seen| {
+            let known = watch.points.len();
+            watch.visit(curve, newton, &seen)?;
+            if watch.points[known..]
+                .iter()
+                .any(|point| visit(point).is_break())
+            {
+                interrupted = true;
+                return Continue::Break(Halt::Stop);
+            }
+            Continue::Continue(())
+        },
+    );
+    let stuck = matches!(outcome, Ok(Outcome::Stopped(Stop::StepTooShort { .. })));
+    if stuck && watch.is_at_half_the_period(&curve) {
+        watch.joined = true;
+    }
+    let failure = watch.failure.or(curve.equations.failure);
+    let end = match (outcome, failure) {
+        _ if interrupted => TrackEnd::Stopped(Stop::Interrupted),
+        _ if watch.left => TrackEnd::Left,
+        _ if watch.joined => TrackEnd::Joined,
+        (Err(reason), failure) => return Err(no_orbit(event.cycle.value, reason, failure)),
+        (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {
+            TrackEnd::Motion(reason)
+        }
+        (Ok(Outcome::Stopped(Stop::ReachedEnd | Stop::LeftAtStart)), _) => TrackEnd::Left,
+        (Ok(Outcome::Stopped(Stop::Closed)), _) => TrackEnd::Closed,
+        (Ok(Outcome::Stopped(stop)), _) => TrackEnd::Stopped(stop),
+        // A curve is never resized.
+        (Ok(Outcome::Halted(_)), _) => TrackEnd::Stopped(Stop::Interrupted),
+    };
+    Ok(Half {
+        points: watch.points,
+        special: watch.special,
+        end,
+    })
+}
+
+/// The value of the second parameter at an event.
+fn second_of(event: &CycleEvent, second: Variable) -> f64 {
+    match second {
+        Variable::Omega => event.cycle.omega,
+        Variable::Parameter(index) => event.cycle.parameters[index],
+    }
+}
+
+/// The problem of the curve, and the event as its unknowns.
+fn curve<'a>(
+    setting: &Setting<'a>,
+    event: &CycleEvent,
+    plane: &Plane<'a>,
+) -> Result<(Curve<'a>, Vec<f64>), Error> {
+    let cycle = &event.cycle;
+    let (mut equations, mut u) = start::known(setting, cycle)?;
+    let nothing = Error::NoBranch {
+        kind: event.kind,
+        value: cycle.value,
+    };
+    let condition = match event.kind {
+        EventKind::Fold => Condition::Multiplier(-1.0),
+        EventKind::PeriodDoubling | EventKind::SymmetryBreaking => Condition::Multiplier(1.0),
+        EventKind::Grazing { .. } => {
+            let touch = Touch::of(plane.system, setting, &mut equations, &u).ok_or(nothing)?;
+            Condition::Touch(Box::new(touch), setting.omega)
+        }
+        _ => return Err(nothing),
+    };
+    u.push(second_of(event, plane.second));
+    let size = cycle.size();
+    let [first, second] = plane.ranges.map(|range| (range[1] - range[0]).abs());
+    let curve = Curve::new(equations, plane.second, condition, [size, first, second]);
+    Ok((curve, u))
+}

@@ -1,0 +1,345 @@
+//! The flow of systems whose forces are piecewise affine: closed forms from switch to switch.
+//!
+//! While no gap leaves its piece, the motion is that of a linear system with constant coefficients, and is tabulated as series
+//! that end below rounding (`table`). The first meeting of a gap with an end of its piece is proven to be the first (`search`,
+//! `crossing`). There the state is continuous, and perturbations jump (`tangent`). One coordinate under one harmonic has the same
+//! in arrays of fixed size (`scalar`, `interval`).
+//!
+//! A motion that touches an end without crossing it stays on its piece; perturbations do not jump there.
+
+mod backwards;
+mod crossing;
+mod equations;
+mod exponential;
+mod interval;
+mod model;
+mod scalar;
+mod search;
+mod table;
+mod tangent;
+mod terms;
+#[cfg(test)]
+mod tests;
+
+use std::f64::consts::TAU;
+
+use self::crossing::value_and_slope;
+use self::model::Model;
+use self::scalar::{Scalar, Span};
+use self::table::{COEFFICIENTS, Polynomial, Table};
+use crate::error::Error;
+use crate::system::{System, Variable};
+use crate::time::error::{admits, check_entries};
+use crate::time::{Flow, FlowError, See, Stretch, Tangent, Work};
+
+/// Switches in one period beyond which the motion is taken for chatter.
+const MOST_SWITCHES: usize = 10_000;
+
+/// The flow of a system of which every piece of every law is affine, and stiffness and directions are constant in time.
+pub struct Affine<'a> {
+    model: Model<'a>,
+    /// The same for one coordinate under at most one harmonic.
+    scalar: Option<Scalar>,
+    /// It belongs to the present values.
+    filled: bool,
+    /// The state with the constant and the waves.
+    z: Vec<f64>,
+    rows: Vec<Polynomial>,
+    rows_by: Vec<Polynomial>,
+    /// The piece of every contact, and the level it is at.
+    pieces: Vec<usize>,
+    at: Vec<Option<usize>>,
+    column: Vec<f64>,
+    /// The state at the end of a stretch.
+    next: Vec<f64>,
+    /// The flow of the reversed motion; made when it is needed.
+    reversed: Option<Box<Self>>,
+    work: Work,
+}
+
+impl std::fmt::Debug for Affine<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Affine")
+            .field("coordinates", &self.model.basis.coordinates)
+            .field("work", &self.work)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Affine<'a> {
+    /// The flow at given values.
+    ///
+    /// # Errors
+    /// [`Error::NotAffine`] if the system is not of this kind; if parameters or the frequency are outside their ranges, levels are
+    /// out of order, or the mass matrix is singular.
+    pub fn new(system: &'a dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
+        Model::new(system, parameters, omega).map(Self::of)
+    }
+
+    fn of(model: Model<'a>) -> Self {
+        let (order, contacts) = (model.basis.order(), model.contacts.len());
+        let most = order - 1 - model.basis.coordinates;
+        Self {
+            z: vec![0.0; order],
+            rows: vec![[0.0; COEFFICIENTS]; most],
+            rows_by: vec![[0.0; COEFFICIENTS]; most],
+            pieces: vec![0; contacts],
+            at: vec![None; contacts],
+            column: vec![0.0; order],
+            next: vec![0.0; 2 * model.basis.coordinates],
+            work: Work::default(),
+            scalar: Scalar::new(&model),
+            filled: false,
+            reversed: None,
+            model,
+        }
+    }
+
+    /// Moves over at most one period.
+    fn advance_span(
+        &mut self,
+        span: Span,
+        state: &mut [f64],
+        tangent: &mut Option<&mut Tangent>,
+        see: &mut Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        let n = self.model.basis.coordinates;
+        let by = tangent.as_ref().and_then(|tangent| tangent.by);
+        let (begin, first) = (span.begin, span.first);
+        let mut done = 0.0;
+        let mut switches = 0;
+        self.z[..2 * n].copy_from_slice(state);
+        self.model.basis.write_waves(first, &mut self.z[2 * n..]);
+        self.choose_pieces(begin)?;
+        loop {
+            let phase = begin + done;
+            let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
+            let table = &self.model.at(combination).table;
+            let rows = &mut self.rows[..table.rows];
+            let left = (span.length - done) / table.cell;
+            let range = left.min(table.range());
+            let at = &self.at;
+            let begins = |watch: &table::Watch| at[watch.contact] == Some(watch.level);
+            let hit = table.first_hit(&self.z, range, begins, rows);
+            let cells = hit.map_or(range, |hit| hit.at);
+            let last = hit.is_none() && range == left;
+            let next = done + cells * table.cell;
+            let piece = Piece {
+                table,
+                z: &self.z,
+                phases: (phase, if last { span.end } else { begin + next }),
+                base: self.model.terms.base,
+            };
+            piece.at(cells, rows, &mut self.next);
+            if self.next.iter().any(|x| !x.is_finite()) {
+                return Err(FlowError::NotFinite { phase });
+            }
+            state.copy_from_slice(&self.next);
+            if let Some(tangent) = tangent.as_deref_mut() {
+                let rows_by = &mut self.rows_by[..table.rows];
+                let room = (&mut *rows, rows_by, &mut self.column[..]);
+                tangent::advance(&self.model, table, &self.z, cells, tangent, room);
+            }
+            if let Some(see) = see {
+                see(&piece);
+            }
+            self.work.steps += 1;
+            if last {
+                return Ok(());
+            }
+            done = next;
+            self.z[..2 * n].copy_from_slice(state);
+            let waves = &mut self.z[2 * n..];
+            self.model.basis.write_waves(first + done, waves);
+            if cells > 0.0 {
+                self.at.fill(None);
+            }
+            if let Some(hit) = hit {
+                switches += 1;
+                self.work.switches += 1;
+                if switches > MOST_SWITCHES {
+                    let phase = begin + done;
+                    return Err(FlowError::TooManySwitches { phase, switches });
+                }
+                let watch = &table.watches[hit.watch];
+                let crossed = (watch.contact, watch.level, watch.upper);
+                self.cross(crossed, tangent.as_deref_mut());
+            }
+        }
+    }
+
+    /// Takes a contact over one of its levels, upwards or downwards.
+    fn cross(
+        &mut self,
+        (contact, level, upwards): (usize, usize, bool),
+        tangent: Option<&mut Tangent>,
+    ) {
+        if let Some(tangent) = tangent {
+            tangent::switch(&self.model, &self.z, (contact, level, upwards), tangent);
+        }
+        self.pieces[contact] = level + usize::from(upwards);
+        self.at[contact] = Some(level);
+    }
+
+    /// Whether the arrays of fixed size serve the present values, and not only the pieces that a motion meets.
+    fn fill_scalar(&mut self, phase: f64) -> bool {
+        if let Some(scalar) = self.scalar.as_mut().filter(|_| !self.filled) {
+            self.filled = scalar.fill(&mut self.model, phase).is_ok();
+        }
+        self.filled
+    }
+
+    /// The piece that every gap is on, or is about to enter.
+    fn choose_pieces(&mut self, phase: f64) -> Result<(), FlowError> {
+        self.at.fill(None);
+        for index in 0..self.pieces.len() {
+            let (gap, _) = self.model.gap(index, &self.z);
+            let levels = &self.model.contacts[index].levels;
+            self.pieces[index] = levels.iter().filter(|&&level| gap > level).count();
+            self.at[index] = levels.iter().position(|&level| gap == level);
+        }
+        for index in 0..self.pieces.len() {
+            let Some(level) = self.at[index] else {
+                continue;
+            };
+            let (_, rate) = self.model.gap(index, &self.z);
+            self.pieces[index] = level + 1;
+            let rises = rate > 0.0 || (rate == 0.0 && self.rises(index, level, phase)?);
+            self.pieces[index] = level + usize::from(rises);
+        }
+        Ok(())
+    }
+
+    /// Whether a gap at rest at a level is accelerated upwards on the piece above it.
+    fn rises(&mut self, contact: usize, level: usize, phase: f64) -> Result<bool, FlowError> {
+        let combination = self.model.combination(&self.pieces, phase, false)?;
+        let table = &self.model.at(combination).table;
+        let rows = &mut self.rows[..table.rows];
+        table.polynomials(0, &self.z, rows);
+        let mut watches = table.watches.iter();
+        let watch = watches.find(|watch| watch.contact == contact && watch.level == level);
+        Ok(watch
+            .is_some_and(|watch| crossing::derivatives(&table.distance(watch, rows), 0.0)[2] > 0.0))
+    }
+}
+
+impl Flow for Affine<'_> {
+    fn coordinates(&self) -> usize {
+        self.model.basis.coordinates
+    }
+
+    fn admits(&self, variable: Variable, value: f64) -> bool {
+        admits(self.model.system(), variable, value)
+    }
+
+    fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
+        self.filled = false;
+        self.model.set(variable, value)?;
+        self.reversed
+            .as_mut()
+            .map_or(Ok(()), |reversed| reversed.set(variable, value))
+    }
+
+    fn advance(
+        &mut self,
+        from: f64,
+        to: f64,
+        state: &mut [f64],
+        mut tangent: Option<&mut Tangent>,
+        mut see: Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        check_entries(self.coordinates(), state, tangent.as_deref())?;
+        if to < from {
+            return self.go_back((from, to), state, tangent, see);
+        }
+        let by = tangent.as_ref().and_then(|tangent| tangent.by);
+        self.model.refresh(by, from)?;
+        if state.iter().any(|x| !x.is_finite()) || !from.is_finite() || !to.is_finite() {
+            return Err(FlowError::NotFinite { phase: from });
+        }
+        let plain = see.is_none() && by.is_none() && self.fill_scalar(from);
+        for span in spans(from, to) {
+            match &self.scalar {
+                Some(scalar) if plain => {
+                    let columns = tangent.as_mut().map(|tangent| &mut tangent.columns[..]);
+                    let columns = columns.unwrap_or(&mut []).as_chunks_mut().0;
+                    let (state, _) = state.as_chunks_mut();
+                    scalar.advance(span, &mut state[0], columns, &mut self.work)?;
+                }
+                _ => self.advance_span(span, state, &mut tangent, &mut see)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+/// The periods from a phase to a later one, and what is left. Lengths are not differences of phases, which grow without end.
+fn spans(from: f64, to: f64) -> impl Iterator<Item = Span> {
+    let resolution = 2.0 * f64::EPSILON * (from.abs() + to.abs());
+    let length = to - from;
+    let periods = if length < TAU - resolution {
+        0
+    } else {
+        ((length + resolution) / TAU) as usize
+    };
+    let rest = length - periods as f64 * TAU;
+    let count = periods + usize::from(rest > resolution);
+    let first = if (0.0..TAU).contains(&from) {
+        from
+    } else {
+        from.rem_euclid(TAU)
+    };
+    let phase = move |k: usize| from + k as f64 * TAU;
+    (0..count).map(move |k| Span {
+        begin: phase(k),
+        end: if k + 1 == count { to } else { phase(k + 1) },
+        first,
+        length: if k < periods { TAU } else { rest },
+    })
+}
+
+/// A motion on one combination of pieces, from the phase where its table begins.
+struct Piece<'t> {
+    table: &'t Table,
+    /// Where it begins.
+    z: &'t [f64],
+    phases: (f64, f64),
+    /// `nu`
+    base: f64,
+}
+
+impl Piece<'_> {
+    /// The state after some cells. `rows` is room.
+    fn at(&self, cells: f64, rows: &mut [Polynomial], state: &mut [f64]) {
+        let (cell, s) = self.table.place(cells);
+        self.table.polynomials(cell, self.z, rows);
+        let n = state.len() / 2;
+        for (i, row) in rows[..n].iter().enumerate() {
+            let (value, slope) = value_and_slope(row, s);
+            state[i] = value;
+            state[n + i] = slope * (self.base / self.table.cell);
+        }
+    }
+}
+
+impl Stretch for Piece<'_> {
+    fn phases(&self) -> (f64, f64) {
+        self.phases
+    }
+
+    fn state(&self, phase: f64, state: &mut [f64]) {
+        let cells = (phase - self.phases.0) / self.table.cell;
+        let (cell, s) = self.table.place(cells);
+        let n = state.len() / 2;
+        for i in 0..n {
+            let row = self.table.polynomial(cell, i, self.z);
+            let (value, slope) = value_and_slope(&row, s);
+            state[i] = value;
+            state[n + i] = slope * (self.base / self.table.cell);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Perturbations of a motion, and its derivative by a variable.
+//!
+//! Between switches perturbations of the state obey the homogeneous equation; the derivative by a variable has the derivative of
+//! the table besides. Where a gap crosses a level into a piece on which the force is larger by `F + D g'`, the phase of the
+//! crossing moves with the gap, and the velocities of a perturbation jump,
+//!
+//! ```text
+//! dq'  ->  dq' - M^-1 e ( F / g' + D ) dg,    dg = d . dq  (+ d_p . q - delta_p - level_p)                      (1)
+//! ```
+//!
+//! where the part in brackets belongs to the derivative by the variable `p`. Where the force is continuous, `F = 0`, (1) holds at any
+//! rate of the gap, also as it tends to zero.
+//!
+//! Source: Leine and Nijmeijer (2004), Dynamics and Bifurcations of Non-Smooth Mechanical Systems, chapter 7.
+
+use super::crossing::value_and_slope;
+use super::model::Model;
+use super::table::{Polynomial, Table};
+use crate::time::Tangent;
+
+/// Moves a tangent over some cells of a motion that begins at `z`.
+pub(super) fn advance(
+    model: &Model<'_>,
+    table: &Table,
+    z: &[f64],
+    cells: f64,
+    tangent: &mut Tangent,
+    (rows, rows_by, room): (&mut [Polynomial], &mut [Polynomial], &mut [f64]),
+) {
+    let n = model.basis.coordinates;
+    let (cell, s) = table.place(cells);
+    let rate = model.terms.base / table.cell;
+    let homogeneous = homogeneous(tangent, n);
+    room.fill(0.0);
+    for (index, column) in tangent.columns.chunks_exact_mut(2 * n).enumerate() {
+        room[..2 * n].copy_from_slice(column);
+        table.polynomials(cell, room, rows);
+        let mut stretch = 0.0;
+        if index >= homogeneous {
+            table.add_derivatives(cell, z, rows);
+            table.polynomials(cell, z, rows_by);
+            stretch = model.terms_by.base / table.cell;
+        }
+        for i in 0..n {
+            let (value, slope) = value_and_slope(&rows[i], s);
+            column[i] = value;
+            column[n + i] = slope * rate;
+            if stretch != 0.0 {
+                column[n + i] += value_and_slope(&rows_by[i], s).1 * stretch;
+            }
+        }
+    }
+}
+
+/// The saltation (1), where a contact crosses one of its levels, upwards or downwards.
+pub(super) fn switch(
+    model: &Model<'_>,
+    z: &[f64],
+    (contact, level, upwards): (usize, usize, bool),
+    tangent: &mut Tangent,
+) {
+    let n = model.basis.coordinates;
+    let (force, by_rate) = model.jump(contact, level);
+    if force == 0.0 && by_rate == 0.0 {
+        return;
+    }
+    let (_, rate) = model.gap(contact, z);
+    let steepness = if force == 0.0 {
+        by_rate
+    } else {
+        force / rate + by_rate
+    };
+    let steepness = if upwards { steepness } else { -steepness };
+    let homogeneous = homogeneous(tangent, n);
+    let direction = &model.terms.contacts[contact].gap;
+    for (index, column) in tangent.columns.chunks_exact_mut(2 * n).enumerate() {
+        let mut gap: f64 = direction.iter().zip(&*column).map(|(d, q)| d * q).sum();
+        if index >= homogeneous {
+            gap += model.gap_by(contact, z) - model.contacts[contact].levels_by[level];
+        }
+        for (velocity, push) in column[n..].iter_mut().zip(&model.contacts[contact].push) {
+            *velocity -= push * steepness * gap;
+        }
+    }
+}
+
+/// Columns that are not the derivative by a variable.
+fn homogeneous(tangent: &Tangent, coordinates: usize) -> usize {
+    tangent.columns.len() / (2 * coordinates) - usize::from(tangent.by.is_some())
+}

@@ -1,0 +1,308 @@
+//! Random systems against the independent flow, and tangents against differences.
+
+use proptest::prelude::*;
+
+use super::flow;
+use super::reference::Reference;
+use crate::oscillator;
+use crate::system::{System, Variable};
+use crate::time::{Flow, Stretch, Tangent};
+
+oscillator! {
+    /// A mass between two damped stops that may be preloaded and may shake, under two harmonics.
+    pub(super) Stops(x) {
+        /// mass
+        param mass > 0;
+        /// damping of the mass
+        param damping;
+        /// its stiffness
+        param stiffness;
+        /// half of the play
+        param play >= 0;
+        /// stiffness of the upper stop
+        param upper;
+        /// stiffness of the lower stop
+        param lower;
+        /// damping of the upper stop
+        param rub;
+        /// force of the upper stop at first touch
+        param preload;
+        /// amplitude of the motion of the stops
+        param shake;
+        /// constant load
+        param load;
+        /// amplitude of the first harmonic
+        param drive;
+        /// amplitude of half of the first harmonic
+        param half;
+
+        /// gap of the upper stop beyond the play
+        law stops(gap) {
+            gap > play  => preload + upper*(gap - play) + rub*dot(gap),
+            gap < -play => lower*(gap + play),
+            else        => 0,
+        }
+
+        mass*ddot(x) + damping*dot(x) + stiffness*x + stops(x - shake*sin(omega*t))
+            = load + drive*cos(omega*t) + half*sin(1/2*omega*t);
+    }
+}
+
+oscillator! {
+    /// Two masses; the first meets a damped stop, and a spring with play couples them.
+    Two(x, y) {
+        /// damping
+        param zeta;
+        /// stiffness of the stop
+        param stop;
+        /// place of the stop
+        param place;
+        /// stiffness of the coupling beyond its play
+        param coupling;
+        /// half of its play
+        param play >= 0;
+        /// excitation
+        param drive;
+
+        /// beyond the place
+        law wall(gap) { gap > 0 => stop*gap + 2*zeta*dot(gap), else => 0 }
+
+        /// either side of the play
+        law spring(gap) {
+            gap > play  => coupling*(gap - play),
+            gap < -play => coupling*(gap + play),
+            else        => 0,
+        }
+
+        ddot(x) + 2*zeta*dot(x) + x + wall(x - place) - spring(y - x) = drive*cos(omega*t);
+        0.7*ddot(y) + 2*zeta*dot(y) - 0.3*y + spring(y - x) = 0.2 + 0.1*drive*sin(2*omega*t);
+    }
+}
+
+/// The flow, the states seen at the ends of stretches, and the independent flow agree.
+fn compare(system: &dyn System, omega: f64, start: &[f64], to: f64) {
+    let from = 0.4;
+    let mut flow = flow(system, omega);
+    let n = flow.coordinates();
+    let mut tangent = Tangent::of_state(n, None);
+    let mut state = start.to_vec();
+    let mut last = Vec::new();
+    let mut phase = from;
+    let mut see = |stretch: &dyn Stretch| {
+        let mut at = vec![0.0; start.len()];
+        assert_eq!(stretch.phases().0, phase);
+        stretch.state(phase, &mut at);
+        if !last.is_empty() {
+            assert!(distance(&at, &last) < 1e-13, "{at:?} {last:?}");
+        }
+        phase = stretch.phases().1;
+        stretch.state(phase, &mut at);
+        last = at;
+    };
+    flow.advance(from, to, &mut state, Some(&mut tangent), Some(&mut see))
+        .unwrap();
+    assert_eq!(phase, to);
+    assert!(distance(&last, &state) < 1e-13);
+    let mut plain = start.to_vec();
+    flow.advance(from, to, &mut plain, None, None).unwrap();
+    let mut exact = start.to_vec();
+    Reference::new(system, omega).advance(from, to, 0.02, &mut exact);
+    // What a perturbation of one rounding error has grown to.
+    let growth = tangent
+        .columns
+        .iter()
+        .fold(1.0_f64, |size, x| size.max(x.abs()));
+    for found in [&state, &plain] {
+        let error = distance(found, &exact);
+        assert!(
+            error < 1e-11 * growth,
+            "{error:e} {growth} {found:?} {exact:?}"
+        );
+    }
+}
+
+/// Relative to the size of the second.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let size = b.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+    let error = a
+        .iter()
+        .zip(b)
+        .fold(0.0_f64, |error, (a, b)| error.max((a - b).abs()));
+    error / size
+}
+
+/// The tangent is what central differences tend to; `None` if these do not tend to anything, as where the motion grazes.
+fn check_tangent(
+    system: &dyn System,
+    omega: f64,
+    start: &[f64],
+    to: f64,
+    by: Variable,
+) -> Option<()> {
+    let mut values = vec![0.0; system.facts().parameters.len()];
+    system.values(&mut values);
+    let mut flow = flow(system, omega);
+    let mut tangent = Tangent::of_state(flow.coordinates(), Some(by));
+    flow.advance(0.0, to, &mut start.to_vec(), Some(&mut tangent), None)
+        .unwrap();
+    let mut at = |direction: usize, step: f64| {
+        let mut state = start.to_vec();
+        let value = match by {
+            Variable::Omega => omega,
+            Variable::Parameter(index) => values[index],
+        };
+        if direction < start.len() {
+            state[direction] += step;
+            flow.set(by, value).unwrap();
+        } else {
+            flow.set(by, value + step).unwrap();
+        }
+        flow.advance(0.0, to, &mut state, None, None).unwrap();
+        state
+    };
+    for (direction, column) in tangent.columns.chunks_exact(start.len()).enumerate() {
+        let mut difference = |h: f64| -> Vec<f64> {
+            let (plus, minus) = (at(direction, h), at(direction, -h));
+            plus.iter()
+                .zip(&minus)
+                .map(|(p, m)| (p - m) / (2.0 * h))
+                .collect()
+        };
+        let differences = [2e-5, 1e-5, 5e-6].map(&mut difference);
+        let size = differences[2].iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+        for (i, exact) in column.iter().enumerate() {
+            let [coarse, middle, fine] = [0, 1, 2].map(|k| differences[k][i]);
+            // Of a motion that is smooth as far as it is displaced, errors are as the squares of the displacements. If it is
+            // not, it touches or leaves a stop in between, and the differences are not those of one smooth function.
+            let (first, second) = (coarse - middle, middle - fine);
+            let smooth = (first - 4.0 * second).abs() < 0.05 * first.abs() + 1e-9 * size;
+            if !smooth || first.abs() > 1e-5 * size {
+                return None;
+            }
+            let error = (fine - second / 3.0 - exact).abs();
+            assert!(
+                error < 1e-8 * size,
+                "{direction}: {error:e} {exact} {fine} {middle} {coarse}"
+            );
+        }
+    }
+    Some(())
+}
+
+fn stops() -> impl Strategy<Value = Stops> {
+    let first = (
+        0.3..3.0,
+        -0.1..0.5,
+        -0.5..2.0,
+        0.0..1.0,
+        0.0..20.0,
+        -0.5..5.0,
+    );
+    let second = (0.0..1.0, 0.0..0.5, 0.0..0.5, -1.0..1.0, 0.0..2.0, 0.0..1.0);
+    (first, second).prop_map(|(first, second)| {
+        let (mass, damping, stiffness, play, upper, lower) = first;
+        let (rub, preload, shake, load, drive, half) = second;
+        Stops {
+            mass,
+            damping,
+            stiffness,
+            play,
+            upper,
+            lower,
+            rub,
+            preload,
+            shake,
+            load,
+            drive,
+            half,
+        }
+    })
+}
+
+fn two() -> impl Strategy<Value = Two> {
+    let parts = (0.0..0.3, 0.0..30.0, -0.2..1.0, 0.0..5.0, 0.0..0.5, 0.0..2.0);
+    parts.prop_map(|(zeta, stop, place, coupling, play, drive)| Two {
+        zeta,
+        stop,
+        place,
+        coupling,
+        play,
+        drive,
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn one_coordinate(model in stops(), omega in 0.3..3.0, x in -2.0..2.0, v in -2.0..2.0) {
+        compare(&model, omega, &[x, v], 9.0);
+    }
+
+    /// Without motion of the stops and with one harmonic: the arrays of fixed size.
+    #[test]
+    fn one_coordinate_of_one_harmonic(model in stops(), omega in 0.3..3.0, x in -2.0..2.0, v in -2.0..2.0) {
+        let play = Clearance {
+            damping: model.damping,
+            stiffness: model.stiffness,
+            play: model.play,
+            upper: model.upper,
+            lower: model.lower,
+            rub: model.rub,
+            preload: model.preload,
+            load: model.load,
+            drive: model.drive,
+        };
+        compare(&play, omega, &[x, v], 9.0);
+    }
+
+    #[test]
+    fn two_coordinates(model in two(), omega in 0.3..3.0, x in -1.0..1.0, y in -1.0..1.0, v in -1.0..1.0) {
+        compare(&model, omega, &[x, y, v, 0.3], 9.0);
+    }
+
+    #[test]
+    fn tangent_of_one_coordinate(model in stops(), omega in 0.3..3.0, x in -2.0..2.0, v in -2.0..2.0, by in 0_usize..13) {
+        let by = if by == 12 { Variable::Omega } else { Variable::Parameter(by) };
+        prop_assume!(check_tangent(&model, omega, &[x, v], 8.0, by).is_some());
+    }
+
+    #[test]
+    fn tangent_of_two_coordinates(model in two(), omega in 0.3..3.0, x in -1.0..1.0, y in -1.0..1.0, v in -1.0..1.0, by in 0_usize..7) {
+        let by = if by == 6 { Variable::Omega } else { Variable::Parameter(by) };
+        prop_assume!(check_tangent(&model, omega, &[x, y, v, 0.3], 8.0, by).is_some());
+    }
+}
+
+oscillator! {
+    /// A mass between two fixed stops under one harmonic.
+    Clearance(x) {
+        /// damping
+        param damping;
+        /// stiffness
+        param stiffness;
+        /// half of the play
+        param play >= 0;
+        /// stiffness of the upper stop
+        param upper;
+        /// stiffness of the lower stop
+        param lower;
+        /// damping of the upper stop
+        param rub;
+        /// force of the upper stop at first touch
+        param preload;
+        /// constant load
+        param load;
+        /// amplitude
+        param drive;
+
+        /// the gap is measured against the coordinate
+        law stops(gap) {
+            gap > play  => lower*(gap - play),
+            gap < -play => upper*(gap + play) + rub*dot(gap) - preload,
+            else        => 0,
+        }
+
+        ddot(x) + damping*dot(x) + stiffness*x - stops(0.1 - x) = load + drive*sin(3*omega*t);
+    }
+}

@@ -1,0 +1,201 @@
+//! Motion in time: from a state at one phase to the state at a later one, through every switch.
+//!
+//! Time is measured by the phase `tau = omega t / divisor` of the system's own waves, so that `2 pi` is its period whatever
+//! the frequency. A state is `(q, dq/dt)`: coordinates, then their derivatives by *time*.
+
+pub mod affine;
+pub mod divergence;
+pub mod estimate;
+pub mod history;
+pub mod poincare;
+pub mod stroboscope;
+
+mod error;
+mod field;
+pub(crate) mod gap;
+mod integrated;
+#[cfg(test)]
+mod tests;
+
+pub use error::FlowError;
+pub use integrated::Integrated;
+
+use crate::error::Error;
+use crate::system::{System, Variable};
+
+/// What is shown every smooth stretch of a motion.
+pub type See<'s> = &'s mut (dyn FnMut(&dyn Stretch) + 's);
+
+/// The flow of one system, at values of its parameters and of `omega` that can be changed.
+///
+/// Nothing is remembered between calls but room: the same call gives the same bits.
+pub trait Flow: Send {
+    /// Number of coordinates `n`; a state has `2 n` entries.
+    fn coordinates(&self) -> usize;
+
+    /// Whether a variable may have a value: a parameter in its declared range, a positive and finite frequency.
+    fn admits(&self, variable: Variable, value: f64) -> bool;
+
+    /// Changes the frequency or a parameter. The declared range is not asked for, so that a search may look beyond its end:
+    /// see [`admits`](Self::admits).
+    ///
+    /// # Errors
+    /// If there is no such parameter, the value is not finite, a frequency is not positive, levels would be out of order, or the
+    /// mass matrix would be singular. The flow is then as before.
+    fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError>;
+
+    /// Moves a state from a phase to another one, and the tangent with it; back in time if that is an earlier one. Every smooth
+    /// stretch of the motion is shown to `see` once it is complete, in order and without gaps.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued: state and tangent are then those of the phase that the error tells. If the state or the
+    /// tangent has the wrong number of entries: nothing has moved then.
+    fn advance(
+        &mut self,
+        from: f64,
+        to: f64,
+        state: &mut [f64],
+        tangent: Option<&mut Tangent>,
+        see: Option<See<'_>>,
+    ) -> Result<(), FlowError>;
+
+    /// The work done since the flow was made.
+    fn work(&self) -> Work;
+}
+
+/// How a flow is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Options {
+    /// The error allowed in a state, relative to the largest states of the motion; from `1e-14` to `1e-2`. A closed form is
+    /// always exact to rounding.
+    pub tolerance: f64,
+}
+
+impl Default for Options {
+    /// A tolerance of `1e-10`.
+    fn default() -> Self {
+        Self { tolerance: 1e-10 }
+    }
+}
+
+impl Options {
+    /// The error allowed in a state; see [`Options::tolerance`](#structfield.tolerance).
+    ///
+    /// ```
+    /// use hertzian::time::Options;
+    ///
+    /// let options = Options::default().tolerance(1e-7);
+    /// assert_eq!(options.tolerance, 1e-7);
+    /// ```
+    #[must_use]
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+}
+
+/// The flow of a system at a frequency, at the values that its parameters have: in closed form if every force is affine on
+/// each of its pieces and nothing else varies in time, otherwise by numerical integration.
+///
+/// ```
+/// use std::f64::consts::TAU;
+/// use hertzian::time;
+/// use hertzian::time::{Options, Tangent};
+///
+/// hertzian::oscillator! {
+///     Contact(x) {
+///         param zeta in 0.0..;
+///         param drive;
+///         law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^1.5, else => 0 }
+///         ddot(x) + contact(x) = 1 + drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Contact { zeta: 0.05, drive: 0.5 };
+/// let mut flow = time::of(&model, 0.8, Options::default())?;
+/// let mut state = [1.0, 0.0];
+/// for _ in 0..200 {
+///     flow.advance(0.0, TAU, &mut state, None, None)?;
+/// }
+/// // The motion has settled: it comes back after a period, and its derivatives by where it began are those of a contraction.
+/// let before = state;
+/// let mut tangent = Tangent::of_state(1, None);
+/// flow.advance(0.0, TAU, &mut state, Some(&mut tangent), None)?;
+/// assert!((state[0] - before[0]).abs() < 1e-8);
+/// let [a, b, c, d] = tangent.columns[..] else { unreachable!() };
+/// assert!(a * d - b * c < 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If a parameter, the frequency or the tolerance is outside its range, the levels of a law are out of order, the mass matrix is
+/// singular, or the system has no coordinates.
+pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn Flow + '_>, Error> {
+    let mut values = vec![0.0; system.facts().parameters.len()];
+    system.values(&mut values);
+    at(system, &values, omega, options)
+}
+
+/// As [`of`], at given values of the parameters.
+///
+/// # Errors
+/// As [`of`], and if there are not as many values as parameters.
+pub fn at<'a>(
+    system: &'a dyn System,
+    values: &[f64],
+    omega: f64,
+    options: Options,
+) -> Result<Box<dyn Flow + 'a>, Error> {
+    let integrated = Integrated::new(system, values, omega, options.tolerance)?;
+    Ok(match affine::Affine::new(system, values, omega) {
+        Ok(affine) => Box::new(affine),
+        Err(_) => Box::new(integrated),
+    })
+}
+
+/// Derivatives of a state, moved along with it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tangent {
+    /// Derivatives by the initial state or along chosen directions: columns of `2 n` entries, one after the other.
+    pub columns: Vec<f64>,
+    /// The variable that the last column is the derivative by, at fixed phase; without one all columns are homogeneous.
+    pub by: Option<Variable>,
+}
+
+impl Tangent {
+    /// The derivatives by the initial state at the phase where it is given: the unit matrix. With a variable, a column of
+    /// zeros more.
+    pub fn of_state(coordinates: usize, by: Option<Variable>) -> Self {
+        let order = 2 * coordinates;
+        let mut columns = vec![0.0; order * (order + usize::from(by.is_some()))];
+        for i in 0..order {
+            columns[i * order + i] = 1.0;
+        }
+        Self { columns, by }
+    }
+}
+
+/// A stretch of motion without switches.
+pub trait Stretch {
+    /// Its first and its last phase, in the order in which the motion passed them.
+    fn phases(&self) -> (f64, f64);
+
+    /// Writes the state at a phase between them, as accurate as the motion itself.
+    fn state(&self, phase: f64, state: &mut [f64]);
+}
+
+/// What a flow has done.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Work {
+    /// Steps, or stretches where a closed form needs none.
+    pub steps: usize,
+    /// Steps tried again with a smaller length.
+    pub rejected: usize,
+    /// Evaluations of forces at one instant.
+    pub forces: usize,
+    /// Crossings of levels.
+    pub switches: usize,
+}

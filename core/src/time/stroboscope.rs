@@ -1,0 +1,198 @@
+//! The stroboscopic map: the state after one period of the declaration, or after several.
+
+use std::f64::consts::TAU;
+
+use super::{Flow, FlowError, Options, See, Tangent};
+use crate::error::Error;
+use crate::system::{System, Variable};
+use crate::time;
+
+/// The map from a state at one phase to the state a whole number of periods later.
+///
+/// A period is that of the declaration, `2 pi divisor / omega`.
+///
+/// ```
+/// use hertzian::time::stroboscope::Stroboscope;
+///
+/// hertzian::oscillator! {
+///     Linear(x) {
+///         param drive;
+///         ddot(x) + 0.2*dot(x) + 4*x = drive*cos(omega*t);
+///     }
+/// }
+///
+/// let model = Linear { drive: 3.0 };
+/// let mut map = Stroboscope::of(&model, 1.0)?;
+/// let mut state = [0.0, 0.0];
+/// for _ in 0..100 {
+///     map.map(&mut state)?;
+/// }
+/// // The amplitude of the cosine: 3 (4 - 1) / ((4 - 1)^2 + 0.2^2)
+/// assert!((state[0] - 9.0 / 9.04).abs() < 1e-12);
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+pub struct Stroboscope<'a> {
+    flow: Box<dyn Flow + 'a>,
+    phase: f64,
+    every: usize,
+    periods: u64,
+}
+
+impl std::fmt::Debug for Stroboscope<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Stroboscope")
+            .field("phase", &self.phase)
+            .field("every", &self.every)
+            .field("periods", &self.periods)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Stroboscope<'a> {
+    /// The map of a system at a frequency, at the values that its parameters have, over one period, from phase zero.
+    ///
+    /// # Errors
+    /// As [`time::of`], whose default tolerance it has.
+    pub fn of(system: &'a dyn System, omega: f64) -> Result<Self, Error> {
+        Ok(Self::new(time::of(system, omega, Options::default())?))
+    }
+
+    /// The map of a flow over one period, from phase zero.
+    pub fn new(flow: Box<dyn Flow + 'a>) -> Self {
+        Self {
+            flow,
+            phase: 0.0,
+            every: 1,
+            periods: 0,
+        }
+    }
+
+    /// Looks at the states at another phase.
+    #[must_use]
+    pub fn phase(mut self, phase: f64) -> Self {
+        self.phase = phase;
+        self
+    }
+
+    /// Looks every so many periods.
+    #[must_use]
+    pub fn every(mut self, periods: usize) -> Self {
+        self.every = periods.max(1);
+        self
+    }
+
+    /// Periods of one application.
+    pub(crate) fn stride(&self) -> usize {
+        self.every
+    }
+
+    /// Entries of a state.
+    pub fn order(&self) -> usize {
+        2 * self.flow.coordinates()
+    }
+
+    /// Changes the frequency or a parameter.
+    ///
+    /// # Errors
+    /// If there is no such parameter, the value is outside its declared range, or the equations could not be evaluated. The map
+    /// is then as before.
+    pub fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
+        if !self.flow.admits(variable, value) {
+            return Err(FlowError::Value { variable, value });
+        }
+        self.flow.set(variable, value)
+    }
+
+    /// The phase at which states are looked at.
+    pub fn start(&self) -> f64 {
+        self.phase
+    }
+
+    /// How many periods have been computed.
+    pub fn periods(&self) -> u64 {
+        self.periods
+    }
+
+    /// Maps a state.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued.
+    pub fn map(&mut self, state: &mut [f64]) -> Result<(), FlowError> {
+        self.advance(state, None, None)
+    }
+
+    /// Maps a state, and its derivatives with it.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued.
+    pub fn map_with(&mut self, state: &mut [f64], tangent: &mut Tangent) -> Result<(), FlowError> {
+        self.advance(state, Some(tangent), None)
+    }
+
+    /// Maps a state, and everything that a flow can move and show with it.
+    pub(crate) fn advance(
+        &mut self,
+        state: &mut [f64],
+        tangent: Option<&mut Tangent>,
+        see: Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        self.pass(self.every, state, tangent, see)
+    }
+
+    /// Moves a state over one period and shows it, however many the map is over.
+    pub(crate) fn show_period(&mut self, state: &mut [f64], see: See<'_>) -> Result<(), FlowError> {
+        self.pass(1, state, None, Some(see))
+    }
+
+    fn pass(
+        &mut self,
+        periods: usize,
+        state: &mut [f64],
+        tangent: Option<&mut Tangent>,
+        see: Option<See<'_>>,
+    ) -> Result<(), FlowError> {
+        self.periods += periods as u64;
+        // The phase does not grow with the number of periods, so that a state returns to itself to the last bit.
+        let end = self.phase + TAU * periods as f64;
+        self.flow.advance(self.phase, end, state, tangent, see)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::time::affine::Affine;
+
+    crate::oscillator! {
+        /// Wang et al. (2021), Eq. (1), one-sided, exponent one.
+        OneSided(x) {
+            param zeta in 0.0..;
+            param load;
+            param drive;
+            law contact(gap) {
+                gap > 0 => 2*zeta*dot(gap) + gap,
+                else    => 0,
+            }
+            ddot(x) + contact(x) = drive*cos(omega*t) + load;
+        }
+    }
+
+    #[test]
+    fn several_periods_at_once_are_the_same() {
+        let model = OneSided {
+            zeta: 0.032,
+            load: 1.0,
+            drive: 1.0,
+        };
+        let map = || {
+            let flow = Affine::new(&model, &[0.032, 1.0, 1.0], 1.0).expect("affine");
+            Stroboscope::new(Box::new(flow)).phase(0.5)
+        };
+        let (mut one, mut three) = ([-2.0, 0.0], [-2.0, 0.0]);
+        let mut by_one = map();
+        (0..3).for_each(|_| by_one.map(&mut one).expect("a motion"));
+        map().every(3).map(&mut three).expect("a motion");
+        assert!((one[0] - three[0]).hypot(one[1] - three[1]) < 1e-12);
+        assert_eq!(by_one.periods(), 3);
+    }
+}
