@@ -254,7 +254,10 @@ impl Case {
 
     fn no_branch(&mut self, name: &str, value: f64, error: &Error) {
         match error {
-            Error::NoStart { .. } | Error::SearchLimit { .. } | Error::NoSuchPeriod { .. } => {}
+            Error::NoStart { .. }
+            | Error::SearchLimit { .. }
+            | Error::NoSuchPeriod { .. }
+            | Error::CarriedAway { .. } => {}
             Error::Motion { .. } | Error::Flow(_) => {
                 self.report
                     .count("branches that did not begin: a motion was lost");
