@@ -81,10 +81,10 @@ impl Constants {
     /// If it is not, in words that begin with what it is.
     pub fn whole(&self, expression: &Expr, what: &str) -> syn::Result<i128> {
         match self.value(expression) {
-            Some(value) if value.is_integer() => Ok(value.numerator()),
-            Some(value) => Err(expression
-                .extent
-                .fault(format!("{what} must be a whole number, and this is {value}"))),
+            Some(value) => value.whole().ok_or_else(|| {
+                let message = format!("{what} must be a whole number, and this is {value}");
+                expression.extent.fault(message)
+            }),
             None => Err(expression.extent.fault(format!(
                 "{what} must be known while compiling: make it of whole numbers, indices of loops and `let` items that are numbers"
             ))),

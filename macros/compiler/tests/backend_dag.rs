@@ -30,9 +30,109 @@ fn decimal_literals_are_exact() {
     ] {
         assert_eq!(Rational::from_decimal(text), Some(expected), "{text}");
     }
-    for text in ["", "x", "1e99", "1e-99", "1e99999999999"] {
+    let refused = [
+        "",
+        "x",
+        ".",
+        "e5",
+        "1e",
+        "1e+",
+        "inf",
+        "NaN",
+        "1e309",
+        "1e400",
+        "-1e309",
+        "1e99999999999",
+        "1e-324",
+        "2e-400",
+        "1e-99999999999",
+    ];
+    for text in refused {
         assert_eq!(Rational::from_decimal(text), None, "{text}");
     }
+}
+
+/// Where a fraction does not fit, literals are the nearest doubles.
+#[test]
+fn literals_of_any_size_are_numbers() {
+    let texts = [
+        "2.0806986619772685e-26",
+        "1e-300",
+        "1e300",
+        "1.7976931348623157e308",
+        "2.2250738585072014e-308",
+        "5e-324",
+        "2.5e-324",
+        "1.2345678901234567e-310",
+        "-2.0806986619772685e-26",
+        "1e99",
+        "1e-99",
+        "0.1234567890123456789012345678901234567890123",
+        "123456789012345678901234567890123456789012345",
+        "1_0.000_000_000_000_000_000_000_000_000_000_000_000_001",
+    ];
+    for text in texts {
+        let value: f64 = text.replace('_', "").parse().expect("a literal");
+        let number = Rational::from_decimal(text).unwrap_or_else(|| panic!("{text}"));
+        assert_eq!(number.to_f64().to_bits(), value.to_bits(), "{text}");
+        assert_eq!(number.is_negative(), value < 0.0, "{text}");
+        assert_eq!(number.is_positive(), value > 0.0, "{text}");
+        assert_eq!(
+            number.sign(),
+            Rational::integer(value.signum() as i128),
+            "{text}"
+        );
+    }
+    for text in [
+        "0e-99",
+        "0e99999999999",
+        "0.0000000000000000000000000000000000000000000000",
+    ] {
+        assert_eq!(Rational::from_decimal(text), Some(Rational::ZERO), "{text}");
+    }
+    // A double that is a fraction is one.
+    let one = Rational::from_decimal("1.50000000000000000000000000000000000000000000001");
+    assert_eq!(one, Some(ratio(3, 2)));
+}
+
+/// Arithmetic of doubles is exact or not done.
+#[test]
+fn doubles_keep_their_value() {
+    let small = Rational::from_decimal("1e-300").expect("a literal");
+    let large = Rational::from_decimal("1e300").expect("a literal");
+    let opposite = small.negate().expect("any sign");
+    assert_eq!(small.checked_add(Rational::ZERO), Some(small));
+    assert_eq!(small.checked_add(opposite), Some(Rational::ZERO));
+    assert_eq!(small.checked_mul(Rational::integer(-1)), Some(opposite));
+    assert_eq!(small.checked_mul(Rational::ZERO), Some(Rational::ZERO));
+    assert_eq!(small.integer_power(1), Some(small));
+    assert_eq!(small.integer_power(0), Some(Rational::ONE));
+    assert_eq!(opposite.absolute(), Some(small));
+    for none in [
+        small.checked_add(small),
+        small.checked_mul(large),
+        small.reciprocal(),
+        large.integer_power(2),
+    ] {
+        assert_eq!(none, None);
+    }
+    let dag = &mut Dag::default();
+    let (number, x) = (dag.number(small), gap(dag));
+    let scaled = dag.product(&[number, x]);
+    assert_eq!(dag.quotient(scaled, number), x);
+    let ordered = [
+        opposite,
+        Rational::ZERO,
+        small,
+        ratio(1, i128::MAX),
+        Rational::ONE,
+        large,
+    ];
+    assert!(ordered.is_sorted() && large > Rational::integer(i128::MAX));
+    assert_eq!(
+        [small, opposite, large].map(|number| number.to_string()),
+        ["1e-300", "-1e-300", "1e300"]
+    );
 }
 
 #[test]

@@ -107,7 +107,7 @@ impl Checker<'_> {
             Statement::Equation(Equation { left, right }) => {
                 let first = self.of(left)?;
                 let second = self.of(right)?;
-                agree(first, second, right, "the left side").map(|_| ())
+                agree(&first, &second, right, "the left side").map(|_| ())
             }
             Statement::Loop(repeated) => self.repeat(repeated, |checker| {
                 let mut statements = repeated.body.iter();
@@ -155,7 +155,7 @@ impl Checker<'_> {
                 let mut sum = None;
                 self.repeat(repeated, |checker| {
                     let term = checker.of(&repeated.body)?;
-                    sum = agree(sum, term, &repeated.body, "the terms before it")?;
+                    sum = agree(&sum, &term, &repeated.body, "the terms before it")?;
                     Ok(())
                 })?;
                 Ok(sum)
@@ -168,7 +168,7 @@ impl Checker<'_> {
         let mut sum = None;
         for term in terms {
             let own = self.of(term)?;
-            sum = agree(sum, own, term, "what stands before it")?;
+            sum = agree(&sum, &own, term, "what stands before it")?;
         }
         Ok(sum)
     }
@@ -268,7 +268,7 @@ impl Checker<'_> {
         for piece in &law.pieces {
             self.condition(piece)?;
             let own = self.of(&piece.force)?;
-            force = agree(force, own, &piece.force, "the pieces before it")?;
+            force = agree(&force, &own, &piece.force, "the pieces before it")?;
         }
         self.names = outer;
         self.known.insert(key, force);
@@ -286,14 +286,14 @@ impl Checker<'_> {
     }
 }
 
-fn agree(before: Measure, own: Measure, term: &Expr, what: &str) -> syn::Result<Measure> {
+fn agree(before: &Measure, own: &Measure, term: &Expr, what: &str) -> syn::Result<Measure> {
     match (before, own) {
         (Some(before), Some(own)) if before != own => Err(term.extent.fault(format!(
             "`{}` is in {own}, and {what} in {before}: they cannot be added or compared",
             shortened(term)
         ))),
-        (Some(before), _) => Ok(Some(before)),
-        (None, own) => Ok(own),
+        (Some(_), _) => Ok(*before),
+        (None, own) => Ok(*own),
     }
 }
 

@@ -113,6 +113,7 @@ impl Dag {
         if parts.numbers.iter().any(|number| number.is_zero()) {
             return self.integer(0);
         }
+        self.cancel_numbers(&mut parts);
         let logarithms = self.merge_logarithms(&mut parts);
         let (mut rest, again) = self.merge_powers(parts.powers);
         rest.extend(logarithms);
@@ -123,6 +124,18 @@ impl Dag {
             return self.product(&rest);
         }
         self.assemble(parts.numbers, rest)
+    }
+
+    /// Numbers without an exact reciprocal, divided by themselves.
+    fn cancel_numbers(&mut self, parts: &mut Factors) {
+        parts.numbers.retain(|&number| {
+            if number.reciprocal().is_some() {
+                return true;
+            }
+            let below = (self.number(number), self.integer(-1));
+            let place = parts.powers.iter().position(|power| *power == below);
+            place.map(|place| parts.powers.swap_remove(place)).is_none()
+        });
     }
 
     /// Multiplies numbers and puts a product together.

@@ -157,26 +157,24 @@ fn cut(mut text: String) -> String {
     text
 }
 
-/// Decimal where that is exact and short, a fraction otherwise.
+/// Decimal where that is exact and short, or where it is no fraction; a fraction otherwise.
 fn display_number(number: Rational) -> (String, Binding) {
-    let decimal = format!("{}", number.to_f64());
-    if number.is_integer() {
-        let binding = if number.is_negative() {
-            Binding::Sum
-        } else {
-            Binding::Atom
-        };
-        (number.to_string(), binding)
-    } else if decimal.len() <= 8 && Rational::from_decimal(&decimal) == Some(number) {
-        let binding = if number.is_negative() {
-            Binding::Sum
-        } else {
-            Binding::Atom
-        };
-        (decimal, binding)
+    let alone = if number.is_negative() {
+        Binding::Sum
     } else {
-        (number.to_string(), Binding::Product)
+        Binding::Atom
+    };
+    if number
+        .fraction()
+        .is_none_or(|(_, denominator)| denominator == 1)
+    {
+        return (number.to_string(), alone);
     }
+    let decimal = number.to_f64().to_string();
+    if decimal.len() <= 8 && Rational::from_decimal(&decimal) == Some(number) {
+        return (decimal, alone);
+    }
+    (number.to_string(), Binding::Product)
 }
 
 fn function_name(function: Function) -> &'static str {

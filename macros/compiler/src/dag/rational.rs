@@ -3,13 +3,22 @@
 use std::cmp::Ordering;
 use std::fmt;
 
-/// An exact rational number, in lowest terms, with a positive denominator.
+/// Doubles are fractions if their numerator and their denominator are below two to this.
+const LARGEST_POWER: i32 = 126;
+
+/// A number: an exact rational one, or a double where a literal does not fit into one.
 ///
-/// Operations return `None` where a numerator or denominator would not fit into 128 bits.
+/// Operations return `None` where they would not be exact: where a numerator or denominator would not fit into 128 bits, and where
+/// the arithmetic of doubles would round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Rational {
-    numerator: i128,
-    denominator: i128,
+pub struct Rational(Form);
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Form {
+    /// In lowest terms, with a positive denominator.
+    Fraction { numerator: i128, denominator: i128 },
+    /// The bits of a finite double that is no fraction of such numbers.
+    Double(u64),
 }
 
 impl Rational {
@@ -20,10 +29,14 @@ impl Rational {
 
     /// An integer.
     pub const fn integer(value: i128) -> Self {
-        Self {
-            numerator: value,
-            denominator: 1,
-        }
+        Self::in_lowest_terms(value, 1)
+    }
+
+    const fn in_lowest_terms(numerator: i128, denominator: i128) -> Self {
+        Self(Form::Fraction {
+            numerator,
+            denominator,
+        })
     }
 
     /// `numerator / denominator`; `None` for a zero denominator.
@@ -35,24 +48,30 @@ impl Rational {
         let numerator_magnitude = i128::try_from(numerator.unsigned_abs() / divisor).ok()?;
         let denominator_magnitude = i128::try_from(denominator.unsigned_abs() / divisor).ok()?;
         let negative = (numerator < 0) != (denominator < 0);
-        Some(Self {
-            numerator: if negative {
-                -numerator_magnitude
-            } else {
-                numerator_magnitude
-            },
-            denominator: denominator_magnitude,
+        let numerator = if negative {
+            -numerator_magnitude
+        } else {
+            numerator_magnitude
+        };
+        Some(Self::in_lowest_terms(numerator, denominator_magnitude))
+    }
+
+    /// The value of a decimal literal such as `1.5`, `2e-3` or `1_000`: exact where that fits, otherwise the nearest double.
+    /// `None` where it is not a literal, above all doubles, or below all of them and not zero.
+    pub fn from_decimal(text: &str) -> Option<Self> {
+        let text = text.replace('_', "");
+        let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((&text, "0"));
+        Self::exact_decimal(mantissa, exponent).or_else(|| {
+            let digits = |c: char| c.is_ascii_digit();
+            let is_decimal = text.chars().all(|c| digits(c) || "eE.+-".contains(c));
+            let value = text.parse().ok().filter(|_| is_decimal)?;
+            let is_zero = !mantissa.contains(|c: char| digits(c) && c != '0');
+            (is_zero || value != 0.0).then(|| Self::of_double(value))?
         })
     }
 
-    /// The exact value of a decimal literal such as `1.5`, `2e-3` or `1_000`; `None` where it is not one or does not
-    /// fit.
-    pub fn from_decimal(text: &str) -> Option<Self> {
-        let text = text.replace('_', "");
-        let (mantissa, exponent) = match text.split_once(['e', 'E']) {
-            Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
-            None => (text.as_str(), 0),
-        };
+    fn exact_decimal(mantissa: &str, exponent: &str) -> Option<Self> {
+        let exponent = exponent.parse::<i32>().ok()?;
         let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
         let fraction = fraction.trim_end_matches('0');
         let digits = format!("{whole}{fraction}");
@@ -61,85 +80,117 @@ impl Rational {
         value.checked_mul(Self::integer(10).integer_power(exponent)?)
     }
 
-    /// The numerator, which carries the sign.
-    pub fn numerator(self) -> i128 {
-        self.numerator
+    /// The value of a double; `None` if it is not finite.
+    fn of_double(value: f64) -> Option<Self> {
+        if !value.is_finite() {
+            return None;
+        }
+        // Scaling by a power of two is exact.
+        let mut scales = (0..=LARGEST_POWER).map(|power| 2.0_f64.powi(power));
+        let scale = scales.find(|scale| (value * scale).fract() == 0.0);
+        let fraction = scale.and_then(|scale| {
+            let fits = (value * scale).abs() < 2.0_f64.powi(LARGEST_POWER);
+            fits.then(|| Self::new((value * scale) as i128, scale as i128))?
+        });
+        fraction.or(Some(Self(Form::Double(value.to_bits()))))
     }
 
-    /// The denominator, which is positive.
-    pub fn denominator(self) -> i128 {
-        self.denominator
+    /// Numerator, which carries the sign, and denominator, which is positive; `None` for a double.
+    pub fn fraction(self) -> Option<(i128, i128)> {
+        match self.0 {
+            Form::Fraction {
+                numerator,
+                denominator,
+            } => Some((numerator, denominator)),
+            Form::Double(_) => None,
+        }
     }
 
-    /// Whether it is a whole number.
+    /// Its value if it is a whole number and not a double.
+    pub fn whole(self) -> Option<i128> {
+        let (numerator, denominator) = self.fraction()?;
+        (denominator == 1).then_some(numerator)
+    }
+
+    /// Whether it is a whole number and not a double.
     pub fn is_integer(self) -> bool {
-        self.denominator == 1
+        self.whole().is_some()
     }
 
     /// Its value if it is a whole number that fits.
     pub fn to_integer(self) -> Option<i32> {
-        if self.is_integer() {
-            i32::try_from(self.numerator).ok()
-        } else {
-            None
-        }
+        i32::try_from(self.whole()?).ok()
     }
 
     /// Whether it is zero.
     pub fn is_zero(self) -> bool {
-        self.numerator == 0
+        self == Self::ZERO
     }
 
     /// Whether it is below zero.
     pub fn is_negative(self) -> bool {
-        self.numerator < 0
+        match self.0 {
+            Form::Fraction { numerator, .. } => numerator < 0,
+            Form::Double(bits) => f64::from_bits(bits) < 0.0,
+        }
     }
 
     /// Whether it is above zero.
     pub fn is_positive(self) -> bool {
-        self.numerator > 0
+        !self.is_negative() && !self.is_zero()
     }
 
-    /// Whether it is an even whole number.
+    /// Whether it is an even whole number and not a double.
     pub fn is_even(self) -> bool {
-        self.is_integer() && self.numerator % 2 == 0
+        self.whole().is_some_and(|whole| whole % 2 == 0)
     }
 
     /// `-1`, `0` or `1`.
     #[must_use]
     pub fn sign(self) -> Self {
-        Self::integer(self.numerator.signum())
+        Self::integer(i128::from(self.is_positive()) - i128::from(self.is_negative()))
     }
 
     /// Change of sign.
     pub fn negate(self) -> Option<Self> {
-        Some(Self {
-            numerator: self.numerator.checked_neg()?,
-            denominator: self.denominator,
+        Some(match self.0 {
+            Form::Fraction {
+                numerator,
+                denominator,
+            } => Self::in_lowest_terms(numerator.checked_neg()?, denominator),
+            Form::Double(bits) => Self(Form::Double((-f64::from_bits(bits)).to_bits())),
         })
     }
 
     /// Absolute value.
     pub fn absolute(self) -> Option<Self> {
-        Some(Self {
-            numerator: self.numerator.checked_abs()?,
-            denominator: self.denominator,
-        })
+        if self.is_negative() {
+            self.negate()
+        } else {
+            Some(self)
+        }
     }
 
     /// `1 / self`; `None` for zero.
     pub fn reciprocal(self) -> Option<Self> {
-        Self::new(self.denominator, self.numerator)
+        let (numerator, denominator) = self.fraction()?;
+        Self::new(denominator, numerator)
     }
 
     /// Sum.
     pub fn checked_add(self, other: Self) -> Option<Self> {
-        let left = self.numerator.checked_mul(other.denominator)?;
-        let right = other.numerator.checked_mul(self.denominator)?;
-        Self::new(
-            left.checked_add(right)?,
-            self.denominator.checked_mul(other.denominator)?,
-        )
+        if self.is_zero() {
+            return Some(other);
+        }
+        if other.is_zero() {
+            return Some(self);
+        }
+        if Some(self) == other.negate() {
+            return Some(Self::ZERO);
+        }
+        let ((a, b), (c, d)) = (self.fraction()?, other.fraction()?);
+        let sum = a.checked_mul(d)?.checked_add(c.checked_mul(b)?)?;
+        Self::new(sum, b.checked_mul(d)?)
     }
 
     /// Difference.
@@ -149,17 +200,26 @@ impl Rational {
 
     /// Product.
     pub fn checked_mul(self, other: Self) -> Option<Self> {
+        for (one, other) in [(self, other), (other, self)] {
+            match one.whole() {
+                Some(0) => return Some(Self::ZERO),
+                Some(1) => return Some(other),
+                Some(-1) => return other.negate(),
+                _ => {}
+            }
+        }
+        let ((a, b), (c, d)) = (self.fraction()?, other.fraction()?);
         // Cancelled crosswise first, so that the product overflows only where the result does.
-        let left = Self::new(self.numerator, other.denominator)?;
-        let right = Self::new(other.numerator, self.denominator)?;
-        Some(Self {
-            numerator: left.numerator.checked_mul(right.numerator)?,
-            denominator: left.denominator.checked_mul(right.denominator)?,
-        })
+        let (a, d) = Self::new(a, d)?.fraction()?;
+        let (c, b) = Self::new(c, b)?.fraction()?;
+        Some(Self::in_lowest_terms(a.checked_mul(c)?, b.checked_mul(d)?))
     }
 
     /// Quotient; `None` for a zero divisor.
     pub fn checked_div(self, other: Self) -> Option<Self> {
+        if other == Self::ONE {
+            return Some(self);
+        }
         self.checked_mul(other.reciprocal()?)
     }
 
@@ -186,11 +246,17 @@ impl Rational {
 
     /// The nearest double, ties to even.
     ///
-    /// Long division by bits: at least 64 significant bits of the quotient, the last of them set where a remainder is
+    /// Of a fraction a long division by bits: at least 64 significant bits of the quotient, the last of them set where a remainder is
     /// left, so that the final conversion rounds once.
     pub fn to_f64(self) -> f64 {
-        let denominator = self.denominator.unsigned_abs();
-        let magnitude = self.numerator.unsigned_abs();
+        let (numerator, denominator) = match self.0 {
+            Form::Fraction {
+                numerator,
+                denominator,
+            } => (numerator, denominator.unsigned_abs()),
+            Form::Double(bits) => return f64::from_bits(bits),
+        };
+        let magnitude = numerator.unsigned_abs();
         let (mut quotient, mut remainder) = (magnitude / denominator, magnitude % denominator);
         let mut shift = 0;
         while remainder != 0 && quotient >> 63 == 0 {
@@ -202,11 +268,7 @@ impl Rational {
             shift += 1;
         }
         let rounded = (quotient | u128::from(remainder != 0)) as f64 * 2.0_f64.powi(-shift);
-        if self.numerator < 0 {
-            -rounded
-        } else {
-            rounded
-        }
+        if numerator < 0 { -rounded } else { rounded }
     }
 }
 
@@ -217,10 +279,14 @@ impl PartialOrd for Rational {
 }
 
 impl Ord for Rational {
-    /// Compares whole parts, then the reciprocals of what is left: exact, and nothing can overflow.
+    /// Compares whole parts, then the reciprocals of what is left: exact, and nothing can overflow. A double is compared as such, and
+    /// comes after the fractions that it is nearest to.
     fn cmp(&self, other: &Self) -> Ordering {
-        let (mut a, mut b) = (self.numerator, self.denominator);
-        let (mut c, mut d) = (other.numerator, other.denominator);
+        let (Some((mut a, mut b)), Some((mut c, mut d))) = (self.fraction(), other.fraction())
+        else {
+            let doubles = self.to_f64().total_cmp(&other.to_f64());
+            return doubles.then(self.fraction().is_none().cmp(&other.fraction().is_none()));
+        };
         let mut reversed = false;
         loop {
             let (left, right) = (a.div_euclid(b), c.div_euclid(d));
@@ -245,10 +311,16 @@ impl Ord for Rational {
 
 impl fmt::Display for Rational {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.denominator == 1 {
-            write!(formatter, "{}", self.numerator)
-        } else {
-            write!(formatter, "{}/{}", self.numerator, self.denominator)
+        match self.0 {
+            Form::Fraction {
+                numerator,
+                denominator: 1,
+            } => write!(formatter, "{numerator}"),
+            Form::Fraction {
+                numerator,
+                denominator,
+            } => write!(formatter, "{numerator}/{denominator}"),
+            Form::Double(bits) => write!(formatter, "{:e}", f64::from_bits(bits)),
         }
     }
 }

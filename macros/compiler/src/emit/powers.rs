@@ -75,7 +75,7 @@ impl Plan {
             let Some((base, exponent)) = real_power(dag, id) else {
                 continue;
             };
-            let simple = dag.as_number(exponent).is_some_and(is_simple);
+            let simple = dag.as_number(exponent).and_then(simple).is_some();
             if !plan.admits(dag, base) || simple {
                 continue;
             }
@@ -134,8 +134,8 @@ impl Plan {
                 Node::Power(base, exponent) => powers.extend(self.power(base, exponent)),
                 Node::PowerLog(base, exponent) => {
                     powers.extend(self.power(base, exponent));
-                    let thirds = dag.as_number(exponent);
-                    if thirds.is_some_and(|exponent| exponent.denominator() == 3) {
+                    let fraction = dag.as_number(exponent).and_then(Rational::fraction);
+                    if fraction.is_some_and(|(_, denominator)| denominator == 3) {
                         powers.extend(self.cube_root(base));
                     }
                     logarithms.extend(self.logarithm(base));
@@ -218,7 +218,7 @@ impl Plan {
 fn real_power(dag: &Dag, id: Id) -> Option<(Id, Id)> {
     match *dag.node(id) {
         Node::Power(base, exponent) => {
-            let simple = dag.as_number(exponent).is_some_and(is_simple);
+            let simple = dag.as_number(exponent).and_then(simple).is_some();
             (!simple).then_some((base, exponent))
         }
         Node::PowerLog(base, exponent) => Some((base, exponent)),
@@ -246,7 +246,7 @@ pub fn root_of(dag: &Dag, id: Id) -> Option<(Id, Root)> {
     let Node::Power(base, exponent) = *dag.node(id) else {
         return None;
     };
-    match dag.as_number(exponent)?.denominator() {
+    match dag.as_number(exponent)?.fraction()?.1 {
         1 => None,
         3 => Some((base, Root::Cube)),
         _ => Some((base, Root::Square)),
@@ -265,8 +265,10 @@ fn split_whole(dag: &mut Dag, exponent: Id) -> (Id, i128) {
         Node::Sum(terms) => terms.iter().find_map(|&term| dag.as_number(term)),
         _ => None,
     };
-    let number = number.unwrap_or(Rational::ZERO);
-    let whole = number.numerator().div_euclid(number.denominator());
+    let fraction = number.and_then(Rational::fraction);
+    let whole = fraction.map_or(0, |(numerator, denominator)| {
+        numerator.div_euclid(denominator)
+    });
     if whole.abs() > MAX_WHOLE {
         return (exponent, 0);
     }
@@ -274,19 +276,19 @@ fn split_whole(dag: &mut Dag, exponent: Id) -> (Id, i128) {
     (dag.difference(exponent, offset), whole)
 }
 
-/// Whether products and roots suffice.
-fn is_simple(exponent: Rational) -> bool {
+/// Numerator and denominator of an exponent for which products and roots suffice.
+fn simple(exponent: Rational) -> Option<(i128, i128)> {
     let bound = Rational::integer(MAX_WHOLE);
     let small = exponent
         .absolute()
         .is_some_and(|magnitude| magnitude <= bound);
-    exponent.is_integer() || (small && exponent.denominator() <= 4)
+    let fraction = exponent.fraction();
+    fraction.filter(|&(_, denominator)| denominator == 1 || small && denominator <= 4)
 }
 
 impl Builder<'_> {
     pub(super) fn code_power(&mut self, base: Id, exponent: Id) -> usize {
-        let exact = self.dag.as_number(exponent);
-        if let Some(exact) = exact.filter(|&exact| is_simple(exact)) {
+        if let Some(exact) = self.dag.as_number(exponent).and_then(simple) {
             return self.simple_power(base, exact);
         }
         match self.plan.power(base, exponent) {
@@ -308,12 +310,11 @@ impl Builder<'_> {
     }
 
     /// `base^(k + j/n)` with `n` at most 4. The root is zero for a negative base, and so is the product.
-    fn simple_power(&mut self, base: Id, exponent: Rational) -> usize {
-        let magnitude = exponent.absolute().unwrap_or(exponent);
-        let whole = magnitude.numerator() / magnitude.denominator();
-        let part = magnitude.numerator() % magnitude.denominator();
+    fn simple_power(&mut self, base: Id, (numerator, denominator): (i128, i128)) -> usize {
+        let magnitude = numerator.saturating_abs();
+        let (whole, part) = (magnitude / denominator, magnitude % denominator);
         let position = self.at[&base];
-        if part == 0 && exponent.is_negative() && self.varies(base) {
+        if part == 0 && numerator < 0 && self.varies(base) {
             // The negative powers of one base share its reciprocal.
             let reciprocal = self.push(Operation::Reciprocal(position));
             return self.whole_power(reciprocal, whole);
@@ -323,7 +324,7 @@ impl Builder<'_> {
             power = Some(self.whole_power(position, whole));
         }
         if part > 0 {
-            let root = self.root(base, part, magnitude.denominator());
+            let root = self.root(base, part, denominator);
             power = Some(match power {
                 Some(power) => self.push(Operation::Multiply(power, root)),
                 None => root,
@@ -332,7 +333,7 @@ impl Builder<'_> {
         let Some(power) = power else {
             return self.number(1.0);
         };
-        if !exponent.is_negative() {
+        if numerator >= 0 {
             power
         } else if self.varies(base) {
             self.push(Operation::Reciprocal(power))

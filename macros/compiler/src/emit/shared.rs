@@ -119,10 +119,11 @@ fn root_of_common(dag: &mut Dag, base: Id, common: Id, exponent: Id) -> Id {
     let known = dag.as_number(exponent);
     let fraction = known.filter(|known| !known.is_integer() && !known.is_negative());
     let size = matches!(dag.node(common), Node::Call(Function::Absolute, _));
-    let Some(exact) = fraction.filter(|_| size) else {
+    let Some((numerator, denominator)) = fraction.filter(|_| size).and_then(Rational::fraction)
+    else {
         return dag.power(common, exponent);
     };
-    let whole = dag.number(Rational::integer(exact.numerator() / exact.denominator()));
+    let whole = dag.number(Rational::integer(numerator / denominator));
     let fraction = dag.difference(exponent, whole);
     let (whole, fraction) = (dag.power(base, whole), dag.power(common, fraction));
     dag.product(&[whole, fraction])

@@ -52,7 +52,9 @@ type ContactKey = (usize, Vec<Id>, Vec<(Motion, Wave, Id)>);
 pub fn divisor<'a>(waves: impl Iterator<Item = &'a Wave> + Clone) -> Result<u32, &'static str> {
     let mut divisor: i128 = 1;
     for wave in waves.clone() {
-        let denominator = wave.multiple.denominator();
+        let Some((_, denominator)) = wave.multiple.fraction() else {
+            return Err("a frequency is out of all proportion to omega");
+        };
         let (mut a, mut b) = (divisor, denominator);
         while b != 0 {
             (a, b) = (b, a % b);
@@ -75,9 +77,10 @@ pub fn divisor<'a>(waves: impl Iterator<Item = &'a Wave> + Clone) -> Result<u32,
 
 fn harmonic(multiple: Rational, divisor: i128) -> Option<u32> {
     let scaled = multiple.checked_mul(Rational::integer(divisor))?;
-    (scaled.numerator() <= LARGEST_HARMONIC)
-        .then(|| u32::try_from(scaled.numerator()).ok())
-        .flatten()
+    let harmonic = scaled
+        .whole()
+        .filter(|harmonic| *harmonic <= LARGEST_HARMONIC)?;
+    u32::try_from(harmonic).ok()
 }
 
 impl Assembly {

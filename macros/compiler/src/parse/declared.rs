@@ -3,6 +3,7 @@
 use proc_macro2::{Delimiter, Ident};
 
 use super::Parser;
+use super::number::out_of_range;
 use super::tokens::Token;
 use crate::ast::{Coordinate, Limit, Parameter};
 use crate::dag::Rational;
@@ -130,10 +131,11 @@ impl Parser<'_> {
         let place = self.tokens.here();
         self.tokens.next();
         let Some(value) = Rational::from_decimal(&text) else {
-            return Err(place.fault(format!(
-                "expected a decimal number in the range, found `{}`",
-                shortened(&text)
-            )));
+            let shown = shortened(&text);
+            let message = out_of_range(&text, &shown).unwrap_or_else(|| {
+                format!("expected a decimal number in the range, found `{shown}`")
+            });
+            return Err(place.fault(message));
         };
         let value = if minus {
             -value.to_f64()

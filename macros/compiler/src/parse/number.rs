@@ -1,4 +1,4 @@
-//! Numbers, exactly: `1.5` is three halves.
+//! Numbers, exactly where that fits: `1.5` is three halves.
 
 use super::Parser;
 use crate::ast::{Expr, Kind};
@@ -11,13 +11,8 @@ impl Parser<'_> {
         let (text, suffix) = split_suffix(literal);
         let shown = shortened(literal);
         let Some(value) = Rational::from_decimal(text) else {
-            let message = if text.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
-                format!(
-                    "`{shown}` is out of range: numbers are exact, with at most 38 digits before and after the point"
-                )
-            } else {
-                format!("`{shown}` is not a number")
-            };
+            let message = out_of_range(text, &shown);
+            let message = message.unwrap_or_else(|| format!("`{shown}` is not a number"));
             return Err(extent.fault(message));
         };
         let radix = text == "0"
@@ -50,6 +45,16 @@ impl Parser<'_> {
             extent,
         })
     }
+}
+
+/// What is said of a number that no double holds; `None` of what is no number.
+pub(super) fn out_of_range(text: &str, shown: &str) -> Option<String> {
+    let is_number = text.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+    (is_number && split_suffix(text).1.is_empty()).then(|| {
+        format!(
+            "`{shown}` is out of range: numbers are zero or between 4.9e-324 and 1.8e308 in size"
+        )
+    })
 }
 
 /// Splits `2zeta` into `2` and `zeta`, and `1.5e3` not at all.

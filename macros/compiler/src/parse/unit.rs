@@ -104,7 +104,8 @@ impl Parser<'_> {
             let room = value
                 .absolute()
                 .and_then(|value| largest.checked_sub(value));
-            room.is_some_and(|room| !room.is_negative()) && value.denominator() <= 1000
+            let denominator = value.fraction().map(|(_, denominator)| denominator);
+            room.is_some_and(|room| !room.is_negative()) && denominator.is_some_and(|d| d <= 1000)
         };
         let Some((value, text)) = number.filter(|&(value, _)| small(value)) else {
             return Err(place.fault("the exponent of a unit is a number, as in `N/m^1.5`"));

@@ -214,3 +214,30 @@ fn a_frequency_is_no_angle() {
     let text = "M(x) { param delay; ddot(x) + x = cos(omega*delay)*cos(omega*t) + sin(omega*t + omega*delay); }";
     compile(text).expect("an angle");
 }
+
+/// Every double is a number; what none holds is refused, in a range as in an equation.
+#[test]
+fn numbers_beyond_all_doubles_are_refused() {
+    for number in ["1e309", "1.8e308", "1e-324", "2e-400", "1e99999999999"] {
+        let message = format!(
+            "`{number}` is out of range: numbers are zero or between 4.9e-324 and 1.8e308 in size"
+        );
+        assert_message(&format!("M(x) {{ ddot(x) + {number}*x = 0; }}"), &message);
+        assert_message(
+            &format!("M(x) {{ param a < {number}; ddot(x) + a*x = 0; }}"),
+            &message,
+        );
+        assert_message(
+            &format!("M(x) {{ param a = {number}; ddot(x) + a*x = 0; }}"),
+            &message,
+        );
+    }
+    assert_message(
+        "M(x) { ddot(x) + x = cos(1e-300*omega*t); }",
+        "a frequency is out of all proportion to omega",
+    );
+    assert_message(
+        "M(x[3]) { for j in 0..1e300 { ddot(x[j]) + x[j] = 0; } }",
+        "the end of a range must be a whole number, and this is 1e300",
+    );
+}

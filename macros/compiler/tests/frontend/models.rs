@@ -249,3 +249,31 @@ fn polynomials_of_several_coordinates_are_taken_apart() {
     }
     assert!(faults("M(x, y) { ddot(x) + x^8*y = 0; ddot(y) = 0; }").contains("up to the degree 8"));
 }
+
+/// Numbers that are no fraction of 127 bits.
+#[test]
+fn numbers_of_any_size_are_coefficients() {
+    let text = "M(x) {
+        param a = 2.0806986619772685e-26 in 5e-324..1e300;
+        law f(gap) { gap > 1e-300 => 1e300*gap^1.5, else => 0 }
+        ddot(x) + 1e-300*dot(x) + a*x + 3e-77*x + 1e-99*x^3 + 1e200*1e-201*(x + 3e-40*x) + f(x) = 2.0806986619772685e-26*cos(omega*t) - 1.2345678901234567e-310;
+    }";
+    let parameter = &model(text).parameters[0];
+    assert_eq!(parameter.default, Some(2.080_698_661_977_268_5e-26));
+    assert_model(
+        text,
+        &[
+            "M00 = 1",
+            "C00 = 1e-300",
+            "K00 = a + 1e200*1e-201 + 1e200*1e-201*3e-40 + 3e-77",
+            "f0 cos1 = 2.0806986619772685e-26",
+            "f0 = -1.23456789012346e-310",
+            "d0 column 0 = 1",
+            "e0 row 0 = 1",
+            "d1 column 0 = 1",
+            "e1 row 0 = 1e-99",
+            "f: 0 | > 1e-300 | 1e300*g^1.5",
+            "force 1: g^3",
+        ],
+    );
+}
