@@ -1,0 +1,424 @@
+//! Rooms of the runtime depend one way: each names only rooms that stand before it in [`ROOMS`].
+//!
+//! Every path of every file is resolved from its tokens: in `use`, in place, in macros, and in attributes that hold a path as text, as
+//! serde's do. Links of documentation are not looked at, and code for tests may look anywhere: a test of a room compares it with others.
+//! What is not allowed at all is a name that the root re-exports, since it hides which room is meant.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+
+/// Single files that stand before all rooms, at most four.
+const SHARED: &[&str] = &["law", "system"];
+
+/// The rooms, the lowest first.
+const ROOMS: &[&str] = &[
+    "numeric",
+    "error",
+    "chart",
+    "model",
+    "laws",
+    "continuation",
+    "branches",
+    "balance",
+    "time",
+    "orbit",
+    "response",
+    "shooting",
+    "attractors",
+    "bifurcation",
+    "report",
+];
+
+/// Modules that only tests see.
+const TESTS: &[&str] = &["guide", "testing"];
+
+/// An arrow that runs up all the same: the room, the room that it names, and why.
+type Exception = (&'static str, &'static str, &'static str);
+
+/// What runs up, until it is mended. Nothing may be added.
+const EXCEPTIONS: &[Exception] = &[
+    ("law", "system", "arguments have bounds as parameters do"),
+    ("law", "laws", "a law gives its data to the interpreter"),
+    ("error", "model", HOLDS),
+    ("error", "laws", HOLDS),
+    ("error", "continuation", HOLDS),
+    ("error", "time", HOLDS),
+    ("error", "attractors", HOLDS),
+    ("error", "branches", "errors name kinds of events"),
+    ("error", "chart", "errors of charts become errors"),
+    ("chart", "report", "charts write their files"),
+    ("model", "continuation", "a check makes a step control"),
+    ("branches", "orbit", "points hold what is read off them"),
+    ("branches", "response", "branches compute further orbits"),
+    ("branches", "report", "branches write themselves"),
+    ("orbit", "response", "a branch is asked for multipliers"),
+    ("orbit", "report", "numbers through serde"),
+    ("shooting", "report", "numbers through serde"),
+    ("bifurcation", "report", "numbers through serde"),
+    ("attractors", "report", "numbers through serde"),
+    ("response", "shooting", "sides of a switch"),
+];
+
+/// The one type of errors holds the errors of the rooms.
+const HOLDS: &str = "the one type of errors holds those of the rooms as variants";
+
+/// A module that takes something from another one.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Arrow {
+    /// The module, from the root.
+    module: String,
+    /// The room that it is in.
+    from: String,
+    /// The room that it names, or the name of the root.
+    to: String,
+    /// The path as resolved.
+    path: String,
+}
+
+impl Arrow {
+    /// Whether it names a room that stands before its own.
+    fn runs_down(&self) -> bool {
+        let order = || SHARED.iter().chain(ROOMS);
+        let place = |room: &str| order().position(|known| *known == room);
+        match (place(&self.from), place(&self.to)) {
+            (Some(from), Some(to)) => to < from,
+            _ => false,
+        }
+    }
+
+    fn is_excepted(&self) -> bool {
+        let excepted = |(from, to, _): &Exception| *from == self.from && *to == self.to;
+        EXCEPTIONS.iter().any(excepted)
+    }
+}
+
+/// What is known while the tokens of a module are read.
+#[derive(Debug, Default)]
+struct Reader {
+    /// The module that the tokens are in, from the root.
+    module: Vec<String>,
+    arrows: BTreeSet<Arrow>,
+    /// Modules in files of their own that are declared here.
+    declared: Vec<String>,
+}
+
+impl Reader {
+    /// The arrows of a text, as a module.
+    fn of(module: &[String], text: &str) -> Self {
+        let mut reader = Self {
+            module: module.to_vec(),
+            ..Self::default()
+        };
+        reader.read(text.parse().expect("tokens of Rust"));
+        reader
+    }
+
+    fn read(&mut self, tokens: TokenStream) {
+        let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+        let mut i = 0;
+        let mut tests_only = false;
+        while i < tokens.len() {
+            i = match &tokens[i] {
+                TokenTree::Punct(mark) if mark.as_char() == '#' => {
+                    tests_only |= self.attribute(tokens.get(i + 1));
+                    // An inner attribute has a mark before its brackets, which is passed over.
+                    i + 1 + usize::from(is_group(tokens.get(i + 1), Delimiter::Bracket))
+                }
+                TokenTree::Ident(word) if word == "pub" => {
+                    i + 1 + usize::from(is_group(tokens.get(i + 1), Delimiter::Parenthesis))
+                }
+                _ if tests_only => {
+                    tests_only = false;
+                    end_of_item(&tokens, i)
+                }
+                TokenTree::Ident(word) if word == "mod" => self.module(&tokens, i),
+                TokenTree::Ident(word) if begins_path(&tokens, i, &word.to_string()) => {
+                    self.path(&tokens, i, &mut Vec::new())
+                }
+                TokenTree::Group(group) => {
+                    self.read(group.stream());
+                    i + 1
+                }
+                _ => i + 1,
+            };
+        }
+    }
+
+    /// Reads the paths that an attribute holds as text; whether it says that what follows is for tests only.
+    fn attribute(&mut self, group: Option<&TokenTree>) -> bool {
+        let Some(TokenTree::Group(group)) = group else {
+            return false;
+        };
+        let text = group.stream().to_string().replace(' ', "");
+        if text.starts_with("doc=") {
+            return false;
+        }
+        self.texts(group.stream());
+        text == "cfg(test)" || text.starts_with("cfg(all(test,")
+    }
+
+    /// `with = "crate::room::function"` and the like.
+    fn texts(&mut self, tokens: TokenStream) {
+        for token in tokens {
+            match token {
+                TokenTree::Group(group) => self.texts(group.stream()),
+                TokenTree::Literal(literal) => {
+                    let text = literal.to_string();
+                    let inner = text.trim_matches('"');
+                    let path = ["crate::", "self::", "super::"];
+                    if path.iter().any(|begin| inner.starts_with(begin)) {
+                        self.read(inner.parse().expect("a path"));
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// `mod name;` or `mod name { .. }` at a place.
+    fn module(&mut self, tokens: &[TokenTree], i: usize) -> usize {
+        let Some(TokenTree::Ident(name)) = tokens.get(i + 1) else {
+            return i + 1;
+        };
+        if let Some(TokenTree::Group(body)) = tokens.get(i + 2) {
+            self.module.push(name.to_string());
+            self.read(body.stream());
+            self.module.pop();
+        } else {
+            self.declared.push(name.to_string());
+        }
+        i + 3
+    }
+
+    /// A path from a place on, with everything in its braces; the place behind it.
+    fn path(&mut self, tokens: &[TokenTree], mut i: usize, path: &mut Vec<String>) -> usize {
+        let before = path.len();
+        loop {
+            match tokens.get(i) {
+                Some(TokenTree::Ident(word)) => path.push(word.to_string()),
+                Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
+                    let inner: Vec<TokenTree> = group.stream().into_iter().collect();
+                    for part in inner.split(|token| is_mark(Some(token), ',')) {
+                        self.path(part, 0, path);
+                    }
+                    path.truncate(before);
+                    return i + 1;
+                }
+                _ => break,
+            }
+            i += 1;
+            if !has_colons(tokens, i) {
+                break;
+            }
+            i += 2;
+        }
+        if path.len() > before || is_mark(tokens.get(i), '*') {
+            self.arrow(path);
+        }
+        path.truncate(before);
+        i
+    }
+
+    fn arrow(&mut self, path: &[String]) {
+        let from_root = path[0] == "crate" || path[0] == "hertzian";
+        let mut at = if from_root {
+            Vec::new()
+        } else {
+            self.module.clone()
+        };
+        for (k, part) in path.iter().enumerate() {
+            match part.as_str() {
+                "super" => drop(at.pop()),
+                "self" => {}
+                _ if k == 0 && from_root => {}
+                _ => at.push(part.clone()),
+            }
+        }
+        let room = |path: &[String]| path.first().cloned().unwrap_or_default();
+        let (from, to) = (room(&self.module), room(&at));
+        // The root names all rooms.
+        if from != to && !from.is_empty() {
+            self.arrows.insert(Arrow {
+                module: self.module.join("::"),
+                from,
+                to,
+                path: at.join("::"),
+            });
+        }
+    }
+}
+
+fn is_group(token: Option<&TokenTree>, delimiter: Delimiter) -> bool {
+    matches!(token, Some(TokenTree::Group(group)) if group.delimiter() == delimiter)
+}
+
+fn is_mark(token: Option<&TokenTree>, mark: char) -> bool {
+    matches!(token, Some(TokenTree::Punct(found)) if found.as_char() == mark)
+}
+
+fn has_colons(tokens: &[TokenTree], i: usize) -> bool {
+    is_mark(tokens.get(i), ':') && is_mark(tokens.get(i + 1), ':')
+}
+
+/// Whether a word is the beginning of a path within the crate, and not a part of one.
+fn begins_path(tokens: &[TokenTree], i: usize, word: &str) -> bool {
+    let inside =
+        i >= 3 && has_colons(tokens, i - 2) && matches!(tokens[i - 3], TokenTree::Ident(_));
+    let renamed = matches!(tokens.get(i + 1), Some(TokenTree::Ident(word)) if word == "as");
+    match word {
+        "crate" | "super" | "self" => !inside && (has_colons(tokens, i + 1) || renamed),
+        "hertzian" => !inside && has_colons(tokens, i + 1),
+        _ => false,
+    }
+}
+
+/// The place behind the item, field or arm that begins at a place.
+fn end_of_item(tokens: &[TokenTree], i: usize) -> usize {
+    let ends = |token: &TokenTree| {
+        let mark = is_mark(Some(token), ';') || is_mark(Some(token), ',');
+        mark || is_group(Some(token), Delimiter::Brace)
+    };
+    let length = tokens[i..].iter().position(ends);
+    length.map_or(tokens.len(), |length| i + length + 1)
+}
+
+/// All arrows from a file on, through the modules that it declares.
+fn arrows(file: &Path, module: &[String]) -> BTreeSet<Arrow> {
+    let text = fs::read_to_string(file).expect("a file of the crate");
+    let mut reader = Reader::of(module, &text);
+    let folder = match file.file_stem().and_then(|stem| stem.to_str()) {
+        Some("lib" | "mod") => file.with_file_name(""),
+        _ => file.with_extension(""),
+    };
+    for name in &reader.declared {
+        let own = folder.join(name).with_extension("rs");
+        let inner = [module, std::slice::from_ref(name)].concat();
+        let file = if own.exists() {
+            own
+        } else {
+            folder.join(name).join("mod.rs")
+        };
+        reader.arrows.append(&mut arrows(&file, &inner));
+    }
+    reader.arrows
+}
+
+/// The arrows of a text that run up.
+fn up(room: &str, text: &str) -> Vec<String> {
+    let arrows = Reader::of(&[room.to_owned(), "file".to_owned()], text).arrows;
+    let up = arrows.into_iter().filter(|arrow| !arrow.runs_down());
+    up.map(|arrow| arrow.path).collect()
+}
+
+fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src/lib.rs"))
+}
+
+#[test]
+fn rooms_name_only_rooms_before_them() {
+    let found = arrows(root(), &[]);
+    assert!(found.len() > 500, "{} paths are read", found.len());
+    let up = found.iter().filter(|arrow| !arrow.runs_down());
+    let new: Vec<String> = up
+        .filter(|arrow| !arrow.is_excepted())
+        .map(|arrow| format!("{} names {}", arrow.module, arrow.path))
+        .collect();
+    assert!(new.is_empty(), "run up:\n{}", new.join("\n"));
+}
+
+/// What has been mended stays so.
+#[test]
+fn every_exception_is_still_needed() {
+    let found = arrows(root(), &[]);
+    for (from, to, why) in EXCEPTIONS {
+        let needed = |arrow: &Arrow| arrow.from == *from && arrow.to == *to;
+        assert!(found.iter().any(needed), "{from} -> {to} is mended: {why}");
+    }
+}
+
+#[test]
+fn every_module_of_the_root_has_its_place() {
+    assert!(SHARED.len() <= 4);
+    let text = fs::read_to_string(root()).expect("the root");
+    for name in Reader::of(&[], &text).declared {
+        let name = name.as_str();
+        let known = [SHARED, ROOMS, TESTS].concat().contains(&name);
+        assert!(known, "{name} has no place among the rooms");
+        let is_file = root().with_file_name(format!("{name}.rs")).exists();
+        let may_be_file = SHARED.contains(&name) || TESTS.contains(&name);
+        assert!(!is_file || may_be_file, "{name} is no room");
+    }
+}
+
+#[test]
+fn planted_arrows_are_found() {
+    for (text, path) in [
+        ("use crate::report::Table;", "report::Table"),
+        ("use crate::{numeric::fourier, report};", "report"),
+        (
+            "use super::super::{numeric, response::{run::{self, Run as R}}};",
+            "response::run",
+        ),
+        ("fn f() -> f64 { crate::response::f(0.5) }", "response::f"),
+        ("fn f(x: &dyn A<crate::response::B>) {}", "response::B"),
+        ("type A = <crate::response::B as C>::D;", "response::B"),
+        (
+            "mod inner { use super::super::super::report::A; }",
+            "report::A",
+        ),
+        ("use crate::report::*;", "report"),
+        ("use hertzian::report::A;", "report::A"),
+        ("fn f() { ::hertzian::report::f() }", "report::f"),
+        (
+            "macro_rules! m { () => { $crate::report::A }; }",
+            "report::A",
+        ),
+        (
+            "impl A { #[serde(with = \"crate::report::f\")] x: u8 }",
+            "report::f",
+        ),
+        (
+            "struct A { #[cfg_attr(feature = \"serde\", serde(with = \"crate::report::f\"))] x: u8 }",
+            "report::f",
+        ),
+        (
+            "#[cfg(test)] mod tests { } use crate::report::A;",
+            "report::A",
+        ),
+        (
+            "#[cfg(test)] pub(crate) fn f() {} use crate::report::A;",
+            "report::A",
+        ),
+        // Names of the root, whatever they are in truth.
+        ("use crate::Branch;", "Branch"),
+        ("use crate::*;", ""),
+        ("use crate as root;", ""),
+    ] {
+        assert_eq!(
+            up("balance", text).first().map(String::as_str),
+            Some(path),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn what_is_allowed_is_not_reported() {
+    for text in [
+        "use crate::numeric::{fourier::{self, series}, linear::*};",
+        "use super::terms::{block, block_mut}; use self::inner::A;",
+        "pub(crate) mod a { pub(in crate::balance) fn f(&self) { self.g() } }",
+        "/// See [`crate::report`]\nfn f() {}",
+        "#[doc = \"crate::report\"] fn f() {}",
+        "#[cfg(test)] mod tests { use crate::report::Table; }",
+        "#[cfg(test)] use crate::report::Table;",
+        "#[cfg(test)] #[allow(dead_code)] pub(crate) fn f() { crate::report::f() }",
+        "#[cfg(all(test, feature = \"plot\"))] fn f() { crate::report::f() }",
+        "fn f() { a::crate_report::b(); let report = 1; }",
+    ] {
+        assert_eq!(up("balance", text), Vec::<String>::new(), "{text}");
+    }
+}
