@@ -213,6 +213,17 @@ impl Options {
                 let name = swept.filter(|swept| set.clone().any(|name| name == *swept))?;
                 Some(format!("--sweep {name} takes the place of --set {name}: --from and --to say where it begins and ends"))
             });
+            let taken = taken.or_else(|| {
+                let drive = if given.has("drive") {
+                    "--drive"
+                } else {
+                    set.clone().find(|name| *name == "drive")?;
+                    "--set drive"
+                };
+                let taken =
+                    format!("--drives takes the place of {drive}: give all amplitudes by it");
+                given.has("drives").then_some(taken)
+            });
             let one = options.phase && options.starts == 0;
             let ranged = given.has("x_range") || given.has("v_range");
             let unused = (one && ranged).then(|| {

@@ -162,6 +162,17 @@ fn options_that_would_do_nothing_are_refused() {
             "--sweep omega takes the place of --omega",
         ),
         (
+            &["--lyapunov", "--drive", "1", "--drives", "1.2", "1.3"],
+            "--drives takes the place of --drive: give all amplitudes by it",
+        ),
+        (
+            &[
+                "--phase", "--starts", "0", "--model", "some.txt", "--set", "drive=1", "--drives",
+                "1.2",
+            ],
+            "--drives takes the place of --set drive",
+        ),
+        (
             &["--basin", "--longest", "-1"],
             "must be a whole number, zero or more",
         ),
