@@ -11,14 +11,19 @@ const LARGEST_POWER: i32 = 126;
 /// Operations return `None` where they would not be exact: where a numerator or denominator would not fit into 128 bits, and where
 /// the arithmetic of doubles would round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Rational(Form);
+pub struct Rational {
+    /// Carries the sign.
+    numerator: i128,
+    /// Positive; zero where the numerator is the bits of a double, which so takes no space of its own.
+    denominator: i128,
+}
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+/// What a number is.
 enum Form {
     /// In lowest terms, with a positive denominator.
     Fraction { numerator: i128, denominator: i128 },
-    /// The bits of a finite double that is no fraction of such numbers.
-    Double(u64),
+    /// A finite double that is no fraction of such numbers.
+    Double(f64),
 }
 
 impl Rational {
@@ -33,10 +38,24 @@ impl Rational {
     }
 
     const fn in_lowest_terms(numerator: i128, denominator: i128) -> Self {
-        Self(Form::Fraction {
+        Self {
             numerator,
             denominator,
-        })
+        }
+    }
+
+    fn double(value: f64) -> Self {
+        Self::in_lowest_terms(i128::from(value.to_bits()), 0)
+    }
+
+    fn form(self) -> Form {
+        match u64::try_from(self.numerator) {
+            Ok(bits) if self.denominator == 0 => Form::Double(f64::from_bits(bits)),
+            _ => Form::Fraction {
+                numerator: self.numerator,
+                denominator: self.denominator,
+            },
+        }
     }
 
     /// `numerator / denominator`; `None` for a zero denominator.
@@ -92,12 +111,12 @@ impl Rational {
             let fits = (value * scale).abs() < 2.0_f64.powi(LARGEST_POWER);
             fits.then(|| Self::new((value * scale) as i128, scale as i128))?
         });
-        fraction.or(Some(Self(Form::Double(value.to_bits()))))
+        fraction.or(Some(Self::double(value)))
     }
 
     /// Numerator, which carries the sign, and denominator, which is positive; `None` for a double.
     pub fn fraction(self) -> Option<(i128, i128)> {
-        match self.0 {
+        match self.form() {
             Form::Fraction {
                 numerator,
                 denominator,
@@ -129,9 +148,9 @@ impl Rational {
 
     /// Whether it is below zero.
     pub fn is_negative(self) -> bool {
-        match self.0 {
+        match self.form() {
             Form::Fraction { numerator, .. } => numerator < 0,
-            Form::Double(bits) => f64::from_bits(bits) < 0.0,
+            Form::Double(value) => value < 0.0,
         }
     }
 
@@ -153,12 +172,12 @@ impl Rational {
 
     /// Change of sign.
     pub fn negate(self) -> Option<Self> {
-        Some(match self.0 {
+        Some(match self.form() {
             Form::Fraction {
                 numerator,
                 denominator,
             } => Self::in_lowest_terms(numerator.checked_neg()?, denominator),
-            Form::Double(bits) => Self(Form::Double((-f64::from_bits(bits)).to_bits())),
+            Form::Double(value) => Self::double(-value),
         })
     }
 
@@ -249,12 +268,12 @@ impl Rational {
     /// Of a fraction a long division by bits: at least 64 significant bits of the quotient, the last of them set where a remainder is
     /// left, so that the final conversion rounds once.
     pub fn to_f64(self) -> f64 {
-        let (numerator, denominator) = match self.0 {
+        let (numerator, denominator) = match self.form() {
             Form::Fraction {
                 numerator,
                 denominator,
             } => (numerator, denominator.unsigned_abs()),
-            Form::Double(bits) => return f64::from_bits(bits),
+            Form::Double(value) => return value,
         };
         let magnitude = numerator.unsigned_abs();
         let (mut quotient, mut remainder) = (magnitude / denominator, magnitude % denominator);
@@ -311,7 +330,7 @@ impl Ord for Rational {
 
 impl fmt::Display for Rational {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
+        match self.form() {
             Form::Fraction {
                 numerator,
                 denominator: 1,
@@ -320,7 +339,7 @@ impl fmt::Display for Rational {
                 numerator,
                 denominator,
             } => write!(formatter, "{numerator}/{denominator}"),
-            Form::Double(bits) => write!(formatter, "{:e}", f64::from_bits(bits)),
+            Form::Double(value) => write!(formatter, "{value:e}"),
         }
     }
 }
