@@ -55,10 +55,6 @@ const EXCEPTIONS: &[Exception] = &[
     ("branches", "response", "branches compute further orbits"),
     ("branches", "report", "branches write themselves"),
     ("orbit", "response", "a branch is asked for multipliers"),
-    ("orbit", "report", "numbers through serde"),
-    ("shooting", "report", "numbers through serde"),
-    ("bifurcation", "report", "numbers through serde"),
-    ("attractors", "report", "numbers through serde"),
     ("response", "shooting", "sides of a switch"),
 ];
 

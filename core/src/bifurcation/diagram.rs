@@ -28,7 +28,7 @@ pub struct Diagram {
     /// Time of the computation.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::seconds")
+        serde(serialize_with = "crate::numeric::serialise::seconds")
     )]
     pub elapsed: Duration,
 }
@@ -118,7 +118,7 @@ pub enum Reason {
     /// Its first orbit was not found.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::text")
+        serde(serialize_with = "crate::numeric::serialise::text")
     )]
     Failed(Error),
 }

@@ -228,7 +228,7 @@ pub struct Branch<'a> {
     /// Time of the computation.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::seconds")
+        serde(serialize_with = "crate::numeric::serialise::seconds")
     )]
     pub elapsed: Duration,
     #[cfg_attr(feature = "serde", serde(skip))]

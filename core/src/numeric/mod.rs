@@ -5,5 +5,7 @@ pub(crate) mod exponential;
 pub mod fourier;
 pub(crate) mod linear;
 pub mod power;
+#[cfg(feature = "serde")]
+pub(crate) mod serialise;
 pub(crate) mod spectrum;
 pub(crate) mod triangular;

@@ -169,7 +169,7 @@ pub struct CycleBranch {
     /// Time of the computation.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::seconds")
+        serde(serialize_with = "crate::numeric::serialise::seconds")
     )]
     pub elapsed: Duration,
 }

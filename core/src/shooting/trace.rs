@@ -56,7 +56,7 @@ pub struct TrackPoint {
     /// Floquet multipliers over the period, largest modulus first.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::pairs")
+        serde(serialize_with = "crate::numeric::serialise::pairs")
     )]
     pub multipliers: Vec<Complex<f64>>,
     /// How often a gap crosses a level in a period.

@@ -17,7 +17,7 @@ pub struct Attractor {
     /// Floquet multipliers over its period, largest modulus first.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::pairs")
+        serde(serialize_with = "crate::numeric::serialise::pairs")
     )]
     pub multipliers: Vec<Complex<f64>>,
     /// Where motions are known to end on it.

@@ -30,7 +30,7 @@ pub struct Backbone<P> {
     /// Time of the computation.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::seconds")
+        serde(serialize_with = "crate::numeric::serialise::seconds")
     )]
     pub elapsed: Duration,
 }

@@ -28,7 +28,7 @@ pub struct Answer {
     /// Multipliers of the orbit as it is, largest modulus first; empty if the method found none.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::pairs")
+        serde(serialize_with = "crate::numeric::serialise::pairs")
     )]
     pub uncorrected: Vec<Complex<f64>>,
     /// Estimated error of the method.
@@ -44,7 +44,7 @@ pub struct Answer {
     /// The time that took, without that of correcting the orbit.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::seconds")
+        serde(serialize_with = "crate::numeric::serialise::seconds")
     )]
     pub elapsed: Duration,
 }

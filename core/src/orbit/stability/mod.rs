@@ -56,7 +56,7 @@ pub struct Stability {
     /// harmonics and samples that were left out. Those of [rigid motions](Self::rigid) are not among them.
     #[cfg_attr(
         feature = "serde",
-        serde(serialize_with = "crate::report::export::pairs")
+        serde(serialize_with = "crate::numeric::serialise::pairs")
     )]
     pub multipliers: Vec<Complex<f64>>,
     /// Estimated error of the multipliers: of the integration, and of the orbit's own truncation.

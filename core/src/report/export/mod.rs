@@ -8,7 +8,5 @@ mod table;
 
 pub use crate::numeric::decimal::Decimal;
 pub use file::{can_write, write};
-#[cfg(feature = "serde")]
-pub(crate) use json::{pairs, seconds, text};
 pub use npy::{Npy, Number};
 pub use table::{COLUMNS, Table, cells};
