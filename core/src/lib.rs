@@ -74,6 +74,7 @@ mod branches;
 pub mod chart;
 mod continuation;
 pub mod error;
+mod event;
 #[cfg(doctest)]
 mod guide;
 pub mod law;
@@ -92,11 +93,11 @@ pub mod time;
 pub use balance::aft::Aft;
 pub use bifurcation::Bifurcations;
 pub use bifurcation::backbone;
-pub use branches::branch;
-pub use branches::branch::{Branch, Event, EventKind, Orbit, Point, Turn};
+pub use branches::branch::{Branch, Event, Orbit, Point};
 pub use continuation::follow::Stop;
 pub use continuation::statistics::Statistics;
 pub use error::Error;
+pub use event::{EventKind, Side, Turn};
 #[doc(hidden)]
 pub use laws::emitted;
 pub use laws::generic;
@@ -109,8 +110,14 @@ pub use report::export;
 pub use response::FrequencyResponse;
 #[doc(hidden)]
 pub use response::stages;
-pub use shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
+pub use shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
 pub use system::System;
+
+/// Computed branches of periodic orbits.
+pub mod branch {
+    pub use crate::branches::branch::{Branch, Event, Orbit, Point};
+    pub use crate::event::{EventKind, Turn};
+}
 
 /// ```
 /// hertzian::oscillator! {

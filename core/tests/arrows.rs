@@ -11,7 +11,7 @@ use std::path::Path;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// Single files that stand before all rooms, at most four.
-const SHARED: &[&str] = &["law", "system"];
+const SHARED: &[&str] = &["law", "system", "event"];
 
 /// The rooms, the lowest first.
 const ROOMS: &[&str] = &[
@@ -47,7 +47,6 @@ const EXCEPTIONS: &[Exception] = &[
     ("error", "continuation", HOLDS),
     ("error", "time", HOLDS),
     ("error", "attractors", HOLDS),
-    ("error", "branches", "errors name kinds of events"),
     ("error", "chart", "errors of charts become errors"),
     ("chart", "report", "charts write their files"),
     ("model", "continuation", "a check makes a step control"),
@@ -55,7 +54,6 @@ const EXCEPTIONS: &[Exception] = &[
     ("branches", "response", "branches compute further orbits"),
     ("branches", "report", "branches write themselves"),
     ("orbit", "response", "a branch is asked for multipliers"),
-    ("response", "shooting", "sides of a switch"),
 ];
 
 /// The one type of errors holds the errors of the rooms.
@@ -94,6 +92,8 @@ impl Arrow {
 /// What is known while the tokens of a module are read.
 #[derive(Debug, Default)]
 struct Reader {
+    /// The room of the file; nothing for the root, which names all rooms.
+    room: String,
     /// The module that the tokens are in, from the root.
     module: Vec<String>,
     arrows: BTreeSet<Arrow>,
@@ -105,6 +105,7 @@ impl Reader {
     /// The arrows of a text, as a module.
     fn of(module: &[String], text: &str) -> Self {
         let mut reader = Self {
+            room: module.first().cloned().unwrap_or_default(),
             module: module.to_vec(),
             ..Self::default()
         };
@@ -233,9 +234,8 @@ impl Reader {
                 _ => at.push(part.clone()),
             }
         }
-        let room = |path: &[String]| path.first().cloned().unwrap_or_default();
-        let (from, to) = (room(&self.module), room(&at));
-        // The root names all rooms.
+        let from = self.room.clone();
+        let to = at.first().cloned().unwrap_or_default();
         if from != to && !from.is_empty() {
             self.arrows.insert(Arrow {
                 module: self.module.join("::"),

@@ -23,9 +23,9 @@
 //! Theory II, chapter XIII (block structure).
 
 use crate::balance::{Balance, Parity, Resolution};
-use crate::branches::branch::EventKind;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
+use crate::event::EventKind;
 use crate::numeric::fourier::series;
 use crate::system::{System, Variable};
 

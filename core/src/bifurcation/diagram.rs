@@ -9,10 +9,11 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use super::known;
-use crate::branches::branch::EventKind;
 use crate::continuation::follow::Stop;
 use crate::error::Error;
-use crate::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting, Side};
+use crate::event::EventKind;
+use crate::event::Side;
+use crate::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]

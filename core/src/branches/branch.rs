@@ -7,6 +7,7 @@ use std::time::Duration;
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
+use crate::event::{EventKind, Turn};
 use crate::numeric::decimal::Decimal;
 use crate::numeric::fourier::series;
 use crate::orbit::observe::{Motion, Observed};
@@ -104,47 +105,6 @@ impl Point {
     }
 }
 
-/// What happens at an [`Event`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum EventKind {
-    /// The branch turns back in what it varies; a multiplier is one.
-    Fold,
-    /// An orbit with odd symmetry loses it: a branch of orbits without it crosses.
-    SymmetryBreaking,
-    /// A branch of orbits of twice the period begins; a multiplier is minus one.
-    PeriodDoubling,
-    /// Another branch of orbits crosses or is met; a multiplier is one.
-    BranchPoint,
-    /// Quasi-periodic motions begin: a pair of complex multipliers crosses the unit circle.
-    NeimarkSacker,
-    /// A gap touches a level, without speed. Multipliers lose their smoothness there, or jump.
-    Grazing {
-        /// Whether the branch turns back in what it varies there.
-        turns: bool,
-    },
-}
-
-impl EventKind {
-    /// Whether the branch turns back in what it varies at an event of this kind.
-    pub fn turns(self) -> bool {
-        matches!(self, Self::Fold | Self::Grazing { turns: true })
-    }
-}
-
-impl fmt::Display for EventKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Fold => "fold",
-            Self::SymmetryBreaking => "symmetry-breaking",
-            Self::PeriodDoubling => "period-doubling",
-            Self::BranchPoint => "branch-point",
-            Self::NeimarkSacker => "neimark-sacker",
-            Self::Grazing { .. } => "grazing",
-        })
-    }
-}
-
 /// A special orbit of a branch, located until its test function vanished.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -189,24 +149,6 @@ impl fmt::Display for Event {
         }
         Ok(())
     }
-}
-
-/// A place where a test function changed its sign without an event that could be located: it jumped there, or corrections failed.
-///
-/// Of kind [`EventKind::Fold`] it is a place where the branch turned back, but not through a fold. A sampled balance of a force
-/// that jumps does this, and so does an orbit that grazes a level.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct Turn {
-    /// What would have happened where the test function vanishes.
-    pub kind: EventKind,
-    /// What the branch varies, where the jump is; in the middle of the step between two points where it was not found.
-    pub value: f64,
-    /// Value of the test function beside the jump; not a number where it is unknown.
-    pub test: f64,
-    /// Number of points of the branch before it.
-    pub after: usize,
 }
 
 /// A branch of orbits in the order in which it was followed.

@@ -8,9 +8,9 @@ use std::path::PathBuf;
 
 use crate::attractors::basin::BasinError;
 use crate::attractors::log::LogError;
-use crate::branches::branch::EventKind;
 #[cfg(feature = "plot")]
 use crate::chart::ChartError;
+use crate::event::EventKind;
 #[cfg(feature = "text")]
 use crate::laws::generic::DeclarationError;
 use crate::model::structure::StructureError;

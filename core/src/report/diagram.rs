@@ -1,9 +1,9 @@
 //! The charts of a branch by shooting, and of a diagram.
 
 use crate::bifurcation::diagram::{Diagram, Limb};
-use crate::branches::branch::EventKind;
 use crate::chart::{Chart, Curve, Run};
 use crate::error::Error;
+use crate::event::EventKind;
 use crate::report::picture::runs;
 use crate::shooting::{Cycle, CycleBranch};
 

@@ -2,8 +2,9 @@
 
 use std::mem::discriminant;
 
-use crate::branches::branch::{Branch, EventKind, Point};
+use crate::branches::branch::{Branch, Point};
 use crate::chart::{Chart, Curve, Line, Markers, Run};
+use crate::event::EventKind;
 use crate::model::labels::Labels;
 use crate::orbit::stability::Verdict;
 

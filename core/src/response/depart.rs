@@ -12,11 +12,12 @@
 use crate::balance::Parity;
 use crate::balance::block::{Block, Part};
 use crate::balance::resolution::resize;
-use crate::branches::branch::{Event, EventKind};
+use crate::branches::branch::Event;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Problem;
 use crate::error::Error;
+use crate::event::EventKind;
 use crate::numeric::fourier::series;
 use crate::response::follower::Follower;
 

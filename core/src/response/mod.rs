@@ -17,16 +17,17 @@ use crate::balance::Parity;
 use crate::balance::aft::Aft;
 use crate::balance::start::{Moving, start, without_symmetry};
 use crate::balance::symmetry::has_stride;
-use crate::branches::branch::{Branch, Event, EventKind, Orbit, Point};
+use crate::branches::branch::{Branch, Event, Orbit, Point};
 use crate::continuation::follow::Start;
 use crate::continuation::statistics::Statistics;
 use crate::continuation::step::StepControl;
 use crate::error::{Attempts, Error};
+use crate::event::EventKind;
+use crate::event::Side;
 use crate::orbit::stability::Method;
 use crate::response::depart::depart;
 use crate::response::follower::Sought;
 use crate::response::run::Run;
-use crate::shooting::Side;
 use crate::system::System;
 
 /// What to follow, set up step by step, then [run](FrequencyResponse::run).

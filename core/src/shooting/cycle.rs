@@ -4,9 +4,9 @@ use std::fmt;
 use std::time::Duration;
 
 use super::extremes::Extremes;
-use crate::branches::branch::{EventKind, Turn};
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
+use crate::event::{EventKind, Turn};
 use crate::model::labels::Labels;
 use crate::numeric::decimal::Decimal;
 use crate::orbit::stability::Stability;

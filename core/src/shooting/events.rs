@@ -11,11 +11,11 @@ use super::equations::Equations;
 use super::run::{Run, add, observe};
 use super::setting::Setting;
 use super::tested::{Change, Test, Tests};
-use crate::branches::branch::{EventKind, Turn};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::event::{EventKind, Turn};
 use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::orbit::stability::Stability;
 

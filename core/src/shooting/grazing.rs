@@ -9,10 +9,10 @@ use std::cell::RefCell;
 use super::cycle::CycleEvent;
 use super::equations::Equations;
 use super::run::{Run, add, observe};
-use crate::branches::branch::{EventKind, Turn};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::continuation::newton::Newton;
+use crate::event::{EventKind, Turn};
 
 /// What rounding leaves in the value of a grazing, where the distance from a level has a root to be told apart from.
 const TOUCHED: f64 = 2e-12;

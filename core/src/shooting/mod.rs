@@ -34,7 +34,8 @@ mod trace;
 mod track;
 mod watch;
 
+pub use crate::event::Side;
 pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
 pub use extremes::Extremes;
-pub use request::{Shooting, Side};
+pub use request::Shooting;
 pub use trace::{Special, SpecialKind, Track, TrackEnd, TrackPoint};

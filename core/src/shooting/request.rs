@@ -6,32 +6,13 @@ use super::cycle::{Cycle, CycleBranch, CycleEvent};
 use super::start::Guess;
 use super::trace::{self, Track, TrackPoint};
 use super::{at, compute, series};
-use crate::branches::branch::{EventKind, Orbit, Point};
+use crate::branches::branch::{Orbit, Point};
 use crate::continuation::step::StepControl;
 use crate::error::Error;
+use crate::event::EventKind;
+use crate::event::Side;
 use crate::model::validate;
 use crate::system::System;
-
-/// The side of an event on which a branch is followed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-pub enum Side {
-    /// One of the two.
-    One,
-    /// The other one.
-    Other,
-}
-
-impl Side {
-    /// One or minus one.
-    pub(crate) fn sign(self) -> f64 {
-        match self {
-            Self::One => 1.0,
-            Self::Other => -1.0,
-        }
-    }
-}
 
 /// Periodic orbits by shooting: set up step by step, then one [orbit](Shooting::orbit) or a [branch](Shooting::run).
 ///

@@ -12,13 +12,13 @@ use super::extremes::{self, Extremes};
 use super::recurrence::{Recurrence, step_on_other_branch};
 use super::setting::Setting;
 use super::tested::{Change, Tests};
-use crate::branches::branch::{EventKind, Turn};
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
+use crate::event::{EventKind, Turn};
 use crate::numeric::spectrum::distance;
 use crate::orbit::stability::Stability;
 use crate::time::{FlowError, Stretch, Work};

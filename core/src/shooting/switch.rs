@@ -24,11 +24,11 @@ use super::equations::Equations;
 use super::recurrence::Recurrence;
 use super::setting::Setting;
 use super::start::{self, First};
-use crate::branches::branch::EventKind;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Scale;
 use crate::error::Error;
+use crate::event::EventKind;
 
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.

@@ -18,7 +18,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::branches::branch::EventKind;
+use crate::event::EventKind;
 use crate::numeric::spectrum::eigenvalues;
 use crate::orbit::stability::product_of_pairs;
 

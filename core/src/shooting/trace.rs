@@ -14,13 +14,13 @@ use super::start;
 use super::touch::Touch;
 use super::track::{Condition, Curve};
 use super::watch::Watch;
-use crate::branches::branch::EventKind;
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, follow,
 };
 use crate::continuation::newton::Newton;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
+use crate::event::EventKind;
 use crate::numeric::decimal::Decimal;
 use crate::system::{System, Variable};
 use crate::time::FlowError;

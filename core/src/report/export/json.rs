@@ -3,8 +3,8 @@
 use serde::{Serialize, Serializer};
 
 use crate::attractors::sweep::Ended;
-use crate::branches::branch::EventKind;
 use crate::continuation::follow::Stop;
+use crate::event::EventKind;
 use crate::numeric::serialise::text;
 use crate::orbit::stability::{Method, Verdict};
 use crate::shooting::{End, SpecialKind, TrackEnd};

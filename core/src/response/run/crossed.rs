@@ -4,10 +4,11 @@ use super::Run;
 use super::watch::{Between, ROUNDING, Test, known, three_quarters};
 use crate::balance::Balance;
 use crate::balance::truncation::BEYOND;
-use crate::branches::branch::{Event, EventKind};
+use crate::branches::branch::Event;
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton};
+use crate::event::EventKind;
 
 /// Derivatives along the branch are differences over this part of the step: close by, the matrix of a step is singular.
 const BESIDE: f64 = 0.1;

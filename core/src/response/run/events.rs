@@ -4,11 +4,12 @@ use super::Run;
 use crate::balance::subharmonics::{is_shifted, passes_shorter_period};
 use crate::balance::symmetry::{broken, broken_share};
 use crate::balance::{Balance, Resolution};
-use crate::branches::branch::{Event, EventKind, Turn};
+use crate::branches::branch::Event;
 use crate::continuation::follow::{CurvePoint, Stop};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Norm;
+use crate::event::{EventKind, Turn};
 
 /// The test function of a fold is driven below this.
 pub(super) const FOLD_TOLERANCE: f64 = 1e-10;

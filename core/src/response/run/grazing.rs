@@ -19,10 +19,11 @@ use super::events::FOLD_TOLERANCE;
 use super::touch::{Extreme, Touches, crossings, distinct, is_copy, passed};
 use super::watch::{Between, Test};
 use crate::balance::{Balance, Resolution};
-use crate::branches::branch::{Event, EventKind, Turn};
+use crate::branches::branch::Event;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::event::{EventKind, Turn};
 
 /// Values that differ by this part of the range are one.
 const SAME: f64 = 1e-9;

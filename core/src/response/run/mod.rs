@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
-use crate::branches::branch::{Event, Point, Turn};
+use crate::branches::branch::{Event, Point};
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit,
     follow_until_stuck,
@@ -20,6 +20,7 @@ use crate::continuation::follow::{
 use crate::continuation::newton::{Border, Newton, NewtonError};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
+use crate::event::Turn;
 use crate::numeric::fourier::series;
 use crate::response::follower::Follower;
 use crate::response::reader::Reader;
