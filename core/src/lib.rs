@@ -75,6 +75,7 @@ pub mod chart;
 mod continuation;
 pub mod error;
 mod event;
+mod file;
 #[cfg(doctest)]
 mod guide;
 pub mod law;

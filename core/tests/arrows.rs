@@ -11,7 +11,7 @@ use std::path::Path;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 /// Single files that stand before all rooms, at most four.
-const SHARED: &[&str] = &["law", "system", "event"];
+const SHARED: &[&str] = &["law", "system", "event", "file"];
 
 /// The rooms, the lowest first.
 const ROOMS: &[&str] = &[
@@ -47,12 +47,9 @@ const EXCEPTIONS: &[Exception] = &[
     ("error", "continuation", HOLDS),
     ("error", "time", HOLDS),
     ("error", "attractors", HOLDS),
-    ("error", "chart", "errors of charts become errors"),
-    ("chart", "report", "charts write their files"),
     ("model", "continuation", "a check makes a step control"),
     ("branches", "orbit", "points hold what is read off them"),
     ("branches", "response", "branches compute further orbits"),
-    ("branches", "report", "branches write themselves"),
     ("orbit", "response", "a branch is asked for multipliers"),
 ];
 

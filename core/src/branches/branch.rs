@@ -12,7 +12,6 @@ use crate::numeric::decimal::Decimal;
 use crate::numeric::fourier::series;
 use crate::orbit::observe::{Motion, Observed};
 use crate::orbit::stability::Stability;
-use crate::report::export::Table;
 use crate::response::follower::Follower;
 use crate::system::System;
 
@@ -202,35 +201,5 @@ impl<'a> Branch<'a> {
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
         crate::model::validate::finite("at", value)?;
         self.follower.at(&self.points, &self.events, value)
-    }
-
-    /// The orbits as a table with names of the columns, one row for each: see [`COLUMNS`](crate::report::export::COLUMNS).
-    pub fn to_csv(&self) -> String {
-        let mut table = Table::of(self.system());
-        for point in &self.points {
-            table.add(0, point);
-        }
-        table.to_csv()
-    }
-
-    /// Writes the orbits as a table, one row for each: see [`COLUMNS`](crate::report::export::COLUMNS).
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub fn write_csv(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
-        let path = path.as_ref();
-        crate::report::export::write(path, self.to_csv()).map_err(|source| Error::File {
-            path: path.to_path_buf(),
-            kind: source.kind(),
-        })
-    }
-
-    /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    #[cfg(feature = "plot")]
-    pub fn plot(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
-        Ok(self.chart().write(path)?)
     }
 }

@@ -63,7 +63,7 @@ impl Page {
     /// If the file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ChartError> {
         let path = path.as_ref();
-        crate::report::export::write(path, self.to_svg()).map_err(|source| ChartError::Write {
+        crate::file::write(path, self.to_svg()).map_err(|source| ChartError::Write {
             path: path.to_path_buf(),
             source,
         })

@@ -8,8 +8,6 @@ use std::path::PathBuf;
 
 use crate::attractors::basin::BasinError;
 use crate::attractors::log::LogError;
-#[cfg(feature = "plot")]
-use crate::chart::ChartError;
 use crate::event::EventKind;
 #[cfg(feature = "text")]
 use crate::laws::generic::DeclarationError;
@@ -311,14 +309,6 @@ impl From<StructureError> for Error {
 impl From<DeclarationError> for Error {
     fn from(error: DeclarationError) -> Self {
         Self::Declaration(error)
-    }
-}
-
-#[cfg(feature = "plot")]
-impl From<ChartError> for Error {
-    fn from(ChartError::Write { path, source }: ChartError) -> Self {
-        let kind = source.kind();
-        Self::File { path, kind }
     }
 }
 

@@ -1,5 +1,6 @@
 //! How results are drawn and written.
 
+mod branch;
 #[cfg(feature = "plot")]
 pub(crate) mod diagram;
 pub mod export;

@@ -1,14 +1,24 @@
 //! The chart of a branch.
 
 use std::mem::discriminant;
+use std::path::Path;
 
 use crate::branches::branch::{Branch, Point};
-use crate::chart::{Chart, Curve, Line, Markers, Run};
+use crate::chart::{Chart, ChartError, Curve, Line, Markers, Run};
+use crate::error::Error;
 use crate::event::EventKind;
 use crate::model::labels::Labels;
 use crate::orbit::stability::Verdict;
 
 impl Branch<'_> {
+    /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn plot(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        Ok(self.chart().write(path)?)
+    }
+
     /// Peak-to-peak of the first coordinate over what the branch varies: stable solid, unstable dashed, undecided
     /// dotted; events are marked, each kind by a shape of its own, and so are places where an event could not be located.
     /// More can be added before it is written.
@@ -100,6 +110,13 @@ impl Line {
             Verdict::Unstable => Self::Unstable,
             Verdict::Undecided => Self::Undecided,
         }
+    }
+}
+
+impl From<ChartError> for Error {
+    fn from(ChartError::Write { path, source }: ChartError) -> Self {
+        let kind = source.kind();
+        Self::File { path, kind }
     }
 }
 

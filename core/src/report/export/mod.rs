@@ -1,12 +1,12 @@
 //! Results as files that other programs read.
 
-mod file;
 #[cfg(feature = "serde")]
 mod json;
 mod npy;
 mod table;
 
+pub use crate::file::{can_write, write};
 pub use crate::numeric::decimal::Decimal;
-pub use file::{can_write, write};
+
 pub use npy::{Npy, Number};
 pub use table::{COLUMNS, Table, cells};

@@ -1,0 +1,32 @@
+//! How a branch is written.
+
+use std::path::Path;
+
+use crate::branches::branch::Branch;
+use crate::error::Error;
+use crate::file;
+
+use super::export::Table;
+
+impl Branch<'_> {
+    /// The orbits as a table with names of the columns, one row for each: see [`COLUMNS`](super::export::COLUMNS).
+    pub fn to_csv(&self) -> String {
+        let mut table = Table::of(self.system());
+        for point in &self.points {
+            table.add(0, point);
+        }
+        table.to_csv()
+    }
+
+    /// Writes the orbits as a table, one row for each: see [`COLUMNS`](super::export::COLUMNS).
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_csv(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        file::write(path, self.to_csv()).map_err(|source| Error::File {
+            path: path.to_path_buf(),
+            kind: source.kind(),
+        })
+    }
+}
