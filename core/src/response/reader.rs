@@ -115,7 +115,13 @@ impl<'a> Reader<'a> {
         }
         self.units.resize(observed.motions.len(), size);
         self.units[0] = observed.motions[0].peak_to_peak().max(STILL * size);
-        let along = self.along(u, newton);
+        // An orbit closed by integration is at this very value.
+        let refined = self.judge.as_ref().and_then(|judge| judge.refined.as_ref());
+        let along = if refined.is_some() {
+            0.0
+        } else {
+            self.along(u, newton)
+        };
         let truncation = self.truncation(balance, u, newton);
         // From a mean square over coordinates to the peak-to-peak of one of them.
         let peak = 2.0 * (2.0 * observed.motions.len() as f64).sqrt();

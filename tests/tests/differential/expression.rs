@@ -101,6 +101,22 @@ pub struct Place<'a> {
     pub forces: &'a [f64],
 }
 
+impl<'a> Place<'a> {
+    /// Parameters alone.
+    pub fn of(parameters: &'a [f64]) -> Self {
+        Self {
+            parameters,
+            omega: 0.0,
+            phase: 0.0,
+            positions: &[],
+            velocities: &[],
+            gap: 0.0,
+            rate: 0.0,
+            forces: &[],
+        }
+    }
+}
+
 impl Expression {
     pub fn over(self, divisor: Self) -> Self {
         Self::Quotient(Box::new([self, divisor]))

@@ -32,6 +32,8 @@ pub struct Motions<'a> {
     levels: Vec<Vec<f64>>,
     /// By contact: what its force changes fast with, and the width.
     sharp: Vec<Option<(Variable, f64)>>,
+    /// By contact: where its slope jumps on a piece.
+    bends: Vec<Option<(Variable, f64)>>,
 }
 
 /// Where a motion went.
@@ -75,6 +77,9 @@ impl<'a> Motions<'a> {
             model,
             sharp: (0..model.contacts.len())
                 .map(|contact| model.sharp(contact, &values))
+                .collect(),
+            bends: (0..model.contacts.len())
+                .map(|contact| model.bend(contact, &values))
                 .collect(),
             levels: levels.collect(),
             values,
@@ -142,12 +147,14 @@ impl<'a> Motions<'a> {
                 course.switches += 1;
             } else {
                 step = (length * grown).min(largest);
-                if last {
-                    step = step.min(largest);
-                }
+            }
+            let bend = self.bend(&here, &to, taken);
+            if let Some(at) = bend.filter(|_| switch.is_none()) {
+                taken = at;
+                to = self.step(&here, at).0;
             }
             self.widen(&here, &to, taken, &mut course.extremes[..count]);
-            time = if last && switch.is_none() {
+            time = if last && switch.is_none() && bend.is_none() {
                 end
             } else {
                 time + taken
@@ -155,6 +162,30 @@ impl<'a> Motions<'a> {
             course.state = to;
         }
         Err(Lost::Long)
+    }
+
+    /// Where a slope of a force jumps first within a step.
+    fn bend(&self, here: &Step, to: &State, length: f64) -> Option<f64> {
+        let mut first: Option<f64> = None;
+        for (contact, bend) in self.bends.iter().enumerate() {
+            let Some((of, place)) = *bend else { continue };
+            let beyond = |time: f64, state: &State| {
+                self.variable(contact, of, here.time + time, state) - place
+            };
+            let (begin, end) = (beyond(0.0, &here.from), beyond(length, to));
+            let size = match of {
+                Variable::Gap => self.rate_size(contact) / self.omega,
+                Variable::Rate => self.rate_size(contact),
+            };
+            // A step that begins there leaves it.
+            if begin.abs() > 1e-13 * size && begin * end < 0.0 {
+                let at = root((0.0, begin), (length, end), |time| {
+                    beyond(time, &self.step(here, time).0)
+                });
+                first = Some(first.map_or(at, |first| first.min(at)));
+            }
+        }
+        first
     }
 
     /// What the force of a contact changes fast with, less where it changes.

@@ -263,6 +263,11 @@ impl Case {
                     .count("branches that did not begin: a motion was lost");
                 return;
             }
+            Error::Free { .. } if self.model.is_free() => {
+                self.report
+                    .count("branches that did not begin: nothing holds the system");
+                return;
+            }
             other => {
                 self.find(Kind::Refused, format!("{name} from {value:?}: {other}"));
                 return;

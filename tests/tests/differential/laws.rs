@@ -70,6 +70,7 @@ fn power(draft: &mut Draft, base: Expression, size: f64) -> Expression {
 pub fn one_sided(draft: &mut Draft) -> Law {
     let size = draft.random.magnitude(0.2, 50.0);
     let spring = power(draft, Expression::Gap, size);
+    let mut bend = None;
     let above = match draft.random.below(7) {
         0 => {
             let c = draft.random.magnitude(0.005, 0.3);
@@ -79,9 +80,10 @@ pub fn one_sided(draft: &mut Draft) -> Law {
         1 | 2 => {
             let c = draft.random.magnitude(0.01, 0.5);
             let c = draft.quantity("c", c, [0.0, 1.0, -1.0]);
-            let damping = one().plus(c.times(Expression::Rate));
+            let damping = one().plus(c.clone().times(Expression::Rate));
             let force = spring.times(damping);
             if draft.random.once_in(2) {
+                bend = Some((Variable::Rate, one().negative().over(c)));
                 force.positive()
             } else {
                 force
@@ -96,6 +98,7 @@ pub fn one_sided(draft: &mut Draft) -> Law {
     Law {
         levels: vec![zero()],
         pieces: vec![zero(), above],
+        bend,
         ..Law::default()
     }
 }
@@ -146,7 +149,10 @@ fn surface(draft: &mut Draft) -> Law {
 fn both_sides(draft: &mut Draft) -> Law {
     let size = draft.random.magnitude(0.2, 3.0);
     let power = power(draft, Expression::Gap.abs(), size);
-    whole(Expression::Gap.sign().times(power))
+    Law {
+        bend: Some((Variable::Gap, zero())),
+        ..whole(Expression::Gap.sign().times(power))
+    }
 }
 
 /// Two or three slopes.
@@ -224,19 +230,23 @@ fn sharp_of_rate(draft: &mut Draft) -> Law {
 fn of_rate(draft: &mut Draft) -> Law {
     let size = draft.random.magnitude(0.01, 0.5);
     let rate = || Expression::Rate;
-    whole(if draft.random.once_in(2) {
+    if draft.random.once_in(2) {
         let c = draft.quantity("c", size, [1.0, 0.0, -1.0]);
-        c.times(rate().abs().times(rate()))
+        return whole(c.times(rate().abs().times(rate())));
+    }
+    let c = draft.quantity("c", size, DAMPING);
+    let (force, bend) = if draft.random.once_in(2) {
+        (c.times(rate().positive()), zero())
     } else {
-        let c = draft.quantity("c", size, DAMPING);
-        if draft.random.once_in(2) {
-            c.times(rate().positive())
-        } else {
-            let level = draft.random.between(-0.3, 0.3);
-            let level = draft.quantity("r", level, SPEED);
-            c.times(rate().plus(level.negative())).positive()
-        }
-    })
+        let level = draft.random.between(-0.3, 0.3);
+        let level = draft.quantity("r", level, SPEED);
+        let above = rate().plus(level.clone().negative());
+        (c.times(above).positive(), level)
+    };
+    Law {
+        bend: Some((Variable::Rate, bend)),
+        ..whole(force)
+    }
 }
 
 /// A spring that hardens as an exponential.

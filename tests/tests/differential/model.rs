@@ -34,6 +34,8 @@ pub struct Law {
     pub pieces: Vec<Expression>,
     /// Where it changes fast, if it does.
     pub sharp: Option<Sharp>,
+    /// Where a slope jumps, or has no bound, on a piece.
+    pub bend: Option<(Variable, Expression)>,
 }
 
 /// A force that changes near zero of one of its variables, on a length of its own.
@@ -208,14 +210,9 @@ impl Model {
         let contact = &self.contacts[contact];
         let phase = omega * time;
         let place = Place {
-            parameters: values,
             omega,
             phase,
-            positions: &[],
-            velocities: &[],
-            gap: 0.0,
-            rate: 0.0,
-            forces: &[],
+            ..Place::of(values)
         };
         let mut gap = Gap {
             value: 0.0,
@@ -242,16 +239,7 @@ impl Model {
 
     /// Levels of the law of a contact.
     pub fn levels(&self, contact: usize, values: &[f64], levels: &mut Vec<f64>) {
-        let place = Place {
-            parameters: values,
-            omega: 0.0,
-            phase: 0.0,
-            positions: &[],
-            velocities: &[],
-            gap: 0.0,
-            rate: 0.0,
-            forces: &[],
-        };
+        let place = Place::of(values);
         levels.clear();
         let law = &self.laws[self.contacts[contact].law];
         levels.extend(law.levels.iter().map(|level| level.value(&place)));
@@ -260,17 +248,38 @@ impl Model {
     /// What the law of a contact changes fast with, and its width.
     pub fn sharp(&self, contact: usize, values: &[f64]) -> Option<(Variable, f64)> {
         let sharp = self.laws[self.contacts[contact].law].sharp.as_ref()?;
-        let place = Place {
-            parameters: values,
-            omega: 0.0,
-            phase: 0.0,
-            positions: &[],
-            velocities: &[],
-            gap: 0.0,
-            rate: 0.0,
-            forces: &[],
+        Some((sharp.of, sharp.width.value(&Place::of(values))))
+    }
+
+    /// Where a slope of the law of a contact jumps on a piece.
+    pub fn bend(&self, contact: usize, values: &[f64]) -> Option<(Variable, f64)> {
+        let (of, bend) = self.laws[self.contacts[contact].law].bend.as_ref()?;
+        Some((*of, bend.value(&Place::of(values))))
+    }
+
+    /// Whether no force knows of a shift of all coordinates together.
+    pub fn is_free(&self) -> bool {
+        let values = self.values();
+        let omega = self.range[0];
+        let derivative = |shift: f64| {
+            let mut state = State::default();
+            for i in 0..self.coordinates {
+                state[i] = self.size * (0.3 - 0.4 * i as f64 + shift);
+                state[COORDINATES + i] = self.size * omega * (0.7 - 0.5 * i as f64);
+            }
+            let time = 0.4 / omega;
+            let mut pieces = [0; CONTACTS];
+            let mut levels = Vec::new();
+            for (contact, piece) in pieces[..self.contacts.len()].iter_mut().enumerate() {
+                self.levels(contact, &values, &mut levels);
+                let gap = self.gap(contact, &values, omega, time, &state).value;
+                *piece = levels.iter().filter(|level| gap > **level).count();
+            }
+            self.derivative(&values, omega, time, (&state, &pieces))
         };
-        Some((sharp.of, sharp.width.value(&place)))
+        let (here, there) = (derivative(0.0), derivative(0.9));
+        let mut pairs = here.iter().zip(&there);
+        pairs.all(|(a, b)| (a - b).abs() <= 1e-9 * a.abs().max(b.abs()))
     }
 
     /// Derivative of a state by time, with every contact on its piece.

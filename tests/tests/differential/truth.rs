@@ -1,7 +1,7 @@
 //! What is true of a periodic orbit: where it is, how large, and its multipliers, each with an error of its own.
 //!
 //! The orbit is the state that its motion comes back to, by Newton's method; the monodromy matrix is that of differences on both
-//! sides of it, at two distances. Where perturbations grow much in a period it is divided into segments: multiple shooting, Keller
+//! sides of it, at three distances. Where perturbations grow much in a period it is divided into segments: multiple shooting, Keller
 //! (1968), Numerical methods for two-point boundary-value problems.
 
 use std::f64::consts::TAU;
@@ -17,6 +17,13 @@ use crate::model::{COORDINATES, Contact, Law, Model, State, Term};
 const TOLERANCE: f64 = 1e-12;
 /// Distance of the perturbed states of a smooth force.
 const APART: f64 = 3e-5;
+/// Other distances in parts of this: what is known of the differences is how they change.
+const FARTHER: f64 = 2.0;
+const NEARER: f64 = 0.125;
+/// Where the orbit nearly touches a level, distances are made smaller so often at most.
+const NEARER_STILL: usize = 3;
+/// Differences of a slope that bends converge in the first order, those of a root in the half: so many times a change is their error.
+const ORDER: f64 = 3.0;
 /// Motions that look for the orbit.
 const MOTIONS: usize = 12;
 /// A correction of the state below this is none.
@@ -49,6 +56,8 @@ pub enum Unsure {
     Singular,
     /// A multiplier, as far as it is known, is too large for the segments.
     Growing(f64),
+    /// Motions beside it pass a level more often, however near they are.
+    Touching,
     /// States came nearer to none: this far it was from coming back at the end, relative to the size.
     Open(f64),
 }
@@ -106,8 +115,7 @@ impl<'a> Question<'a> {
             courses,
             left,
         } = closed;
-        let near = there.slopes(&states, apart)?;
-        let far = there.slopes(&states, 2.0 * apart)?;
+        let (near, apart) = there.on_this_side(&states, apart)?;
         // Where perturbed motions are exact to a tolerance; and, by another tolerance, what the motion itself is exact to.
         let loose = Motions::of(self.model, self.omega, self.sizes(), 10.0 * TOLERANCE);
         let loose = Periodic {
@@ -129,8 +137,12 @@ impl<'a> Question<'a> {
         let grown = 4.0 * near.iter().map(row_sum).fold(1.0, f64::max);
         let multipliers = eigenvalues(&product(&near));
         let noise = 4.0 * (motion + TOLERANCE) / apart + grown * error;
-        let multiplier_error = hertzian_tests::distance(&multipliers, &eigenvalues(&product(&far)))
-            + amplified(&near) * noise;
+        let noise = amplified(&near) * noise;
+        let change = |part: f64| -> Result<f64, Lost> {
+            let others = eigenvalues(&product(&there.slopes(&states, part * apart)?));
+            Ok(hertzian_tests::distance(&multipliers, &others))
+        };
+        let multiplier_error = noise + (ORDER * change(FARTHER)?).max(change(NEARER)?);
         let correction = there.difference(&states[0], &start).amax();
         Ok(Truth {
             correction,
@@ -245,10 +257,12 @@ impl<'a> Periodic<'a> {
         DVector::from_vec(gaps.collect())
     }
 
-    /// Derivatives of the state after each segment by the state before it, both relative to the sizes.
-    fn slopes(&self, states: &[State], apart: f64) -> Result<Vec<DMatrix<f64>>, Lost> {
+    /// Derivatives of the state after each segment by the state before it, both relative to the sizes; and whether the motions on both
+    /// sides pass as many levels.
+    fn differences(&self, states: &[State], apart: f64) -> Result<(Vec<DMatrix<f64>>, bool), Lost> {
         let size = 2 * self.coordinates();
         let mut slopes = Vec::with_capacity(self.segments);
+        let mut alike = true;
         for (segment, state) in states.iter().enumerate() {
             let mut matrix = DMatrix::zeros(size, size);
             for column in 0..size {
@@ -258,10 +272,31 @@ impl<'a> Periodic<'a> {
                 let behind = self.course(segment, &self.moved(state, &-by))?;
                 let slope = self.difference(&ahead.state, &behind.state) / (2.0 * apart);
                 matrix.set_column(column, &slope);
+                alike &= ahead.switches == behind.switches;
             }
             slopes.push(matrix);
         }
-        Ok(slopes)
+        Ok((slopes, alike))
+    }
+
+    /// The slopes at a distance at which no other motion touches a level, and the distance.
+    fn on_this_side(
+        &self,
+        states: &[State],
+        mut apart: f64,
+    ) -> Result<(Vec<DMatrix<f64>>, f64), Unsure> {
+        for _ in 0..=NEARER_STILL {
+            let (slopes, alike) = self.differences(states, apart)?;
+            if alike && self.differences(states, FARTHER * apart)?.1 {
+                return Ok((slopes, apart));
+            }
+            apart *= NEARER;
+        }
+        Err(Unsure::Touching)
+    }
+
+    fn slopes(&self, states: &[State], apart: f64) -> Result<Vec<DMatrix<f64>>, Lost> {
+        Ok(self.differences(states, apart)?.0)
     }
 
     /// The states that come back, by Newton's method.

@@ -1,6 +1,7 @@
 //! Shooting against exact values, and against the harmonic balance.
 
 mod affine;
+mod bends;
 mod coupled;
 mod integrated;
 mod powers;

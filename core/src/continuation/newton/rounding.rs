@@ -9,12 +9,11 @@
 use super::Newton;
 use crate::continuation::problem::Problem;
 
-/// So many times what rounding makes of an update is still its doing. Beside a branch point updates halve, and are larger.
-const EXPLAINED: f64 = 16.0;
 /// What conditioning may make of rounding. Where it takes more, as beside a branch point, it is the matrix and not the size of the terms
 /// that keeps updates from shrinking.
 const CONDITION: f64 = 1e3;
-/// A residual of so many roundings of its terms is nothing but rounding: sums over harmonics and nodes add up.
+/// A residual of so many roundings of its terms is nothing but rounding: sums over harmonics and nodes add up. So is an update of as
+/// many times what one rounding of each term makes.
 const ROUNDINGS: f64 = 64.0;
 
 impl Newton {
@@ -46,7 +45,7 @@ impl Newton {
         self.solve(&mut made);
         let size = self.norm.length(self.scale, &made);
         self.trial = made;
-        let explained = size.is_finite() && update <= EXPLAINED * size;
+        let explained = size.is_finite() && update <= ROUNDINGS * size;
         if explained {
             self.rounding = size;
         }

@@ -108,6 +108,27 @@ impl Scales {
         self.pieces[piece].sharp.contains(&true)
     }
 
+    /// Whether the slope of the force jumps on a piece, where an operand changes its sign.
+    pub(crate) fn bends(&self, piece: usize) -> bool {
+        self.pieces[piece].kinds.contains(&Kind::Bends)
+    }
+
+    /// Values of these operands along a motion, one after the other.
+    pub(crate) fn bending(
+        &mut self,
+        piece: usize,
+        gap: &[f64],
+        rate: &[f64],
+    ) -> impl Iterator<Item = &[f64]> {
+        self.run(piece, gap, rate);
+        let operands = self.values.chunks_exact(gap.len());
+        let kinds = self.pieces[piece].kinds.iter();
+        let bending = operands
+            .zip(kinds)
+            .filter(|(_, kind)| **kind == Kind::Bends);
+        bending.map(|(operand, _)| operand)
+    }
+
     /// Takes arguments and levels.
     pub(crate) fn set(&mut self, arguments: &[f64], levels: &[f64]) {
         if self.known && self.arguments == arguments && self.levels == levels {

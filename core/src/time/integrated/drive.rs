@@ -170,6 +170,7 @@ impl<const S: usize> Engine<'_, S> {
     ) -> Result<(), FlowError> {
         let left = span - self.here.passed;
         self.accelerate_here();
+        self.bends = false;
         let mut plan = self.first_plan(left);
         let (mut turned, mut landings) = (0, 0);
         for _ in 0..MOST_ATTEMPTS {
@@ -339,6 +340,11 @@ impl<const S: usize> Engine<'_, S> {
         tangent: Option<&Tangent>,
         columns: &mut [f64],
     ) -> Result<Option<Plan>, FlowError> {
+        if let Some(part) = self.bend() {
+            self.bends = true;
+            self.work.rejected += 1;
+            return Ok(Some(Plan::Span(part * self.trial.width)));
+        }
         let mut error = self.error();
         if error <= 1.0 && self.overlooks() {
             // As an error that half of the width mends.
@@ -388,7 +394,7 @@ impl<const S: usize> Engine<'_, S> {
             Map::FromStart(_) => 1,
             Map::ToEnd(_) => 2,
         };
-        let cut = self.trial.landing.is_some() || self.aim.is_some();
+        let cut = self.trial.landing.is_some() || self.aim.is_some() || self.bends;
         let known = self.widths[kind];
         self.widths[kind] = if cut { next.max(known) } else { next };
         if kind == 1 {

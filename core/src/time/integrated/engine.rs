@@ -73,7 +73,7 @@ pub(super) struct Engine<'a, const S: usize> {
     pub(super) powers: Vec<Vec<[u32; 2]>>,
     powers_by: Option<Variable>,
     /// Where the law of each contact may be sharp.
-    sharp: Vec<Option<Scales>>,
+    pub(super) sharp: Vec<Option<Scales>>,
     /// They belong to the present values.
     powers_known: bool,
     pub(super) here: Here,
@@ -84,6 +84,8 @@ pub(super) struct Engine<'a, const S: usize> {
     /// States at the nodes of an earlier trial, and accelerations of the sweep before.
     pub(super) before: [Vec<[f64; S]>; 2],
     pub(super) values: Vec<f64>,
+    /// A gap and its rate at both ends and at the nodes.
+    pub(super) motion: [Vec<f64>; 2],
     pub(super) coefficients: Vec<f64>,
     pub(super) weights: Vec<f64>,
     pub(super) slopes: Slopes<S>,
@@ -103,6 +105,8 @@ pub(super) struct Engine<'a, const S: usize> {
     pub(super) widths: [f64; 3],
     /// A level that the next step is to reach.
     pub(super) aim: Option<Aim>,
+    /// The step is to end where a slope jumps.
+    pub(super) bends: bool,
     /// Switches, and where they began to be counted.
     pub(super) switches: (usize, f64),
     pub(super) work: Work,
@@ -162,6 +166,7 @@ impl<'a, const S: usize> Engine<'a, S> {
             ],
             before: [rows(), rows()],
             values: vec![0.0; points],
+            motion: [vec![0.0; points], vec![0.0; points]],
             coefficients: vec![0.0; points],
             weights: vec![0.0; points],
             slopes: Slopes::new(&field),
@@ -175,6 +180,7 @@ impl<'a, const S: usize> Engine<'a, S> {
             scales: vec![[0.0; 2]; n],
             widths: [0.0; 3],
             aim: None,
+            bends: false,
             switches: (0, 0.0),
             work: Work::default(),
             rule,

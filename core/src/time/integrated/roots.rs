@@ -12,6 +12,9 @@ pub(super) const MOST: usize = 32;
 /// A zero is known well enough within this part of the interval: what follows makes it exact.
 const CLOSE: f64 = 1e-4;
 
+/// Secants that make it exact.
+const SECANTS: usize = 8;
+
 /// Halvings after which two zeros are taken as one.
 const DEEPEST: usize = 40;
 
@@ -21,6 +24,22 @@ pub(super) fn first(coefficients: &[f64]) -> Option<f64> {
     let c = &mut room[..coefficients.len()];
     c.copy_from_slice(coefficients);
     search(c, 0.0, 1.0, 0)
+}
+
+/// A zero near one that is known well enough, by secants.
+pub(super) fn exactly(c: &[f64], near: f64) -> f64 {
+    let beside = if near < 0.5 { CLOSE } else { -CLOSE };
+    let (mut before, mut u) = (near + beside, near);
+    let (mut at_before, mut at) = (value(c, before), value(c, u));
+    for _ in 0..SECANTS {
+        let next = u - at * (u - before) / (at - at_before);
+        if next.is_nan() || (next - near).abs() > 10.0 * CLOSE {
+            break;
+        }
+        (before, at_before) = (u, at);
+        (u, at) = (next, value(c, next));
+    }
+    u.clamp(0.0, 1.0)
 }
 
 /// The same on the part from `start` to `end`, where the coefficients are `c`.
