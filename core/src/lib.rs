@@ -94,7 +94,8 @@ pub mod time;
 pub use balance::aft::Aft;
 pub use bifurcation::Bifurcations;
 pub use bifurcation::backbone;
-pub use branches::branch::{Branch, Event, Orbit, Point};
+pub use branches::orbit::Orbit;
+pub use branches::point::{Event, Point};
 pub use continuation::follow::Stop;
 pub use continuation::statistics::Statistics;
 pub use error::Error;
@@ -109,6 +110,7 @@ pub use orbit::stability::{Method, Stability, Verdict};
 pub use orbit::{observe, stability};
 pub use report::export;
 pub use response::FrequencyResponse;
+pub use response::branch::Branch;
 #[doc(hidden)]
 pub use response::stages;
 pub use shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
@@ -116,8 +118,10 @@ pub use system::System;
 
 /// Computed branches of periodic orbits.
 pub mod branch {
-    pub use crate::branches::branch::{Branch, Event, Orbit, Point};
+    pub use crate::branches::orbit::Orbit;
+    pub use crate::branches::point::{Event, Point};
     pub use crate::event::{EventKind, Turn};
+    pub use crate::response::branch::Branch;
 }
 
 /// ```

@@ -49,8 +49,6 @@ const EXCEPTIONS: &[Exception] = &[
     ("error", "attractors", HOLDS),
     ("model", "continuation", "a check makes a step control"),
     ("branches", "orbit", "points hold what is read off them"),
-    ("branches", "response", "branches compute further orbits"),
-    ("orbit", "response", "a branch is asked for multipliers"),
 ];
 
 /// The one type of errors holds the errors of the rooms.

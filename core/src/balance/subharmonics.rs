@@ -1,6 +1,6 @@
 //! Orbits of several excitation periods: whether a shorter period would do, and which are the same but for a shift in time.
 
-use crate::branches::branch::Orbit;
+use crate::branches::orbit::Orbit;
 use crate::numeric::fourier::series;
 
 /// Least share of the mean square that the harmonics of a longer period must have. Samples of a force that jumps disturb a

@@ -11,8 +11,7 @@ use std::time::Duration;
 use super::known;
 use crate::continuation::follow::Stop;
 use crate::error::Error;
-use crate::event::EventKind;
-use crate::event::Side;
+use crate::event::{EventKind, Side};
 use crate::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
 
 /// Branches of periodic orbits and how they are connected.

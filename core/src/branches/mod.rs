@@ -1,3 +1,4 @@
 //! Branches of periodic orbits, as data.
 
-pub mod branch;
+pub(crate) mod orbit;
+pub(crate) mod point;

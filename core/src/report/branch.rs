@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::branches::branch::Branch;
 use crate::error::Error;
 use crate::file;
+use crate::response::branch::Branch;
 
 use super::export::Table;
 

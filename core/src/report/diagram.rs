@@ -48,7 +48,7 @@ fn place(cycle: &Cycle) -> [f64; 2] {
 }
 
 impl CycleBranch {
-    /// Peak-to-peak of the first coordinate over what the branch varies, drawn as [`Branch::chart`](crate::branches::branch::Branch::chart) draws a
+    /// Peak-to-peak of the first coordinate over what the branch varies, drawn as [`Branch::chart`](crate::response::branch::Branch::chart) draws a
     /// branch of the balance.
     pub fn chart(&self) -> Chart {
         let curve = Curve {

@@ -3,12 +3,13 @@
 use std::mem::discriminant;
 use std::path::Path;
 
-use crate::branches::branch::{Branch, Point};
+use crate::branches::point::Point;
 use crate::chart::{Chart, ChartError, Curve, Line, Markers, Run};
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::model::labels::Labels;
 use crate::orbit::stability::Verdict;
+use crate::response::branch::Branch;
 
 impl Branch<'_> {
     /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.

@@ -12,7 +12,7 @@
 use crate::balance::Parity;
 use crate::balance::block::{Block, Part};
 use crate::balance::resolution::resize;
-use crate::branches::branch::Event;
+use crate::branches::point::Event;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Problem;

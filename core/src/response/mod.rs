@@ -1,7 +1,9 @@
 //! Frequency response: what a user asks for, checked before any work.
 
+pub(crate) mod branch;
 pub(crate) mod depart;
 pub(crate) mod follower;
+mod multipliers;
 pub(crate) mod reader;
 pub(crate) mod run;
 #[doc(hidden)]
@@ -17,14 +19,15 @@ use crate::balance::Parity;
 use crate::balance::aft::Aft;
 use crate::balance::start::{Moving, start, without_symmetry};
 use crate::balance::symmetry::has_stride;
-use crate::branches::branch::{Branch, Event, Orbit, Point};
+use crate::branches::orbit::Orbit;
+use crate::branches::point::{Event, Point};
 use crate::continuation::follow::Start;
 use crate::continuation::statistics::Statistics;
 use crate::continuation::step::StepControl;
 use crate::error::{Attempts, Error};
-use crate::event::EventKind;
-use crate::event::Side;
+use crate::event::{EventKind, Side};
 use crate::orbit::stability::Method;
+use crate::response::branch::Branch;
 use crate::response::depart::depart;
 use crate::response::follower::Sought;
 use crate::response::run::Run;

@@ -2,7 +2,8 @@
 
 use crate::balance::Balance;
 use crate::balance::truncation::{BEYOND, Finer};
-use crate::branches::branch::{Orbit, Point};
+use crate::branches::orbit::Orbit;
+use crate::branches::point::Point;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
 use crate::numeric::fourier::series;

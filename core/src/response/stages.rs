@@ -1,9 +1,10 @@
 //! The work of one iteration, part by part: what the bench of this name times, and nobody else calls.
 
 use crate::balance::Balance;
-use crate::branches::branch::{Branch, Point};
+use crate::branches::point::Point;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
+use crate::response::branch::Branch;
 
 pub use crate::numeric::fourier::crossings::{Crossing, CrossingFinder, NearMiss};
 

@@ -6,11 +6,11 @@ use super::cycle::{Cycle, CycleBranch, CycleEvent};
 use super::start::Guess;
 use super::trace::{self, Track, TrackPoint};
 use super::{at, compute, series};
-use crate::branches::branch::{Orbit, Point};
+use crate::branches::orbit::Orbit;
+use crate::branches::point::Point;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
-use crate::event::EventKind;
-use crate::event::Side;
+use crate::event::{EventKind, Side};
 use crate::model::validate;
 use crate::system::System;
 

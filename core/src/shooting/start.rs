@@ -7,7 +7,7 @@ use super::recurrence::Recurrence;
 use super::run::no_orbit;
 use super::setting::Setting;
 use super::{beyond, solve};
-use crate::branches::branch::Orbit;
+use crate::branches::orbit::Orbit;
 use crate::continuation::newton::Newton;
 use crate::error::{Attempts, Error};
 use crate::time::{FlowError, Stretch};

@@ -14,7 +14,7 @@ mod contacts;
 mod stride;
 
 use crate::balance::subharmonics::Addition;
-use crate::branches::branch::Orbit;
+use crate::branches::orbit::Orbit;
 use crate::model::layout::{Entry, Layout};
 use crate::system::{System, Variable};
 

@@ -13,7 +13,7 @@
 //! symmetry).
 
 use super::{BROKEN_SHARE, Over, cancels, contacts};
-use crate::branches::branch::Orbit;
+use crate::branches::orbit::Orbit;
 use crate::model::layout::Entry;
 
 /// More parts are not looked for: so many steps of a cage are more than there are harmonics.

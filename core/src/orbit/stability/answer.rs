@@ -4,15 +4,9 @@ use std::time::Duration;
 
 use nalgebra::Complex;
 
-use super::judge::Judge;
 use super::{Cost, Method, Stability};
-use crate::balance::truncation::Finer;
-use crate::branches::branch::{Branch, Point};
-use crate::continuation::newton::{Border, Newton};
-use crate::continuation::problem::Problem;
-use crate::response::follower::Follower;
 
-/// What a [`Method`] says of one orbit: see [`Branch::multipliers`].
+/// What a [`Method`] says of one orbit: see [`Branch::multipliers`](crate::Branch::multipliers).
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -47,78 +41,4 @@ pub struct Answer {
         serde(serialize_with = "crate::numeric::serialise::seconds")
     )]
     pub elapsed: Duration,
-}
-
-/// The orbit has moved further than this by the time its factors are known: then they are those of another one.
-const MOVED: f64 = 1e-3;
-
-impl Branch<'_> {
-    /// Applies a method to an orbit of this branch.
-    ///
-    /// # Panics
-    /// If the orbit belongs to a system with another number of coordinates.
-    pub fn multipliers(&self, point: &Point, method: Method) -> Answer {
-        assert_eq!(
-            point.orbit.coordinates(),
-            self.system().facts().coordinates.len(),
-            "the orbit belongs to another system"
-        );
-        let follower = &self.follower;
-        let harmonics = point.orbit.harmonics();
-        let resolution = follower.with_harmonics(harmonics, harmonics);
-        let mut balance = follower.balance(resolution);
-        let mut u = point.orbit.series.clone();
-        u.push(point.value);
-        let mut finer = Finer::new(
-            follower.system,
-            &point.parameters,
-            point.orbit.omega,
-            follower.variable,
-            resolution,
-        );
-        let mut newton = Newton::new(&balance);
-        let corrected =
-            factorise(follower, &mut balance, &mut newton, &u) && finer.correct(&u, &mut newton);
-        balance.set(point.value);
-        Judge::new(method).answer(&balance, corrected.then_some(&finer), &u)
-    }
-}
-
-/// Makes the factors at an orbit, with a border that holds the parameter fast or, near a fold, the way along the branch;
-/// false if that fails.
-fn factorise(
-    follower: &Follower<'_>,
-    problem: &mut impl Problem,
-    newton: &mut Newton,
-    u: &[f64],
-) -> bool {
-    let range = (follower.to - follower.from).abs();
-    let scale = newton.norm().scale_at(u, range, &mut [0.0; 2]);
-    let last = u.len() - 1;
-    let mut row = vec![0.0; u.len()];
-    let mut stay = |newton: &mut Newton, row: &[f64]| {
-        let mut moved = u.to_vec();
-        let value = crate::numeric::linear::dot(row, u);
-        let border = Border { row, value };
-        let found = newton.correct(problem, &mut moved, border, scale, follower.newton);
-        let difference: Vec<f64> = moved.iter().zip(u).map(|(a, b)| a - b).collect();
-        let stayed = found.is_ok() && newton.norm().length(scale, &difference) < MOVED;
-        stayed.then(|| {
-            let mut tangent = vec![0.0; u.len()];
-            newton.tangent(problem, &moved, &mut tangent, false);
-            tangent
-        })
-    };
-    row[last] = 1.0;
-    let mut along = stay(newton, &row);
-    if along.is_none() {
-        // At a fold the parameter cannot be held fast, but the size of the orbit can.
-        newton.norm().linear_form(scale, u, &mut row);
-        along = stay(newton, &row);
-    }
-    let Some(along) = along else {
-        return false;
-    };
-    newton.norm().linear_form(scale, &along, &mut row);
-    stay(newton, &row).is_some()
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::branches::branch::Point;
+use crate::branches::point::Point;
 
 /// Names of the columns that every table begins with; after them come the parameters of the system, by name, and then for each
 /// contact, counted from one, `contact_1_min_force` and `contact_1_max_force`, the extremes of its law with their signs, and

@@ -4,7 +4,7 @@ use super::Run;
 use super::watch::{Between, ROUNDING, Test, known, three_quarters};
 use crate::balance::Balance;
 use crate::balance::truncation::BEYOND;
-use crate::branches::branch::Event;
+use crate::branches::point::Event;
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton};

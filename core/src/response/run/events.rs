@@ -4,7 +4,7 @@ use super::Run;
 use crate::balance::subharmonics::{is_shifted, passes_shorter_period};
 use crate::balance::symmetry::{broken, broken_share};
 use crate::balance::{Balance, Resolution};
-use crate::branches::branch::Event;
+use crate::branches::point::Event;
 use crate::continuation::follow::{CurvePoint, Stop};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::Newton;

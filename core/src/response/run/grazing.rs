@@ -19,7 +19,7 @@ use super::events::FOLD_TOLERANCE;
 use super::touch::{Extreme, Touches, crossings, distinct, is_copy, passed};
 use super::watch::{Between, Test};
 use crate::balance::{Balance, Resolution};
-use crate::branches::branch::Event;
+use crate::branches::point::Event;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Border, Newton, NewtonOptions};

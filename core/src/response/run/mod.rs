@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
-use crate::branches::branch::{Event, Point};
+use crate::branches::point::{Event, Point};
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit,
     follow_until_stuck,

@@ -24,7 +24,7 @@ use crate::balance::block::{Block, Part};
 use crate::balance::resolution::resize;
 use crate::balance::truncation::BEYOND;
 use crate::balance::{Balance, Resolution};
-use crate::branches::branch::{Event, Point};
+use crate::branches::point::{Event, Point};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::Located;
 use crate::continuation::newton::Newton;

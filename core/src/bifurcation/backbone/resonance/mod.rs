@@ -21,7 +21,7 @@ use super::Backbone;
 use crate::balance::aft::Aft;
 use crate::balance::resolution::resize;
 use crate::balance::{Balance, Parity, Resolution};
-use crate::branches::branch::Orbit;
+use crate::branches::orbit::Orbit;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };

@@ -1,0 +1,54 @@
+//! A periodic orbit as data.
+
+use crate::numeric::fourier::series;
+
+/// A periodic orbit as Fourier series of its coordinates.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Orbit {
+    /// Coordinate by coordinate, each laid out as in [`series`].
+    pub(crate) series: Vec<f64>,
+    pub(crate) coordinates: usize,
+    /// Excitation frequency.
+    pub omega: f64,
+    /// Base frequency: the orbit repeats after `2 pi / base`.
+    pub base: f64,
+    /// Number of periods of the declaration (`2 pi divisor / omega`) in its period.
+    pub period: usize,
+}
+
+impl Orbit {
+    /// Fourier series of one coordinate, `[mean, cos 1, sin 1, ...]` in harmonics of the base frequency.
+    ///
+    /// # Panics
+    /// If there is no such coordinate.
+    pub fn series(&self, coordinate: usize) -> &[f64] {
+        assert!(
+            coordinate < self.coordinates,
+            "the orbit has {} coordinates",
+            self.coordinates
+        );
+        let length = self.series.len() / self.coordinates;
+        &self.series[coordinate * length..][..length]
+    }
+
+    /// Number of coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.coordinates
+    }
+
+    /// Number of harmonics.
+    pub fn harmonics(&self) -> usize {
+        series::harmonics(self.series(0))
+    }
+
+    /// Position and velocity of one coordinate at a time.
+    ///
+    /// # Panics
+    /// If there is no such coordinate.
+    pub fn state(&self, coordinate: usize, time: f64) -> (f64, f64) {
+        let (x, slope, _) =
+            series::value_and_derivatives(self.series(coordinate), self.base * time);
+        (x, self.base * slope)
+    }
+}

@@ -1,0 +1,93 @@
+//! Orbits of a branch with what is known of them, and special ones.
+
+use std::fmt;
+
+use super::orbit::Orbit;
+use crate::event::EventKind;
+use crate::numeric::decimal::Decimal;
+use crate::orbit::observe::{Motion, Observed};
+use crate::orbit::stability::Stability;
+
+/// One orbit of a branch.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Point {
+    /// Value of what the branch varies: omega or a parameter.
+    pub value: f64,
+    /// Parameters of the system, in the order of its declaration.
+    pub parameters: Vec<f64>,
+    /// The orbit.
+    pub orbit: Orbit,
+    /// Its stability.
+    pub stability: Stability,
+    /// What is read off it.
+    pub observed: Observed,
+    /// Estimated error of peak-to-peak from the harmonics that were left out: of the first coordinate relative to its own, of the others
+    /// relative to the largest of all, at this very value of what is varied. A first coordinate that moves less than a millionth of that is measured by a millionth. `None` where neither the tolerance nor
+    /// the stability asked for it. Infinite where it could not be estimated: nothing is known of the error then.
+    pub error: Option<f64>,
+}
+
+impl Point {
+    /// Excitation frequency.
+    pub fn omega(&self) -> f64 {
+        self.orbit.omega
+    }
+
+    /// Motion of the first coordinate.
+    pub fn motion(&self) -> Motion {
+        self.observed.motions[0]
+    }
+
+    /// Peak-to-peak of the first coordinate.
+    pub fn peak_to_peak(&self) -> f64 {
+        self.motion().peak_to_peak()
+    }
+}
+
+/// A special orbit of a branch, located until its test function vanished.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Event {
+    /// What happens there.
+    pub kind: EventKind,
+    /// The orbit.
+    pub point: Point,
+    /// Estimated error of [`Point::value`], from the harmonics and samples that were left out. Infinite where it could not be
+    /// estimated: the event is one of the truncated balance then, and nothing is known of the true one.
+    pub error: f64,
+    /// Value of the test function that was reached.
+    pub test: f64,
+    /// Number of points of the branch before it.
+    pub after: usize,
+    /// Where an orbit grazes, the number of contacts that touch a level there; several at once where they are copies of each other,
+    /// as the balls of a bearing. Zero otherwise.
+    pub contacts: usize,
+    /// At a crossing with another branch of the same harmonics the tangent of the branch, in extended unknowns; otherwise nothing.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) tangent: Vec<f64>,
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            kind,
+            point,
+            error,
+            contacts,
+            ..
+        } = self;
+        let value = Decimal::rounded(point.value, 9);
+        let size = Decimal::rounded(point.peak_to_peak(), 6);
+        write!(
+            f,
+            "{kind} at {value} (error {error:.0e}), peak-to-peak {size}"
+        )?;
+        if *contacts > 1 {
+            write!(f, ", {contacts} contacts at once")?;
+        }
+        Ok(())
+    }
+}
