@@ -48,7 +48,6 @@ const EXCEPTIONS: &[Exception] = &[
     ("error", "time", HOLDS),
     ("error", "attractors", HOLDS),
     ("model", "continuation", "a check makes a step control"),
-    ("branches", "orbit", "points hold what is read off them"),
 ];
 
 /// The one type of errors holds the errors of the rooms.

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
+use super::observed::{Motion, Observed};
 use super::orbit::Orbit;
+use super::stability::Stability;
 use crate::event::EventKind;
 use crate::numeric::decimal::Decimal;
-use crate::orbit::observe::{Motion, Observed};
-use crate::orbit::stability::Stability;
 
 /// One orbit of a branch.
 #[derive(Debug, Clone, PartialEq)]

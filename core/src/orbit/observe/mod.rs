@@ -5,50 +5,12 @@ mod peak;
 mod reader;
 
 use crate::balance::{Balance, gap_series, rate_series};
+pub use crate::branches::observed::{ContactMotion, Motion, Observed};
 use crate::numeric::fourier::series;
 use contact::ContactReader;
 use reader::Reader;
 
-/// What is read off one orbit.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct Observed {
-    /// One entry per coordinate.
-    pub motions: Vec<Motion>,
-    /// One entry per contact.
-    pub contacts: Vec<ContactMotion>,
-    /// For each contact, the part of the period that its gap spends on each piece of its law, from the piece of the lowest gaps to
-    /// that of the highest: `gap > 0 => ..., else => ...` has the time without contact first. They add up to one.
-    pub on_pieces: Vec<Vec<f64>>,
-    /// Mean power of the load: `<f . q'>`.
-    pub input_power: f64,
-    /// Mean power that damping, stiffness and contacts take up. In the discrete balance it equals the input power
-    /// exactly, for a symmetric mass matrix: the residual is orthogonal to the velocity.
-    pub dissipated_power: f64,
-}
-
-/// What is read off the motion of one coordinate over a period.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct Motion {
-    /// Largest value.
-    pub maximum: f64,
-    /// Smallest value.
-    pub minimum: f64,
-    /// Mean.
-    pub mean: f64,
-    /// Root of the mean square, mean included.
-    pub rms: f64,
-}
-
 impl Motion {
-    /// Largest less smallest value.
-    pub fn peak_to_peak(&self) -> f64 {
-        self.maximum - self.minimum
-    }
-
     /// Reads the motion off a series; rest off an empty one.
     pub fn of(series: &[f64]) -> Self {
         let series = if series.is_empty() { &[0.0] } else { series };
@@ -64,38 +26,6 @@ impl Motion {
             rms: series::mean_product(series, series).max(0.0).sqrt(),
         }
     }
-}
-
-/// What is read off one contact over a period of the orbit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct ContactMotion {
-    /// Largest value of the law by size, one-sided limits at switches included. A factor that stands outside of the law in an
-    /// equation is not in it: of `2*stop(x - 1)` this is the largest `stop(x - 1)`. The factor belongs to the place where the force
-    /// acts, and one law may act on several equations with a different factor in each.
-    pub peak_force: f64,
-    /// Smallest value of the law, with its sign: the largest pull where a positive force pushes. One-sided limits at switches count,
-    /// and a piece without force counts as zero.
-    pub minimum_force: f64,
-    /// Largest value of the law, with its sign.
-    pub maximum_force: f64,
-    /// Fraction of the period spent on pieces whose force is not identically zero. So it is one for a law that acts everywhere, as
-    /// the attraction beyond the surface under a tip, or a bolt that holds two parts together: time on each side of a level is in
-    /// [`Observed::on_pieces`].
-    pub fraction: f64,
-    /// Number of separate intervals of contact: zero without contact, one for contact that is never lost.
-    pub count: usize,
-}
-
-impl ContactMotion {
-    const NONE: Self = Self {
-        peak_force: 0.0,
-        minimum_force: 0.0,
-        maximum_force: 0.0,
-        fraction: 0.0,
-        count: 0,
-    };
 }
 
 /// Amplitude of each harmonic, the mean (with its sign) first; none of an empty series.
