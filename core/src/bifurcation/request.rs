@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
 use crate::attractors::basin::{Basin, Basins, Progress};
+use crate::continuation::step;
 use crate::error::Error;
 use crate::model::validate;
 use crate::shooting::{Cycle, Shooting};
@@ -290,7 +291,7 @@ impl<'a> Bifurcations<'a> {
         validate::option("margin", self.margin, 0.0..=10.0, "must be from 0 to 10")?;
         let branches = self.branches as f64;
         validate::option("max_branches", branches, 1.0..=1e6, "must be 1 or more")?;
-        validate::max_points(self.points).map(|_| ())
+        step::max_points(self.points).map(|_| ())
     }
 
     /// The range with what lies beyond its ends, as far as that is admissible.

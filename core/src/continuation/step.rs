@@ -3,6 +3,9 @@
 //! Source: Allgower and Georg (1990), Introduction to Numerical Continuation Methods, chapter 6: the angle between
 //! tangents and the distance of the predictor from the curve are held near wanted values.
 
+use crate::error::Error;
+use crate::model::validate::option;
+
 /// Bounds and wishes of the step control, in units of arc length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StepControl {
@@ -73,4 +76,21 @@ impl StepControl {
         let shorter = 0.4 * step;
         (shorter >= self.smallest).then_some(shorter)
     }
+}
+
+/// A branch may have so many points.
+pub(crate) fn max_points(points: usize) -> Result<usize, Error> {
+    option(
+        "max_points",
+        points as f64,
+        2.0..=1e9,
+        "must be from 2 to 1e9",
+    )?;
+    Ok(points)
+}
+
+/// Steps of a walk with this largest one.
+pub(crate) fn largest_step(step: f64) -> Result<StepControl, Error> {
+    option("largest_step", step, 1e-6..=1.0, "must be from 1e-6 to 1")?;
+    Ok(StepControl::with_largest(step))
 }

@@ -9,6 +9,7 @@ use crate::branches::orbit::Orbit;
 use crate::branches::point::Event;
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
+use crate::continuation::step;
 use crate::error::Error;
 use crate::model::layout::{ContactLayout, Layout};
 use crate::model::rigid::{self, Place};
@@ -103,8 +104,8 @@ impl<'a> FrequencyResponse<'a> {
         let options = FollowOptions {
             from,
             to,
-            points: validate::max_points(self.max_points)?,
-            steps: validate::largest_step(self.largest_step)?,
+            points: step::max_points(self.max_points)?,
+            steps: step::largest_step(self.largest_step)?,
             newton,
         };
         let chooser = self.chooser(resolution);

@@ -5,6 +5,7 @@ use super::request::Shooting;
 use super::setting::{Setting, Source};
 use super::start::Guess;
 use crate::balance::symmetry::Over;
+use crate::continuation::step;
 use crate::error::Error;
 use crate::model::labels::Labels;
 use crate::model::layout::Layout;
@@ -166,8 +167,8 @@ impl<'a> Shooting<'a> {
             segments: self.segments.unwrap_or(self.period),
             odd: odd && !self.period.is_multiple_of(2),
             stability: self.stability,
-            points: validate::max_points(self.max_points)?,
-            steps: validate::largest_step(self.largest_step)?,
+            points: step::max_points(self.max_points)?,
+            steps: step::largest_step(self.largest_step)?,
         })
     }
 

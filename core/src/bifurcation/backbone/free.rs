@@ -24,7 +24,7 @@ use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
 use crate::continuation::newton::{Newton, NewtonOptions};
-use crate::continuation::step::StepControl;
+use crate::continuation::step::{self, StepControl};
 use crate::error::Error;
 use crate::model::validate;
 use crate::shooting::End;
@@ -237,8 +237,8 @@ impl<'a> FreeOscillation<'a> {
         Ok(FollowOptions {
             from,
             to,
-            points: validate::max_points(self.max_points)?,
-            steps: validate::largest_step(self.largest_step)?,
+            points: step::max_points(self.max_points)?,
+            steps: step::largest_step(self.largest_step)?,
             newton: NewtonOptions {
                 tolerance: (100.0 * self.tolerance).clamp(1e-11, 1e-6),
                 iterations: 12,

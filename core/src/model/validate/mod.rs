@@ -7,7 +7,6 @@ use std::ops::RangeInclusive;
 
 use nalgebra::DMatrix;
 
-use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::model::layout::Layout;
 use crate::numeric::decimal::Decimal;
@@ -159,23 +158,6 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
 pub(crate) fn in_order(levels: &[f64]) -> bool {
     let finite = levels.iter().all(|level| level.is_finite());
     finite && levels.windows(2).all(|pair| pair[0] <= pair[1])
-}
-
-/// A branch may have so many points.
-pub(crate) fn max_points(points: usize) -> Result<usize, Error> {
-    option(
-        "max_points",
-        points as f64,
-        2.0..=1e9,
-        "must be from 2 to 1e9",
-    )?;
-    Ok(points)
-}
-
-/// Steps of a walk with this largest one.
-pub(crate) fn largest_step(step: f64) -> Result<StepControl, Error> {
-    option("largest_step", step, 1e-6..=1.0, "must be from 1e-6 to 1")?;
-    Ok(StepControl::with_largest(step))
 }
 
 /// The levels of every contact's law are in increasing order.

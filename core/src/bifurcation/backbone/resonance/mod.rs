@@ -29,7 +29,7 @@ use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::continuation::statistics::Statistics;
-use crate::continuation::step::StepControl;
+use crate::continuation::step::{self, StepControl};
 use crate::error::Error;
 use crate::model::validate;
 use crate::numeric::fourier::series;
@@ -245,8 +245,8 @@ impl<'a> PhaseResonance<'a> {
         let options = FollowOptions {
             from,
             to,
-            points: validate::max_points(self.max_points)?,
-            steps: validate::largest_step(self.largest_step)?,
+            points: step::max_points(self.max_points)?,
+            steps: step::largest_step(self.largest_step)?,
             newton: NewtonOptions {
                 tolerance: 1e-10,
                 iterations: 20,
