@@ -14,7 +14,8 @@
 
 use std::borrow::Cow;
 
-use crate::law::Law;
+pub use crate::law::Bound;
+use crate::law::{Law, is_within};
 
 /// A system of oscillators as the runtime sees it; object safe, so that the engine is compiled once.
 ///
@@ -85,37 +86,11 @@ pub struct ParameterFacts {
     pub maximum: Bound,
 }
 
-/// One end of a range.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Bound {
-    /// No bound.
-    Unbounded,
-    /// The value itself is allowed.
-    Included(f64),
-    /// The value itself is not allowed.
-    Excluded(f64),
-}
-
 impl ParameterFacts {
     /// Whether a value is finite and within the range.
     pub fn admits(&self, value: f64) -> bool {
         is_within(self.minimum, self.maximum, value)
     }
-}
-
-/// Whether a value is finite and between two bounds.
-pub(crate) fn is_within(minimum: Bound, maximum: Bound, value: f64) -> bool {
-    let above = match minimum {
-        Bound::Unbounded => true,
-        Bound::Included(bound) => value >= bound,
-        Bound::Excluded(bound) => value > bound,
-    };
-    let below = match maximum {
-        Bound::Unbounded => true,
-        Bound::Included(bound) => value <= bound,
-        Bound::Excluded(bound) => value < bound,
-    };
-    value.is_finite() && above && below
 }
 
 /// A term `e_c phi_c(g_c, g_c')` of (1).

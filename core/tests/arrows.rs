@@ -40,14 +40,11 @@ type Exception = (&'static str, &'static str, &'static str);
 
 /// What runs up, until it is mended. Nothing may be added.
 const EXCEPTIONS: &[Exception] = &[
-    ("law", "system", "arguments have bounds as parameters do"),
-    ("law", "laws", "a law gives its data to the interpreter"),
     ("error", "model", HOLDS),
     ("error", "laws", HOLDS),
     ("error", "continuation", HOLDS),
     ("error", "time", HOLDS),
     ("error", "attractors", HOLDS),
-    ("model", "continuation", "a check makes a step control"),
 ];
 
 /// The one type of errors holds the errors of the rooms.

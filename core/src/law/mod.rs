@@ -6,10 +6,11 @@
 //!
 //! All evaluation is batched, structure of arrays: one dynamic call for a whole batch.
 
+pub(crate) mod data;
+
 use std::borrow::Cow;
 
-use crate::laws::generic::LawData;
-use crate::system::{Bound, is_within};
+use data::LawData;
 
 /// A law as the runtime sees it. Generated types, the interpreter and laws written by hand implement it alike.
 ///
@@ -149,6 +150,32 @@ impl ArgumentFacts {
     pub fn admits(&self, value: f64) -> bool {
         is_within(self.minimum, self.maximum, value)
     }
+}
+
+/// One end of a range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bound {
+    /// No bound.
+    Unbounded,
+    /// The value itself is allowed.
+    Included(f64),
+    /// The value itself is not allowed.
+    Excluded(f64),
+}
+
+/// Whether a value is finite and between two bounds.
+pub(crate) fn is_within(minimum: Bound, maximum: Bound, value: f64) -> bool {
+    let above = match minimum {
+        Bound::Unbounded => true,
+        Bound::Included(bound) => value >= bound,
+        Bound::Excluded(bound) => value > bound,
+    };
+    let below = match maximum {
+        Bound::Unbounded => true,
+        Bound::Included(bound) => value <= bound,
+        Bound::Excluded(bound) => value < bound,
+    };
+    value.is_finite() && above && below
 }
 
 /// How a force depends on the rate of its gap.
