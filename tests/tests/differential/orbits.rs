@@ -52,8 +52,8 @@ impl Case {
                 Ok(state)
             };
             let stated = point.error.filter(|error| error.is_finite());
-            // Of half of a peak-to-peak that may be smaller than the largest.
-            let allowed = 2.0 * stated.unwrap_or(0.0);
+            // Three times what is stated, of half of a peak-to-peak.
+            let allowed = 3.0 * 2.0 * stated.unwrap_or(0.0);
             let Some(truth) = self.truth(&question, state, (&name, allowed), &point.stability)
             else {
                 continue;

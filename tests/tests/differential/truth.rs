@@ -36,7 +36,7 @@ const SEGMENTS: usize = 16;
 /// A periodic orbit.
 #[derive(Debug, Clone)]
 pub struct Truth {
-    /// How far the state was from it, relative to its size.
+    /// How far the positions were from it, relative to its size.
     pub correction: f64,
     /// Error of the state, relative to its size.
     pub error: f64,
@@ -143,7 +143,9 @@ impl<'a> Question<'a> {
             Ok(hertzian_tests::distance(&multipliers, &others))
         };
         let multiplier_error = noise + (ORDER * change(FARTHER)?).max(change(NEARER)?);
-        let correction = there.difference(&states[0], &start).amax();
+        // Of positions: rates of a series err by the number of its harmonics more.
+        let correction = there.difference(&states[0], &start);
+        let correction = correction.rows(0, there.coordinates()).amax();
         Ok(Truth {
             correction,
             error,
