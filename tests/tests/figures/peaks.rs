@@ -95,8 +95,16 @@ fn error(model: &Declaration, orbit: &Point) -> Option<f64> {
     let motions = &orbit.observed.motions;
     let size = motions.iter().map(Motion::peak_to_peak).fold(0.0, f64::max);
     let pairs = motions.iter().zip(&exact.extremes);
-    let errors = pairs.map(|(motion, exact)| (motion.peak_to_peak() - exact.peak_to_peak()).abs());
-    let error = errors.fold(0.0, f64::max) / size;
+    // The first coordinate relative to its own, the others to the largest.
+    let errors = pairs.enumerate().map(|(coordinate, (motion, exact))| {
+        let unit = if coordinate == 0 {
+            motion.peak_to_peak()
+        } else {
+            size
+        };
+        (motion.peak_to_peak() - exact.peak_to_peak()).abs() / unit
+    });
+    let error = errors.fold(0.0, f64::max);
     (error < OTHER).then_some(error)
 }
 
