@@ -6,6 +6,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use proc_macro2::TokenStream;
+use quote::quote;
 
 /// Turns of each declaration; the median and the slowest are printed.
 const TURNS: usize = 50;
@@ -46,6 +47,7 @@ const DECLARATIONS: [(&str, &str); 4] = [
 ];
 
 fn main() {
+    let runtime = quote!(::hertzian);
     println!("milliseconds per declaration, {TURNS} turns");
     println!(
         "{:<40}{:>8}{:>10}{:>10}",
@@ -56,12 +58,14 @@ fn main() {
         let mut times: Vec<f64> = (0..TURNS)
             .map(|_| {
                 let start = Instant::now();
-                black_box(hertzian_compiler::oscillator(black_box(tokens.clone())));
+                let tokens = black_box(tokens.clone());
+                black_box(hertzian_compiler::oscillator(&runtime, tokens));
                 1e3 * start.elapsed().as_secs_f64()
             })
             .collect();
         times.sort_by(f64::total_cmp);
-        let file = syn::parse2(hertzian_compiler::oscillator(tokens)).expect("it expands to Rust");
+        let file = syn::parse2(hertzian_compiler::oscillator(&runtime, tokens))
+            .expect("it expands to Rust");
         let lines = prettyplease::unparse(&file).lines().count();
         let (median, slowest) = (times[TURNS / 2], times[TURNS - 1]);
         println!("{name:<40}{median:>8.2}{slowest:>10.2}{lines:>10}");

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{env, error, fs};
 
+use quote::quote;
+
 /// Declarations, in which `NAME` and the numeral `NUMBER` differ between the variants.
 const DECLARATIONS: [&str; 5] = [
     "pub NAME(x) {
@@ -49,7 +51,10 @@ fn main() -> Result<(), Box<dyn error::Error>> {
     for variant in 0..count.parse()? {
         let declaration = declaration(variant);
         writeln!(declared, "hertzian::oscillator! {{\n{declaration}\n}}\n")?;
-        let file = syn::parse2(hertzian_compiler::oscillator(declaration.parse()?))?;
+        let file = syn::parse2(hertzian_compiler::oscillator(
+            &quote!(::hertzian),
+            declaration.parse()?,
+        ))?;
         writeln!(expanded, "{}", prettyplease::unparse(&file))?;
     }
     fs::write(Path::new(by_macro), declared)?;

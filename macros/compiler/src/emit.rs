@@ -1,7 +1,8 @@
 //! Code generation: a checked model becomes a type that implements the runtime's contract.
 //!
 //! Everything but the type itself stands inside one anonymous constant, so that no name leaks into the user's module;
-//! inside it, every path starts at a crate root or at an alias of one.
+//! inside it, every path starts at a crate root or at an alias of one. The runtime is named
+//! by the path that the caller gives, which is `$crate` in its macros: what the user calls the crate does not matter.
 
 mod alone;
 mod code;
@@ -28,8 +29,8 @@ use crate::ir::{Model, Parameter};
 pub use alone::{law_alone, law_stub};
 pub use stub::stub;
 
-/// Writes a model as Rust code.
-pub fn emit(model: &Model) -> TokenStream {
+/// Writes a model as Rust code, which names the runtime by a path.
+pub fn emit(runtime: &TokenStream, model: &Model) -> TokenStream {
     let mut model = model.clone();
     let laws: TokenStream = (0..model.laws.len())
         .map(|index| {
@@ -40,7 +41,7 @@ pub fn emit(model: &Model) -> TokenStream {
     let system = system::system(&mut model);
     let structure = structure(&model);
     let defaults = defaults(&model);
-    let implementation = wrap(&model.name, &quote!(#laws #system #defaults));
+    let implementation = wrap(runtime, &model.name, &quote!(#laws #system #defaults));
     quote!(#structure #implementation)
 }
 
@@ -87,8 +88,8 @@ fn defaults(model: &Model) -> Option<TokenStream> {
 }
 
 /// Puts the implementations of a model into an anonymous constant.
-fn wrap(name: &Ident, items: &TokenStream) -> TokenStream {
-    wrap_items(&quote! {
+fn wrap(runtime: &TokenStream, name: &Ident, items: &TokenStream) -> TokenStream {
+    let items = quote! {
         impl #name {
             /// The same system, its laws interpreted from data: the oracle of the generated code.
             pub fn generic(&self) -> __generic::Interpreted<'_> {
@@ -97,18 +98,19 @@ fn wrap(name: &Ident, items: &TokenStream) -> TokenStream {
         }
 
         #items
-    })
+    };
+    wrap_items(runtime, &items)
 }
 
-/// Puts items into an anonymous constant, with the aliases they use.
-fn wrap_items(items: &TokenStream) -> TokenStream {
+/// Puts items into an anonymous constant, with the aliases they use. The path of the runtime stands here and nowhere else.
+fn wrap_items(runtime: &TokenStream, items: &TokenStream) -> TokenStream {
     quote! {
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)]
         #[allow(missing_docs, nonstandard_style, unused, unused_qualifications)]
         const _: () = {
             use ::core::primitive::{f64, usize};
             // One name, so that a crate which cannot be found is one error. A glob would report each of its names.
-            use ::hertzian as __hertzian;
+            use #runtime as __hertzian;
             use __hertzian::{emitted as __emitted, generic as __generic, law as __law, system as __system};
             use ::std::borrow::Cow as __Cow;
 

@@ -14,8 +14,8 @@ use crate::errors::{Diagnostics, Errors, Extent};
 use crate::ir::{Law, Level, Model, Place};
 use crate::sketch;
 
-/// Expands a law. After errors the expansion holds all of them, and a stub of the type.
-pub fn law(declaration: TokenStream) -> TokenStream {
+/// Expands a law to code that names the runtime by a path. After errors the expansion holds all of them, and a stub of the type.
+pub fn law(runtime: &TokenStream, declaration: TokenStream) -> TokenStream {
     let written = declaration.clone();
     let compiled = crate::read(declaration, Form::LawAlone);
     let law = compiled.and_then(|mut model| {
@@ -23,11 +23,11 @@ pub fn law(declaration: TokenStream) -> TokenStream {
         Ok((model, law))
     });
     match law {
-        Ok((model, law)) => emit::law_alone(&model, &law),
+        Ok((model, law)) => emit::law_alone(runtime, &model, &law),
         Err(errors) => {
             let mut expansion = errors.into_compile_error();
             for sketch in sketch::of(written) {
-                expansion.extend(emit::law_stub(&sketch.name, &sketch.visibility));
+                expansion.extend(emit::law_stub(runtime, &sketch.name, &sketch.visibility));
             }
             expansion
         }
@@ -125,7 +125,7 @@ mod tests {
             "pub (gap) { gap^3 }",
         ] {
             let tokens: TokenStream = text.parse().expect("it is made of tokens");
-            let expansion = law(tokens).to_string();
+            let expansion = law(&quote!(::hertzian), tokens).to_string();
             assert!(expansion.contains("compile_error"), "{text}: {expansion}");
         }
     }

@@ -32,15 +32,17 @@ use crate::ir::Model;
 
 pub use crate::law_alone::law;
 
-/// Expands a declaration. After errors the expansion holds all of them, and a stub of the type.
-pub fn oscillator(declaration: TokenStream) -> TokenStream {
+/// Expands a declaration to code that names the runtime by a path, such as `::hertzian`. After errors the expansion holds all
+/// of them, and a stub of the type.
+pub fn oscillator(runtime: &TokenStream, declaration: TokenStream) -> TokenStream {
     let written = declaration.clone();
     match read(declaration, Form::Model) {
-        Ok(model) => emit::emit(&model),
+        Ok(model) => emit::emit(runtime, &model),
         Err(errors) => {
             let mut expansion = errors.into_compile_error();
             for sketch in sketch::of(written) {
                 expansion.extend(emit::stub(
+                    runtime,
                     &sketch.name,
                     &sketch.visibility,
                     &sketch.parameters,

@@ -9,6 +9,7 @@ use hertzian_compiler::emit::emit;
 use hertzian_compiler::ir::Bound;
 use hertzian_compiler::simplify::{expand, factor, is_zero};
 use proptest::prelude::*;
+use quote::quote;
 
 /// A random expression that is defined, and smooth, for positive variables.
 #[derive(Debug, Clone)]
@@ -196,7 +197,7 @@ proptest! {
         let pieces = [build(&mut sketch.dag, &below), build(&mut sketch.dag, &above)];
         let level = sketch.argument(0);
         let law = sketch.law("any", &[(level, false)], &pieces);
-        let tokens = emit(&sketch.model("Any", law));
+        let tokens = emit(&quote!(::hertzian), &sketch.model("Any", law));
         prop_assert!(syn::parse2::<syn::File>(tokens).is_ok());
     }
 }

@@ -4,6 +4,7 @@ use std::str::FromStr;
 use std::time::{Duration, Instant};
 
 use proc_macro2::TokenStream;
+use quote::quote;
 
 const DECLARATIONS: [&str; 8] = [
     "pub A ( x ) { param zeta in 0.0 .. ; param alpha > 0 ; param load ; law contact ( gap ) { gap > 0 => 2 * zeta * dot ( gap ) + gap ^ alpha , else => 0 } ddot ( x ) + contact ( x ) = cos ( omega * t ) + load ; }",
@@ -138,7 +139,7 @@ fn compile(text: &str) -> Option<(bool, Duration)> {
     let tokens = TokenStream::from_str(text).ok()?;
     let start = Instant::now();
     let sound = hertzian_compiler::compile(tokens.clone()).is_ok();
-    let _ = hertzian_compiler::oscillator(tokens);
+    let _ = hertzian_compiler::oscillator(&quote!(::hertzian), tokens);
     Some((sound, start.elapsed()))
 }
 

@@ -24,6 +24,8 @@ mod outputs;
 mod parts;
 mod room;
 
+pub use hertzian_macros::{law, oscillator};
+
 pub use batch::{Batch, Group, Kernel, Nothing, Raising, Uses, cube_root_group, group, uses};
 pub use law::{ByArgument, Declared, Generated, Kernels};
 pub use parts::{Primitive, Spring};

@@ -6,8 +6,14 @@ use quote::quote;
 use super::wrap;
 
 /// The type with its fields, defaults and an implementation that is never run: the declaration has already been refused.
-pub fn stub(name: &Ident, visibility: &syn::Visibility, fields: &[Ident]) -> TokenStream {
+pub fn stub(
+    runtime: &TokenStream,
+    name: &Ident,
+    visibility: &syn::Visibility,
+    fields: &[Ident],
+) -> TokenStream {
     let implementation = wrap(
+        runtime,
         name,
         &quote! {
             #[automatically_derived]
