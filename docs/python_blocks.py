@@ -3,7 +3,7 @@
 
     docs/python_blocks.py FOLDER
 
-FOLDER holds branch.csv and branch.json, as the program `response` writes them, and attractors.npy, as `attractors` does. Needs numpy.
+FOLDER holds branch.csv and branch.json, as `hertzian response` writes them, and attractors.npy, as `hertzian attractors` does. Needs numpy.
 """
 
 import os

@@ -1,0 +1,16 @@
+//! The program `hertzian`: curves of periodic orbits, what motions settle to, and measurements, from the command line.
+//!
+//! `main.rs` only starts it; what it does is here, where tests can call it. A subcommand is a module with its options and a function
+//! `start`; [`command`] lists them.
+
+pub mod attractors;
+pub mod command;
+mod install;
+pub mod misplaced;
+pub mod model;
+pub mod multipliers;
+pub mod paper;
+pub mod program;
+pub mod response;
+pub mod values;
+pub mod work_precision;

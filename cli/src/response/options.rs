@@ -1,0 +1,250 @@
+//! What can be asked for on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+use hertzian::stability::{Method, Projection, Sorting};
+
+use crate::misplaced::{Given, count};
+use crate::model::ModelOptions;
+
+/// Traces the periodic response of one mass on a power-law contact, says what is stable, and draws it.
+///
+/// x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = drive cos(omega t) + load
+///
+/// H(x) is 1 for x > 0 and 0 otherwise (--one-sided), or 1 everywhere (--continuous). Without options: figure 5b of
+/// Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722.
+#[derive(Debug, Clone, PartialEq, Parser)]
+#[command(
+    name = "response",
+    version,
+    allow_negative_numbers = true,
+    after_help = "Examples:\n  \
+        hertzian response --alpha 1 --to 1.4                figure 5a of the paper\n  \
+        hertzian response --at 1.1 --csv orbits.csv         every orbit at omega = 1.1; all of them as a table\n  \
+        hertzian response --bifurcations --follow 1         and what begins where the period doubles\n  \
+        hertzian response --sweep drive --omega 0.9 --from 0.01 --to 0.3\n  \
+        hertzian response --model FILE --set zeta=0.01 --to 2.2\n\n\
+        Exit codes: 0 the end of the range was reached; 2 bad input; 3 the branch ended before (what was computed is written)."
+)]
+pub struct Options {
+    /// The oscillator
+    #[command(flatten)]
+    pub model: ModelOptions,
+
+    /// What varies along the branch: `omega`, the frequency of the excitation, or any parameter of the oscillator
+    #[arg(long, value_name = "NAME", default_value = "omega")]
+    pub sweep: String,
+
+    /// Where the branch starts
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 0.6,
+        allow_hyphen_values = true
+    )]
+    pub from: f64,
+
+    /// Where it ends; may be below the start
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 1.6,
+        allow_hyphen_values = true
+    )]
+    pub to: f64,
+
+    /// Period of the orbit, in periods of the excitation
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count)]
+    pub period: usize,
+
+    /// Harmonics per period of the excitation [default: from the tolerance]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
+    pub harmonics: Option<usize>,
+
+    /// Samples per period of the excitation [default: from the harmonics]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
+    pub samples: Option<usize>,
+
+    /// How the harmonics of the contact force are computed
+    #[arg(long, value_enum, default_value_t = Aft::Switched)]
+    pub aft: Aft,
+
+    /// How Floquet multipliers are computed
+    #[arg(long, value_enum, value_name = "METHOD", default_value_t = Multipliers::Default)]
+    pub multipliers: Multipliers,
+
+    /// Relative accuracy asked of peak-to-peak
+    #[arg(
+        long,
+        value_name = "VALUE",
+        default_value_t = 1e-6,
+        allow_hyphen_values = true
+    )]
+    pub tolerance: f64,
+
+    /// Stop after this many points
+    #[arg(long, value_name = "COUNT", default_value_t = 20_000, value_parser = count)]
+    pub max_points: usize,
+
+    /// Also compute every orbit of the branch at exactly these values of what varies
+    #[arg(long, value_name = "VALUE", num_args = 1..)]
+    pub at: Vec<f64>,
+
+    /// Also find where the period doubles, a symmetry breaks, quasi-periodic motions begin, and a contact is touched
+    #[arg(long)]
+    pub bifurcations: bool,
+
+    /// Follow the branches that begin there too, and those that begin on them, to this depth
+    #[arg(long, value_name = "DEPTH", requires = "bifurcations", value_parser = count)]
+    pub follow: Option<usize>,
+
+    /// Also look for branches that nothing leads to, among what motions settle to at this value of what varies
+    #[arg(
+        long,
+        value_name = "VALUE",
+        requires = "bifurcations",
+        allow_hyphen_values = true
+    )]
+    pub search: Vec<f64>,
+
+    /// Follow the curves of these bifurcations in two parameters
+    #[arg(long, value_enum, requires = "plane")]
+    pub track: Option<Tracked>,
+
+    /// The two parameters of --track; the first is what --sweep varies
+    #[arg(
+        long = "in",
+        id = "plane",
+        value_name = "PARAM,PARAM",
+        value_delimiter = ',',
+        num_args = 1..=2,
+        requires = "track"
+    )]
+    pub plane: Vec<String>,
+
+    /// Range of the second parameter of --track [default: from half to twice its value]
+    #[arg(
+        long,
+        value_name = "VALUE,VALUE",
+        value_delimiter = ',',
+        num_args = 1..=2,
+        requires = "track"
+    )]
+    pub within: Vec<f64>,
+
+    /// Also draw the free oscillation without damping and excitation, and where the response is in phase resonance
+    #[arg(long, conflicts_with = "track")]
+    pub backbone: bool,
+
+    /// The picture
+    #[arg(long, value_name = "FILE", default_value = "response.svg")]
+    pub svg: PathBuf,
+
+    /// Write one row per point to this file
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+
+    /// Write everything to this file
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Say nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// What is tracked in two parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Tracked {
+    /// Folds
+    Fold,
+    /// Period doublings
+    PeriodDoubling,
+    /// Where a symmetry breaks
+    BranchPoint,
+    /// Where a gap touches a level
+    Grazing,
+}
+
+/// How the harmonics of the contact force are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Aft {
+    /// Integrated from switch to switch: exact
+    Switched,
+    /// From samples over the period (Cameron and Griffin 1989)
+    Sampled,
+    /// From samples, with damping as the time derivative of its primitive
+    Primitive,
+}
+
+impl From<Aft> for hertzian::Aft {
+    fn from(aft: Aft) -> Self {
+        match aft {
+            Aft::Switched => Self::Switched,
+            Aft::Sampled => Self::Sampled,
+            Aft::Primitive => Self::Primitive,
+        }
+    }
+}
+
+/// How Floquet multipliers are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Multipliers {
+    /// The cheapest method whose estimated error is small enough
+    Default,
+    /// The monodromy matrix, from switch to switch, as exactly as it can be
+    Monodromy,
+    /// Eigenvalues of the Hill matrix, sorted by symmetry, without copies
+    Hill,
+    /// The same, sorted by the smallest imaginary part
+    HillImaginaryPart,
+    /// The same, sorted by the weighted mean of the eigenvector
+    HillWeightedMean,
+    /// Koopman-Hill projection
+    KoopmanHill,
+    /// Koopman-Hill projection with half harmonics
+    KoopmanHillSubharmonic,
+}
+
+impl From<Multipliers> for Method {
+    fn from(multipliers: Multipliers) -> Self {
+        match multipliers {
+            Multipliers::Default => Self::Default,
+            Multipliers::Monodromy => Self::Monodromy,
+            Multipliers::Hill => Self::Hill(Sorting::Symmetry),
+            Multipliers::HillImaginaryPart => Self::Hill(Sorting::ImaginaryPart),
+            Multipliers::HillWeightedMean => Self::Hill(Sorting::WeightedMean),
+            Multipliers::KoopmanHill => Self::KoopmanHill(Projection::Direct),
+            Multipliers::KoopmanHillSubharmonic => Self::KoopmanHill(Projection::Subharmonic),
+        }
+    }
+}
+
+impl Options {
+    /// What was given and would do nothing.
+    pub fn fault(&self, given: &Given<'_>) -> Option<String> {
+        let swept = self.varied();
+        let known = ["omega", "alpha", "zeta", "load", "drive"].contains(&swept);
+        if (known && given.has(swept)) || self.model.set.iter().any(|(name, _)| name == swept) {
+            return Some(format!(
+                "--sweep {swept} takes the place of the value of {swept}: --from and --to say where it begins and ends"
+            ));
+        }
+        let samples = given.has("samples") && self.aft == Aft::Switched;
+        samples.then(|| {
+            "--samples belongs to --aft sampled or --aft primitive: nothing is sampled here"
+                .to_owned()
+        })
+    }
+
+    /// Name of what varies, as the models call it.
+    pub fn varied(&self) -> &str {
+        &self.sweep
+    }
+
+    /// Whether that is the frequency.
+    pub fn over_frequency(&self) -> bool {
+        self.sweep == "omega"
+    }
+}

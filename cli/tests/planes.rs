@@ -1,0 +1,156 @@
+//! The subcommand `response`: curves in two parameters, and where attractors are looked for.
+
+mod folder;
+
+use std::sync::atomic::AtomicBool;
+
+use clap::Parser;
+use hertzian::attractors::basin::Axis;
+use hertzian_cli::response::models::model;
+use hertzian_cli::response::options::Options;
+use hertzian_cli::response::progress::Progress;
+use hertzian_cli::response::run::{Failure, Outcome, run};
+use hertzian_cli::response::search::basin;
+use serde_json::Value;
+
+use folder::Folder;
+
+impl Folder {
+    /// A file with this text.
+    fn with(&self, name: &str, text: &str) -> String {
+        std::fs::write(self.0.join(name), text).expect("written");
+        self.file(name)
+    }
+
+    /// Runs a command that writes a picture and JSON, named by a letter.
+    fn run(&self, name: &str, command: &str) -> Result<Outcome, Failure> {
+        let [svg, json] = ["svg", "json"].map(|kind| self.file(&format!("{name}.{kind}")));
+        let command = format!("{command} --svg {svg} --json {json}");
+        let never = AtomicBool::new(false);
+        run(&options(&command), &never, &mut Progress::new(false))
+    }
+
+    fn picture(&self, name: &str) -> String {
+        std::fs::read_to_string(self.0.join(name).with_extension("svg")).expect("a picture")
+    }
+
+    fn json(&self, name: &str) -> Value {
+        let text = std::fs::read_to_string(self.0.join(name).with_extension("json"));
+        serde_json::from_str(&text.expect("a file")).expect("JSON")
+    }
+}
+
+fn options(command: &str) -> Options {
+    let words = std::iter::once("response").chain(command.split_whitespace());
+    Options::try_parse_from(words).expect("arguments that can be parsed")
+}
+
+/// What is an axis is not in the title, and everything else is.
+#[test]
+fn a_title_says_what_is_fixed() {
+    let folder = Folder::new("title");
+    let text = "Duffing(x) { param zeta = 0.05; param drive = 0.1;
+                ddot(x) + 2*zeta*dot(x) + x + x^3 = drive*cos(omega*t); }";
+    let duffing = folder.with("duffing.txt", text);
+    let duffing = format!("--model {duffing} --from 0.8 --to 1.8 --bifurcations --track fold");
+    let declared = "--alpha 1 --from 0.6 --to 1.4 --bifurcations --track fold";
+    for (name, command, title) in [
+        (
+            "a",
+            format!("{declared} --in omega,zeta --within 0.02,0.05"),
+            ">One-sided, α = 1, W = 1, A = 0.1<",
+        ),
+        (
+            "b",
+            format!("{declared} --in drive,omega --within 0.05,0.2"),
+            ">One-sided, α = 1, ζ = 0.032, W = 1<",
+        ),
+        (
+            "c",
+            format!("{duffing} --in omega,zeta --within 0.04,0.06"),
+            ">Duffing: drive = 0.1<",
+        ),
+    ] {
+        folder.run(name, &command).expect("a curve");
+        assert!(folder.picture(name).contains(title), "{command}");
+        let all = folder.json(name);
+        assert!(!all["tracks"].as_array().expect("curves").is_empty());
+    }
+}
+
+/// With `x` and the load reversed, and half a period later, a spring that acts in both directions is what it was.
+#[test]
+fn folds_at_negative_loads_mirror_those_at_positive_ones() {
+    let folder = Folder::new("mirror");
+    let command = "--continuous --zeta 0.01 --sweep load --omega 1.15 --bifurcations --track fold --in load,drive";
+    let ends = |name: &str, range: &str| {
+        let outcome = folder.run(name, &format!("{command} {range}"));
+        let outcome = outcome.expect("a branch");
+        assert_eq!(outcome.warnings, Vec::<String>::new());
+        let all = folder.json(name);
+        let number = |value: &Value| value.as_f64().expect("a number");
+        let tracks = all["tracks"].as_array().expect("curves");
+        let ends = tracks.iter().flat_map(|track| {
+            let points = track["points"].as_array().expect("points");
+            [&points[0], &points[points.len() - 1]].map(|end| [number(&end[0]), number(&end[1])])
+        });
+        ends.collect::<Vec<_>>()
+    };
+    let (below, above) = (
+        ends("n", "--from -2 --to -0.5"),
+        ends("p", "--from 2 --to 0.5"),
+    );
+    assert_eq!((below.len(), above.len()), (4, 4));
+    for (below, above) in below.iter().zip(&above) {
+        assert!((below[0] + above[0]).abs() < 1e-9, "{below:?} {above:?}");
+        assert!((below[1] - above[1]).abs() < 1e-12, "{below:?} {above:?}");
+    }
+}
+
+/// The same force, however it is written and whatever varies, gives the same grid.
+#[test]
+fn a_grid_is_as_large_as_flights_under_the_force_there() {
+    let folder = Folder::new("grid");
+    let text = "Own(y) { param heavy; param shake; law contact(gap) { gap > 0 => gap, else => 0 }
+                2*ddot(y) + contact(y) = 2*shake*cos(omega*t) + 2*heavy; }";
+    let own = folder.with("own.txt", text);
+    let grid = |command: &str, value: f64| {
+        let options = options(command);
+        let model = model(&options.model, (&options.sweep, options.from)).expect("a model");
+        let grid = basin(&options, &*model, value).grid;
+        [grid.columns, grid.rows].map(|Axis { from, to, .. }| [from, to])
+    };
+    // A flight of five periods of 2 pi under the load 3.
+    let time = 10.0 * std::f64::consts::PI;
+    let height = 0.15 * 3.0 * time * time;
+    let speed = 0.5 * 3.0 * time;
+    for (command, value) in [
+        ("--load 3", 1.0),
+        ("--load -1 --drive 3", 1.0),
+        ("--sweep load --omega 1", 3.0),
+        ("--sweep drive", 3.0),
+        (&format!("--model {own} --set heavy=3 --set shake=1"), 1.0),
+        (&format!("--model {own} --set heavy=1 --sweep shake"), 3.0),
+    ] {
+        let found = grid(command, value);
+        let expected = [[-height, 0.2 * height], [-speed, speed]];
+        for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+            let error = (found / expected - 1.0).abs();
+            assert!(error < 1e-14, "{command}: {found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_searched_is_refused() {
+    let folder = Folder::new("search");
+    let two = "Two(x[2]) { for i in 0..2 { ddot(x[i]) + 0.1*dot(x[i]) + x[i]^3 = cos(omega*t); } }";
+    let unforced = "Shaken(x) { ddot(x) + 0.1*dot(x) + (1 + 0.3*cos(omega*t))*x + x^3 = 0; }";
+    for (text, message) in [(two, "one coordinate"), (unforced, "right-hand side")] {
+        let model = folder.with("model.txt", text);
+        let command = format!("--model {model} --bifurcations --search 1");
+        let failure = folder.run("a", &command).expect_err("a refusal");
+        assert_eq!(failure.exit_code(), 2);
+        assert!(failure.to_string().contains(message), "{failure}");
+    }
+}

@@ -1,0 +1,158 @@
+//! The numbers in the README are those of the present code, and true.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use clap::Parser;
+use hertzian::EventKind;
+use hertzian::FrequencyResponse;
+use hertzian_cli::paper::exact;
+use hertzian_cli::response::models::OneSidedHertz;
+use hertzian_cli::response::options::Options;
+use hertzian_cli::response::progress::Progress;
+use hertzian_cli::response::run::run;
+use serde_json::Value;
+
+const README: &str = include_str!("../../README.md");
+
+/// The lines between the line after this one and the end of its block.
+fn block(before: &str) -> Vec<&'static str> {
+    let lines = README.lines().skip_while(|line| !line.contains(before));
+    let lines = lines.skip_while(|line| *line != "```text");
+    lines.skip(1).take_while(|line| *line != "```").collect()
+}
+
+/// The twenty lines, with the same declaration.
+#[test]
+fn the_twenty_lines_print_what_is_said() {
+    let model = OneSidedHertz {
+        zeta: 0.032,
+        load: 1.0,
+        drive: 0.1,
+    };
+    let branch = FrequencyResponse::of(&model).from(0.6).to(1.6).run();
+    let branch = branch.expect("a branch");
+    let mut printed: Vec<String> = branch.folds().map(ToString::to_string).collect();
+    for point in branch.at(1.1).expect("orbits") {
+        let (verdict, size) = (point.stability.verdict, point.peak_to_peak());
+        printed.push(format!("{verdict}, {size:.3}"));
+    }
+    assert_eq!(printed, block("They print"));
+}
+
+/// Options of a command line, what they print, and the folds that they write, by frequency, with their errors.
+fn response(name: &str, command: &str) -> (String, Vec<[f64; 2]>) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("readme-{name}"));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let words = std::iter::once("response").chain(command.split_whitespace());
+    let mut options = Options::try_parse_from(words).expect("a command");
+    let json = folder.join("a.json");
+    options.svg = folder.join("response.svg");
+    options.json = Some(json.clone());
+    let never = AtomicBool::new(false);
+    let outcome = run(&options, &never, &mut Progress::new(false)).expect("a branch");
+    assert!(outcome.complete);
+    let text = std::fs::read_to_string(&json).expect("a file");
+    let all: Value = serde_json::from_str(&text).expect("JSON");
+    let folds = all["events"].as_array().expect("events").iter();
+    let folds = folds.filter(|event| event["kind"] == "fold");
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let folds = folds.map(|fold| [number(&fold["value"]), number(&fold["error"])]);
+    let mut folds: Vec<_> = folds.collect();
+    folds.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let _ = std::fs::remove_dir_all(&folder);
+    (outcome.summary, folds)
+}
+
+/// Lines without how long it took and where the files are.
+fn lasting<'l>(lines: impl Iterator<Item = &'l str>) -> Vec<&'l str> {
+    let lasting = lines.filter(|line| !line.starts_with("written "));
+    let timeless = lasting.map(|line| {
+        let time = line.strip_prefix("time ");
+        let counts = time.and_then(|rest| rest.split_once(" ms; "));
+        counts.map_or(line, |(_, counts)| counts)
+    });
+    timeless.collect()
+}
+
+#[test]
+fn the_command_prints_what_is_said() {
+    let line = README.lines().find(|line| line.ends_with("` prints"));
+    let command = line.and_then(|line| line.split('`').rev().nth(1));
+    let command = command
+        .expect("a command")
+        .strip_prefix("hertzian response ");
+    let (summary, _) = response("command", command.expect("options"));
+    let said = block("` prints").into_iter();
+    assert_eq!(lasting(summary.lines()), lasting(said));
+}
+
+/// `| figure | command | found (error stated), ... | exact, ... |`: what the command finds, as many as there are, no further off
+/// than the error that it states.
+#[test]
+fn the_table_is_true() {
+    let table = README
+        .lines()
+        .skip_while(|line| !line.starts_with("| figure |"));
+    let rows: Vec<&str> = table
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .collect();
+    assert_eq!(rows.len(), 5);
+    for (index, row) in rows.into_iter().enumerate() {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, figure, command, found, known, _] = cells[..] else {
+            panic!("{row}");
+        };
+        let command = command.trim_matches('`');
+        let (_, folds) = response(&format!("{index}"), command);
+        let words = std::iter::once("response").chain(command.split_whitespace());
+        let Options { from, to, .. } = Options::try_parse_from(words).expect("a command");
+        let exact = exact::frequencies(figure).iter();
+        let exact = exact
+            .filter(|(kind, omega)| *kind == EventKind::Fold && from <= *omega && *omega <= to);
+        let mut exact: Vec<f64> = exact.map(|(_, omega)| *omega).collect();
+        exact.sort_by(f64::total_cmp);
+        let texts = |values: &[f64]| {
+            let texts: Vec<String> = values.iter().map(|value| format!("{value:.9}")).collect();
+            texts.join(", ")
+        };
+        assert_eq!(texts(&exact), known, "{row}");
+        let printed = folds
+            .iter()
+            .map(|[value, error]| format!("{value:.9} ({error:.0e})"));
+        assert_eq!(printed.collect::<Vec<_>>().join(", "), found, "{row}");
+        assert_eq!(folds.len(), exact.len(), "{row}");
+        for ([value, error], exact) in folds.iter().zip(exact) {
+            assert!(
+                (value - exact).abs() <= *error,
+                "{row}: {value} {error:e} {exact}"
+            );
+        }
+    }
+}
+
+/// A law of one's own, from the file with the same declaration.
+#[test]
+fn the_folds_of_ones_own_law_are_those_that_are_said() {
+    let line = README
+        .lines()
+        .find(|line| line.contains("branch.folds().count(), 2); // "));
+    let (_, said) = line
+        .expect("a comment")
+        .split_once("// ")
+        .expect("a comment");
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/cubic_with_stop.txt");
+    let (summary, folds) = response("own", &format!("--model {model} --from 0.4 --to 2.2"));
+    assert!(
+        summary.contains("zeta = 0.02, stop = 5, distance = 0.8, drive = 0.1"),
+        "{summary}"
+    );
+    // In the order in which the branch passes them.
+    let found: Vec<String> = folds
+        .iter()
+        .rev()
+        .map(|[value, _]| format!("{value:.9}"))
+        .collect();
+    assert_eq!(found.join(" and "), said);
+}

@@ -1,0 +1,277 @@
+//! Results: files, summaries and pictures.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use hertzian_cli::response::progress::Progress;
+use hertzian_cli::response::run::run;
+use serde_json::Value;
+
+use crate::{Folder, all, check_csv, check_point, coarse, numbers, options, run_with};
+
+#[test]
+fn json_has_the_documented_names() {
+    let folder = Folder::new("json");
+    let (json, csv) = (folder.file("a.json"), folder.file("a.csv"));
+    let outcome = coarse(
+        &folder,
+        &[
+            "--continuous",
+            "--from",
+            "1",
+            "--json",
+            &json,
+            "--csv",
+            &csv,
+            "--at",
+            "1.3",
+        ],
+    )
+    .expect("a branch");
+    assert!(outcome.complete && outcome.warnings.is_empty());
+
+    let text = std::fs::read_to_string(&json).expect("a file");
+    let all: Value = serde_json::from_str(&text).expect("JSON");
+    let points = all["points"].as_array().expect("points");
+    let at = all["at"].as_array().expect("solutions at 1.3");
+    assert!(points.len() > 20 && !at.is_empty());
+    for point in points.iter().chain(at) {
+        check_point(point);
+    }
+    assert_eq!(points[0]["omega"], 1.0);
+    assert_eq!(points[points.len() - 1]["omega"], 1.6);
+    assert!(at.iter().all(|point| point["omega"] == 1.3));
+    let events = all["events"].as_array().expect("events");
+    for event in events {
+        assert_eq!(event["kind"], "fold");
+        let names = ["omega", "drive", "peak_to_peak", "error"];
+        assert!(numbers(event, &names).all(f64::is_finite));
+    }
+    assert!(all["stopped"].is_string() && all["turns"].is_array());
+    assert!(all["statistics"]["jacobians"].as_u64() > Some(20));
+    assert!(all["elapsed_seconds"].as_f64() > Some(0.0));
+
+    check_csv(&csv, points);
+}
+
+#[test]
+fn every_model_runs_both_ways() {
+    let folder = Folder::new("models");
+    for alpha in ["1", "1.5", "2.2"] {
+        for kind in ["--one-sided", "--continuous"] {
+            for sweep in [
+                &["--sweep", "omega", "--from", "1.9", "--to", "1.8"][..],
+                &[
+                    "--sweep", "drive", "--from", "0.01", "--to", "0.1", "--omega", "1.9",
+                ],
+            ] {
+                let arguments = [&["--alpha", alpha, kind][..], sweep].concat();
+                let outcome = coarse(&folder, &arguments).expect("a branch");
+                assert!(outcome.complete, "{arguments:?}: {}", outcome.summary);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_branch_that_ends_early_is_written_all_the_same() {
+    let folder = Folder::new("early");
+    let json = folder.file("a.json");
+    let arguments = ["--max-points", "7", "--json", &json, "--at", "1.5"];
+    let outcome = coarse(&folder, &arguments).expect("a branch");
+    assert!(!outcome.complete);
+    assert!(outcome.summary.contains("limit of 7 points"));
+    assert!(outcome.warnings[0].contains("does not pass omega = 1.5"));
+    assert!(outcome.warnings[1].contains("ended early: reached the limit"));
+    let text = std::fs::read_to_string(&json).expect("a file");
+    let all: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(all["points"].as_array().map(Vec::len), Some(7));
+}
+
+#[test]
+fn an_interrupt_ends_the_branch() {
+    let folder = Folder::new("interrupt");
+    let svg = folder.file("a.svg");
+    let now = AtomicBool::new(true);
+    let outcome = run(&options(&["--svg", &svg]), &now, &mut Progress::new(false));
+    let outcome = outcome.expect("a branch");
+    assert!(!outcome.complete && outcome.summary.contains("interrupted"));
+    assert!(Path::new(&svg).exists());
+}
+
+#[test]
+fn a_summary_says_what_matters() {
+    let folder = Folder::new("summary");
+    let outcome = coarse(&folder, &["--continuous", "--zeta", "0.01", "--to", "1.7"]);
+    let summary = outcome.expect("a branch").summary;
+    for part in [
+        "sgn(x) |x|^alpha",
+        "alpha = 1.5, zeta = 0.01, load = 1, drive = 0.1",
+        "omega from 0.600000 to 1.700000",
+        "reached the end of the range",
+        "fold       omega 1.",
+        "stable before the fold at omega",
+        "response.svg",
+    ] {
+        assert!(summary.contains(part), "{part} in\n{summary}");
+    }
+    assert!(summary.lines().count() < 25);
+    let picture = std::fs::read_to_string(folder.file("response.svg")).expect("a picture");
+    assert!(picture.contains("Continuous, α = 1.5") && picture.contains("fold"));
+}
+
+#[test]
+fn any_parameter_varies_and_the_record_says_of_what() {
+    let folder = Folder::new("parameter");
+    let (model, json, svg) = (
+        folder.file("a.txt"),
+        folder.file("a.json"),
+        folder.file("response.svg"),
+    );
+    let text = "Stop(x) { param k >= 0; param zeta >= 0; law stop(g) { g > 0 => k*g, else => 0 }
+                ddot(x) + zeta*dot(x) + x + stop(x - 1) = 0.2*cos(omega*t); }";
+    std::fs::write(&model, text).expect("written");
+    let command = format!(
+        "--model {model} --set zeta=0.1 --sweep k --omega 1.2 --from 0.5 --to 1 --json {json} --bifurcations"
+    );
+    let arguments: Vec<_> = command.split_whitespace().collect();
+    let outcome = coarse(&folder, &arguments);
+    assert!(outcome.expect("a branch").complete);
+    let all = all(&json);
+    assert_eq!(
+        (&all["model"], &all["varied"]),
+        (&"Stop".into(), &"k".into())
+    );
+    assert_eq!(all["parameters"]["zeta"], 0.1);
+    let points = all["points"].as_array().expect("points");
+    assert_eq!(points[0]["value"], 0.5);
+    assert_eq!(points.last().expect("points")["value"], 1.0);
+    let picture = std::fs::read_to_string(&svg).expect("a picture");
+    assert!(picture.contains("Stop: zeta = 0.1, ω = 1.2"), "{picture}");
+    let alone = coarse(
+        &folder,
+        &["--sweep", "alpha", "--from", "1.4", "--to", "1.6"],
+    );
+    assert!(alone.expect("a branch").complete);
+    let failure = coarse(
+        &folder,
+        &["--model", &model, "--set", "zeta=0.1", "--backbone"],
+    );
+    assert_eq!(failure.expect_err("a failure").exit_code(), 2);
+}
+
+/// Figure 8a of Wang et al. (2021) by one command. Exact values: `amplitude_sweep` of reference values computed independently of this
+/// project, with 60 digits.
+#[test]
+fn the_cascade_of_figure_8a() {
+    let folder = Folder::new("cascade");
+    let [svg, json, csv] = ["a.svg", "a.json", "a.csv"].map(|name| folder.file(name));
+    let command = "--alpha 1 --one-sided --zeta 0.032 --load 1 --sweep drive --omega 1 --from 0.1 --to 2.0 \
+                   --bifurcations --follow 3";
+    let files = ["--svg", &svg, "--json", &json, "--csv", &csv];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    let outcome = run_with(&arguments).expect("a branch");
+    assert!(outcome.complete, "{}", outcome.summary);
+    let all = all(&json);
+    let events = all["events"].as_array().expect("events");
+    for (kind, period, drive) in [
+        ("period-doubling", 1, 1.282_584_167_663_767),
+        ("period-doubling", 2, 1.531_044_135_499_983),
+        ("period-doubling", 2, 1.880_077_405_264_828),
+        ("fold", 2, 2.009_554_757_004_067),
+        ("fold", 2, 0.294_528_806_187_216),
+        ("fold", 8, 1.779_836_025_884_334),
+    ] {
+        let is_it = |event: &&Value| {
+            let place = event["drive"].as_f64().expect("a number");
+            event["kind"] == kind && event["period"] == period && (place - drive).abs() < 1e-9
+        };
+        let event = events.iter().find(is_it);
+        let event = event.unwrap_or_else(|| panic!("{kind} {period} {drive}"));
+        assert!(event["branch"].is_u64());
+    }
+    let points = all["points"].as_array().expect("points");
+    for period in [1, 2, 4, 8] {
+        assert!(points.iter().any(|point| point["period"] == period));
+    }
+    for branch in 0..5 {
+        assert!(points.iter().any(|point| point["branch"] == branch));
+    }
+    check_csv(&csv, points);
+    for part in ["period 8", "period-doubling", "grazing"] {
+        let picture = std::fs::read_to_string(&svg).expect("a picture");
+        assert!(picture.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn folds_are_tracked_in_two_parameters() {
+    let folder = Folder::new("track");
+    let [svg, json] = ["a.svg", "a.json"].map(|name| folder.file(name));
+    let command = "--alpha 1 --from 0.6 --to 1.6 --bifurcations --track fold --in omega,drive --within 0.03,0.5";
+    let files = ["--svg", &svg, "--json", &json];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    run_with(&arguments).expect("a branch");
+    let all = all(&json);
+    let tracks = all["tracks"].as_array().expect("tracks");
+    assert_eq!(tracks.len(), 1);
+    assert_eq!(tracks[0]["kind"], "fold");
+    assert_eq!(tracks[0]["names"][1], "drive");
+    assert!(tracks[0]["points"].as_array().map(Vec::len) > Some(20));
+    assert_eq!(tracks[0]["special"][0]["kind"], "cusp");
+}
+
+#[test]
+fn a_backbone_is_drawn_through_the_resonance() {
+    let folder = Folder::new("backbone");
+    let [svg, json] = ["a.svg", "a.json"].map(|name| folder.file(name));
+    let command = "--continuous --load 0 --zeta 0.01 --from 0.6 --to 1.7 --backbone";
+    let files = ["--svg", &svg, "--json", &json];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    run_with(&arguments).expect("a branch");
+    let all = all(&json);
+    for curve in ["free", "resonance"] {
+        let points = all["backbone"][curve].as_array().expect("a curve");
+        assert!(points.len() > 5, "{curve}");
+        for point in points {
+            let [omega, size]: [f64; 2] = numbers(point, &["omega", "peak_to_peak"])
+                .collect::<Vec<_>>()
+                .try_into()
+                .expect("two numbers");
+            let free = 0.954_693_569_728_51 * (0.5 * size).powf(0.25);
+            let tolerance = if curve == "free" { 1e-9 } else { 0.01 };
+            assert!(
+                (omega / free - 1.0).abs() < tolerance,
+                "{curve} {omega} {free}"
+            );
+        }
+    }
+    let picture = std::fs::read_to_string(&svg).expect("a picture");
+    assert!(picture.contains("free oscillation") && picture.contains("phase resonance"));
+}
+
+/// Where a Hertzian contact is lost: both events of the branch are on one curve, and it has a least drive between them.
+#[test]
+fn grazing_is_tracked_in_two_parameters() {
+    let folder = Folder::new("touch");
+    let [svg, json] = ["a.svg", "a.json"].map(|name| folder.file(name));
+    let command = "--from 0.6 --to 1.6 --track grazing --in omega,drive --within 0.03,0.5";
+    let files = ["--svg", &svg, "--json", &json];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    let outcome = run_with(&arguments).expect("a branch");
+    assert!(outcome.complete, "{}", outcome.summary);
+    let all = all(&json);
+    let tracks = all["tracks"].as_array().expect("tracks");
+    assert_eq!(tracks.len(), 1);
+    assert_eq!(tracks[0]["kind"], "grazing");
+    let points = tracks[0]["points"].as_array().expect("points");
+    let drives = points
+        .iter()
+        .map(|point| point[1].as_f64().expect("a number"));
+    let drives: Vec<f64> = drives.collect();
+    assert!(drives.len() > 20);
+    for end in [drives[0], drives[drives.len() - 1]] {
+        assert!((end - 0.5).abs() < 1e-12, "{end}");
+    }
+    assert!(drives.iter().copied().fold(f64::INFINITY, f64::min) < 0.1);
+}
