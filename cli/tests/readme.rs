@@ -142,7 +142,10 @@ fn the_folds_of_ones_own_law_are_those_that_are_said() {
         .expect("a comment")
         .split_once("// ")
         .expect("a comment");
-    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/cubic_with_stop.txt");
+    let model = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../examples/models/cubic_with_stop.txt"
+    );
     let (summary, folds) = response("own", &format!("--model {model} --from 0.4 --to 2.2"));
     assert!(
         summary.contains("zeta = 0.02, stop = 5, distance = 0.8, drive = 0.1"),

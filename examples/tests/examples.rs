@@ -1,5 +1,6 @@
 //! Every example runs, draws a picture, prints what the README shows, and can be copied as it stands.
 
+use std::fmt::Debug;
 use std::path::Path;
 use std::process::Command;
 use std::sync::Once;
@@ -32,8 +33,19 @@ macro_rules! examples {
 }
 
 examples! {
+    "../adhesion.rs" adhesion
+    "../backbone.rs" backbone
+    "../ball_bearing.rs" ball_bearing
+    "../basin.rs" basin
+    "../beam.rs" beam
+    "../bifurcations.rs" bifurcations
+    "../chaos.rs" chaos
     "../contact_resonance.rs" contact_resonance
+    "../gear_pair.rs" gear_pair
+    "../own_law.rs" own_law
+    "../preloaded_stop.rs" preloaded_stop
     "../response.rs" response
+    "../two_masses.rs" two_masses
 }
 
 /// Examples write into the current folder; here that is one for all of them, which none shares a name in.
@@ -45,7 +57,7 @@ fn enter_folder() -> &'static Path {
 }
 
 /// Runs an example and looks at its picture: complete, titled, with both axes labelled, and every number a number.
-fn draws(name: &str, main: fn() -> Result<(), hertzian::Error>) {
+fn draws<E: Debug>(name: &str, main: fn() -> Result<(), E>) {
     let picture = enter_folder().join(name).with_extension("svg");
     let _ = std::fs::remove_file(&picture);
     main().expect("a picture");

@@ -15,8 +15,6 @@ use std::fmt::Write;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
-use clap::Parser;
-
 use crate::program::{self, Ended};
 use figure::Value;
 use options::Options;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use hertzian_cli::response::boundary::loss_of_contact;
-use hertzian_cli::response::options::{Multipliers, Options};
+use hertzian_cli::response::options::Multipliers;
 
 use crate::{Folder, coarse, options, read, run_with};
 

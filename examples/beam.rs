@@ -1,0 +1,86 @@
+//! A cantilever of a few finite elements with a stop at its tip: `cargo run --release --example beam` draws beam.svg.
+//!
+//! Mass and stiffness are matrices, here of Euler-Bernoulli elements with a deflection and a slope at each node; the contact is a law by
+//! itself, attached to a direction of the structure. To make it your own, take matrices of your finite-element program. Lengths are in
+//! units of the beam, time in units in which its first resonance is at 3.516 (Blevins: the square of 1.8751).
+
+use hertzian::FrequencyResponse;
+use hertzian::structure::{Contact, DMatrix, Structure, parameter};
+
+hertzian::law! {
+    /// Elastic stop
+    pub Stop(gap, k) { gap > 0 => k*gap, else => 0 }
+}
+
+/// Elements along the beam.
+const ELEMENTS: usize = 4;
+/// Deflection and slope of every node but the clamped one, from the tip on.
+const FREE: usize = 2 * ELEMENTS;
+
+/// Assembles the beam, attaches the stop, traces the first resonance, and draws it.
+pub fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let (mass, stiffness) = beam();
+    // Damping that grows with the frequency: 1 % at the first resonance.
+    let damping = 2.0 * 0.01 / 3.516 * &stiffness;
+    let mut direction = vec![0.0; FREE];
+    direction[0] = 1.0;
+    let structure = Structure::of(&mass, &damping, &stiffness)
+        .name("Cantilever with a stop")
+        .cosine(0, 1, parameter("drive", 2e-4))
+        .contact(
+            Contact::new(Stop)
+                .arguments([parameter("k", 20.0)])
+                .direction(direction)
+                .offset(parameter("distance", 1e-3)),
+        )
+        .build()?;
+    let branch = FrequencyResponse::of(&structure)
+        .from(3.0)
+        .to(5.0)
+        .tolerance(1e-4)
+        .run()?;
+    println!("{} points, {}", branch.points.len(), branch.stopped);
+    for fold in branch.folds() {
+        println!("{fold}");
+    }
+    let chart = branch
+        .chart()
+        .x("excitation frequency ω, in units of √(EI/ρA)/L²");
+    chart
+        .y("peak-to-peak of the tip / length")
+        .write("beam.svg")?;
+    println!("written beam.svg");
+    Ok(())
+}
+
+/// Mass and stiffness, clamped at the last node.
+fn beam() -> (DMatrix<f64>, DMatrix<f64>) {
+    let h = 1.0 / ELEMENTS as f64;
+    let inertia = [
+        [156.0, 22.0 * h, 54.0, -13.0 * h],
+        [22.0 * h, 4.0 * h * h, 13.0 * h, -3.0 * h * h],
+        [54.0, 13.0 * h, 156.0, -22.0 * h],
+        [-13.0 * h, -3.0 * h * h, -22.0 * h, 4.0 * h * h],
+    ];
+    let bending = [
+        [12.0, 6.0 * h, -12.0, 6.0 * h],
+        [6.0 * h, 4.0 * h * h, -6.0 * h, 2.0 * h * h],
+        [-12.0, -6.0 * h, 12.0, -6.0 * h],
+        [6.0 * h, 2.0 * h * h, -6.0 * h, 4.0 * h * h],
+    ];
+    let mut mass = DMatrix::zeros(FREE, FREE);
+    let mut stiffness = DMatrix::zeros(FREE, FREE);
+    for element in 0..ELEMENTS {
+        for row in 0..4 {
+            for column in 0..4 {
+                let (i, j) = (2 * element + row, 2 * element + column);
+                // What belongs to the clamped node is left out.
+                if i < FREE && j < FREE {
+                    mass[(i, j)] += h / 420.0 * inertia[row][column];
+                    stiffness[(i, j)] += bending[row][column] / h.powi(3);
+                }
+            }
+        }
+    }
+    (mass, stiffness)
+}

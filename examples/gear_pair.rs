@@ -1,0 +1,63 @@
+//! A gear pair with backlash: `cargo run --release --example gear_pair` draws gear_pair.svg.
+//!
+//! The transmission error of a spur gear pair, Kahraman and Singh (1990), in units of half the backlash, time in units of the linear
+//! resonance. Where the motion exceeds the mean deformation of the teeth they part, and the resonance leans to lower frequencies.
+//! To make it your own, change the torque, the error of the profile, or the stiffness of one flank.
+
+use hertzian::chart::{Chart, Curve, Markers};
+use hertzian::{Error, EventKind, FrequencyResponse};
+
+hertzian::oscillator! {
+    /// Gear pair with backlash
+    pub GearPair(x) {
+        /// damping ratio
+        param zeta in 0.0..;
+        /// mean torque, as the deformation of the teeth that it makes
+        param torque > 0;
+        /// amplitude of the error of the profile
+        param profile in 0.0..;
+
+        law mesh(gap) {
+            gap > 1        => gap - 1,
+            -1 <= gap <= 1 => 0,
+            gap < -1       => gap + 1,
+        }
+        ddot(x) + 2*zeta*dot(x) + mesh(x) = torque + profile*omega^2*cos(omega*t);
+    }
+}
+
+/// Traces a curve for each error of the profile, and marks where the teeth part.
+pub fn main() -> Result<(), Error> {
+    let mut chart = Chart::new("Gear pair with backlash, damping ratio 5 %, mean deformation 0.1")
+        .x("mesh frequency / linear resonance")
+        .y("peak-to-peak of the transmission error / half the backlash");
+    let mut parted = Vec::new();
+    for profile in [0.005, 0.02, 0.05, 0.1] {
+        let model = GearPair {
+            zeta: 0.05,
+            torque: 0.1,
+            profile,
+        };
+        let request = FrequencyResponse::of(&model).from(0.4).to(1.6);
+        let branch = request.bifurcations(true).run()?;
+        println!("error of the profile {profile}:");
+        for event in &branch.events {
+            println!("  {event}");
+            // The gap touches the level one, where the teeth are pressed together no more.
+            if matches!(event.kind, EventKind::Grazing { .. }) {
+                parted.push([event.point.value, event.point.peak_to_peak()]);
+            }
+        }
+        chart = chart.curve(Curve {
+            label: format!("error of the profile {profile}"),
+            runs: branch.runs(),
+        });
+    }
+    let parted = Markers {
+        label: "teeth begin to part".to_owned(),
+        points: parted,
+    };
+    chart.markers(parted).write("gear_pair.svg")?;
+    println!("written gear_pair.svg");
+    Ok(())
+}
