@@ -1,4 +1,4 @@
-//! The tip of a force microscope above a surface: `cargo run --release --example adhesion` draws adhesion.svg.
+//! The tip of a force microscope above a surface: `cargo run --release --example adhesion` draws `adhesion.svg`.
 //!
 //! Outside of the surface the tip is attracted, inside it is repelled as by Hertz: Derjaguin, Muller and Toporov (1975), as used by
 //! Garcia and Perez (2002). Attraction bends the resonance to lower frequencies, contact to higher ones, so that several amplitudes

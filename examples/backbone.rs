@@ -1,4 +1,4 @@
-//! Resonances and their backbone: `cargo run --release --example backbone` draws backbone.svg.
+//! Resonances and their backbone: `cargo run --release --example backbone` draws `backbone.svg`.
 //!
 //! As the drive of a nonlinear oscillator grows, its resonance follows the frequency of the free oscillation without damping: the backbone.
 //! Here a Hertzian spring in both directions, which has no linear resonance at all. To make it your own, change the spring; the last

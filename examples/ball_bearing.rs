@@ -1,4 +1,4 @@
-//! A loaded ball bearing with clearance: `cargo run --release --example ball_bearing` draws ball_bearing.svg.
+//! A loaded ball bearing with clearance: `cargo run --release --example ball_bearing` draws `ball_bearing.svg`.
 //!
 //! Eight balls pass under the load, so that the bearing is now stiffer and now softer, and the shaft shakes without any unbalance:
 //! varying compliance, after Sunnersjo (1978). Lengths are in units in which the load presses one ball by one, times in units of the

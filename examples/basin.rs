@@ -1,4 +1,4 @@
-//! Which motion a start leads to: `cargo run --release --example basin` draws basin.svg.
+//! Which motion a start leads to: `cargo run --release --example basin` draws `basin.svg`.
 //!
 //! A mass on a contact that opens, driven so that motions of several periods are possible. From every cell of a grid of initial states a
 //! motion is followed until it is known where it settles. To make it your own, change the equation and the ranges of the grid.

@@ -1,4 +1,4 @@
-//! A cantilever of a few finite elements with a stop at its tip: `cargo run --release --example beam` draws beam.svg.
+//! A cantilever of a few finite elements with a stop at its tip: `cargo run --release --example beam` draws `beam.svg`.
 //!
 //! Mass and stiffness are matrices, here of Euler-Bernoulli elements with a deflection and a slope at each node; the contact is a law by
 //! itself, attached to a direction of the structure. To make it your own, take matrices of your finite-element program. Lengths are in

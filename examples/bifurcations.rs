@@ -1,4 +1,4 @@
-//! What becomes of a motion as its drive grows: `cargo run --release --example bifurcations` draws bifurcations.svg.
+//! What becomes of a motion as its drive grows: `cargo run --release --example bifurcations` draws `bifurcations.svg`.
 //!
 //! A mass on a contact that opens. Its period doubles again and again; every branch that begins at a bifurcation is followed by itself.
 //! Figure 8a of Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722. To make it your own, change the equation, what varies, and the

@@ -1,4 +1,4 @@
-//! A chaotic motion and its Lyapunov exponents: `cargo run --release --example chaos` draws chaos.svg.
+//! A chaotic motion and its Lyapunov exponents: `cargo run --release --example chaos` draws `chaos.svg`.
 //!
 //! The state of a mass on a contact that opens, once in each period of the excitation. Neighbouring motions part at the rate of the largest
 //! exponent; a positive one is chaos. Figure 11 of Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722. To make it your own, change

@@ -1,4 +1,4 @@
-//! A gear pair with backlash: `cargo run --release --example gear_pair` draws gear_pair.svg.
+//! A gear pair with backlash: `cargo run --release --example gear_pair` draws `gear_pair.svg`.
 //!
 //! The transmission error of a spur gear pair, Kahraman and Singh (1990), in units of half the backlash, time in units of the linear
 //! resonance. Where the motion exceeds the mean deformation of the teeth they part, and the resonance leans to lower frequencies.

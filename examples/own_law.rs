@@ -1,4 +1,4 @@
-//! A law of your own, with units: `cargo run --release --example own_law` draws own_law.svg.
+//! A law of your own, with units: `cargo run --release --example own_law` draws `own_law.svg`.
 //!
 //! A machine on a rubber mount has a bump stop on one side, which stiffens as it is pressed, and a steel snubber on the other. To
 //! make it your own, change the pieces of the law: every level of the gap begins another one, and the compiler says if a gap is left

@@ -1,4 +1,4 @@
-//! A stop with a preload: `cargo run --release --example preloaded_stop` draws preloaded_stop.svg.
+//! A stop with a preload: `cargo run --release --example preloaded_stop` draws `preloaded_stop.svg`.
 //!
 //! The stop pushes back with its preload as soon as it is touched, so that the force jumps at the level; Shaw and Holmes (1983) without
 //! the preload. Where orbits begin to touch it the branch has a corner, and turns there without a fold. To make it your own, change the

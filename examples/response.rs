@@ -1,4 +1,4 @@
-//! The resonance of a ball that a load presses on a plane: `cargo run --release --example response` draws response.svg.
+//! The resonance of a ball that a load presses on a plane: `cargo run --release --example response` draws `response.svg`.
 //!
 //! The contact opens where the ball moves away, so that the resonance leans to lower frequencies. To make it your own, change the
 //! equation, its parameters and the range of frequencies. Figure 5b of Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722.

@@ -1,7 +1,7 @@
-//! Two masses of which one meets a stop: `cargo run --release --example two_masses` draws two_masses.svg.
+//! Two masses of which one meets a stop: `cargo run --release --example two_masses` draws `two_masses.svg`.
 //!
 //! A structure with two resonances; where the first mass reaches the stop both lean to higher frequencies, and orbits lose their
-//! stability in between. In the manner of the third example of NLvib, Krack and Gross (2019). To make it your own, add coordinates
+//! stability in between. In the manner of the third example of `NLvib`, Krack and Gross (2019). To make it your own, add coordinates
 //! (`x[8]` declares eight), springs between them, and stops.
 
 use hertzian::chart::{Chart, Curve, Line, Markers, Run};
@@ -77,7 +77,7 @@ fn curve(label: &str, points: &[Point], coordinate: usize) -> Curve {
         let line = match pair[1].stability.verdict {
             Verdict::Stable => Line::Stable,
             Verdict::Unstable => Line::Unstable,
-            _ => Line::Undecided,
+            Verdict::Undecided => Line::Undecided,
         };
         match runs.last_mut() {
             Some(run) if run.line == line => run.points.push(place(&pair[1])),
