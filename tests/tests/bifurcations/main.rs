@@ -1,4 +1,4 @@
-//! Branches that begin at bifurcations, against exact values.
+//! Branches that begin at bifurcations, and a crisis, against exact values.
 
 mod asked;
 mod backbone;
@@ -6,6 +6,7 @@ mod balance;
 mod cascade;
 mod codimension;
 mod coexisting;
+mod crisis;
 mod crossing;
 mod curves;
 mod doubling;

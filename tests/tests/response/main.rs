@@ -1,11 +1,20 @@
-//! The public interface of the runtime: closed forms, edges, errors, and what comes back.
+//! Orbits and curves: the public interface of the runtime, with closed forms, edges, errors and what comes back; and curves against exact
+//! values (`figures`), models of the literature (`reference`), shooting (`shooting`), random models (`robust`), and where methods
+//! fail (`failures`).
 
 mod closed_forms;
 mod copies;
+mod coupled;
+mod failures;
+mod figures;
 mod first_orbits;
 mod free;
 mod given;
+mod reference;
 mod requests;
+mod robust;
+mod serialised;
+mod shooting;
 mod start;
 mod values;
 

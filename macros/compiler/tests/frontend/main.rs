@@ -1,6 +1,7 @@
 //! From declarations to checked models.
 
 mod extrema;
+mod fuzz;
 mod in_place;
 mod loops;
 mod masses;

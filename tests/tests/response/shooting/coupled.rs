@@ -1,0 +1,108 @@
+//! Two coordinates, and a declaration whose own period is not that of the excitation.
+
+use std::f64::consts::TAU;
+
+use super::stated::assert_stated;
+use hertzian::shooting::End;
+use hertzian::time;
+use hertzian::time::Options;
+use hertzian::{EventKind, FrequencyResponse, Shooting, Stop, Verdict};
+use hertzian_tests::TwoMasses;
+
+/// The Neimark-Sacker bifurcation at omega 0.61861 and the period doubling at 0.73878 are from an independent computation, to
+/// five digits. The system is piecewise affine.
+#[test]
+fn two_masses_lose_stability_where_they_should() {
+    let model = TwoMasses {
+        stop: 100.0,
+        drive: 0.1,
+    };
+    let branch = Shooting::of(&model).from(0.5).to(1.0).run().unwrap();
+    assert_eq!(branch.end, End::Stopped(Stop::ReachedEnd));
+    assert!(branch.turns.is_empty(), "{:?}", branch.turns);
+    let doubles = branch
+        .events(EventKind::PeriodDoubling)
+        .map(|event| event.cycle.value);
+    assert!(
+        doubles
+            .into_iter()
+            .any(|value| (value - 0.73878).abs() < 1e-5)
+    );
+    // The Neimark-Sacker bifurcation is between verdicts.
+    let omega = 0.61861;
+    let passes = branch.cycles.windows(2).any(|pair| {
+        let [before, behind] = [&pair[0], &pair[1]].map(|cycle| cycle.stability.verdict);
+        let between = pair[0].value < omega && omega < pair[1].value;
+        between && before == Verdict::Unstable && behind == Verdict::Stable
+    });
+    assert!(passes);
+}
+
+/// Folds by shooting, in one segment and in four, and by the balance.
+#[test]
+fn folds_of_two_masses_are_those_of_the_balance() {
+    let model = TwoMasses {
+        stop: 10.0,
+        drive: 0.1,
+    };
+    let by_balance = FrequencyResponse::of(&model).from(0.5).to(1.0);
+    let by_balance = by_balance.stability(false).run().unwrap();
+    let folds: Vec<_> = by_balance.folds().collect();
+    for segments in [1, 4] {
+        let request = Shooting::of(&model).segments(segments);
+        let branch = request.from(0.5).to(1.0).run().unwrap();
+        assert_eq!(branch.folds().count(), folds.len());
+        for (fold, expected) in branch.folds().zip(&folds) {
+            let error = (fold.cycle.value - expected.point.value).abs();
+            assert!(error <= fold.error + expected.error, "{fold} {expected}");
+            assert!(fold.error < 1e-11, "{fold}");
+        }
+    }
+}
+
+hertzian::oscillator! {
+    /// Excited at omega and at two fifths of it: the motion repeats after five periods of the excitation.
+    Fractions(x) {
+        param zeta >= 0;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + x + x^3 = drive*(cos(omega*t) + cos(2/5*omega*t));
+    }
+}
+
+#[test]
+fn a_period_is_that_of_the_declaration() {
+    let model = Fractions {
+        zeta: 0.1,
+        drive: 0.1,
+    };
+    let cycle = Shooting::of(&model).orbit(0.9).unwrap();
+    assert_eq!(cycle.period, 1);
+    // The phase of the flow is that of the declaration too.
+    let mut flow = time::of(&model, 0.9, Options::default()).unwrap();
+    let mut state = [0.0, 0.0];
+    for _ in 0..40 {
+        flow.advance(0.0, TAU, &mut state, None, None).unwrap();
+    }
+    for (x, settled) in cycle.state().iter().zip(state) {
+        assert!((x - settled).abs() < 1e-8, "{cycle:?} {state:?}");
+    }
+    let expected = (-TAU * 5.0 / 0.9 * 2.0 * 0.1_f64).exp();
+    let product: hertzian::Complex<f64> = cycle.stability.multipliers.iter().product();
+    assert!((product - expected).norm() < 1e-10, "{product} {expected}");
+}
+
+/// Between closed forms there is nothing but rounding, also beside a grazing orbit, where multipliers depend on its distance
+/// from the level by a root.
+#[test]
+fn rounding_is_stated() {
+    let model = TwoMasses {
+        stop: 100.0,
+        drive: 0.1,
+    };
+    let request = Shooting::of(&model);
+    let branch = request.clone().from(0.5).to(0.7).run().unwrap();
+    for cycle in &branch.cycles {
+        let again = request.clone().segments(3).near(cycle.state());
+        assert_stated(cycle, &again.orbit(cycle.value).unwrap());
+    }
+}
