@@ -14,6 +14,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # [text](target) and ![text](target), the target without a title.
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)[^)]*\)")
+# The same in HTML, as of small pictures side by side.
+TAG = re.compile(r'<(?:a|img)\b[^>]*?\b(?:href|src)="([^"]+)"')
 FENCE = re.compile(r"^(```|~~~).*?^\1", re.MULTILINE | re.DOTALL)
 
 
@@ -26,7 +28,7 @@ def heading_anchors(text):
 
 def faults(path):
     text = FENCE.sub("", path.read_text(encoding="utf-8"))
-    for target in LINK.findall(text):
+    for target in LINK.findall(text) + TAG.findall(text):
         if re.match(r"[a-z]+:", target):
             continue
         name, _, anchor = target.partition("#")

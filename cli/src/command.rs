@@ -6,13 +6,14 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::attractors::{self, figures};
+use crate::built_in;
 use crate::install;
 use crate::misplaced::{self, Given};
 use crate::{multipliers, paper, program, response, work_precision};
 
 /// Vibration of oscillators whose forces are piecewise power laws: contacts that open, springs of any exponent, play, stops.
 ///
-/// An oscillator is given by options, or declared in a file, in the language of `hertzian::oscillator!`.
+/// An oscillator is given by options, by its name, or by a file that declares it in the language of `hertzian::oscillator!`.
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(
     name = "hertzian",
@@ -43,6 +44,7 @@ pub enum Task {
     Multipliers(multipliers::Options),
     Paper(paper::options::Options),
     WorkPrecision(work_precision::options::Options),
+    Models(built_in::Options),
     Completions(install::Shell),
     Man(install::Page),
 }
@@ -82,6 +84,7 @@ pub fn main() -> ExitCode {
         Task::Multipliers(options) => multipliers::start(&options),
         Task::Paper(options) => paper::start(&options),
         Task::WorkPrecision(options) => work_precision::start(&options),
+        Task::Models(options) => built_in::start(&options),
         Task::Completions(shell) => install::completions(&shell),
         Task::Man(page) => install::man(&page),
     }

@@ -10,12 +10,13 @@ use crate::command::Program;
 use crate::program;
 
 /// Subcommands that have a page of their own.
-const PAGES: [&str; 5] = [
+const PAGES: [&str; 6] = [
     "response",
     "attractors",
     "multipliers",
     "paper",
     "work-precision",
+    "models",
 ];
 
 /// Prints completions of this program for a shell.

@@ -4,6 +4,7 @@
 //! `start`; [`command`] lists them.
 
 pub mod attractors;
+pub mod built_in;
 pub mod command;
 mod install;
 pub mod misplaced;

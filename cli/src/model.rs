@@ -1,12 +1,14 @@
 //! Options that say which oscillator a program is about.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::built_in::{self, BuiltIn};
+use crate::misplaced::Given;
 use crate::values;
 
-/// An oscillator on a power-law contact, or one from a file.
+/// An oscillator on a power-law contact, or one by its name or from a file.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct ModelOptions {
     /// Exponent of the force, positive
@@ -26,16 +28,16 @@ pub struct ModelOptions {
     #[arg(long)]
     pub continuous: bool,
 
-    /// Read the oscillator from this file instead, in the language of `hertzian::oscillator!`
+    /// The oscillator by its name, or a file that declares it in the language of `hertzian::oscillator!`
     #[arg(
         long = "model",
-        value_name = "FILE",
-        conflicts_with_all = ["alpha", "one_sided", "continuous", "zeta", "load", "drive"]
+        value_name = "NAME|FILE",
+        long_help = built_in::help()
     )]
     pub file: Option<PathBuf>,
 
-    /// Value of a parameter of that oscillator
-    #[arg(long, value_name = "NAME=VALUE", requires = "file", value_parser = setting)]
+    /// Value of a parameter of that oscillator; --alpha, --zeta, --load and --drive are short for it
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<(String, f64)>,
 
     /// Damping ratio, not negative
@@ -88,6 +90,78 @@ impl ModelOptions {
             values::finite(&format!("--set {name}"), *value)?;
         }
         values::once("--set", self.set.iter().map(|(name, _)| name.as_str()))
+    }
+
+    /// Whether contact can be lost, where the oscillator is called by the name of one that is compiled too.
+    fn contact(&self) -> Option<bool> {
+        match BuiltIn::named(self.file.as_deref()?)?.name {
+            "one-sided" => Some(true),
+            "continuous" => Some(false),
+            _ => None,
+        }
+    }
+
+    /// Whether the oscillator is read from a text, and not one on a power-law contact.
+    pub fn is_read(&self) -> bool {
+        self.file.is_some() && self.contact().is_none()
+    }
+
+    /// The file of the oscillator, if it comes from one.
+    pub fn path(&self) -> Option<&Path> {
+        let path = self.file.as_deref()?;
+        BuiltIn::named(path).is_none().then_some(path)
+    }
+
+    /// The same oscillator by its own options, where it is called by the name of one that has them.
+    ///
+    /// # Errors
+    /// If something is set that it does not have, or that is no number.
+    pub fn resolved(&self) -> Result<Self, String> {
+        let Some(opens) = self.contact() else {
+            return Ok(self.clone());
+        };
+        self.check()?;
+        let mut resolved = Self {
+            file: None,
+            set: Vec::new(),
+            one_sided: opens,
+            continuous: !opens,
+            ..self.clone()
+        };
+        for (name, value) in &self.set {
+            let parameter = match name.as_str() {
+                "alpha" => &mut resolved.alpha,
+                "zeta" => &mut resolved.zeta,
+                "load" => &mut resolved.load,
+                "drive" => &mut resolved.drive,
+                _ => {
+                    return Err(format!(
+                        "no parameter {name}: there are alpha, zeta, load, drive"
+                    ));
+                }
+            };
+            *parameter = *value;
+        }
+        Ok(resolved)
+    }
+
+    /// What was given besides --model and would do nothing.
+    pub fn fault(&self, given: &Given<'_>) -> Option<String> {
+        let path = self.file.as_ref()?.display();
+        if let Some(kind) = ["one_sided", "continuous"].iter().find(|id| given.has(id)) {
+            let kind = kind.replace('_', "-");
+            return Some(format!("--{kind} would do nothing beside --model {path}"));
+        }
+        let mut short = ["alpha", "zeta", "load", "drive"].into_iter();
+        if self.is_read() {
+            let name = short.find(|id| given.has(id))?;
+            return Some(format!(
+                "--{name} is for one-sided and continuous contact; with --model {path} write --set {name}=VALUE"
+            ));
+        }
+        let is_set = |id: &&str| given.has(id) && self.set.iter().any(|(name, _)| name == id);
+        let name = short.find(is_set)?;
+        Some(format!("--{name} and --set {name} are the same: give one"))
     }
 
     /// Whether contact can be lost.

@@ -199,6 +199,9 @@ const BELONGS: [(&str, &[&str]); 22] = [
 impl Options {
     /// What was given and would do nothing, or is missing.
     pub fn fault(&self, given: &Given<'_>) -> Option<String> {
+        if let Some(fault) = self.model.fault(given) {
+            return Some(fault);
+        }
         let swept = self.sweep.map(Swept::name);
         let taken = swept.filter(|name| given.has(name)).map(|name| {
             format!("--sweep {name} takes the place of --{name}: --from and --to say where it begins and ends")
@@ -226,7 +229,7 @@ impl Options {
         // What motions of a model may reach, its file does not say.
         let looked = self.basin || self.phase && self.starts > 0;
         let ranges = given.has("x_range") && given.has("v_range");
-        let missing = (looked && self.model.file.is_some() && !ranges).then(|| {
+        let missing = (looked && self.model.is_read() && !ranges).then(|| {
             "--model needs --x-range and --v-range here: their defaults are those of the loaded contact".to_owned()
         });
         taken

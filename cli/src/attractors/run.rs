@@ -2,7 +2,7 @@
 
 use std::io;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -115,9 +115,9 @@ pub fn run(
 ) -> Result<Outcome, Failure> {
     output::check(&options.out)?;
     let written = output::paths(&options.out);
-    let others = [&options.model.file, &options.checkpoint];
-    let others = others.into_iter().flatten().chain(&written);
-    if let Some(path) = files::shared(others.map(PathBuf::as_path)) {
+    let others = [options.model.path(), options.checkpoint.as_deref()];
+    let written_paths = written.iter().map(PathBuf::as_path);
+    if let Some(path) = files::shared(others.into_iter().flatten().chain(written_paths)) {
         let message = format!("{} is asked for more than once", path.display());
         return Err(Failure::Option(message));
     }
@@ -139,6 +139,10 @@ pub fn compute(
     interrupted: &AtomicBool,
     progress: &mut Progress,
 ) -> Result<Results, Failure> {
+    let options = &Options {
+        model: options.model.resolved().map_err(Failure::Option)?,
+        ..options.clone()
+    };
     check(options)?;
     let varied = options.sweep.map_or("omega", Swept::name);
     let system = models::model(&options.model, (varied, options.from)).map_err(|error| {
@@ -185,8 +189,8 @@ fn check(options: &Options) -> Result<(), Failure> {
     if let Some((_, message)) = faults.next() {
         return Err(Failure::Option(message.to_owned()));
     }
-    let unrepeatable = |path: &PathBuf| !path.is_file();
-    if options.checkpoint.is_some() && options.model.file.as_ref().is_some_and(unrepeatable) {
+    let unrepeatable = |path: &Path| !path.is_file();
+    if options.checkpoint.is_some() && options.model.path().is_some_and(unrepeatable) {
         let message = "--checkpoint needs --model in a file: it is read again, to tell what the checkpoint belongs to";
         return Err(Failure::Option(message.to_owned()));
     }

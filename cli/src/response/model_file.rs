@@ -1,10 +1,12 @@
-//! An oscillator read from a file, in the language of `hertzian::oscillator!`.
+//! An oscillator read from a text, in the language of `hertzian::oscillator!`: a file, or one that has a name.
 
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use hertzian::generic::{Declaration, DeclarationError};
+
+use crate::built_in::{self, BuiltIn};
 
 /// A declaration is a page; a file that is longer than this many bytes is something else, as a device without end.
 const LONGEST: u64 = 4_000_000;
@@ -24,9 +26,16 @@ pub enum ModelError {
 impl ModelError {
     /// The message, every fault with its place in the file.
     pub fn describe(&self, path: &Path) -> String {
+        let is_word = path.components().count() == 1 && path.extension().is_none();
         let path = path.display();
         match self {
-            Self::Unreadable(error) => format!("cannot read {path}: {error}"),
+            Self::Unreadable(error) => {
+                let text = format!("cannot read {path}: {error}");
+                // A word is more likely a name.
+                let is_word = error.kind() == io::ErrorKind::NotFound && is_word;
+                let names = is_word.then(|| format!("; names of models: {}", built_in::names()));
+                text + &names.unwrap_or_default()
+            }
             Self::Faulty(error) => {
                 let faults = error.faults.iter();
                 let lines =
@@ -38,11 +47,14 @@ impl ModelError {
     }
 }
 
-/// The text of a file, which may be a pipe, unless it is longer than any declaration.
+/// The text of a model with a name, or of a file, which may be a pipe, unless it is longer than any declaration.
 ///
 /// # Errors
 /// What the system says, and if the text is too long.
 pub fn text(path: &Path) -> io::Result<String> {
+    if let Some(model) = BuiltIn::named(path) {
+        return Ok(model.text.to_owned());
+    }
     let mut bytes = Vec::new();
     File::open(path)?
         .take(LONGEST + 1)

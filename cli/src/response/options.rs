@@ -24,6 +24,7 @@ use crate::model::ModelOptions;
         hertzian response --at 1.1 --csv orbits.csv         every orbit at omega = 1.1; all of them as a table\n  \
         hertzian response --bifurcations --follow 1         and what begins where the period doubles\n  \
         hertzian response --sweep drive --omega 0.9 --from 0.01 --to 0.3\n  \
+        hertzian response --model two-masses --set drive=0.2\n  \
         hertzian response --model FILE --set zeta=0.01 --to 2.2\n\n\
         Exit codes: 0 the end of the range was reached; 2 bad input; 3 the branch ended before (what was computed is written)."
 )]
@@ -224,6 +225,9 @@ impl From<Multipliers> for Method {
 impl Options {
     /// What was given and would do nothing.
     pub fn fault(&self, given: &Given<'_>) -> Option<String> {
+        if let Some(fault) = self.model.fault(given) {
+            return Some(fault);
+        }
         let swept = self.varied();
         let known = ["omega", "alpha", "zeta", "load", "drive"].contains(&swept);
         if (known && given.has(swept)) || self.model.set.iter().any(|(name, _)| name == swept) {

@@ -94,6 +94,10 @@ pub fn run(
     interrupted: &AtomicBool,
     progress: &mut Progress,
 ) -> Result<Outcome, Failure> {
+    let options = &Options {
+        model: options.model.resolved().map_err(Failure::Option)?,
+        ..options.clone()
+    };
     check(options)?;
     let varied = (options.varied(), options.from);
     let model = model(&options.model, varied).map_err(|error| {
@@ -174,7 +178,7 @@ fn check(options: &Options) -> Result<(), Failure> {
     for path in paths(options) {
         files::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
     }
-    let read = options.model.file.as_deref();
+    let read = options.model.path();
     if let Some(path) = files::shared(read.into_iter().chain(paths(options))) {
         let message = format!("{} is asked for more than once", path.display());
         return Err(Failure::Option(message));
