@@ -13,8 +13,8 @@ use crate::orbit::stability::{Method, Stability};
 
 /// Relative error of peak-to-peak that rounding leaves.
 const ROUNDING: f64 = 1e-14;
-/// A first coordinate that moves by less than this part of the largest motion is at rest beside it.
-const STILL: f64 = 1e-6;
+/// A first coordinate that moves by less than so many times what is left of the equations, and rounding, is at rest.
+const STILL: f64 = 10.0;
 /// A branch less steep than this is at a fold that was located.
 const FOLD: f64 = 1e-6;
 /// Roundings of the two extremes.
@@ -115,7 +115,14 @@ impl<'a> Reader<'a> {
             return self.across;
         }
         self.units.resize(observed.motions.len(), size);
-        self.units[0] = observed.motions[0].peak_to_peak().max(STILL * size);
+        // From a mean square over coordinates to the peak-to-peak of one of them.
+        let peak = 2.0 * (2.0 * observed.motions.len() as f64).sqrt();
+        let farthest = largest(|motion| motion.maximum.abs().max(motion.minimum.abs()));
+        let extremes = EXTREMES * f64::EPSILON * farthest;
+        let own = observed.motions[0].peak_to_peak();
+        if own > STILL * (peak * left + extremes) {
+            self.units[0] = own;
+        }
         // An orbit closed by integration is at this very value.
         let refined = self.judge.as_ref().and_then(|judge| judge.refined.as_ref());
         let along = if refined.is_some() {
@@ -124,11 +131,7 @@ impl<'a> Reader<'a> {
             self.along(u, newton)
         };
         let truncation = self.truncation(balance, u, newton);
-        // From a mean square over coordinates to the peak-to-peak of one of them.
-        let peak = 2.0 * (2.0 * observed.motions.len() as f64).sqrt();
         self.rounding = peak * rounding / self.units[0];
-        let farthest = largest(|motion| motion.maximum.abs().max(motion.minimum.abs()));
-        let extremes = EXTREMES * f64::EPSILON * farthest;
         self.across = truncation + (peak * left + extremes) / self.units[0] + ROUNDING;
         self.across + along
     }

@@ -34,6 +34,13 @@ pub enum FlowError {
         /// How many.
         switches: usize,
     },
+    /// More steps in one period than the motion is worth: a force that changes on a scale which they do not reach.
+    TooManySteps {
+        /// Where.
+        phase: f64,
+        /// How many.
+        steps: usize,
+    },
     /// The motion rests on a level at which the force jumps, held by the jump: it sticks.
     Rests {
         /// Where.
@@ -77,6 +84,7 @@ crate::error::sentence_as_debug! {
     Section { phase }
     NoPeriods {}
     TooManySwitches { phase, switches }
+    TooManySteps { phase, steps }
     Rests { phase }
     Grazes { phase }
     SingularMass { determinant }
@@ -104,6 +112,7 @@ impl FlowError {
             Self::Entries { entries, expected } => [10.0, entries as f64, expected as f64],
             Self::Section { phase } => [11.0, phase, 0.0],
             Self::NoPeriods => [12.0, 0.0, 0.0],
+            Self::TooManySteps { phase, steps } => [13.0, phase, steps as f64],
         }
     }
 
@@ -136,6 +145,10 @@ impl FlowError {
             },
             11 => Self::Section { phase: a },
             12 => Self::NoPeriods,
+            13 => Self::TooManySteps {
+                phase: a,
+                steps: b as usize,
+            },
             _ => return None,
         })
     }
@@ -147,6 +160,7 @@ impl FlowError {
             | Self::NotFinite { phase }
             | Self::Section { phase }
             | Self::TooManySwitches { phase, .. }
+            | Self::TooManySteps { phase, .. }
             | Self::Rests { phase }
             | Self::Grazes { phase } => *phase = to(*phase),
             Self::SingularMass { .. }
@@ -227,6 +241,10 @@ impl std::fmt::Display for FlowError {
                     "{switches} switches within one period at the phase {phase}"
                 )
             }
+            Self::TooManySteps { phase, steps } => write!(
+                f,
+                "{steps} steps within one period at the phase {phase}: the force changes on a scale that they do not reach"
+            ),
             Self::Rests { phase } => write!(
                 f,
                 "the motion rests on a level at which the force jumps, at the phase {phase}"

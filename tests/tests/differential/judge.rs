@@ -6,6 +6,7 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use hertzian::generic::Declaration;
+use hertzian::time::FlowError;
 use hertzian::{Error, FrequencyResponse, Shooting};
 use hertzian_tests::random::Random;
 
@@ -258,6 +259,15 @@ impl Case {
             | Error::SearchLimit { .. }
             | Error::NoSuchPeriod { .. }
             | Error::CarriedAway { .. } => {}
+            Error::Motion { reason, .. } | Error::Flow(reason)
+                if matches!(
+                    reason,
+                    FlowError::Rests { .. } | FlowError::StepTooShort { .. }
+                ) =>
+            {
+                self.find(Kind::Refused, format!("{name} from {value:?}: {error}"));
+                return;
+            }
             Error::Motion { .. } | Error::Flow(_) => {
                 self.report
                     .count("branches that did not begin: a motion was lost");

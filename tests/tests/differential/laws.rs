@@ -197,10 +197,12 @@ fn sharp_of_gap(draft: &mut Draft) -> Law {
     let scale = draft.parameter("w", width);
     let ratio = Expression::Gap.over(scale.clone());
     let square = ratio.clone().to(Expression::Number(2.0));
-    let force = match draft.random.below(5) {
+    let force = match draft.random.below(7) {
         0 | 1 => force.times(ratio.tanh()),
         2 => Expression::Product(vec![force, ratio, square.negative().exp()]),
         3 => force.times(square.negative().exp()),
+        4 => force.over(one().plus(ratio.to(Expression::Number(8.0)))),
+        5 => force.over(one().plus(ratio.negative().exp())),
         _ => force.times(ratio.over(one().plus(square))),
     };
     sharp(force, Variable::Gap, scale)
@@ -219,8 +221,9 @@ fn sharp_of_rate(draft: &mut Draft) -> Law {
     let scale = draft.parameter("v", width);
     let ratio = Expression::Rate.over(scale.clone());
     let square = ratio.clone().to(Expression::Number(2.0));
-    let force = match draft.random.below(3) {
+    let force = match draft.random.below(4) {
         0 | 1 => force.times(ratio.tanh()),
+        2 => force.over(one().plus(ratio.negative().exp())),
         _ => force.times(ratio.over(one().plus(square))),
     };
     sharp(force, Variable::Rate, scale)

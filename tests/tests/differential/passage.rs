@@ -161,7 +161,7 @@ pub fn matched(a: &Passage, b: &Passage, range: [f64; 2]) -> Matched {
             let kind = std::mem::discriminant(&event.kind) == std::mem::discriminant(&other.kind);
             let apart = (event.value - other.value).abs();
             let known = [event.error, other.error].iter().sum::<f64>();
-            let window = (1e-5 * width).max(if known.is_finite() { 5.0 * known } else { 0.0 });
+            let window = (1e-4 * width).max(if known.is_finite() { 5.0 * known } else { 0.0 });
             let size = (event.peak_to_peak - other.peak_to_peak).abs();
             (kind && apart <= window.min(0.02 * width) && size <= 0.02 * event.peak_to_peak)
                 .then_some(apart)

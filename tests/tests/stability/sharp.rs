@@ -47,6 +47,20 @@ hertzian::oscillator! {
 }
 
 hertzian::oscillator! {
+    SteepBump(x) {
+        param width > 0;
+        ddot(x) + 0.0005*dot(x) + x + 3/(1 + ((x - 0.37)/width)^8) = cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    Logistic(x) {
+        param width > 0;
+        ddot(x) + 0.05*dot(x) + x + 0.1/(1 + exp(-dot(x)/width)) = cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
     QuadraticDrag(x) {
         param width > 0;
         ddot(x) + 0.05*dot(x) + width*|dot(x)|*dot(x) + x + 0.2*x^3 = cos(omega*t);
@@ -87,7 +101,40 @@ fn sech2(u: f64) -> f64 {
     1.0 - u.tanh().powi(2)
 }
 
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 11] = [
+    (
+        "steep bump",
+        |width| Box::new(SteepBump { width }),
+        |x, v, w| {
+            let u = (x - 0.37) / w;
+            let bump = 1.0 + u.powi(8);
+            [
+                0.0005 * v + x + 3.0 / bump,
+                1.0 - 24.0 * u.powi(7) / (w * bump * bump),
+                0.0005,
+                u,
+                1.0 / w,
+                0.0,
+            ]
+        },
+    ),
+    (
+        "logistic",
+        |width| Box::new(Logistic { width }),
+        |x, v, w| {
+            // 1/(1 + exp(-u)) = (1 + tanh(u/2))/2, which has no overflow.
+            let u = v / w;
+            let force = 0.05 * v + x + 0.05 * (1.0 + (0.5 * u).tanh());
+            [
+                force,
+                1.0,
+                0.05 + 0.025 * sech2(0.5 * u) / w,
+                u,
+                0.0,
+                1.0 / w,
+            ]
+        },
+    ),
     (
         "tanh of gap",
         |width| Box::new(TanhOfGap { width }),

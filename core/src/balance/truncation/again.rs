@@ -48,12 +48,8 @@ impl Finer<'_> {
             return first;
         }
         self.further.clone_from(&self.orbit);
-        let left = self.step_on(u, newton);
-        let error = match left {
-            Some(left) => {
-                let unit = units.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-                first.max(self.largest_change(u, phases, units)) + left / unit
-            }
+        let error = match self.step_on(u, units, newton) {
+            Some(left) => first.max(self.largest_change(u, phases, units)) + left,
             None => f64::INFINITY,
         };
         // What else is read off the orbit is to first order.
@@ -72,21 +68,29 @@ impl Finer<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// Corrects the orbit further, and returns a bound on what is left of the peak-to-peak, (1); `None` if that is not finite.
-    fn step_on(&mut self, u: &[f64], newton: &mut Newton) -> Option<f64> {
-        let all = self.distance(|finer, index| finer.orbit[index] - finer.start(u, index));
+    /// Corrects the orbit further, and returns a bound on what is left of the peak-to-peak, (1), each coordinate in its unit; `None` if
+    /// that is not finite, or if steps grow.
+    fn step_on(&mut self, u: &[f64], units: &[f64], newton: &mut Newton) -> Option<f64> {
+        let all = self.distance(units, |finer, index| {
+            finer.orbit[index] - finer.start(u, index)
+        });
+        if all == 0.0 {
+            return Some(0.0);
+        }
         let (mut before, mut ratio, mut last) = (all, 0.0, 0.0);
         self.before.clone_from(&self.orbit);
         for _ in 0..STEPS {
             self.step(newton)?;
-            last = self.distance(|finer, index| finer.orbit[index] - finer.before[index]);
+            last = self.distance(units, |finer, index| {
+                finer.orbit[index] - finer.before[index]
+            });
             self.before.copy_from_slice(&self.orbit);
             ratio = last / before;
             before = last;
-            if !ratio.is_finite() {
+            if !(ratio <= 1.0) {
                 return None;
             }
-            if last <= ENOUGH * all || ratio > 1.0 {
+            if last <= ENOUGH * all {
                 break;
             }
         }
@@ -119,13 +123,15 @@ impl Finer<'_> {
         }
     }
 
-    /// The largest of the coordinates of the root mean square of a difference, without the mean; in the order of a change of an extreme.
-    fn distance(&self, difference: impl Fn(&Self, usize) -> f64) -> f64 {
+    /// The largest of the coordinates of the root mean square of a difference, without the mean, in its unit; in the order of a change of
+    /// an extreme.
+    fn distance(&self, units: &[f64], difference: impl Fn(&Self, usize) -> f64) -> f64 {
         let fine = self.balance.length();
-        let squares = (0..self.balance.layout().coordinates).map(|coordinate| {
+        let sizes = units.iter().enumerate().map(|(coordinate, unit)| {
             let entries = coordinate * fine + 1..(coordinate + 1) * fine;
-            entries.map(|index| difference(self, index).powi(2)).sum()
+            let square: f64 = entries.map(|index| difference(self, index).powi(2)).sum();
+            square.sqrt() / unit
         });
-        f64::sqrt(squares.fold(0.0, f64::max))
+        sizes.fold(0.0, f64::max)
     }
 }

@@ -7,8 +7,8 @@
 //! |R_k| <= E (2 K / k)^p,     E = max over 3/2 K < k <= 2 K of |R_k| (k / 2 K)^p                                  (1)
 //! ```
 //!
-//! with `p = 1` where a force jumps and `p = 2` where its slope does, the slowest there is; and the two harmonics beside the
-//! frequency of each mode answer to it.
+//! with `p = 1` where a force jumps or its stiffness is unbounded (there `p = 1 + alpha` for an exponent `alpha` below one), and `p = 2`
+//! where its slope jumps, the slowest of the others; and the two harmonics beside the frequency of each mode answer to it.
 //!
 //! Source: Katznelson (2004), An Introduction to Harmonic Analysis, section I.4 (order of Fourier coefficients).
 
@@ -103,12 +103,12 @@ impl Modes {
     }
 }
 
-/// Whether the force of a contact jumps at a level, at rest or in motion.
+/// Whether the force of a contact jumps at a level, at rest or in motion, or is steeper there than any line.
 fn has_jumps(balance: &Balance<'_>) -> bool {
     balance.layout().contacts.iter().any(|contact| {
-        let levels = &balance.system().law(contact.law).facts().levels;
-        let mut levels = levels.iter();
-        levels.any(|level| level.force_jumps || level.by_rate_jumps)
+        let facts = balance.system().law(contact.law).facts();
+        let mut levels = facts.levels.iter();
+        levels.any(|level| level.force_jumps || level.by_rate_jumps || level.unbounded_by_gap)
     })
 }
 

@@ -118,11 +118,19 @@ pub fn cosine(x: f64) -> f64 {
     x.cos()
 }
 
-/// Exponential.
+/// Exponential, up to 8e99: in `exp(x) / (1 + exp(x))^2`, the slope of a logistic curve, infinities would leave no number where the
+/// slope vanishes.
 #[inline(always)]
 pub fn exponential(x: f64) -> f64 {
-    x.exp()
+    if x > LARGEST_EXPONENT {
+        LARGEST_EXPONENT.exp()
+    } else {
+        x.exp()
+    }
 }
+
+/// So that powers up to the third are finite.
+const LARGEST_EXPONENT: f64 = 230.0;
 
 /// Hyperbolic tangent.
 #[inline(always)]

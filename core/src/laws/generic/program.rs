@@ -10,7 +10,7 @@
 use std::ops::Range;
 
 use super::Node;
-use crate::laws::emitted::{power, reciprocal, sign};
+use crate::laws::emitted::{exponential, power, reciprocal, sign};
 
 /// Samples per block. A slot takes 512 bytes, so programs of some sixty operations stay in the first level of the
 /// cache.
@@ -211,7 +211,7 @@ impl Operation {
             ),
             Self::Sine => each(left, result, f64::sin),
             Self::Cosine => each(left, result, f64::cos),
-            Self::Exponential => each(left, result, f64::exp),
+            Self::Exponential => each(left, result, exponential),
             Self::Tanh => each(left, result, f64::tanh),
         }
     }

@@ -34,6 +34,8 @@ const FADES: f64 = 4.0;
 const ORDERS: i32 = 4;
 /// An operand that is smaller than this part of its values beside a level vanishes there.
 const VANISHES: f64 = 1e-5;
+/// Operands beyond this are as good as infinite: a quotient by them is nothing.
+const ENDLESS: f64 = 1e100;
 /// Values that are the same but for rounding.
 const SAME: f64 = 1e-9;
 
@@ -309,12 +311,16 @@ impl Kind {
     /// What the values of an operand at samples tell.
     fn sight(self, values: &[f64], part: f64) -> Sight {
         let last = values.len() - 2;
-        let difference = |j: usize| (values[j + 1] - values[j]).abs();
+        let value = |j: usize| match self {
+            Self::Base => values[j].clamp(-ENDLESS, ENDLESS),
+            _ => values[j],
+        };
+        let difference = |j: usize| (value(j + 1) - value(j)).abs();
         let mut worst = Sight::Clear;
         for j in 0..=last {
             let before = difference(j.saturating_sub(1));
             let change = difference(j).max(before).max(difference((j + 1).min(last)));
-            let (a, b) = (values[j], values[j + 1]);
+            let (a, b) = (value(j), value(j + 1));
             let (low, high) = (a.min(b) - change, a.max(b) + change);
             let nearest = if low <= 0.0 && high >= 0.0 {
                 0.0
@@ -336,7 +342,7 @@ impl Kind {
                 Self::Grows if high <= -VANISHED => Sight::Clear,
                 Self::Grows => close((-high.min(0.0) / (2.0 * FADES)).exp()),
                 Self::Oscillates => close(1.0),
-                Self::Base => close(nearest + change),
+                Self::Base => close(nearest),
                 Self::Bends if nearest > 0.0 => Sight::Clear,
                 Self::Bends => Sight::Bent,
             };

@@ -166,7 +166,9 @@ impl Judge {
             };
             (plain.error, f64::INFINITY, stability)
         };
-        let moved = finer.and_then(|finer| finer.extended().last());
+        // An orbit closed by integration is at the value itself.
+        let moved = finer.filter(|_| self.refined.is_none());
+        let moved = moved.and_then(|finer| finer.extended().last());
         Answer {
             method: self.method,
             stability: stability.beside(balance.rigid()),

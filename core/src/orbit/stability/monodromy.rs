@@ -15,7 +15,8 @@
 //! and `q L` is about as large as the error of `P` (within a factor of two on the orbits that were tried). The error of the
 //! multipliers is how far they move for such an error of the matrix, whatever its signs. The number of steps follows from it,
 //! with the sixth root. How far they move for rounding errors of the matrix, near a double multiplier by the root of these, is added:
-//! no steps make it smaller. Where a law may be sharp, twice the steps are taken as well, and the change counts. Of a system of one coordinate the determinant is known by Liouville's formula,
+//! no steps make it smaller. Where a law may be sharp, and where panels are graded, twice the steps are taken as well, and the change counts: commutators do not
+//! show what the steps leave of an integral. Of a system of one coordinate the determinant is known by Liouville's formula,
 //! `det P = exp(int trace A)`, and gives the smaller multiplier however small it is. Where the matrix of others has lost small
 //! multipliers, they are found from its factors: see [`product`](super::product).
 //!
@@ -52,8 +53,9 @@ const COUNTS: [usize; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
 const TARGET: f64 = 0.15;
 /// Largest order of a matrix whose factors are asked for small multipliers in any case.
 const SMALL: usize = 8;
-/// Fewest steps on a graded panel.
-const FEWEST: usize = 3;
+/// Fewest steps on a graded panel, for each power of its map: that is a polynomial of a degree below twice the power, of which three nodes
+/// a step integrate five, and nothing else tells what they leave of it.
+const FEWEST: usize = 2;
 
 /// Integrates orbits, one after the other.
 #[derive(Debug)]
@@ -66,6 +68,10 @@ pub(crate) struct Monodromy {
     complete: bool,
     /// The nodes of the last orbit do not see its laws.
     overlooks: bool,
+    /// A panel of the last orbit is graded: commutators do not show what is left of its integral.
+    graded: bool,
+    /// How many times the fewest steps are made on a graded panel.
+    finer: usize,
     /// Of the last system of several coordinates.
     many: Option<WalkOfMany>,
     cost: Cost,
@@ -77,6 +83,8 @@ impl Monodromy {
         Self {
             complete,
             overlooks: false,
+            graded: false,
+            finer: 1,
             density: FIRST_DENSITY,
             path: Path::default(),
             linearised: Linearised::default(),
@@ -149,7 +157,9 @@ impl Monodromy {
     /// With twice the steps, and the error that the change tells: commutators do not show what a peak of the damping leaves in the
     /// trace, and other nodes do.
     fn halved(&mut self, orbit: &Orbit<'_>, density: f64, coarse: &Found) -> (Found, f64) {
+        self.finer = 2;
         let (mut finer, _) = self.at_density(orbit, 2.0 * density);
+        self.finer = 1;
         self.linearised.look();
         let changed = distance(&coarse.multipliers, &finer.multipliers) / HALVED;
         finer.error = finer.error.max(changed);
@@ -158,6 +168,7 @@ impl Monodromy {
 
     fn integrate(&mut self, walk: &mut impl Walk, orbit: &Orbit<'_>, density: f64) {
         self.path.begin();
+        self.graded = false;
         if self.path.cuts.is_empty() {
             self.panel(walk, orbit, (0.0, TAU), None, density);
         }
@@ -196,7 +207,13 @@ impl Monodromy {
             end: end_power,
         }
         .balanced();
-        let least = if grading == Grading::NONE { 1 } else { FEWEST };
+        self.graded |= grading != Grading::NONE;
+        let least = if grading == Grading::NONE {
+            1
+        } else {
+            let power = grading.start.max(grading.end) as usize;
+            self.finer * FEWEST * power
+        };
         let wanted = (density * (end - start) / TAU).ceil() as usize;
         let steps = count(wanted.max(least));
         let panel = Panel {
@@ -255,7 +272,7 @@ impl Floquet for Monodromy {
             } else {
                 factor
             };
-            if sight.is_some() && error <= aim && density < LARGEST_DENSITY {
+            if (sight.is_some() || self.graded) && error <= aim && density < LARGEST_DENSITY {
                 let (finer, halved) = self.halved(orbit, density, &found);
                 if halved <= aim {
                     self.density = density;

@@ -137,11 +137,14 @@ pub(crate) struct Refined {
     state: Vec<f64>,
     /// Size of its largest oscillation.
     size: f64,
+    /// The last update of the state, relative to the size.
+    left: f64,
 }
 
 impl Refined {
-    /// The largest difference of a coordinate's peak-to-peak, in its unit, from that of series, whose extremes have these phases; to
-    /// first order, since extremes are flat. With what the integration may err by.
+    /// The largest difference of a coordinate's peak-to-peak, in its unit, from that of series, whose extremes have these phases: with the
+    /// rate `v` that the motion has there and the acceleration `a` of the series, its extreme is `v^2 / 2 a` beyond. Both parts are taken
+    /// by their sizes, with what the integration and the last update may err by.
     pub(crate) fn peak_to_peak_error(
         &self,
         balance: &Balance<'_>,
@@ -157,16 +160,24 @@ impl Refined {
         let mut largest = 0.0_f64;
         for (coordinate, phases) in phases.iter().enumerate() {
             let of = &series[coordinate * length..][..length];
-            let mut range = [0.0; 2];
+            let (mut range, mut beyond) = ([0.0; 2], 0.0);
             for (difference, phase) in range.iter_mut().zip(phases) {
                 let mut state = self.state.clone();
                 // Phases of series are of the orbit's own period, those of a flow of the declaration's.
                 flow.advance(0.0, phase * period, &mut state, None, None)
                     .ok()?;
-                let (value, _, _) = series::value_and_derivatives(of, *phase);
+                let (value, _, bend) = series::value_and_derivatives(of, *phase);
                 *difference = state[coordinate] - value;
+                let slope = state[coordinates + coordinate] / balance.base();
+                let rise = slope * slope / (2.0 * bend.abs());
+                beyond += if slope == 0.0 {
+                    0.0
+                } else {
+                    rise.min(self.size)
+                };
             }
-            let difference = (range[1] - range[0]).abs() + INTEGRATED * self.size;
+            let left = (INTEGRATED + 2.0 * self.left) * self.size;
+            let difference = (range[1] - range[0]).abs() + beyond + left;
             largest = largest.max(difference / units[coordinate]);
         }
         Some(largest)
@@ -184,14 +195,19 @@ pub(super) fn multipliers(balance: &Balance<'_>, orbit: &[f64]) -> Option<(Found
         let entries = a.iter().zip(b).zip(units);
         entries.fold(0.0_f64, |m, ((x, y), unit)| m.max((x - y).abs() / unit))
     };
+    let mut near = false;
     for _ in 0..STEPS {
         let (change, _) = coarse.step(&mut state)?;
         if apart(&state, &first, &coarse.units) > FAR * size {
             return None;
         }
-        if change <= NEAR * size {
+        near = change <= NEAR * size;
+        if near {
             break;
         }
+    }
+    if !near {
+        return None;
     }
     let mut fine = Map::new(balance, FINE)?;
     let (mut change, mut before) = fine.step(&mut state)?;
@@ -201,13 +217,17 @@ pub(super) fn multipliers(balance: &Balance<'_>, orbit: &[f64]) -> Option<(Found
         // Below what is near, updates that no longer shrink are rounding and tolerance.
         let settled = next <= NEAR * size && next >= 0.5 * change;
         if next <= CLOSED * size || settled {
+            if apart(&state, &first, &fine.units) > FAR * size {
+                return None;
+            }
             let [matrix, other, before] =
                 [matrix, coarse.at(&at)?.1, before].map(|matrix| fine.reduced(matrix));
             let mut found = Map::multipliers(&matrix)?;
             let differ = |other: &DMatrix<f64>| distance(&found.multipliers, &eigenvalues(other));
             let error = differ(&other) + differ(&before);
             found.error += error;
-            return Some((found, Refined { state, size }));
+            let left = next / size;
+            return Some((found, Refined { state, size, left }));
         }
         (change, before) = (next, matrix);
     }

@@ -5,6 +5,7 @@
 //! absolute value, which is smooth, is followed as gaps are beside levels ([`crossing`](super::crossing)), and steps end where it changes
 //! its sign.
 
+use super::drive::SHORTEST;
 use super::engine::Engine;
 use super::roots;
 
@@ -57,6 +58,8 @@ impl<const S: usize> Engine<'_, S> {
             }
         }
         let part = map.place(first?);
-        (part < 1.0 - ENDS).then_some(part)
+        let shortest = SHORTEST * self.phase().abs().max(1.0);
+        let goes_on = part * self.trial.width.abs() > shortest;
+        (goes_on && part < 1.0 - ENDS).then_some(part)
     }
 }

@@ -109,6 +109,8 @@ pub(super) struct Engine<'a, const S: usize> {
     pub(super) bends: bool,
     /// Switches, and where they began to be counted.
     pub(super) switches: (usize, f64),
+    /// Steps, and where they began to be counted.
+    pub(super) steps: (usize, f64),
     pub(super) work: Work,
 }
 
@@ -182,6 +184,7 @@ impl<'a, const S: usize> Engine<'a, S> {
             aim: None,
             bends: false,
             switches: (0, 0.0),
+            steps: (0, 0.0),
             work: Work::default(),
             rule,
             field,
@@ -217,6 +220,7 @@ impl<'a, const S: usize> Engine<'a, S> {
         }
         write_scales(&self.here.sizes, self.field.base(), &mut self.scales);
         self.switches = (0, 0.0);
+        self.steps = (0, 0.0);
         self.aim = None;
         for contact in 0..self.here.on.len() {
             self.here.on[contact] = None;
@@ -390,6 +394,21 @@ impl<'a, const S: usize> Engine<'a, S> {
         self.work.forces += 1;
     }
 
+    /// Counts a step.
+    pub(super) fn count_step(&mut self) -> Result<(), FlowError> {
+        if (self.here.passed - self.steps.1).abs() > TAU {
+            self.steps = (0, self.here.passed);
+        }
+        self.steps.0 += 1;
+        if self.steps.0 > MOST_STEPS {
+            return Err(FlowError::TooManySteps {
+                phase: self.phase(),
+                steps: self.steps.0,
+            });
+        }
+        Ok(())
+    }
+
     /// Counts a switch.
     pub(super) fn count_switch(&mut self) -> Result<(), FlowError> {
         self.work.switches += 1;
@@ -418,6 +437,9 @@ pub(super) fn write_scales(sizes: &[[f64; 2]], base: f64, scales: &mut [[f64; 2]
         *scale = [position.max(f64::MIN_POSITIVE), rate.max(f64::MIN_POSITIVE)];
     }
 }
+
+/// Steps within one period.
+const MOST_STEPS: usize = 100_000;
 
 /// Switches of one contact within one period.
 const MOST_SWITCHES: usize = 2000;

@@ -33,7 +33,7 @@ pub(super) fn exactly(c: &[f64], near: f64) -> f64 {
     let (mut at_before, mut at) = (value(c, before), value(c, u));
     for _ in 0..SECANTS {
         let next = u - at * (u - before) / (at - at_before);
-        if next.is_nan() || (next - near).abs() > 10.0 * CLOSE {
+        if next.is_nan() || (next - near).abs() > CLOSE {
             break;
         }
         (before, at_before) = (u, at);
