@@ -43,7 +43,10 @@ pub fn main() -> Result<(), Error> {
             distance: 1.0,
             drive: 0.1,
         };
-        let request = FrequencyResponse::of(&model).from(0.7).to(1.4);
+        let request = FrequencyResponse::of(&model)
+            .from(0.7)
+            .to(1.4)
+            .tolerance(1e-4);
         let branch = request.bifurcations(true).run()?;
         println!("preload {preload}:");
         for event in &branch.events {

@@ -85,27 +85,65 @@ fn printed(name: &str) -> String {
     String::from_utf8(ran.stdout).expect("text")
 }
 
-/// Lines of the README that show what is printed, but for how long it took.
+/// The lines of a text between the line that begins a block, after one with these words, and the end of the block.
+fn block<'t>(text: &'t str, words: &str) -> Vec<&'t str> {
+    let lines = text.lines().skip_while(|line| !line.contains(words));
+    let lines = lines.skip_while(|line| *line != "```text").skip(1);
+    lines.take_while(|line| *line != "```").collect()
+}
+
+/// A line without how long it took.
+fn timeless(line: &str) -> &str {
+    line.split_once(" ms; ").map_or(line, |(_, counts)| counts)
+}
+
 #[test]
-fn the_readme_shows_what_is_printed() {
-    let shown = README
-        .lines()
-        .skip_while(|line| !line.contains("It prints"))
-        .skip_while(|line| *line != "```text")
-        .skip(1)
-        .take_while(|line| *line != "```");
-    let printed = printed("response");
-    let timeless = |line: &str| match line.split_once(" ms; ") {
-        Some((_, counts)) => counts.to_owned(),
-        None => line.to_owned(),
-    };
-    let printed: Vec<String> = printed.lines().map(timeless).collect();
-    let mut count = 0;
-    for line in shown.map(timeless) {
-        assert!(printed.contains(&line), "{line}\nis not in\n{printed:#?}");
-        count += 1;
+fn what_is_printed_is_what_is_shown() {
+    const CHAPTER: &str = include_str!("../../docs/book/src/measured-contact.md");
+    for (name, shown) in [
+        ("response", block(README, "It prints")),
+        (
+            "contact_resonance",
+            block(CHAPTER, "at four excitations and draws"),
+        ),
+    ] {
+        let printed = printed(name);
+        let printed: Vec<&str> = printed.lines().map(timeless).collect();
+        assert!(shown.len() > 5);
+        for line in shown.into_iter().map(timeless) {
+            assert!(printed.contains(&line), "{line}\nis not in\n{printed:#?}");
+        }
     }
-    assert!(count > 5);
+}
+
+/// Up to the touch the motion is linear: where its amplitude is that of the distance is known in closed form,
+/// `(1 - w^2)^2 + (2 zeta w)^2 = drive^2` for the stop, and with `profile w^2 / torque` on the right for the gears.
+#[test]
+fn motions_begin_to_touch_where_they_must() {
+    // Of `w^4 (1 - a) + w^2 (4 zeta^2 - 2) + 1 = b`.
+    let roots = |a: f64, b: f64, zeta: f64| {
+        let (two, half) = (1.0 - a, 1.0 - 2.0 * zeta * zeta);
+        let root = (half * half - two * (1.0 - b)).sqrt();
+        [-root, root].map(|root| ((half + root) / two).sqrt())
+    };
+    let stop = roots(0.0, 0.1_f64.powi(2), 0.02);
+    let gears = [0.02, 0.05].map(|profile: f64| roots((profile / 0.1).powi(2), 0.0, 0.05));
+    let touches = |name: &str| -> Vec<String> {
+        let printed = printed(name);
+        let lines = printed
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("grazing at "));
+        let values = lines.filter_map(|line| line.split(' ').next());
+        values.map(str::to_owned).collect()
+    };
+    let written = |values: &[f64]| -> Vec<String> {
+        values.iter().map(|value| format!("{value:.9}")).collect()
+    };
+    assert_eq!(
+        touches("preloaded_stop"),
+        written(&[stop, stop, stop].concat())
+    );
+    assert_eq!(touches("gear_pair")[..4], written(&gears.concat()));
 }
 
 /// Each is listed here, is an example of the package by that name, is in the table of the README, and is short.

@@ -10,7 +10,7 @@ use super::figures;
 use crate::misplaced::{Given, count};
 use crate::model::ModelOptions;
 
-/// Finds what the motions of one mass on a power-law contact settle to, and draws it.
+/// Finds what the motions of a mass on a power-law contact, or of a declared oscillator, settle to, and draws it.
 ///
 /// x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = drive cos(omega t) + load
 ///

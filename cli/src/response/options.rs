@@ -8,7 +8,7 @@ use hertzian::stability::{Method, Projection, Sorting};
 use crate::misplaced::{Given, count};
 use crate::model::ModelOptions;
 
-/// Traces the periodic response of one mass on a power-law contact, says what is stable, and draws it.
+/// Traces the periodic response of a mass on a power-law contact, or of a declared oscillator, says what is stable, and draws it.
 ///
 /// x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = drive cos(omega t) + load
 ///
