@@ -87,7 +87,7 @@ impl Finer<'_> {
             self.before.copy_from_slice(&self.orbit);
             ratio = last / before;
             before = last;
-            if !(ratio <= 1.0) {
+            if ratio.is_nan() || ratio > 1.0 {
                 return None;
             }
             if last <= ENOUGH * all {
