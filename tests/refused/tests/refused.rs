@@ -3,6 +3,7 @@
 //!
 //! Dependencies of this package are few: trybuild checks all of them, twice, with and without a width of messages.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -37,7 +38,7 @@ fn the_compiler_shows_these_messages_and_no_others() {
             let name = path.file_stem().expect("the name of a case");
             let text = fs::read_to_string(path).expect("a case");
             let name = name.display();
-            together += &format!("mod {name} {{\n{text}}}\n");
+            let _ = write!(together, "mod {name} {{\n{text}}}\n");
         }
         let path = folder.join(format!("some_{index}.rs"));
         let messages = shown::of(&together, &path.display().to_string());
