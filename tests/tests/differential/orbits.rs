@@ -104,6 +104,11 @@ impl Case {
             return None;
         }
         self.report.count("orbits");
+        if stability.rigid > 0 {
+            // A shift of the whole is not determined: the state that comes back is one of many.
+            self.report.count("orbits of a system that nothing holds");
+            return None;
+        }
         let truth = match question.truth(state) {
             Ok(truth) => truth,
             Err(unsure) => {
