@@ -41,8 +41,8 @@ pub(crate) struct Crossing {
 }
 
 /// Where a test function vanishes between two points although the bordered matrix is singular there.
-pub(crate) fn locate_crossing<P: Problem>(
-    problem: &mut P,
+pub(crate) fn locate_crossing(
+    problem: &mut dyn Problem,
     newton: &mut Newton,
     (a, b): (&CurvePoint, &CurvePoint),
     options: NewtonOptions,
@@ -121,8 +121,8 @@ pub(crate) fn locate_crossing<P: Problem>(
 
 /// Length of the update that Newton's method would make at a point, with the matrix of the first node: at the point itself it is
 /// singular, and a residual has units that say nothing of how far a solution is. The first node is the nearest to the zero.
-fn newton_update<P: Problem>(
-    problem: &mut P,
+fn newton_update(
+    problem: &mut dyn Problem,
     newton: &mut Newton,
     point: &CurvePoint,
     (border, nodes): (&[f64], &[Node]),

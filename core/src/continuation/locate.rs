@@ -27,8 +27,8 @@ const CLOSEST: f64 = 1e-14;
 /// Where a test function changes sign between `a` and `b`: its zero, or the place where it jumps.
 ///
 /// `None` if corrections fail on the way, or a tangent is not that of the whole system.
-pub(crate) fn locate<P: Problem>(
-    problem: &mut P,
+pub(crate) fn locate(
+    problem: &mut dyn Problem,
     newton: &mut Newton,
     (a, b): (&CurvePoint, &CurvePoint),
     options: NewtonOptions,
@@ -106,8 +106,8 @@ pub(crate) fn locate<P: Problem>(
 /// The point of the curve at a part of the way from `a` to `b`, as the arc length along the first tangent tells.
 ///
 /// `None` if the correction fails.
-pub(crate) fn inside<P: Problem>(
-    problem: &mut P,
+pub(crate) fn inside(
+    problem: &mut dyn Problem,
     newton: &mut Newton,
     (a, b): (&CurvePoint, &CurvePoint),
     part: f64,
@@ -151,8 +151,8 @@ fn interpolated(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> f64 {
 }
 
 /// The solution near `u`, with the tangent of the whole system.
-fn corrected<P: Problem>(
-    problem: &mut P,
+fn corrected(
+    problem: &mut dyn Problem,
     newton: &mut Newton,
     mut u: Vec<f64>,
     border: Border<'_>,

@@ -79,7 +79,7 @@ pub struct Norm {
 
 impl Norm {
     /// Of this problem.
-    pub fn of(problem: &impl Problem) -> Self {
+    pub fn of(problem: &dyn Problem) -> Self {
         let n = problem.unknowns();
         let mut weights = vec![0.0; n];
         problem.weights(&mut weights);

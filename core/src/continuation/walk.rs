@@ -35,7 +35,7 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    fn new(problem: &impl Problem, options: FollowOptions, u: Vec<f64>) -> Self {
+    fn new(problem: &dyn Problem, options: FollowOptions, u: Vec<f64>) -> Self {
         let parameter = (options.to - options.from).abs();
         Self {
             options,
@@ -53,8 +53,8 @@ impl Walk {
     }
 
     /// Finds the first point, or corrects the one where a walk was halted.
-    pub(super) fn begin<P: Problem>(
-        problem: &mut P,
+    pub(super) fn begin(
+        problem: &mut dyn Problem,
         newton: &mut Newton,
         start: Start,
         options: FollowOptions,
@@ -112,9 +112,9 @@ impl Walk {
 
     /// Corrects a point of another number of unknowns, in the plane across its tangent; at an end of the range, there. Without a
     /// tangent the branch goes towards the end of the range.
-    fn again<P: Problem>(
+    fn again(
         &mut self,
-        problem: &mut P,
+        problem: &mut dyn Problem,
         newton: &mut Newton,
         point: &CurvePoint,
         at_end: bool,
@@ -198,9 +198,9 @@ impl Walk {
     }
 
     /// Solves at the first parameter and points the tangent towards the end of the range.
-    fn first<P: Problem>(
+    fn first(
         &mut self,
-        problem: &mut P,
+        problem: &mut dyn Problem,
         newton: &mut Newton,
     ) -> Result<CurvePoint, NewtonError> {
         self.scale = self.scale_at_trial(newton);
@@ -215,9 +215,9 @@ impl Walk {
     }
 
     /// Solves from `trial` with the parameter held at a value.
-    fn solve_at<P: Problem>(
+    fn solve_at(
         &mut self,
-        problem: &mut P,
+        problem: &mut dyn Problem,
         newton: &mut Newton,
         value: f64,
     ) -> Result<(), NewtonError> {
@@ -241,7 +241,7 @@ impl Walk {
     }
 
     /// The point at `trial`, with the tangent from the last matrix of the corrector.
-    fn point<P: Problem>(&mut self, problem: &mut P, newton: &mut Newton) -> CurvePoint {
+    fn point(&mut self, problem: &mut dyn Problem, newton: &mut Newton) -> CurvePoint {
         let mut tangent = vec![0.0; self.trial.len()];
         newton.tangent(problem, &self.trial, &mut tangent, false);
         let scale = self.scale_at_trial(newton);
@@ -269,9 +269,9 @@ impl Walk {
     }
 
     /// One step, shortened until it succeeds.
-    pub(super) fn next<P: Problem>(
+    pub(super) fn next(
         &mut self,
-        problem: &mut P,
+        problem: &mut dyn Problem,
         newton: &mut Newton,
         from: &CurvePoint,
     ) -> Result<CurvePoint, Stop> {
@@ -345,9 +345,9 @@ impl Walk {
     }
 
     /// The solution of (1) at arc length `step` from a point, and how far off the predictor was.
-    fn corrected<P: Problem>(
+    fn corrected(
         &mut self,
-        problem: &mut P,
+        problem: &mut dyn Problem,
         newton: &mut Newton,
         from: &CurvePoint,
         step: f64,
@@ -375,9 +375,9 @@ impl Walk {
     }
 
     /// If the step went beyond an end of the range, replaces its point by the one at the end.
-    pub(super) fn cut_at_range<P: Problem>(
+    pub(super) fn cut_at_range(
         &mut self,
-        problem: &mut P,
+        problem: &mut dyn Problem,
         newton: &mut Newton,
         from: &CurvePoint,
         next: CurvePoint,

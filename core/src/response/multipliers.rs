@@ -49,7 +49,7 @@ impl Branch<'_> {
 /// false if that fails.
 fn factorise(
     follower: &Follower<'_>,
-    problem: &mut impl Problem,
+    problem: &mut dyn Problem,
     newton: &mut Newton,
     u: &[f64],
 ) -> bool {

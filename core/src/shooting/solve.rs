@@ -12,7 +12,7 @@ pub(super) fn scale_at(newton: &Newton, u: &[f64]) -> Scale {
 
 /// Solves with the parameter held at the last entry of `u`.
 pub(super) fn at_value(
-    problem: &mut impl Problem,
+    problem: &mut dyn Problem,
     newton: &mut Newton,
     u: &mut [f64],
     options: NewtonOptions,
@@ -23,7 +23,7 @@ pub(super) fn at_value(
 
 /// Solves with one of the extended unknowns held.
 pub(super) fn with_held(
-    problem: &mut impl Problem,
+    problem: &mut dyn Problem,
     newton: &mut Newton,
     u: &mut [f64],
     held: usize,

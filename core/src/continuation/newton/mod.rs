@@ -101,7 +101,7 @@ pub struct Border<'a> {
 
 impl Newton {
     /// Room for `n` unknowns and a parameter.
-    pub fn new(problem: &impl Problem) -> Self {
+    pub fn new(problem: &dyn Problem) -> Self {
         let n = problem.unknowns();
         Self {
             jacobian: Jacobian::new(problem.partition()),
@@ -130,7 +130,7 @@ impl Newton {
     /// Size of the residual of the equations alone, which is written.
     pub fn size_of_residual(
         &mut self,
-        problem: &mut impl Problem,
+        problem: &mut dyn Problem,
         u: &[f64],
         values: &mut [f64],
     ) -> f64 {
@@ -149,7 +149,7 @@ impl Newton {
     /// [`NewtonError`]; `u` then holds the last iterate.
     pub fn correct(
         &mut self,
-        problem: &mut impl Problem,
+        problem: &mut dyn Problem,
         u: &mut [f64],
         border: Border<'_>,
         scale: Scale,
@@ -321,7 +321,7 @@ impl Newton {
     /// Fills and factorises the bordered matrix at `u`, with columns in units of the scale.
     fn linearise(
         &mut self,
-        problem: &mut impl Problem,
+        problem: &mut dyn Problem,
         u: &[f64],
         border: Border<'_>,
     ) -> Result<(), NewtonError> {
@@ -346,7 +346,7 @@ impl Newton {
     /// Evaluates the residual at `u` alone.
     fn evaluate(
         &mut self,
-        problem: &mut impl Problem,
+        problem: &mut dyn Problem,
         u: &[f64],
         border: Border<'_>,
     ) -> Result<(), NewtonError> {
@@ -368,7 +368,7 @@ impl Newton {
     }
 
     /// Takes the longest of the halved updates that reduces the residual, or the shortest.
-    fn damped_update(&mut self, problem: &mut impl Problem, u: &mut [f64], border: Border<'_>) {
+    fn damped_update(&mut self, problem: &mut dyn Problem, u: &mut [f64], border: Border<'_>) {
         let n = self.norm.unknowns();
         let before = norm(&self.residual);
         let mut factor = 1.0;
@@ -400,7 +400,7 @@ fn left(size: f64, previous: f64) -> f64 {
 
 /// Evaluates the residual alone, and counts that.
 fn residual(
-    problem: &mut impl Problem,
+    problem: &mut dyn Problem,
     u: &[f64],
     residual: &mut [f64],
     (statistics, operations): (&mut Statistics, &mut u64),

@@ -20,7 +20,7 @@ impl Newton {
     /// Whether the residual at `u` is nothing but rounding, and an update of this size what it makes of it. If so, keeps the latter.
     pub(super) fn is_rounding(
         &mut self,
-        problem: &mut impl Problem,
+        problem: &mut dyn Problem,
         u: &[f64],
         update: f64,
         tolerance: f64,

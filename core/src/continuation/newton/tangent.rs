@@ -26,7 +26,7 @@ impl Newton {
     /// and [`Newton::contraction`] says that there is none.
     pub fn tangent(
         &mut self,
-        problem: &mut impl Problem,
+        problem: &mut dyn Problem,
         u: &[f64],
         tangent: &mut [f64],
         exact: bool,
@@ -89,7 +89,7 @@ impl Newton {
     /// was as small as wanted, or as rounding allows.
     fn refine(
         &mut self,
-        problem: &mut impl Problem,
+        problem: &mut dyn Problem,
         u: &[f64],
         tangent: &mut [f64],
         wanted: f64,
