@@ -24,8 +24,8 @@ pub struct Point {
     /// What is read off it.
     pub observed: Observed,
     /// Estimated error of peak-to-peak from the harmonics that were left out: of the first coordinate relative to its own, of the others
-    /// relative to the largest of all, at this very value of what is varied. A first coordinate whose motion is not told from what is left of the equations is at rest, and measured by the largest. `None` where neither the tolerance nor
-    /// the stability asked for it. Infinite where it could not be estimated: nothing is known of the error then.
+    /// relative to the largest of all, at this very value of what is varied. A first coordinate whose motion is not told from what is left
+    /// of the equations is at rest, and measured by the largest. `None` where neither the tolerance nor the stability asked for it. Infinite where it could not be estimated: nothing is known of the error then.
     pub error: Option<f64>,
 }
 

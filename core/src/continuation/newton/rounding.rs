@@ -9,11 +9,13 @@
 use super::Newton;
 use crate::continuation::problem::Problem;
 
+/// An update of so many times what one rounding of each term makes is still its doing. Chosen, not derived: a residual of [`ROUNDINGS`]
+/// could make as many times that.
+const EXPLAINED: f64 = 16.0;
 /// What conditioning may make of rounding. Where it takes more, as beside a branch point, it is the matrix and not the size of the terms
 /// that keeps updates from shrinking.
 const CONDITION: f64 = 1e3;
-/// A residual of so many roundings of its terms is nothing but rounding: sums over harmonics and nodes add up. So is an update of as
-/// many times what one rounding of each term makes.
+/// A residual of so many roundings of its terms is nothing but rounding: sums over harmonics and nodes add up.
 const ROUNDINGS: f64 = 64.0;
 
 impl Newton {
@@ -45,7 +47,7 @@ impl Newton {
         self.solve(&mut made);
         let size = self.norm.length(self.scale, &made);
         self.trial = made;
-        let explained = size.is_finite() && update <= ROUNDINGS * size;
+        let explained = size.is_finite() && update <= EXPLAINED * size;
         if explained {
             self.rounding = size;
         }

@@ -15,8 +15,9 @@
 //! and `q L` is about as large as the error of `P` (within a factor of two on the orbits that were tried). The error of the
 //! multipliers is how far they move for such an error of the matrix, whatever its signs. The number of steps follows from it,
 //! with the sixth root. How far they move for rounding errors of the matrix, near a double multiplier by the root of these, is added:
-//! no steps make it smaller. Where a law may be sharp, and where panels are graded, twice the steps are taken as well, and the change counts: commutators do not
-//! show what the steps leave of an integral. Of a system of one coordinate the determinant is known by Liouville's formula,
+//! no steps make it smaller. Where a law may be sharp, and where panels are graded, twice the steps are taken as well, and the change
+//! counts: commutators do not show what the steps leave of an integral. Of a system of one coordinate the determinant is known by
+//! Liouville's formula,
 //! `det P = exp(int trace A)`, and gives the smaller multiplier however small it is. Where the matrix of others has lost small
 //! multipliers, they are found from its factors: see [`product`](super::product).
 //!
