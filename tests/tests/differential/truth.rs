@@ -30,6 +30,8 @@ const MOTIONS: usize = 12;
 const CLOSED: f64 = 1e-11;
 /// A multiplier may be so large for each segment.
 const GROWTH: f64 = 100.0;
+/// An orbit so far from the guess, relative to its size, is sought again in more segments.
+const FAR: f64 = 1e-3;
 /// Segments of an orbit at most.
 const SEGMENTS: usize = 16;
 
@@ -183,6 +185,7 @@ impl<'a> Periodic<'a> {
         guess: impl Fn(f64) -> Result<State, Lost>,
     ) -> Result<(Self, Closed), Unsure> {
         let (mut segments, mut reason) = (1, None);
+        let mut elsewhere = None;
         loop {
             let there = Self {
                 motions,
@@ -195,6 +198,11 @@ impl<'a> Periodic<'a> {
                 .map_err(Unsure::Lost)
                 .and_then(|states| there.closed(states, apart));
             match closed {
+                // Differences over a period of a large multiplier may be bounded by the force, so that it is not seen.
+                Ok(closed) if segments < SEGMENTS && there.went_far(&closed, &guess)? => {
+                    elsewhere.get_or_insert((there, closed));
+                    segments *= 2;
+                }
                 Ok(closed) => return Ok((there, closed)),
                 Err(unsure) => {
                     // What was the matter where a multiplier allowed to see it.
@@ -204,11 +212,21 @@ impl<'a> Periodic<'a> {
                     };
                     segments *= 2;
                     if segments > SEGMENTS {
-                        return Err(reason.unwrap_or(unsure));
+                        return elsewhere.ok_or(reason.unwrap_or(unsure));
                     }
                 }
             }
         }
+    }
+
+    /// Whether the orbit is another one than the guess is near to.
+    fn went_far(
+        &self,
+        closed: &Closed,
+        guess: impl Fn(f64) -> Result<State, Lost>,
+    ) -> Result<bool, Lost> {
+        let by = self.difference(&closed.states[0], &guess(0.0)?);
+        Ok(by.rows(0, self.coordinates()).amax() > FAR)
     }
 
     fn coordinates(&self) -> usize {

@@ -361,3 +361,35 @@ fn an_adhesive_contact_has_a_start_everywhere() {
         has_a_start(&Adhesive {}, omega, (1.0, 1.0), "adhesive");
     }
 }
+
+hertzian::oscillator! {
+    /// Two masses that stiffen each other: the force is the derivative of `coupling*x^2*y^2/2`.
+    Stiffening(x, y) {
+        param coupling;
+        param load;
+        ddot(x) + 0.1*dot(x) + x + 0.8*(x - y) + coupling*(y^2)*x = 0;
+        ddot(y) + 0.1*dot(y) + 1.4*y + 0.8*(y - x) + coupling*(x^2)*y = 0.3*cos(omega*t) + load;
+    }
+}
+
+/// Far from rest the products are differences of cubes, and all that is left of them and of the linear forces is rounding: a residual of
+/// zero there is no equilibrium.
+#[test]
+fn a_residual_that_is_all_rounding_is_no_start() {
+    for (coupling, load) in [(0.2, 1.0), (2e-6, 1.0), (0.2, 0.0), (20.0, 30.0)] {
+        let model = Stiffening { coupling, load };
+        for step in 0..20 {
+            let omega = 0.5 + 0.13 * f64::from(step);
+            let point = FrequencyResponse::of(&model).orbit(omega).unwrap();
+            let cycle = Shooting::of(&model)
+                .near_orbit(&point.orbit)
+                .orbit(omega)
+                .unwrap();
+            let error = (point.peak_to_peak() / cycle.peak_to_peak() - 1.0).abs();
+            assert!(
+                error <= point.error.unwrap().max(1e-8),
+                "{coupling} {load} {omega}: {error:e}"
+            );
+        }
+    }
+}

@@ -66,6 +66,17 @@ impl<'a> Fixed<'a> {
         size
     }
 
+    /// Whether the residual at `u` says anything: whether rounding of the terms that it is summed from is smaller than their sum is
+    /// large elsewhere. Far away, where terms of a high power cancel, the residual may be zero and mean nothing.
+    pub(super) fn is_known(&mut self, u: &[f64], elsewhere: f64, effort: &mut Effort) -> bool {
+        let n = self.residual.len();
+        let before = self.balance.operations();
+        let known = self.balance.terms(u, &mut self.residual);
+        effort.take_operations(self.balance.operations() - before);
+        let largest = self.residual[..n].iter().copied().fold(0.0, f64::max);
+        !known || f64::EPSILON * largest <= elsewhere
+    }
+
     /// Newton's method at the fixed value.
     pub(super) fn solve(
         &mut self,
@@ -98,7 +109,8 @@ impl<'a> Fixed<'a> {
         }
         effort.take(&mut self.newton);
         u[last] = self.value;
-        done
+        done?;
+        self.newton.is_told_from_rounding(&mut self.balance, u)
     }
 }
 

@@ -31,6 +31,8 @@ pub(super) fn at_rest(
     let mut smallest: Vec<&Along> = trials.iter().collect();
     smallest.sort_by(|a, b| a.size.total_cmp(&b.size));
     let mut found = Err(NewtonError::NotFinite { iterations: 0 });
+    let at_origin = line.at_origin;
+    smallest.retain(|trial| line.fixed.is_known(&trial.u, at_origin, effort));
     for trial in smallest.into_iter().take(TRIALS) {
         found = line.solved(trial.u.clone(), request, effort);
         if found.is_ok() || effort.is_spent() {

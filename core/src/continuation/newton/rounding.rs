@@ -6,8 +6,8 @@
 //!
 //! Source: Higham (2002), Accuracy and Stability of Numerical Algorithms, section 25.2 (the limiting residual of Newton's method).
 
-use super::Newton;
-use crate::continuation::problem::Problem;
+use super::{Newton, NewtonError, largest};
+use crate::continuation::problem::{Problem, Scale};
 
 /// An update of so many times what one rounding of each term makes is still its doing. Chosen, not derived: a residual of [`ROUNDINGS`]
 /// could make as many times that.
@@ -17,6 +17,8 @@ const EXPLAINED: f64 = 16.0;
 const CONDITION: f64 = 1e3;
 /// A residual of so many roundings of its terms is nothing but rounding: sums over harmonics and nodes add up.
 const ROUNDINGS: f64 = 64.0;
+/// Where one rounding of each term moves a solution by more than this part of its size, it is none.
+const MOST: f64 = 0.1;
 
 impl Newton {
     /// Whether the residual at `u` is nothing but rounding, and an update of this size what it makes of it. If so, keeps the latter.
@@ -39,19 +41,57 @@ impl Newton {
         if CONDITION * f64::EPSILON * largest <= tolerance * self.jacobian.smallest_equation() {
             return false;
         }
+        let size = self.made_by_rounding(self.scale);
+        let explained = size.is_finite() && update <= EXPLAINED * size;
+        if explained {
+            self.rounding = size;
+        }
+        explained
+    }
+
+    /// Size of the update that one rounding of each of the terms in `trial` makes.
+    fn made_by_rounding(&mut self, scale: Scale) -> f64 {
+        let n = self.norm.unknowns();
         for (to, r) in self.trial[..n].iter_mut().zip(&self.residual) {
             *to = (f64::EPSILON * *to).copysign(*r);
         }
         self.trial[n] = 0.0;
         let mut made = std::mem::take(&mut self.trial);
         self.solve(&mut made);
-        let size = self.norm.length(self.scale, &made);
+        let size = self.norm.length(scale, &made);
         self.trial = made;
-        let explained = size.is_finite() && update <= EXPLAINED * size;
-        if explained {
-            self.rounding = size;
+        size
+    }
+
+    /// Refuses a solution of which rounding leaves nothing: where terms of a high power cancel, residuals and updates may vanish far from
+    /// any solution. To be asked right after [`correct`](Self::correct).
+    ///
+    /// # Errors
+    /// [`NewtonError::NotConverged`] with what rounding makes of an update.
+    pub fn is_told_from_rounding(
+        &mut self,
+        problem: &mut dyn Problem,
+        u: &[f64],
+    ) -> Result<(), NewtonError> {
+        let n = self.norm.unknowns();
+        if !problem.terms(u, &mut self.trial[..n]) {
+            return Ok(());
         }
-        explained
+        let residual = largest(&self.trial[..n]) * f64::EPSILON;
+        let own = self.norm.scale_at(u, self.scale.parameter, &mut [0.0; 2]);
+        // A small motion about a state is measured by the whole.
+        let update = self.made_by_rounding(Scale {
+            oscillation: own.mean,
+            ..own
+        });
+        if update <= MOST {
+            return Ok(());
+        }
+        Err(NewtonError::NotConverged {
+            iterations: 0,
+            update,
+            residual,
+        })
     }
 
     /// What rounding of the residual makes of an update, in the units of what oscillates, where the last correction ended there; zero

@@ -439,7 +439,7 @@ pub(super) fn write_scales(sizes: &[[f64; 2]], base: f64, scales: &mut [[f64; 2]
 }
 
 /// Steps within one period, those that were tried and not taken among them.
-const MOST_STEPS: usize = 100_000;
+const MOST_STEPS: usize = 400_000;
 
 /// Switches of one contact within one period.
 const MOST_SWITCHES: usize = 2000;
