@@ -45,7 +45,7 @@ pub fn main() -> Result<(), Error> {
 }
 
 /// What a person wants to know first: how far the branch goes, where it turns, and where it is stable.
-fn describe(branch: &Branch<'_>) {
+fn describe(branch: &Branch) {
     let points = &branch.points;
     println!("{}\n", branch.system().facts().equation);
     if let (Some(first), Some(last)) = (points.first(), points.last()) {

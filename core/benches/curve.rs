@@ -37,7 +37,7 @@ const TURNS: usize = 21;
 /// A sampled curve that takes longer than this is not repeated for a median.
 const LONG: f64 = 0.5;
 
-fn request(harmonics: usize) -> FrequencyResponse<'static> {
+fn request(harmonics: usize) -> FrequencyResponse {
     FrequencyResponse::of(&MODEL)
         .from(0.6)
         .to(1.4)
@@ -46,13 +46,13 @@ fn request(harmonics: usize) -> FrequencyResponse<'static> {
 }
 
 /// Seconds of one run, and its branch.
-fn timed(request: &FrequencyResponse<'static>) -> Option<(f64, Branch<'static>)> {
+fn timed(request: &FrequencyResponse) -> Option<(f64, Branch)> {
     let start = Instant::now();
     let branch = request.run().ok()?;
     Some((start.elapsed().as_secs_f64(), branch))
 }
 
-fn median(request: &FrequencyResponse<'static>) -> f64 {
+fn median(request: &FrequencyResponse) -> f64 {
     let mut times: Vec<f64> = (0..TURNS)
         .filter_map(|_| timed(request).map(|(time, _)| time))
         .collect();
@@ -62,7 +62,7 @@ fn median(request: &FrequencyResponse<'static>) -> f64 {
 
 /// Where the branch turns at large amplitude, which is at the lower frequency, if it turns exactly twice. A turn counts whether or
 /// not its test function could be driven to zero: sampled methods hardly ever can.
-fn upper_fold(branch: &Branch<'_>) -> Option<f64> {
+fn upper_fold(branch: &Branch) -> Option<f64> {
     let folds = branch.folds().map(|fold| fold.point.value);
     let turns = branch.turns.iter();
     let turns = turns.filter(|turn| turn.kind == EventKind::Fold);
@@ -72,7 +72,7 @@ fn upper_fold(branch: &Branch<'_>) -> Option<f64> {
     (all.len() == 2).then(|| all[0])
 }
 
-fn is_right(branch: &Branch<'_>) -> bool {
+fn is_right(branch: &Branch) -> bool {
     upper_fold(branch).is_some_and(|fold| (fold - EXACT).abs() <= ALLOWED)
 }
 

@@ -54,6 +54,9 @@
 //!
 //! # Conventions
 //!
+//! A request takes a copy of the system, with the values that its parameters have at that moment. Requests and results own it: they
+//! can be returned from a function and sent to another thread.
+//!
 //! Time has the unit that the equation has it in; frequencies are angles per time. Orbits are Fourier series, laid out as
 //! [`fourier::series`] says. Nothing panics on the values of parameters or options: what is wrong comes back as an
 //! [`Error`] before any work, and a branch that ends early comes back with what was computed and with the reason.

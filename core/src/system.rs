@@ -13,6 +13,7 @@
 //! evaluate the whole list and its derivative; nothing else of a system needs code.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 pub use crate::law::Bound;
 use crate::law::{Law, is_within};
@@ -41,6 +42,44 @@ pub trait System: Send + Sync {
 
     /// The law of the contacts whose [`ContactFacts::law`] is `index`.
     fn law(&self, index: usize) -> &dyn Law;
+
+    /// A copy with the present values, for whoever keeps the system: requests and results own one, so that they can be returned and
+    /// sent to other threads. Of a type that is `Clone` it is `Arc::new(self.clone())`.
+    fn shared(&self) -> Arc<dyn System>;
+}
+
+/// What is shared already is not copied again.
+impl System for Arc<dyn System> {
+    fn facts(&self) -> &SystemFacts {
+        self.as_ref().facts()
+    }
+
+    fn values(&self, values: &mut [f64]) {
+        self.as_ref().values(values);
+    }
+
+    fn coefficients(&self, parameters: &[f64], omega: f64, coefficients: &mut [f64]) {
+        self.as_ref().coefficients(parameters, omega, coefficients);
+    }
+
+    fn coefficients_by(
+        &self,
+        variable: Variable,
+        parameters: &[f64],
+        omega: f64,
+        derivatives: &mut [f64],
+    ) {
+        self.as_ref()
+            .coefficients_by(variable, parameters, omega, derivatives);
+    }
+
+    fn law(&self, index: usize) -> &dyn Law {
+        self.as_ref().law(index)
+    }
+
+    fn shared(&self) -> Self {
+        Self::clone(self)
+    }
 }
 
 /// What a derivative is taken by, and what a continuation varies.

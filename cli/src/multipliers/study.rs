@@ -100,7 +100,7 @@ pub fn oscillators() -> Vec<Oscillator> {
 
 impl Oscillator {
     /// Its first orbit with some harmonics, as a branch of one point.
-    fn branch(&self, harmonics: usize) -> Result<Branch<'_>, Error> {
+    fn branch(&self, harmonics: usize) -> Result<Branch, Error> {
         FrequencyResponse::of(self.system.as_ref())
             .vary("drive")
             .omega(self.omega)
@@ -112,7 +112,7 @@ impl Oscillator {
             .run_with(|_| ControlFlow::Break(()))
     }
 
-    fn exact(&self, near: &Branch<'_>) -> Result<Cycle, Error> {
+    fn exact(&self, near: &Branch) -> Result<Cycle, Error> {
         Shooting::of(self.system.as_ref())
             .near_orbit(&near.points[0].orbit)
             .tolerance(EXACT)

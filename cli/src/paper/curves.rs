@@ -177,11 +177,7 @@ impl<'t> Curves<'t> {
     }
 
     /// Traces a curve until it ends or is interrupted.
-    fn followed<'s>(
-        &mut self,
-        case: &Case,
-        request: &FrequencyResponse<'s>,
-    ) -> Result<Branch<'s>, String> {
+    fn followed<'s>(&mut self, case: &Case, request: &FrequencyResponse) -> Result<Branch, String> {
         let task = self.task;
         let followed = request.run_with(|_| {
             if task.interrupted.load(Ordering::Relaxed) {
@@ -196,7 +192,7 @@ impl<'t> Curves<'t> {
     }
 
     /// Adds a branch: its curve, its data and its special orbits. Branches of one name have one place in the legend.
-    pub fn add(&mut self, label: &str, branch: &Branch<'_>) {
+    pub fn add(&mut self, label: &str, branch: &Branch) {
         match self.lines.iter_mut().find(|curve| curve.label == label) {
             Some(curve) => curve.runs.extend(branch.runs()),
             None => self.lines.push(Curve {
@@ -313,7 +309,7 @@ impl<'t> Curves<'t> {
 }
 
 /// What is asked for. A picture alone needs no more than the eye can see.
-fn request<'a>(system: &'a dyn System, case: &Case) -> FrequencyResponse<'a> {
+fn request<'a>(system: &'a dyn System, case: &Case) -> FrequencyResponse {
     let [from, to] = case.range;
     let tolerance = if case.exact.is_empty() { 1e-4 } else { 1e-6 };
     FrequencyResponse::of(system)

@@ -62,7 +62,7 @@ impl<'t> Cycles<'t> {
     }
 
     /// Follows a branch and adds it.
-    fn follow(&mut self, shooting: &Shooting<'_>) -> Result<CycleBranch, String> {
+    fn follow(&mut self, shooting: &Shooting) -> Result<CycleBranch, String> {
         let branch = shooting
             .run_with(|_| {
                 if self.task.interrupted.load(Ordering::Relaxed) {
@@ -80,7 +80,7 @@ impl<'t> Cycles<'t> {
     fn continue_from(
         &mut self,
         branch: &CycleBranch,
-        orbits: &Shooting<'_>,
+        orbits: &Shooting,
         [from, to]: [f64; 2],
     ) -> Result<(), String> {
         let last = branch.cycles.last().filter(|last| last.value == from);

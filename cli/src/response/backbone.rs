@@ -43,7 +43,7 @@ type Go<'g> = &'g dyn Fn() -> ControlFlow<()>;
 pub fn of(
     options: &Options,
     model: &dyn System,
-    branch: &Branch<'_>,
+    branch: &Branch,
     go: Go<'_>,
 ) -> (Backbone, Vec<String>) {
     let mut warnings = Vec::new();
@@ -58,7 +58,7 @@ pub fn of(
     (Backbone { free, resonance }, warnings)
 }
 
-fn free(options: &Options, branch: &Branch<'_>, go: Go<'_>) -> Result<Vec<BackbonePoint>, Error> {
+fn free(options: &Options, branch: &Branch, go: Go<'_>) -> Result<Vec<BackbonePoint>, Error> {
     let ModelOptions { alpha, load, .. } = options.model;
     let model = declared(&ModelOptions {
         zeta: 0.0,

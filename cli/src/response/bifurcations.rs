@@ -7,7 +7,7 @@ use hertzian::attractors::basin::Progress;
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
 use hertzian::export::{Decimal, Table};
-use hertzian::shooting::{CycleEvent, Track};
+use hertzian::shooting::{Cycle, CycleEvent, Track};
 use hertzian::{Error, EventKind, Shooting, System};
 
 use super::options::{Options, Tracked};
@@ -57,13 +57,13 @@ pub fn find(
     for &value in &options.search {
         request = request.search(value, basin(options, model, value));
     }
-    let request = request.watch(search);
     let mut interrupted = false;
-    let diagram = request.run_with(|cycle| {
+    let visit = |cycle: &Cycle| {
         let answer = go(cycle.value);
         interrupted |= answer.is_break();
         answer
-    })?;
+    };
+    let diagram = request.run_watched(visit, search)?;
     let mut found = Found {
         diagram,
         tracks: Vec::new(),
@@ -343,7 +343,7 @@ fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
 }
 
 /// Shooting over the range of the branch, and a part of it beyond.
-fn shooting<'a>(options: &Options, model: &'a dyn System) -> Shooting<'a> {
+fn shooting<'a>(options: &Options, model: &'a dyn System) -> Shooting {
     let margin = 0.1 * (options.to - options.from);
     let mut parameters = model.facts().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == options.varied());

@@ -95,7 +95,7 @@ fn at_frequency(options: &ModelOptions, omega: f64) -> Option<f64> {
 ///
 /// Those orbits depend smoothly on the amplitude, and for a linear spring in straight lines, while the first orbit that
 /// leaves contact may already be far off. So peak-to-peak is taken as a polynomial of the minimum through the last three.
-fn touching(branch: &Branch<'_>) -> Option<f64> {
+fn touching(branch: &Branch) -> Option<f64> {
     let (touched, inside) = branch.points.split_last()?;
     if touched.motion().minimum > 0.0 {
         return None;

@@ -195,7 +195,7 @@ pub struct StatisticsRecord {
 
 impl Record {
     /// Of a branch, and of solutions at values that were asked for.
-    pub fn of(branch: &Branch<'_>, options: &Options, at: &[Point]) -> Self {
+    pub fn of(branch: &Branch, options: &Options, at: &[Point]) -> Self {
         let facts = branch.system().facts();
         let point = |point: &Point| PointRecord::of(point, facts);
         // A turn has no orbit of its own; what the branch does not vary is the same at every point.

@@ -210,7 +210,7 @@ fn paths(options: &Options) -> impl Iterator<Item = &Path> {
 }
 
 /// The options in the library's terms.
-fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a> {
+fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse {
     let mut request = FrequencyResponse::of(model)
         .from(options.from)
         .to(options.to)
@@ -234,7 +234,7 @@ fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse<'a
 }
 
 /// Every orbit of the branch at each value that was asked for.
-fn solutions_at(options: &Options, branch: &Branch<'_>, warnings: &mut Vec<String>) -> Vec<Point> {
+fn solutions_at(options: &Options, branch: &Branch, warnings: &mut Vec<String>) -> Vec<Point> {
     let name = options.varied();
     let mut solutions = Vec::new();
     for &value in &options.at {
@@ -250,7 +250,7 @@ fn solutions_at(options: &Options, branch: &Branch<'_>, warnings: &mut Vec<Strin
 }
 
 /// The library's picture of the branch, with the boundary of lost contact.
-fn picture(options: &Options, branch: &Branch<'_>, stop: impl Fn() -> bool) -> Chart {
+fn picture(options: &Options, branch: &Branch, stop: impl Fn() -> bool) -> Chart {
     if options.model.file.is_some() {
         return branch.chart();
     }

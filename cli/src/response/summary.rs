@@ -56,7 +56,7 @@ fn parameters(options: &ModelOptions) -> [(&'static str, &'static str, f64); 4] 
 }
 
 /// The summary of a run.
-pub fn of(options: &Options, branch: &Branch<'_>, at: &[Point], written: &[&Path]) -> String {
+pub fn of(options: &Options, branch: &Branch, at: &[Point], written: &[&Path]) -> String {
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = write_all(&mut text, options, branch, at, written);
@@ -66,7 +66,7 @@ pub fn of(options: &Options, branch: &Branch<'_>, at: &[Point], written: &[&Path
 fn write_all(
     text: &mut String,
     options: &Options,
-    branch: &Branch<'_>,
+    branch: &Branch,
     at: &[Point],
     written: &[&Path],
 ) -> fmt::Result {
@@ -98,12 +98,7 @@ fn write_all(
 }
 
 /// The equations of a file, and the parameters that do not vary.
-fn from_file(
-    text: &mut String,
-    path: &Path,
-    options: &Options,
-    branch: &Branch<'_>,
-) -> fmt::Result {
+fn from_file(text: &mut String, path: &Path, options: &Options, branch: &Branch) -> fmt::Result {
     let facts = branch.system().facts();
     writeln!(
         text,
@@ -147,7 +142,7 @@ fn equation(text: &mut String, options: &Options) -> fmt::Result {
     writeln!(text, "{}\n", fixed.join(", "))
 }
 
-fn range(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
+fn range(text: &mut String, branch: &Branch) -> fmt::Result {
     let ends = branch.points.first().zip(branch.points.last());
     if let Some((first, last)) = ends {
         let all = || branch.points.iter().map(|point| point.orbit.harmonics());
@@ -169,7 +164,7 @@ fn range(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
     writeln!(text, "ended      {}", branch.stopped)
 }
 
-fn folds(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
+fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
     let folds = branch.folds().map(|fold| {
         let point = &fold.point;
         let value = Decimal::rounded(point.value, 9);
@@ -210,7 +205,7 @@ fn folds(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
 }
 
 /// Between which points the verdict changes, and how often there is none.
-fn stability(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
+fn stability(text: &mut String, branch: &Branch) -> fmt::Result {
     let undecided = |point: &&Point| point.stability.verdict == Verdict::Undecided;
     let decided: Vec<&Point> = branch.points.iter().filter(|p| !undecided(p)).collect();
     let changes: Vec<String> = decided
@@ -250,7 +245,7 @@ fn stability(text: &mut String, branch: &Branch<'_>) -> fmt::Result {
 }
 
 /// The event between two points of a branch, if there is one alone.
-fn between<'b>(branch: &'b Branch<'_>, before: &Point, behind: &Point) -> Option<&'b Event> {
+fn between<'b>(branch: &'b Branch, before: &Point, behind: &Point) -> Option<&'b Event> {
     let place = |point: &Point| branch.points.iter().position(|p| std::ptr::eq(p, point));
     let (first, last) = (place(before)?, place(behind)?);
     let mut events = branch.events.iter();

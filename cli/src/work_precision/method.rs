@@ -225,7 +225,7 @@ fn within(started: Instant, patience: f64) -> ControlFlow<()> {
 }
 
 /// Where the branch turns, confirmed as a fold or not: a user would see either.
-fn turns(branch: &Branch<'_>) -> Vec<f64> {
+fn turns(branch: &Branch) -> Vec<f64> {
     let folds = branch
         .events
         .iter()
@@ -238,7 +238,7 @@ fn turns(branch: &Branch<'_>) -> Vec<f64> {
     folds.chain(turns.map(|turn| turn.value)).collect()
 }
 
-fn largest(branch: &Branch<'_>, at: f64) -> Option<f64> {
+fn largest(branch: &Branch, at: f64) -> Option<f64> {
     let orbits = branch.at(at).ok()?;
     orbits
         .iter()
@@ -247,7 +247,7 @@ fn largest(branch: &Branch<'_>, at: f64) -> Option<f64> {
 }
 
 /// The largest orbit of a branch at a frequency, from the nearest one of those that are larger than the others beside it.
-fn largest_cycle(shooting: &Shooting<'_>, branch: &CycleBranch, at: f64) -> Option<f64> {
+fn largest_cycle(shooting: &Shooting, branch: &CycleBranch, at: f64) -> Option<f64> {
     let passes = branch
         .cycles
         .windows(2)

@@ -14,6 +14,8 @@ mod observe;
 #[path = "../shared/processor.rs"]
 mod processor;
 
+use std::sync::Arc;
+
 use hertzian::law::Law;
 use hertzian::oscillator;
 use hertzian::system::{System, SystemFacts, Variable};
@@ -48,12 +50,14 @@ oscillator! {
 const HARMONICS: [usize; 4] = [10, 20, 50, 100];
 
 /// A system with another law in the place of its only one.
-struct With<'a> {
-    system: &'a dyn System,
-    law: &'a dyn Law,
+#[derive(Clone)]
+struct With {
+    system: Arc<dyn System>,
+    /// The other law; its own if there is none.
+    law: Option<Arc<dyn Law>>,
 }
 
-impl System for With<'_> {
+impl System for With {
     fn facts(&self) -> &SystemFacts {
         self.system.facts()
     }
@@ -77,8 +81,15 @@ impl System for With<'_> {
             .coefficients_by(variable, parameters, omega, derivatives);
     }
 
-    fn law(&self, _index: usize) -> &dyn Law {
-        self.law
+    fn law(&self, index: usize) -> &dyn Law {
+        match &self.law {
+            Some(law) => law.as_ref(),
+            None => self.system.law(index),
+        }
+    }
+
+    fn shared(&self) -> Arc<dyn System> {
+        Arc::new(self.clone())
     }
 }
 

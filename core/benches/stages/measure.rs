@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Instant;
 
 use hertzian::generic::InterpretedLaw;
@@ -25,7 +26,7 @@ pub const PARTS: &str = "core | nodes | crossings | placing nodes | law | projec
 law / Jacobian | law / both";
 
 /// A branch through resonance, under the load of which contact is lost there.
-fn branch(system: &dyn System, harmonics: usize) -> Branch<'_> {
+fn branch(system: &dyn System, harmonics: usize) -> Branch {
     let request = FrequencyResponse::of(system)
         .from(0.8)
         .to(1.4)
@@ -34,7 +35,7 @@ fn branch(system: &dyn System, harmonics: usize) -> Branch<'_> {
 }
 
 /// Its largest orbit.
-fn largest<'b>(branch: &'b Branch<'_>) -> &'b Point {
+fn largest<'b>(branch: &'b Branch) -> &'b Point {
     let size = |point: &&Point| point.peak_to_peak();
     branch
         .points
@@ -43,9 +44,8 @@ fn largest<'b>(branch: &'b Branch<'_>) -> &'b Point {
         .expect("points")
 }
 
-fn stages(system: &dyn System, harmonics: usize) -> Stages<'_> {
-    let branch = branch(system, harmonics);
-    Stages::at(&branch, largest(&branch))
+fn stages(branch: &Branch) -> Stages<'_> {
+    Stages::at(branch, largest(branch))
 }
 
 /// Residual and Jacobian with the three kinds of laws.
@@ -58,9 +58,13 @@ impl Whole {
     pub fn of(system: &dyn System, harmonics: usize) -> Self {
         let interpreted = InterpretedLaw::of(system.law(0)).expect("a generated law");
         let dual = DualLaw::of(system.law(0));
-        let laws: [&dyn Law; 3] = [system.law(0), &interpreted, &dual];
-        let systems = laws.map(|law| With { system, law });
-        let mut stages = systems.each_ref().map(|system| stages(system, harmonics));
+        let laws: [Option<Arc<dyn Law>>; 3] =
+            [None, Some(Arc::new(interpreted)), Some(Arc::new(dual))];
+        let branches = laws.map(|law| {
+            let system = system.shared();
+            branch(&With { system, law }, harmonics)
+        });
+        let mut stages = branches.each_ref().map(stages);
         agree(&mut stages);
         let mut residual: [Vec<f64>; 3] = Default::default();
         let mut jacobian: [Vec<f64>; 3] = Default::default();
@@ -106,15 +110,17 @@ pub struct Parts {
 impl Parts {
     pub fn of(system: &dyn System, harmonics: usize) -> Self {
         let law = system.law(0);
-        let observed = Observed::new(law);
+        let observed = Arc::new(Observed::new(system));
+
         let with = With {
-            system,
-            law: &observed,
+            system: system.shared(),
+            law: Some(Arc::clone(&observed) as Arc<dyn Law>),
         };
-        let branch = branch(&with, harmonics);
-        let point = largest(&branch);
-        let mut stages = Stages::at(&branch, point);
-        let mut plain = self::stages(system, harmonics);
+        let of_observed = branch(&with, harmonics);
+        let point = largest(&of_observed);
+        let mut stages = Stages::at(&of_observed, point);
+        let of_plain = branch(system, harmonics);
+        let mut plain = self::stages(&of_plain);
         let mut search = Search::new(point.orbit.series(0));
 
         observed.take();

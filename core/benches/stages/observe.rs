@@ -1,14 +1,15 @@
 //! A law that passes every call on, and writes down when it was made and with what.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use hertzian::generic::LawData;
 use hertzian::law::{Derivatives, Law, LawFacts, On, Parts};
+use hertzian::system::System;
 
-/// A law, observed.
-pub struct Observed<'a> {
-    law: &'a dyn Law,
+/// The first law of a system, observed.
+pub struct Observed {
+    system: Arc<dyn System>,
     calls: Mutex<Vec<Call>>,
 }
 
@@ -23,12 +24,16 @@ pub struct Call {
     pub start: Instant,
 }
 
-impl<'a> Observed<'a> {
-    pub fn new(law: &'a dyn Law) -> Self {
+impl Observed {
+    pub fn new(system: &dyn System) -> Self {
         Self {
-            law,
+            system: system.shared(),
             calls: Mutex::default(),
         }
+    }
+
+    fn law(&self) -> &dyn Law {
+        self.system.law(0)
     }
 
     /// The calls since this was asked last.
@@ -78,26 +83,27 @@ impl Call {
     }
 }
 
-impl Law for Observed<'_> {
+impl Law for Observed {
     fn facts(&self) -> &LawFacts {
-        self.law.facts()
+        self.law().facts()
     }
 
     fn data(&self) -> Option<&LawData> {
-        self.law.data()
+        self.law().data()
     }
 
     fn levels(&self, arguments: &[f64], levels: &mut [f64]) {
-        self.law.levels(arguments, levels);
+        self.law().levels(arguments, levels);
     }
 
     fn levels_by(&self, arguments: &[f64], argument: usize, by_argument: &mut [f64]) {
-        self.law.levels_by(arguments, argument, by_argument);
+        self.law().levels_by(arguments, argument, by_argument);
     }
 
     fn force(&self, on: On, arguments: &[f64], gap: &[f64], rate: &[f64], force: &mut [f64]) {
+        let law = self.law();
         let start = Instant::now();
-        self.law.force(on, arguments, gap, rate, force);
+        law.force(on, arguments, gap, rate, force);
         self.note(false, on, arguments, [gap, rate], start);
     }
 
@@ -109,8 +115,9 @@ impl Law for Observed<'_> {
         rate: &[f64],
         out: Derivatives<'_>,
     ) {
+        let law = self.law();
         let start = Instant::now();
-        self.law.derivatives(on, arguments, gap, rate, out);
+        law.derivatives(on, arguments, gap, rate, out);
         self.note(true, on, arguments, [gap, rate], start);
     }
 
@@ -125,11 +132,11 @@ impl Law for Observed<'_> {
         by_argument: &mut [f64],
     ) {
         // Not asked for where omega varies.
-        self.law
+        self.law()
             .derivatives_and_by(argument, on, arguments, gap, rate, out, by_argument);
     }
 
     fn parts(&self) -> Option<Parts<'_>> {
-        self.law.parts()
+        self.law().parts()
     }
 }

@@ -177,9 +177,9 @@ impl<'v> Watch<'v> {
 }
 
 /// The search, and what it has found.
-pub(super) struct Search<'a, 'v> {
+pub(super) struct Search<'v> {
     pub(super) watch: Watch<'v>,
-    shooting: Shooting<'a>,
+    shooting: Shooting,
     /// Length of the range.
     range: f64,
     depth: usize,
@@ -190,10 +190,10 @@ pub(super) struct Search<'a, 'v> {
     pub(super) diagram: Diagram,
 }
 
-impl<'a, 'v> Search<'a, 'v> {
+impl<'v> Search<'v> {
     /// To a depth, with no more branches and orbits than this.
     pub(super) fn new(
-        shooting: Shooting<'a>,
+        shooting: Shooting,
         (depth, branches, points): (usize, usize, usize),
         watch: Watch<'v>,
     ) -> Self {

@@ -33,7 +33,7 @@ pub(super) fn visits(cycle: &Cycle, state: &[f64]) -> bool {
 }
 
 /// Whether an orbit is on a branch: one of those near its value leads to it.
-pub(super) fn contains(shooting: &Shooting<'_>, limb: &Limb, orbit: &Cycle) -> bool {
+pub(super) fn contains(shooting: &Shooting, limb: &Limb, orbit: &Cycle) -> bool {
     if limb.period() != orbit.period {
         return false;
     }
@@ -56,7 +56,7 @@ pub(super) fn contains(shooting: &Shooting<'_>, limb: &Limb, orbit: &Cycle) -> b
 
 /// Whether a symmetric orbit of several periods begins in another one of them: its segments are parts of half of it, which need not
 /// be whole periods.
-fn is_later(shooting: &Shooting<'_>, found: &Cycle, orbit: &Cycle) -> bool {
+fn is_later(shooting: &Shooting, found: &Cycle, orbit: &Cycle) -> bool {
     let several = orbit.symmetric && orbit.period > 1;
     several
         && shooting

@@ -1,6 +1,7 @@
 //! A request for all branches that are connected with one, set up step by step.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
@@ -52,9 +53,9 @@ const MARGIN: f64 = 0.1;
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct Bifurcations<'a> {
-    system: &'a dyn System,
-    shooting: Shooting<'a>,
+pub struct Bifurcations {
+    system: Arc<dyn System>,
+    shooting: Shooting,
     vary: Option<String>,
     omega: Option<f64>,
     from: Option<f64>,
@@ -64,10 +65,9 @@ pub struct Bifurcations<'a> {
     points: usize,
     margin: f64,
     searched: Vec<(f64, Basin)>,
-    watch: Option<&'a (dyn Fn(Progress) -> bool + Sync)>,
 }
 
-impl std::fmt::Debug for Bifurcations<'_> {
+impl std::fmt::Debug for Bifurcations {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Bifurcations")
             .field("shooting", &self.shooting)
@@ -76,12 +76,13 @@ impl std::fmt::Debug for Bifurcations<'_> {
     }
 }
 
-impl<'a> Bifurcations<'a> {
-    /// Of this system, at the parameters it has when the computation starts.
-    pub fn of(system: &'a dyn System) -> Self {
+impl Bifurcations {
+    /// Of this system, at the values that its parameters have now.
+    pub fn of(system: &dyn System) -> Self {
+        let system = system.shared();
         Self {
+            shooting: Shooting::of(&system),
             system,
-            shooting: Shooting::of(system),
             vary: None,
             omega: None,
             from: None,
@@ -91,7 +92,6 @@ impl<'a> Bifurcations<'a> {
             points: POINTS,
             margin: MARGIN,
             searched: Vec::new(),
-            watch: None,
         }
     }
 
@@ -171,14 +171,6 @@ impl<'a> Bifurcations<'a> {
         self
     }
 
-    /// Tells `watch` how far each [`search`](Self::search) is, which takes long before it has an orbit to show. It ends the
-    /// computation by answering false; what was found until then comes back.
-    #[must_use]
-    pub fn watch(mut self, watch: &'a (dyn Fn(Progress) -> bool + Sync)) -> Self {
-        self.watch = Some(watch);
-        self
-    }
-
     /// Tolerance of the flow; see [`Shooting::tolerance`].
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
@@ -206,9 +198,19 @@ impl<'a> Bifurcations<'a> {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn run_with(
+    pub fn run_with(&self, visit: impl FnMut(&Cycle) -> ControlFlow<()>) -> Result<Diagram, Error> {
+        self.run_watched(visit, &|_| true)
+    }
+
+    /// As [`run_with`](Self::run_with), and tells `watch` how far each [`search`](Self::search) is, which takes long before it has
+    /// an orbit to show. It ends the computation by answering false; what was found until then comes back.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_watched(
         &self,
         mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
+        watch: &(dyn Fn(Progress) -> bool + Sync),
     ) -> Result<Diagram, Error> {
         let started = Instant::now();
         let from = self.from.ok_or(Error::Missing { name: "from" })?;
@@ -226,14 +228,14 @@ impl<'a> Bifurcations<'a> {
                 .map_err(|reason| Error::Search { value, reason })?;
         }
         let first = self.shooting.clone().from(from).to(to);
-        let mut watch = Watch::new(&mut visit);
+        let mut seen = Watch::new(&mut visit);
         let first = first.max_points(self.points.max(2));
-        let branch = first.run_with(|cycle| watch.see(cycle))?;
+        let branch = first.run_with(|cycle| seen.see(cycle))?;
         let [low, high] = self.wider(from, to)?;
         let mut search = Search::new(
             self.shooting.clone().from(low).to(high),
             (self.depth, self.branches, self.points),
-            watch,
+            seen,
         );
         search.add(Origin::First, 0, branch);
         search.exhaust();
@@ -242,7 +244,7 @@ impl<'a> Bifurcations<'a> {
                 search.diagram.missed.push((*value, Reason::Interrupted));
                 continue;
             }
-            let found = match self.basins(*value, basin) {
+            let found = match self.basins(*value, basin, watch) {
                 Ok(found) => found,
                 Err(error) => {
                     search.diagram.missed.push((*value, Reason::Failed(error)));
@@ -268,7 +270,12 @@ impl<'a> Bifurcations<'a> {
     }
 
     /// What motions settle to at a value.
-    fn basins(&self, value: f64, basin: &Basin) -> Result<Basins, Error> {
+    fn basins(
+        &self,
+        value: f64,
+        basin: &Basin,
+        watch: &(dyn Fn(Progress) -> bool + Sync),
+    ) -> Result<Basins, Error> {
         let facts = self.system.facts();
         let variable = validate::variable(facts, self.vary.as_deref())?;
         let mut parameters = vec![0.0; facts.parameters.len()];
@@ -281,8 +288,7 @@ impl<'a> Bifurcations<'a> {
             }
         };
         let options = time::Options::default().tolerance(SETTLED);
-        let flow = time::at(self.system, &parameters, omega, options)?;
-        let watch = self.watch.unwrap_or(&|_| true);
+        let flow = time::at(self.system.as_ref(), &parameters, omega, options)?;
         let found = basin.compute(vec![flow], None, watch);
         found.map_err(|reason| Error::Search { value, reason })
     }
@@ -308,8 +314,8 @@ impl<'a> Bifurcations<'a> {
             }
             validate::omega(omega).is_ok()
                 && validate::parameters(facts, &parameters).is_ok()
-                && validate::levels(self.system, &parameters, omega).is_ok()
-                && validate::mass(self.system, &parameters, omega).is_ok()
+                && validate::levels(self.system.as_ref(), &parameters, omega).is_ok()
+                && validate::mass(self.system.as_ref(), &parameters, omega).is_ok()
         };
         let margin = self.margin * (to - from);
         // As much of it as makes sense.

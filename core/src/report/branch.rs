@@ -8,7 +8,7 @@ use crate::response::branch::Branch;
 
 use super::export::Table;
 
-impl Branch<'_> {
+impl Branch {
     /// The orbits as a table with names of the columns, one row for each: see [`COLUMNS`](super::export::COLUMNS).
     pub fn to_csv(&self) -> String {
         let mut table = Table::of(self.system());

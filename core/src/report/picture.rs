@@ -11,7 +11,7 @@ use crate::model::labels::Labels;
 use crate::orbit::stability::Verdict;
 use crate::response::branch::Branch;
 
-impl Branch<'_> {
+impl Branch {
     /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.
     ///
     /// # Errors
@@ -195,7 +195,7 @@ mod tests {
         load: 5.0,
     };
 
-    fn response(system: &Spring) -> FrequencyResponse<'_> {
+    fn response(system: &Spring) -> FrequencyResponse {
         FrequencyResponse::of(system).harmonics(5).samples(256)
     }
 

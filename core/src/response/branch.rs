@@ -12,9 +12,33 @@ use crate::event::{EventKind, Turn};
 use crate::system::System;
 
 /// A branch of orbits in the order in which it was followed.
+///
+/// It owns a copy of the system, so that it can be returned, kept, and sent to another thread:
+///
+/// ```
+/// use hertzian::{Branch, Error, FrequencyResponse};
+///
+/// fn resonance(drive: f64) -> Result<Branch, Error> {
+///     hertzian::oscillator! {
+///         Duffing(x) {
+///             param drive;
+///             ddot(x) + 0.1*dot(x) + x + x^3 = drive*cos(omega*t);
+///         }
+///     }
+///
+///     let model = Duffing { drive };
+///     FrequencyResponse::of(&model).from(0.5).to(2.0).harmonics(7).samples(64).run()
+/// }
+///
+/// let branch = resonance(0.2)?;
+/// // Further orbits are computed when they are asked for.
+/// let at = std::thread::spawn(move || branch.at(1.3)).join().unwrap()?;
+/// assert_eq!(at.len(), 3);
+/// # Ok::<(), hertzian::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Branch<'a> {
+pub struct Branch {
     /// Name of what it varies.
     pub varied: String,
     /// The orbits.
@@ -34,13 +58,13 @@ pub struct Branch<'a> {
     )]
     pub elapsed: Duration,
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) follower: Follower<'a>,
+    pub(crate) follower: Follower,
 }
 
-impl<'a> Branch<'a> {
+impl Branch {
     /// The system that it belongs to.
-    pub fn system(&self) -> &'a dyn System {
-        self.follower.system
+    pub fn system(&self) -> &dyn System {
+        self.follower.system.as_ref()
     }
 
     /// The events of one kind. Whether the branch turns back is not asked: `Grazing` of either kind gives all.

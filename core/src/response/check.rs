@@ -1,5 +1,7 @@
 //! Whether a request can be followed, and with what resolution.
 
+use std::sync::Arc;
+
 use super::FrequencyResponse;
 use crate::balance::aft::Aft;
 use crate::balance::resolution::Chooser;
@@ -33,9 +35,9 @@ const SAME: f64 = 1e-9;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
-impl<'a> FrequencyResponse<'a> {
+impl FrequencyResponse {
     /// Checks everything that was asked for.
-    pub(super) fn check(&self) -> Result<(Follower<'a>, FollowOptions), Error> {
+    pub(super) fn check(&self) -> Result<(Follower, FollowOptions), Error> {
         let facts = self.system.facts();
         if facts.coordinates.is_empty() {
             return Err(Error::NoCoordinates);
@@ -66,9 +68,9 @@ impl<'a> FrequencyResponse<'a> {
         self.check_options()?;
         self.check_near()?;
         let mut resolution = self.resolution()?;
-        let layout = Layout::of(self.system);
+        let layout = Layout::of(self.system.as_ref());
         let over = Over {
-            system: self.system,
+            system: self.system.as_ref(),
             layout: &layout,
             parameters: &parameters,
             omega,
@@ -89,7 +91,7 @@ impl<'a> FrequencyResponse<'a> {
             self.take_stride(over.stride(), &mut resolution);
         }
         let place = Place {
-            system: self.system,
+            system: self.system.as_ref(),
             layout: &layout,
             parameters: &parameters,
             omega,
@@ -112,10 +114,9 @@ impl<'a> FrequencyResponse<'a> {
         if let (Some(chooser), Some(orbit)) = (&chooser, given) {
             resolution.harmonics = chooser.admitted(orbit.harmonics());
         }
-        let system = self.system;
         Ok((
             Follower {
-                system,
+                system: Arc::clone(&self.system),
                 parameters,
                 omega,
                 variable,
@@ -233,7 +234,7 @@ impl<'a> FrequencyResponse<'a> {
     /// How harmonics follow the tolerance: unless they were given, or the contacts are sampled.
     fn chooser(&self, resolution: Resolution) -> Option<Chooser> {
         let free = self.harmonics.is_none() && self.aft == Aft::Switched;
-        let layout = Layout::of(self.system);
+        let layout = Layout::of(self.system.as_ref());
         let least = (layout.highest_harmonic() + LEAST_BEYOND) * self.period;
         let unknowns_allow = most_harmonics(&layout);
         let most = MOST_HARMONICS * self.period * self.system.facts().divisor as usize;
@@ -272,7 +273,7 @@ impl<'a> FrequencyResponse<'a> {
             .round()
             .clamp(5.0, 100.0) as usize;
         let divisor = self.system.facts().divisor as usize;
-        let layout = Layout::of(self.system);
+        let layout = Layout::of(self.system.as_ref());
         let per_period = self.harmonics.unwrap_or_else(|| {
             let least = layout.highest_harmonic() + LEAST_BEYOND;
             let most = (most_harmonics(&layout) / self.period).max(1);

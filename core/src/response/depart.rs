@@ -33,7 +33,7 @@ const LEFT: f64 = 0.5;
 /// # Errors
 /// [`Error::NoBranch`] if no branch begins there, or its first orbit was not found.
 pub(crate) fn depart(
-    follower: &Follower<'_>,
+    follower: &Follower,
     event: &Event,
     stride: usize,
     side: f64,
@@ -57,7 +57,7 @@ pub(crate) fn depart(
     (old.parity, old.stride, old.period) = (parity, stride, orbit.period);
     let mut block = Block::new(
         part,
-        follower.system,
+        follower.system.as_ref(),
         &follower.parameters,
         follower.omega,
         follower.variable,

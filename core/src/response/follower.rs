@@ -1,5 +1,7 @@
 //! What it takes to compute further orbits of a branch, and those at a value.
 
+use std::sync::Arc;
+
 use crate::balance::block::{Block, Part};
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::start::{Motion, StartRequest};
@@ -39,8 +41,8 @@ pub(crate) enum Sought {
 
 /// What it takes to compute further orbits of a branch.
 #[derive(Clone)]
-pub(crate) struct Follower<'a> {
-    pub(crate) system: &'a dyn System,
+pub(crate) struct Follower {
+    pub(crate) system: Arc<dyn System>,
     pub(crate) parameters: Vec<f64>,
     pub(crate) omega: f64,
     pub(crate) variable: Variable,
@@ -58,7 +60,7 @@ pub(crate) struct Follower<'a> {
     pub(crate) to: f64,
 }
 
-impl std::fmt::Debug for Follower<'_> {
+impl std::fmt::Debug for Follower {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Follower")
             .field("variable", &self.variable)
@@ -66,11 +68,11 @@ impl std::fmt::Debug for Follower<'_> {
     }
 }
 
-impl<'a> Follower<'a> {
+impl Follower {
     /// The balance at one of the branch's resolutions.
-    pub(crate) fn balance(&self, resolution: Resolution) -> Balance<'a> {
+    pub(crate) fn balance(&self, resolution: Resolution) -> Balance<'_> {
         Balance::new(
-            self.system,
+            self.system.as_ref(),
             &self.parameters,
             self.omega,
             self.variable,
@@ -79,9 +81,9 @@ impl<'a> Follower<'a> {
     }
 
     /// A reader of orbits of that resolution.
-    pub(crate) fn reader(&self, resolution: Resolution) -> Reader<'a> {
+    pub(crate) fn reader(&self, resolution: Resolution) -> Reader<'_> {
         let finer = Finer::new(
-            self.system,
+            self.system.as_ref(),
             &self.parameters,
             self.omega,
             self.variable,
@@ -93,7 +95,7 @@ impl<'a> Follower<'a> {
     /// What becomes singular at bifurcations of orbits of that resolution: the even harmonics where they have odd ones only, those
     /// of twice the period, which are harmonics of the declared one where an even number of them is in it, and all, where that is
     /// looked for.
-    pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<Block<'a>> {
+    pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<Block<'_>> {
         let odd = resolution.parity == Parity::Odd;
         let all = self.sought == Sought::All;
         let halves = resolution.stride.is_multiple_of(2);
@@ -113,10 +115,10 @@ impl<'a> Follower<'a> {
     }
 
     /// One part of the Jacobian.
-    pub(crate) fn block(&self, part: Part, resolution: Resolution) -> Block<'a> {
+    pub(crate) fn block(&self, part: Part, resolution: Resolution) -> Block<'_> {
         Block::new(
             part,
-            self.system,
+            self.system.as_ref(),
             &self.parameters,
             self.omega,
             self.variable,
@@ -162,7 +164,7 @@ impl<'a> Follower<'a> {
         motion: &'s Motion<'s>,
     ) -> StartRequest<'s> {
         StartRequest {
-            system: self.system,
+            system: self.system.as_ref(),
             parameters: &self.parameters,
             omega: self.omega,
             variable: self.variable,

@@ -13,6 +13,7 @@ mod check;
 mod motion;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use crate::balance::Parity;
@@ -55,8 +56,8 @@ use crate::system::System;
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct FrequencyResponse<'a> {
-    system: &'a dyn System,
+pub struct FrequencyResponse {
+    system: Arc<dyn System>,
     vary: Option<String>,
     omega: Option<f64>,
     from: Option<f64>,
@@ -75,7 +76,7 @@ pub struct FrequencyResponse<'a> {
     symmetric: bool,
 }
 
-impl std::fmt::Debug for FrequencyResponse<'_> {
+impl std::fmt::Debug for FrequencyResponse {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("FrequencyResponse")
             .field("system", &self.system.facts().name)
@@ -86,11 +87,11 @@ impl std::fmt::Debug for FrequencyResponse<'_> {
     }
 }
 
-impl<'a> FrequencyResponse<'a> {
-    /// Of this system, at the parameters it has when the run starts.
-    pub fn of(system: &'a dyn System) -> Self {
+impl FrequencyResponse {
+    /// Of this system, at the values that its parameters have now.
+    pub fn of(system: &dyn System) -> Self {
         Self {
-            system,
+            system: system.shared(),
             vary: None,
             omega: None,
             from: None,
@@ -274,7 +275,7 @@ impl<'a> FrequencyResponse<'a> {
     /// # Errors
     /// Before any work, if a parameter or an option is not usable; and if no first orbit is found. A branch that ends
     /// early is not an error: it comes back with what was computed and with [`Branch::stopped`].
-    pub fn run(&self) -> Result<Branch<'a>, Error> {
+    pub fn run(&self) -> Result<Branch, Error> {
         self.run_with(|_| ControlFlow::Continue(()))
     }
 
@@ -285,7 +286,7 @@ impl<'a> FrequencyResponse<'a> {
     pub fn run_with(
         &self,
         mut visit: impl FnMut(&Point) -> ControlFlow<()>,
-    ) -> Result<Branch<'a>, Error> {
+    ) -> Result<Branch, Error> {
         let started = Instant::now();
         let (follower, options) = self.check()?;
         let mut statistics = Statistics::default();
@@ -335,7 +336,7 @@ impl<'a> FrequencyResponse<'a> {
     ///
     /// # Errors
     /// If a parameter or an option is not usable, no branch begins there, or its first orbit was not found.
-    pub fn switch(&self, event: &Event, side: Side) -> Result<Branch<'a>, Error> {
+    pub fn switch(&self, event: &Event, side: Side) -> Result<Branch, Error> {
         self.switch_with(event, side, |_| ControlFlow::Continue(()))
     }
 
@@ -348,7 +349,7 @@ impl<'a> FrequencyResponse<'a> {
         event: &Event,
         side: Side,
         mut visit: impl FnMut(&Point) -> ControlFlow<()>,
-    ) -> Result<Branch<'a>, Error> {
+    ) -> Result<Branch, Error> {
         let started = Instant::now();
         self.has(event)?;
         let doubles = event.kind == EventKind::PeriodDoubling;
@@ -387,11 +388,11 @@ impl<'a> FrequencyResponse<'a> {
     /// The branch that a run gives.
     fn followed(
         &self,
-        mut run: Run<'_, 'a>,
+        mut run: Run<'_>,
         start: Start,
         visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
         (mut statistics, started): (Statistics, Instant),
-    ) -> Result<Branch<'a>, Error> {
+    ) -> Result<Branch, Error> {
         let stopped = run.follow(start, visit)?;
         let follower = run.follower.clone();
         let Run {

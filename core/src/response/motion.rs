@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-7;
 const PER_CONTACT: u64 = 64;
 
 /// Moves a state of the system of a branch.
-pub(super) fn moved(follower: &Follower<'_>, moving: Moving<'_>) -> Moved {
+pub(super) fn moved(follower: &Follower, moving: Moving<'_>) -> Moved {
     let mut parameters = follower.parameters.clone();
     let mut omega = moving.omega;
     match moving.variable {
@@ -22,17 +22,18 @@ pub(super) fn moved(follower: &Follower<'_>, moving: Moving<'_>) -> Moved {
         Variable::Parameter(index) => parameters[index] = moving.value,
     }
     let options = Options::default().tolerance(TOLERANCE);
-    let Ok(mut flow) = time::at(follower.system, &parameters, omega, options) else {
+    let Ok(mut flow) = time::at(follower.system.as_ref(), &parameters, omega, options) else {
         return Moved {
             positions: None,
             operations: 0,
         };
     };
-    let most = usize::try_from(moving.most / per_force(follower.system)).unwrap_or(usize::MAX);
+    let most =
+        usize::try_from(moving.most / per_force(follower.system.as_ref())).unwrap_or(usize::MAX);
     let positions = recorded(flow.as_mut(), moving, most).ok().flatten();
     Moved {
         positions,
-        operations: flow.work().forces as u64 * per_force(follower.system),
+        operations: flow.work().forces as u64 * per_force(follower.system.as_ref()),
     }
 }
 

@@ -13,7 +13,7 @@ use crate::orbit::stability::{Answer, Method};
 /// The orbit has moved further than this by the time its factors are known: then they are those of another one.
 const MOVED: f64 = 1e-3;
 
-impl Branch<'_> {
+impl Branch {
     /// Applies a method to an orbit of this branch.
     ///
     /// # Panics
@@ -31,7 +31,7 @@ impl Branch<'_> {
         let mut u = point.orbit.series.clone();
         u.push(point.value);
         let mut finer = Finer::new(
-            follower.system,
+            follower.system.as_ref(),
             &point.parameters,
             point.orbit.omega,
             follower.variable,
@@ -48,7 +48,7 @@ impl Branch<'_> {
 /// Makes the factors at an orbit, with a border that holds the parameter fast or, near a fold, the way along the branch;
 /// false if that fails.
 fn factorise(
-    follower: &Follower<'_>,
+    follower: &Follower,
     problem: &mut dyn Problem,
     newton: &mut Newton,
     u: &[f64],

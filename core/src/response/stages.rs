@@ -22,7 +22,7 @@ pub struct Stages<'a> {
 
 impl<'a> Stages<'a> {
     /// At a point of a branch.
-    pub fn at(branch: &Branch<'a>, point: &Point) -> Self {
+    pub fn at(branch: &'a Branch, point: &Point) -> Self {
         let mut u = point.orbit.series.clone();
         u.push(point.value);
         let follower = &branch.follower;

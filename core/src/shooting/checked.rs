@@ -21,7 +21,7 @@ use crate::time::stroboscope::Stroboscope;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
-impl<'a> Shooting<'a> {
+impl Shooting {
     /// An orbit that is given is one of this system, and its value is that of what is varied here.
     pub(super) fn belongs(&self, cycle: &Cycle) -> Result<(), Error> {
         let facts = self.system.facts();
@@ -70,7 +70,7 @@ impl<'a> Shooting<'a> {
     pub(crate) fn returns(&self, cycle: &Cycle) -> Result<Vec<Vec<f64>>, Error> {
         let tolerance = self.tolerance;
         let flow = time::at(
-            self.system,
+            self.system.as_ref(),
             &cycle.parameters,
             cycle.omega,
             Options { tolerance },
@@ -94,7 +94,7 @@ impl<'a> Shooting<'a> {
     }
 
     /// The range, and everything else that was asked for, checked.
-    pub(super) fn ranged(&self) -> Result<([f64; 2], Setting<'a>), Error> {
+    pub(super) fn ranged(&self) -> Result<([f64; 2], Setting<'_>), Error> {
         let from = self.from.ok_or(Error::Missing { name: "from" })?;
         let to = self.to.ok_or(Error::Missing { name: "to" })?;
         let setting = self.setting(from, to)?;
@@ -103,7 +103,7 @@ impl<'a> Shooting<'a> {
     }
 
     /// Checks everything that was asked for.
-    pub(super) fn setting(&self, from: f64, to: f64) -> Result<Setting<'a>, Error> {
+    pub(super) fn setting(&self, from: f64, to: f64) -> Result<Setting<'_>, Error> {
         let facts = self.system.facts();
         if facts.coordinates.is_empty() {
             return Err(Error::NoCoordinates);
@@ -131,14 +131,14 @@ impl<'a> Shooting<'a> {
                 parameters[index] = value;
             }
             validate::parameters(facts, &parameters)?;
-            validate::levels(self.system, &parameters, omega)?;
-            validate::mass(self.system, &parameters, omega)?;
+            validate::levels(self.system.as_ref(), &parameters, omega)?;
+            validate::mass(self.system.as_ref(), &parameters, omega)?;
         }
         let omega = given.unwrap_or(from);
-        let layout = Layout::of(self.system);
+        let layout = Layout::of(self.system.as_ref());
         let range = [from, to];
         let place = Place {
-            system: self.system,
+            system: self.system.as_ref(),
             layout: &layout,
             parameters: &parameters,
             omega,
@@ -146,7 +146,7 @@ impl<'a> Shooting<'a> {
         };
         rigid::none(place, range)?;
         let over = Over {
-            system: self.system,
+            system: self.system.as_ref(),
             layout: &layout,
             parameters: &parameters,
             omega,
@@ -218,8 +218,8 @@ impl<'a> Shooting<'a> {
     }
 
     /// Where flows of the system come from.
-    fn source(&self, parameters: &[f64], omega: f64) -> Source<'a> {
-        let system = self.system;
+    fn source(&self, parameters: &[f64], omega: f64) -> Source<'_> {
+        let system = self.system.as_ref();
         let parameters = parameters.to_vec();
         let exact = Affine::new(system, &parameters, omega).is_ok();
         Source {
@@ -237,7 +237,7 @@ impl<'a> Shooting<'a> {
         if let Some(guess) = &self.near {
             return Ok(guess.clone());
         }
-        let mut request = FrequencyResponse::of(self.system)
+        let mut request = FrequencyResponse::of(&self.system)
             .period(self.period)
             .stability(false);
         if let (Some(name), Some(omega)) = (&self.vary, self.omega) {

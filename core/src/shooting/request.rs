@@ -1,6 +1,7 @@
 //! What a user asks for, checked before any work.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use super::cycle::{Cycle, CycleBranch, CycleEvent};
 use super::start::Guess;
@@ -40,8 +41,8 @@ use crate::system::System;
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct Shooting<'a> {
-    pub(super) system: &'a dyn System,
+pub struct Shooting {
+    pub(super) system: Arc<dyn System>,
     pub(super) vary: Option<String>,
     pub(super) omega: Option<f64>,
     pub(super) from: Option<f64>,
@@ -55,7 +56,7 @@ pub struct Shooting<'a> {
     pub(super) stability: bool,
 }
 
-impl std::fmt::Debug for Shooting<'_> {
+impl std::fmt::Debug for Shooting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Shooting")
             .field("system", &self.system.facts().name)
@@ -66,11 +67,11 @@ impl std::fmt::Debug for Shooting<'_> {
     }
 }
 
-impl<'a> Shooting<'a> {
-    /// Of this system, at the parameters it has when the computation starts.
-    pub fn of(system: &'a dyn System) -> Self {
+impl Shooting {
+    /// Of this system, at the values that its parameters have now.
+    pub fn of(system: &dyn System) -> Self {
         Self {
-            system,
+            system: system.shared(),
             vary: None,
             omega: None,
             from: None,
@@ -323,7 +324,7 @@ impl<'a> Shooting<'a> {
             ..self.clone()
         };
         let setting = request.setting(cycle.value, cycle.value)?;
-        series::point(self.system, &setting, cycle)
+        series::point(self.system.as_ref(), &setting, cycle)
     }
 
     /// The curve of bifurcations through an event of a branch, as a second parameter (or `"omega"`) varies between two values: of
@@ -364,7 +365,7 @@ impl<'a> Shooting<'a> {
             return Err(Error::Varied { name, must });
         }
         let plane = trace::Plane {
-            system: self.system,
+            system: self.system.as_ref(),
             second: variable,
             name: second.to_owned(),
             ranges: [[from, to], [low, high]],

@@ -3,6 +3,7 @@
 //! `x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = A cos(omega t) + W`, Wang et al. (2021), Eq. (1).
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::law::{
     ArgumentFacts, Derivatives, Exponent, Law, LawFacts, LevelFacts, On, Parts, PieceFacts,
@@ -13,7 +14,7 @@ use crate::system::{
 };
 
 /// The oscillator, with all its parameters at run time.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct PowerForm {
     pub(crate) values: [f64; 4],
     facts: SystemFacts,
@@ -21,7 +22,7 @@ pub(crate) struct PowerForm {
 }
 
 /// Its law: arguments `[zeta, alpha]`.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct PowerLaw {
     one_sided: bool,
     facts: LawFacts,
@@ -251,5 +252,9 @@ impl System for PowerForm {
 
     fn law(&self, _index: usize) -> &dyn Law {
         &self.law
+    }
+
+    fn shared(&self) -> Arc<dyn System> {
+        Arc::new(self.clone())
     }
 }

@@ -1,6 +1,7 @@
-//! What a user of the runtime alone meets: messages, structures given as matrices, declarations read from text.
+//! What a user of the runtime alone meets: messages, results to keep, structures given as matrices, declarations read from text.
 
 mod messages;
+mod owned;
 mod structure;
 #[cfg(feature = "text")]
 mod text;

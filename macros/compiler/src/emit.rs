@@ -92,7 +92,7 @@ fn wrap(runtime: &TokenStream, name: &Ident, items: &TokenStream) -> TokenStream
     let items = quote! {
         impl #name {
             /// The same system, its laws interpreted from data: the oracle of the generated code.
-            pub fn generic(&self) -> __generic::Interpreted<'_> {
+            pub fn generic(&self) -> __generic::Interpreted {
                 __generic::Interpreted::of(self)
             }
         }
@@ -112,7 +112,7 @@ fn wrap_items(runtime: &TokenStream, items: &TokenStream) -> TokenStream {
             // One name, so that a crate which cannot be found is one error. A glob would report each of its names.
             use #runtime as __hertzian;
             use __hertzian::{emitted as __emitted, generic as __generic, law as __law, system as __system};
-            use ::std::borrow::Cow as __Cow;
+            use ::std::{borrow::Cow as __Cow, sync::Arc as __Arc};
 
             #items
         };

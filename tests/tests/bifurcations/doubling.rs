@@ -69,7 +69,7 @@ fn the_balance_switches_to_longer_periods() {
 /// Both asymmetric branches go from one point of broken symmetry to the other, through all events that are known. They are followed from
 /// events found by odd harmonics, and from crossings found by all.
 fn assert_asymmetric_branches(
-    request: &FrequencyResponse<'_>,
+    request: &FrequencyResponse,
     event: &Event,
     exact: [f64; 2],
     (events, unlisted): (Events<'_>, usize),

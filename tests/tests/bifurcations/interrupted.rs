@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hertzian::attractors::basin::{Axis, Basin, Grid, Progress};
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::shooting::TrackEnd;
+use hertzian::shooting::{Cycle, TrackEnd};
 use hertzian::{Shooting, Stop};
 
 use crate::cascade::MODEL;
@@ -20,8 +20,9 @@ fn a_search_for_coexisting_motions() {
         false
     };
     let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
-    let request = request.from(1.0).to(1.2).depth(0).watch(&watch);
-    let diagram = request.search(1.0, basin).run().unwrap();
+    let request = request.from(1.0).to(1.2).depth(0).search(1.0, basin);
+    let visit = |_: &Cycle| ControlFlow::Continue(());
+    let diagram = request.run_watched(visit, &watch).unwrap();
     assert_eq!(asked.load(Ordering::Relaxed), 1);
     assert_eq!(diagram.branches.len(), 1);
     assert_eq!(diagram.missed, [(1.0, Reason::Interrupted)]);

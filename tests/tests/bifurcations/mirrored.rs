@@ -84,13 +84,13 @@ const LAWS: TwoLaws = TwoLaws {
     damping: 0.2,
 };
 
-fn branch(system: &dyn System) -> Branch<'_> {
+fn branch(system: &dyn System) -> Branch {
     let request = FrequencyResponse::of(system).harmonics(21).from(0.8);
     request.to(1.6).run().unwrap()
 }
 
 /// Mean and even harmonics are no unknowns of symmetric orbits, and so exactly zero.
-fn is_symmetric(branch: &Branch<'_>) -> bool {
+fn is_symmetric(branch: &Branch) -> bool {
     branch.points.iter().all(|point| {
         let series = point.orbit.series(0);
         let mut even = (0..series.len()).filter(|i| i.div_ceil(2).is_multiple_of(2));

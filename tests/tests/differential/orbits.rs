@@ -34,7 +34,7 @@ impl Case {
     }
 
     /// Orbits by the balance.
-    pub fn orbits(&mut self, branch: &Branch<'_>) {
+    pub fn orbits(&mut self, branch: &Branch) {
         let verdicts: Vec<_> = branch.points.iter().map(|p| p.stability.verdict).collect();
         let model = Rc::clone(&self.model);
         for index in self.chosen(&verdicts, ORBITS[0]) {

@@ -51,7 +51,7 @@ pub struct Passage {
 }
 
 impl Passage {
-    pub fn of_balance(name: &'static str, branch: &Branch<'_>) -> Self {
+    pub fn of_balance(name: &'static str, branch: &Branch) -> Self {
         let points = branch.points.iter();
         let places = points.map(|p| Place::of(p.value, p.peak_to_peak(), &p.stability));
         let events = branch.events.iter().map(|event| Seen {

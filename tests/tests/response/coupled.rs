@@ -4,7 +4,7 @@ use hertzian::{Branch, FrequencyResponse, Stop, Verdict};
 use hertzian_tests::TwoMasses;
 
 /// Values of omega between which the verdict changes between stable and unstable; undecided points are passed over.
-fn changes(branch: &Branch<'_>) -> Vec<[f64; 2]> {
+fn changes(branch: &Branch) -> Vec<[f64; 2]> {
     let decided: Vec<_> = branch
         .points
         .iter()

@@ -117,8 +117,8 @@ fn agree(free: &Stability, relative: &Stability) {
     assert_eq!(free.verdict, relative.verdict);
 }
 
-fn same_folds(free: &Branch<'_>, relative: &Branch<'_>) {
-    let of = |branch: &Branch<'_>| -> Vec<(f64, f64)> {
+fn same_folds(free: &Branch, relative: &Branch) {
+    let of = |branch: &Branch| -> Vec<(f64, f64)> {
         let folds = branch.folds();
         folds.map(|fold| (fold.point.value, fold.error)).collect()
     };

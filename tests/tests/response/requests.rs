@@ -9,7 +9,7 @@ use crate::{CONTACT, Fractional, OneSided, Pair};
 #[test]
 fn bad_requests_are_refused_before_any_work() {
     let good = || FrequencyResponse::of(&CONTACT).from(0.6).to(1.6);
-    let refused = |request: FrequencyResponse<'_>| request.run().unwrap_err();
+    let refused = |request: FrequencyResponse| request.run().unwrap_err();
     assert_eq!(
         refused(FrequencyResponse::of(&CONTACT)),
         Error::Missing { name: "from" }
@@ -98,7 +98,7 @@ fn bad_requests_are_refused_before_any_work() {
 
 #[test]
 fn unusable_parameters_are_refused_with_their_range() {
-    let refused = |request: FrequencyResponse<'_>| request.run().unwrap_err();
+    let refused = |request: FrequencyResponse| request.run().unwrap_err();
     let negative = OneSided {
         zeta: -0.1,
         ..CONTACT
@@ -128,7 +128,7 @@ fn unusable_parameters_are_refused_with_their_range() {
 
 #[test]
 fn what_cannot_be_represented_is_refused() {
-    let refused = |request: FrequencyResponse<'_>| request.run().unwrap_err();
+    let refused = |request: FrequencyResponse| request.run().unwrap_err();
     let model = Pair {
         mass: 1.0,
         pulse: 0.1,

@@ -90,7 +90,7 @@ impl Case {
     }
 
     /// Its branch at defaults; none if there is no orbit of that period to be found.
-    pub fn branch(&self) -> Option<Branch<'_>> {
+    pub fn branch(&self) -> Option<Branch> {
         let [from, to] = self.range;
         let request = FrequencyResponse::of(self.system.as_ref())
             .from(from)
@@ -109,7 +109,7 @@ pub enum Bifurcation {
 }
 
 /// Indices of the point before and of the point behind every bifurcation that the branch passes.
-pub fn bifurcations(branch: &Branch<'_>) -> Vec<(usize, Bifurcation)> {
+pub fn bifurcations(branch: &Branch) -> Vec<(usize, Bifurcation)> {
     let points = &branch.points;
     let mut found: Vec<_> = branch
         .folds()
@@ -132,7 +132,7 @@ pub fn bifurcations(branch: &Branch<'_>) -> Vec<(usize, Bifurcation)> {
 }
 
 /// The orbits taken of a branch, by index: up to two bifurcations with both neighbours, and others anywhere.
-pub fn choose(branch: &Branch<'_>, random: &mut Random) -> Vec<(usize, Option<Bifurcation>)> {
+pub fn choose(branch: &Branch, random: &mut Random) -> Vec<(usize, Option<Bifurcation>)> {
     let mut passed = bifurcations(branch);
     let mut chosen: Vec<(usize, Option<Bifurcation>)> = Vec::new();
     while chosen.len() + 2 <= ORBITS && !passed.is_empty() {

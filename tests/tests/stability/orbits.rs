@@ -46,7 +46,7 @@ impl Summary {
     fn judge(
         &mut self,
         case: &Case,
-        branch: &Branch<'_>,
+        branch: &Branch,
         (index, kind): (usize, Option<Bifurcation>),
         random: &mut Random,
     ) {

@@ -34,7 +34,7 @@ fn change(answer: &Answer) -> f64 {
 }
 
 /// The orbit at a frequency, as a branch of one point.
-fn at<'a>(system: &'a dyn System, near: &Point, omega: f64) -> Branch<'a> {
+fn at<'a>(system: &'a dyn System, near: &Point, omega: f64) -> Branch {
     let request = FrequencyResponse::of(system).from(omega).to(1.01 * omega);
     let request = request.near_orbit(&near.orbit).stability(false);
     let request = request.harmonics(near.orbit.harmonics());
@@ -45,7 +45,7 @@ fn at<'a>(system: &'a dyn System, near: &Point, omega: f64) -> Branch<'a> {
 fn zeros(system: &dyn System, harmonics: usize) -> Vec<[f64; 3]> {
     let request = FrequencyResponse::of(system).from(0.6).to(1.2);
     let branch = request.harmonics(harmonics).stability(false).run().unwrap();
-    let of = |branch: &Branch<'_>, index: usize| {
+    let of = |branch: &Branch, index: usize| {
         branch.multipliers(&branch.points[index], Method::Monodromy)
     };
     let answers: Vec<_> = (0..branch.points.len()).map(|i| of(&branch, i)).collect();

@@ -13,13 +13,13 @@ const MODEL: TwoMasses = TwoMasses {
 const BIFURCATIONS: [f64; 2] = [0.61861, 0.73878];
 
 /// The orbit at a frequency whose size is nearest to a given one.
-fn at(branch: &Branch<'_>, omega: f64, size: f64) -> Point {
+fn at(branch: &Branch, omega: f64, size: f64) -> Point {
     nearest(branch.at(omega).unwrap(), size, Point::peak_to_peak).unwrap()
 }
 
 /// Between two neighbours of the branch whose verdicts differ: up to where the first is said, and from where on the second, by
 /// bisection.
-fn change(branch: &Branch<'_>, [a, b]: [&Point; 2]) -> [f64; 2] {
+fn change(branch: &Branch, [a, b]: [&Point; 2]) -> [f64; 2] {
     let size = 0.5 * (a.peak_to_peak() + b.peak_to_peak());
     let limit = |mut inside: f64, mut outside: f64, wanted: Verdict| {
         while (outside - inside).abs() > 1e-5 {

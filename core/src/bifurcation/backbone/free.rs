@@ -16,6 +16,7 @@
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::Backbone;
@@ -54,8 +55,8 @@ const POINTS: usize = 5000;
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct FreeOscillation<'a> {
-    system: &'a dyn System,
+pub struct FreeOscillation {
+    system: Arc<dyn System>,
     from: Option<f64>,
     to: Option<f64>,
     near: Option<(Vec<f64>, f64)>,
@@ -64,7 +65,7 @@ pub struct FreeOscillation<'a> {
     largest_step: f64,
 }
 
-impl std::fmt::Debug for FreeOscillation<'_> {
+impl std::fmt::Debug for FreeOscillation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("FreeOscillation")
             .field("system", &self.system.facts().name)
@@ -92,11 +93,11 @@ impl FreePoint {
     }
 }
 
-impl<'a> FreeOscillation<'a> {
+impl FreeOscillation {
     /// Of this system, whose damping and excitation must be zero at the parameters it has.
-    pub fn of(system: &'a dyn System) -> Self {
+    pub fn of(system: &dyn System) -> Self {
         Self {
-            system,
+            system: system.shared(),
             from: None,
             to: None,
             near: None,
@@ -248,7 +249,7 @@ impl<'a> FreeOscillation<'a> {
     }
 
     /// The equations of the system, checked.
-    fn equations(&self) -> Result<Equations<'a>, Error> {
+    fn equations(&self) -> Result<Equations<'_>, Error> {
         let facts = self.system.facts();
         if facts.coordinates.is_empty() {
             return Err(Error::NoCoordinates);
@@ -257,7 +258,7 @@ impl<'a> FreeOscillation<'a> {
         self.system.values(&mut parameters);
         let tolerance = self.tolerance;
         let flow = time::at(
-            self.system,
+            self.system.as_ref(),
             &parameters,
             1.0,
             Options::default().tolerance(tolerance),

@@ -11,6 +11,8 @@ mod tests;
 #[cfg(feature = "text")]
 mod text;
 
+use std::sync::Arc;
+
 use crate::law::Law;
 use crate::system::{System, SystemFacts, Variable};
 
@@ -23,13 +25,14 @@ pub use text::{Declaration, DeclarationError, Fault};
 /// [data](Law::data).
 ///
 /// It computes what the system computes, from the same declaration, without the generated kernels.
-pub struct Interpreted<'a> {
-    system: &'a dyn System,
+#[derive(Clone)]
+pub struct Interpreted {
+    system: Arc<dyn System>,
     /// In the order of the system's; `None` where it has no data.
     laws: Vec<Option<InterpretedLaw>>,
 }
 
-impl std::fmt::Debug for Interpreted<'_> {
+impl std::fmt::Debug for Interpreted {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Interpreted")
             .field("system", &self.system.facts().name)
@@ -37,20 +40,23 @@ impl std::fmt::Debug for Interpreted<'_> {
     }
 }
 
-impl<'a> Interpreted<'a> {
-    /// The same system, its laws interpreted.
+impl Interpreted {
+    /// The same system at the values that its parameters have now, its laws interpreted.
     ///
     /// # Panics
     /// If the data of a law are not what [`InterpretedLaw::new`] asks for; those of generated laws are.
-    pub fn of(system: &'a dyn System) -> Self {
+    pub fn of(system: &dyn System) -> Self {
         let laws = (0..system.facts().laws)
             .map(|index| InterpretedLaw::of(system.law(index)))
             .collect();
-        Self { system, laws }
+        Self {
+            system: system.shared(),
+            laws,
+        }
     }
 }
 
-impl System for Interpreted<'_> {
+impl System for Interpreted {
     fn facts(&self) -> &SystemFacts {
         self.system.facts()
     }
@@ -79,5 +85,9 @@ impl System for Interpreted<'_> {
             Some(law) => law,
             None => self.system.law(index),
         }
+    }
+
+    fn shared(&self) -> Arc<dyn System> {
+        Arc::new(self.clone())
     }
 }

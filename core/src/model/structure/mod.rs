@@ -40,6 +40,7 @@ use crate::system::{System, SystemFacts, Variable};
 /// assert!(branch.points.len() > 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[derive(Clone)]
 pub struct Structure {
     facts: SystemFacts,
     values: Vec<f64>,
@@ -155,5 +156,9 @@ impl System for Structure {
 
     fn law(&self, index: usize) -> &dyn Law {
         self.laws[index].as_ref()
+    }
+
+    fn shared(&self) -> Arc<dyn System> {
+        Arc::new(self.clone())
     }
 }

@@ -15,7 +15,7 @@ const BESIDE: f64 = 0.1;
 /// What interpolation leaves of a determinant at a branch point, as a part of what it is at the ends of the step.
 const CROSSED: f64 = 1e-6;
 
-impl<'a> Run<'_, 'a> {
+impl<'a> Run<'a> {
     /// Locates where another branch crosses, by interpolation: close by, the matrix of a step is singular.
     pub(super) fn branch_point(
         &mut self,

@@ -22,7 +22,7 @@ const BEYOND_NEWTON: f64 = 100.0;
 /// An orbit that has more than this part of it left is not one of the more regular branch.
 const LEFT: f64 = 0.05;
 
-impl Run<'_, '_> {
+impl Run<'_> {
     /// Locates the fold between two points, or the jump that is there instead, behind so many points of the branch: the one behind the
     /// turn has been stored already.
     pub(super) fn turn(

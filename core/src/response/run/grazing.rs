@@ -41,7 +41,7 @@ const ORBITS: usize = 16;
 /// An orbit farther from where it was sought than so many steps is another one.
 const FARTHEST: f64 = 3.0;
 
-impl<'a> Run<'_, 'a> {
+impl<'a> Run<'a> {
     /// Where an extreme of a gap reaches a level, and whether that is where the branch `turned` back without a fold.
     pub(super) fn grazing(
         &mut self,

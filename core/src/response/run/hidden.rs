@@ -20,7 +20,7 @@ const NEAR: f64 = 0.5;
 const LOOKS: usize = 6;
 const CLOSE: f64 = 1e-3;
 
-impl Run<'_, '_> {
+impl Run<'_> {
     /// Locates two folds in one of the last two steps.
     pub(super) fn hidden(
         &mut self,

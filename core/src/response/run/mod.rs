@@ -35,8 +35,8 @@ const ROUNDINGS: f64 = 100.0;
 const ALL: usize = 1 << 24;
 
 /// What a run has gathered.
-pub(crate) struct Run<'f, 'a> {
-    pub(crate) follower: &'f Follower<'a>,
+pub(crate) struct Run<'a> {
+    pub(crate) follower: &'a Follower,
     options: FollowOptions,
     resolution: Resolution,
     /// The size of the core, where it pays to have one, and before it grew last.
@@ -63,8 +63,8 @@ pub(crate) struct Run<'f, 'a> {
     pub(crate) statistics: Statistics,
 }
 
-impl<'f, 'a> Run<'f, 'a> {
-    pub(crate) fn new(follower: &'f Follower<'a>, options: FollowOptions, first: &[f64]) -> Self {
+impl<'a> Run<'a> {
+    pub(crate) fn new(follower: &'a Follower, options: FollowOptions, first: &[f64]) -> Self {
         let core = follower.core_for(first);
         let resolution = follower.with_harmonics(follower.resolution.harmonics, core);
         Self {

@@ -81,7 +81,7 @@ pub(super) struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    pub(super) fn new(follower: &Follower<'a>, resolution: Resolution) -> Self {
+    pub(super) fn new(follower: &'a Follower, resolution: Resolution) -> Self {
         let coordinates = follower.system.facts().coordinates.len();
         let all = follower.sought == Sought::All;
         // Two multipliers on the unit circle, of one coordinate, are there with no damping only.
@@ -107,7 +107,7 @@ impl<'a> Watch<'a> {
 /// Two successive points.
 pub(super) type Between<'b> = (&'b CurvePoint, &'b CurvePoint);
 
-impl<'a> Run<'_, 'a> {
+impl<'a> Run<'a> {
     /// Locates everything but folds between two points, and where the branch `turned` back without one.
     pub(super) fn look_between(
         &mut self,

@@ -23,6 +23,7 @@ pub fn stub(
                 fn coefficients(&self, _: &[f64], _: f64, _: &mut [f64]) {}
                 fn coefficients_by(&self, _: __system::Variable, _: &[f64], _: f64, _: &mut [f64]) {}
                 fn law(&self, _: usize) -> &dyn __law::Law { __emitted::refused() }
+                fn shared(&self) -> __Arc<dyn __system::System> { __emitted::refused() }
             }
         },
     );

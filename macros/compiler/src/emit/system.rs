@@ -54,6 +54,10 @@ pub fn system(model: &mut Model) -> TokenStream {
                     _ => __emitted::no_such_law(index),
                 }
             }
+
+            fn shared(&self) -> __Arc<dyn __system::System> {
+                __Arc::new(::core::clone::Clone::clone(self))
+            }
         }
     }
 }

@@ -16,17 +16,17 @@ pub const fn linear(drive: f64) -> OneSidedLinear {
 }
 
 /// A branch of one point: the first orbit of a request, if one is found.
-pub fn start<'a>(request: &FrequencyResponse<'a>) -> Result<Branch<'a>, Error> {
+pub fn start<'a>(request: &FrequencyResponse) -> Result<Branch, Error> {
     request.run_with(|_| ControlFlow::Break(()))
 }
 
 /// The same of a request that has one.
-pub fn first<'a>(request: &FrequencyResponse<'a>) -> Branch<'a> {
+pub fn first<'a>(request: &FrequencyResponse) -> Branch {
     start(request).unwrap()
 }
 
 /// What a method says of the first orbit of a branch.
-pub fn answer(branch: &Branch<'_>, method: Method) -> Answer {
+pub fn answer(branch: &Branch, method: Method) -> Answer {
     branch.multipliers(&branch.points[0], method)
 }
 

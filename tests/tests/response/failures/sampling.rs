@@ -48,7 +48,7 @@ fn samples_of_an_unbounded_stiffness_are_erratic() {
     let exact = exact.orbit(omega).unwrap().stability;
     let method = Method::Hill(Sorting::Symmetry);
     let request = request.harmonics(20);
-    let hill = |request: &FrequencyResponse<'_>| {
+    let hill = |request: &FrequencyResponse| {
         let branch = start(request).ok()?;
         let found = answer(&branch, method).uncorrected;
         Some(distance(&found, &exact.multipliers))

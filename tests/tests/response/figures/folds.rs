@@ -9,7 +9,7 @@ use super::models::{
 };
 
 /// Every fold found once, none invented: omega within the error stated, omega and peak-to-peak near the exact ones.
-fn assert_folds(figure: &Figure, request: &FrequencyResponse<'_>) {
+fn assert_folds(figure: &Figure, request: &FrequencyResponse) {
     let branch = request.run().unwrap();
     assert_eq!(branch.stopped, Stop::ReachedEnd);
     assert!(branch.turns.is_empty(), "{:?}", branch.turns);

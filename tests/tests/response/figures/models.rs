@@ -116,15 +116,12 @@ impl Figure {
         }
     }
 
-    pub fn request<'a>(&self, model: &'a dyn System) -> FrequencyResponse<'a> {
+    pub fn request<'a>(&self, model: &'a dyn System) -> FrequencyResponse {
         FrequencyResponse::of(model).from(self.from).to(self.to)
     }
 
     /// The folds of a sweep that reaches its end and turns nowhere else, in order of frequency.
-    pub fn folds(
-        &self,
-        set: impl FnOnce(FrequencyResponse<'_>) -> FrequencyResponse<'_>,
-    ) -> Vec<Event> {
+    pub fn folds(&self, set: impl FnOnce(FrequencyResponse) -> FrequencyResponse) -> Vec<Event> {
         let model = self.model();
         let request = set(self.request(&*model)).stability(false);
         let branch = request.run().unwrap();

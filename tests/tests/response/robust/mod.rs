@@ -132,7 +132,7 @@ fn in_words(reason: NewtonError) -> &'static str {
 }
 
 /// Every number of a branch is one; an error may be unknown, which is infinite.
-fn usable(branch: &Branch<'_>) -> Result<(), String> {
+fn usable(branch: &Branch) -> Result<(), String> {
     if branch.points.is_empty() {
         return Err("a branch without points".to_owned());
     }

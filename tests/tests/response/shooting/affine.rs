@@ -94,7 +94,7 @@ const TABLE_1: [(f64, [f64; 2], [f64; 2]); 3] = [
     ),
 ];
 
-fn shooting() -> Shooting<'static> {
+fn shooting() -> Shooting {
     Shooting::of(&MODEL).vary("drive").omega(1.0)
 }
 

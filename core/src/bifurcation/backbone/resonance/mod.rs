@@ -15,6 +15,7 @@
 //! J. Sound Vib. 511.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::Backbone;
@@ -70,8 +71,8 @@ const STEP: f64 = 1e-6;
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct PhaseResonance<'a> {
-    system: &'a dyn System,
+pub struct PhaseResonance {
+    system: Arc<dyn System>,
     vary: Option<String>,
     to: Option<f64>,
     between: Option<[f64; 2]>,
@@ -80,7 +81,7 @@ pub struct PhaseResonance<'a> {
     largest_step: f64,
 }
 
-impl std::fmt::Debug for PhaseResonance<'_> {
+impl std::fmt::Debug for PhaseResonance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("PhaseResonance")
             .field("system", &self.system.facts().name)
@@ -103,11 +104,11 @@ pub struct ResonancePoint {
     pub motion: Motion,
 }
 
-impl<'a> PhaseResonance<'a> {
-    /// Of this system, at the parameters it has when the computation starts.
-    pub fn of(system: &'a dyn System) -> Self {
+impl PhaseResonance {
+    /// Of this system, at the values that its parameters have now.
+    pub fn of(system: &dyn System) -> Self {
         Self {
-            system,
+            system: system.shared(),
             vary: None,
             to: None,
             between: None,
@@ -256,7 +257,7 @@ impl<'a> PhaseResonance<'a> {
         Ok((index, parameters, options))
     }
 
-    fn balance(&self, parameters: &[f64], omega: f64) -> Balance<'a> {
+    fn balance(&self, parameters: &[f64], omega: f64) -> Balance<'_> {
         let resolution = Resolution {
             harmonics: self.harmonics,
             core: self.harmonics,
@@ -266,13 +267,19 @@ impl<'a> PhaseResonance<'a> {
             aft: Aft::Switched,
             period: 1,
         };
-        Balance::new(self.system, parameters, omega, Variable::Omega, resolution)
+        Balance::new(
+            self.system.as_ref(),
+            parameters,
+            omega,
+            Variable::Omega,
+            resolution,
+        )
     }
 
     /// The orbit of the frequency response that is next to phase resonance, and what it cost.
     fn first(&self, parameters: &[f64], value: f64) -> Result<(Orbit, Statistics), Error> {
         let [low, high] = self.between.ok_or(Error::Missing { name: "between" })?;
-        let response = FrequencyResponse::of(self.system).from(low).to(high);
+        let response = FrequencyResponse::of(&self.system).from(low).to(high);
         let response = response.harmonics(self.harmonics).stability(false);
         let branch = response.run()?;
         let mut balance = self.balance(parameters, low);

@@ -14,7 +14,8 @@ crate::oscillator! {
 #[test]
 fn evaluations_do_not_allocate() {
     let model = Contact { drive: 0.1 };
-    let balance = PhaseResonance::of(&model).balance(&[0.1], 1.1);
+    let request = PhaseResonance::of(&model);
+    let balance = request.balance(&[0.1], 1.1);
     let mut equations = Resonance::new(balance, 0, (1.0, 1.0));
     let n = equations.unknowns();
     let mut jacobian = Jacobian::new(equations.partition());

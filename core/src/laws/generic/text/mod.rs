@@ -4,6 +4,7 @@ mod convert;
 
 use std::cell::RefCell;
 use std::fmt;
+use std::sync::Arc;
 
 use hertzian_compiler::interpret::{Coefficients, Family};
 use hertzian_compiler::text::compile_text;
@@ -138,6 +139,10 @@ impl System for Declaration {
 
     fn law(&self, index: usize) -> &dyn Law {
         &self.laws[index]
+    }
+
+    fn shared(&self) -> Arc<dyn System> {
+        Arc::new(self.clone())
     }
 }
 
