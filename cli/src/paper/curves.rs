@@ -177,7 +177,7 @@ impl<'t> Curves<'t> {
     }
 
     /// Traces a curve until it ends or is interrupted.
-    fn followed<'s>(&mut self, case: &Case, request: &FrequencyResponse) -> Result<Branch, String> {
+    fn followed(&mut self, case: &Case, request: &FrequencyResponse) -> Result<Branch, String> {
         let task = self.task;
         let followed = request.run_with(|_| {
             if task.interrupted.load(Ordering::Relaxed) {
@@ -309,7 +309,7 @@ impl<'t> Curves<'t> {
 }
 
 /// What is asked for. A picture alone needs no more than the eye can see.
-fn request<'a>(system: &'a dyn System, case: &Case) -> FrequencyResponse {
+fn request(system: &dyn System, case: &Case) -> FrequencyResponse {
     let [from, to] = case.range;
     let tolerance = if case.exact.is_empty() { 1e-4 } else { 1e-6 };
     FrequencyResponse::of(system)

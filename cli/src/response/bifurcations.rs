@@ -343,7 +343,7 @@ fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
 }
 
 /// Shooting over the range of the branch, and a part of it beyond.
-fn shooting<'a>(options: &Options, model: &'a dyn System) -> Shooting {
+fn shooting(options: &Options, model: &dyn System) -> Shooting {
     let margin = 0.1 * (options.to - options.from);
     let mut parameters = model.facts().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == options.varied());

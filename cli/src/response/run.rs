@@ -210,7 +210,7 @@ fn paths(options: &Options) -> impl Iterator<Item = &Path> {
 }
 
 /// The options in the library's terms.
-fn request<'a>(options: &Options, model: &'a dyn System) -> FrequencyResponse {
+fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
     let mut request = FrequencyResponse::of(model)
         .from(options.from)
         .to(options.to)

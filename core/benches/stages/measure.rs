@@ -35,7 +35,7 @@ fn branch(system: &dyn System, harmonics: usize) -> Branch {
 }
 
 /// Its largest orbit.
-fn largest<'b>(branch: &'b Branch) -> &'b Point {
+fn largest(branch: &Branch) -> &Point {
     let size = |point: &&Point| point.peak_to_peak();
     branch
         .points

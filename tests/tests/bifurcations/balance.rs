@@ -26,7 +26,7 @@ hertzian::oscillator! {
     }
 }
 
-fn of_kind<'b>(branch: &'b Branch, kind: EventKind) -> Vec<&'b Event> {
+fn of_kind(branch: &Branch, kind: EventKind) -> Vec<&Event> {
     branch
         .events
         .iter()
@@ -34,7 +34,7 @@ fn of_kind<'b>(branch: &'b Branch, kind: EventKind) -> Vec<&'b Event> {
         .collect()
 }
 
-fn grazings<'b>(branch: &'b Branch) -> Vec<&'b Event> {
+fn grazings(branch: &Branch) -> Vec<&Event> {
     let grazing = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
     branch.events.iter().filter(grazing).collect()
 }

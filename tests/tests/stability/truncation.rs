@@ -34,7 +34,7 @@ fn change(answer: &Answer) -> f64 {
 }
 
 /// The orbit at a frequency, as a branch of one point.
-fn at<'a>(system: &'a dyn System, near: &Point, omega: f64) -> Branch {
+fn at(system: &dyn System, near: &Point, omega: f64) -> Branch {
     let request = FrequencyResponse::of(system).from(omega).to(1.01 * omega);
     let request = request.near_orbit(&near.orbit).stability(false);
     let request = request.harmonics(near.orbit.harmonics());

@@ -16,12 +16,12 @@ pub const fn linear(drive: f64) -> OneSidedLinear {
 }
 
 /// A branch of one point: the first orbit of a request, if one is found.
-pub fn start<'a>(request: &FrequencyResponse) -> Result<Branch, Error> {
+pub fn start(request: &FrequencyResponse) -> Result<Branch, Error> {
     request.run_with(|_| ControlFlow::Break(()))
 }
 
 /// The same of a request that has one.
-pub fn first<'a>(request: &FrequencyResponse) -> Branch {
+pub fn first(request: &FrequencyResponse) -> Branch {
     start(request).unwrap()
 }
 

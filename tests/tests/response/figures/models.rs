@@ -116,7 +116,7 @@ impl Figure {
         }
     }
 
-    pub fn request<'a>(&self, model: &'a dyn System) -> FrequencyResponse {
+    pub fn request(&self, model: &dyn System) -> FrequencyResponse {
         FrequencyResponse::of(model).from(self.from).to(self.to)
     }
 

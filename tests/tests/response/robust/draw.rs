@@ -288,7 +288,7 @@ impl Request {
         }
     }
 
-    pub(crate) fn of<'a>(&self, system: &'a dyn System) -> FrequencyResponse {
+    pub(crate) fn of(&self, system: &dyn System) -> FrequencyResponse {
         let mut response = FrequencyResponse::of(system)
             .from(self.from)
             .to(self.to)
