@@ -50,6 +50,7 @@ pub trait System: Send + Sync {
 
 /// What is shared already is not copied again.
 impl System for Arc<dyn System> {
+    #[inline]
     fn facts(&self) -> &SystemFacts {
         self.as_ref().facts()
     }
@@ -73,6 +74,7 @@ impl System for Arc<dyn System> {
             .coefficients_by(variable, parameters, omega, derivatives);
     }
 
+    #[inline]
     fn law(&self, index: usize) -> &dyn Law {
         self.as_ref().law(index)
     }

@@ -158,12 +158,12 @@ fn place(state: &[f64]) -> [f64; 2] {
 }
 
 /// A chart that grows.
-struct Portrait<'t> {
+struct Portrait {
     chart: Chart,
-    map: Stroboscope<'t>,
+    map: Stroboscope,
 }
 
-impl Portrait<'_> {
+impl Portrait {
     /// The curve and the points of a periodic orbit.
     fn periodic(mut self, attractor: &Attractor, label: String) -> Result<Self, Failure> {
         let curve = self.curve(&attractor.points[0], attractor.period)?;

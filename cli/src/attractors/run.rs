@@ -236,7 +236,7 @@ fn rows(options: &Options) -> Result<(), String> {
     values::counted("--periods", periods, 0..=most)
 }
 
-impl<'t> Task<'t> {
+impl Task<'_> {
     /// Whether there is a motion at all that was asked for, before the first of them is followed.
     fn check(&self) -> Result<(), Failure> {
         self.start()?;
@@ -269,7 +269,7 @@ impl<'t> Task<'t> {
     /// If the motion cannot be continued.
     pub fn settle(
         &self,
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         state: &mut [f64],
         times: usize,
     ) -> Result<bool, FlowError> {
@@ -323,7 +323,7 @@ impl<'t> Task<'t> {
     ///
     /// # Errors
     /// If the values or the tolerance are outside of their ranges.
-    pub fn flow(&self, drive: Option<f64>) -> Result<Box<dyn Flow + 't>, Failure> {
+    pub fn flow(&self, drive: Option<f64>) -> Result<Box<dyn Flow>, Failure> {
         let how = time::Options::default().tolerance(self.options.tolerance);
         let values = self.values(drive)?;
         Ok(time::at(
@@ -338,7 +338,7 @@ impl<'t> Task<'t> {
     ///
     /// # Errors
     /// As [`Task::flow`].
-    pub fn map(&self, drive: Option<f64>) -> Result<Stroboscope<'t>, Failure> {
+    pub fn map(&self, drive: Option<f64>) -> Result<Stroboscope, Failure> {
         Ok(Stroboscope::new(self.flow(drive)?))
     }
 
@@ -346,7 +346,7 @@ impl<'t> Task<'t> {
     ///
     /// # Errors
     /// As [`Task::flow`].
-    pub fn flows(&self, drive: Option<f64>) -> Result<Vec<Box<dyn Flow + 't>>, Failure> {
+    pub fn flows(&self, drive: Option<f64>) -> Result<Vec<Box<dyn Flow>>, Failure> {
         let processors = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
         let count = self
             .options

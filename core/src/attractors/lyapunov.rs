@@ -47,16 +47,16 @@ const RESOLVED: f64 = 1e-10;
 /// assert!((motion.exponents().sum.value + 0.2 * TAU).abs() < 1e-9);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
-pub struct Lyapunov<'s, 'a> {
-    map: &'s mut Stroboscope<'a>,
-    divergence: Option<Divergence<'a>>,
+pub struct Lyapunov<'s> {
+    map: &'s mut Stroboscope,
+    divergence: Option<Divergence>,
     state: Vec<f64>,
     tangent: Tangent,
     sums: Vec<f64>,
     batches: Vec<Batch>,
 }
 
-impl std::fmt::Debug for Lyapunov<'_, '_> {
+impl std::fmt::Debug for Lyapunov<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Lyapunov")
             .field("state", &self.state)
@@ -89,9 +89,9 @@ pub struct Exponents {
     pub divergence: Option<Integral>,
 }
 
-impl<'s, 'a> Lyapunov<'s, 'a> {
+impl<'s> Lyapunov<'s> {
     /// Starts a motion.
-    pub fn new(map: &'s mut Stroboscope<'a>, state: &[f64]) -> Self {
+    pub fn new(map: &'s mut Stroboscope, state: &[f64]) -> Self {
         let order = state.len();
         Self {
             map,
@@ -105,7 +105,7 @@ impl<'s, 'a> Lyapunov<'s, 'a> {
 
     /// Integrates the divergence as well. It must be that of the system that moves.
     #[must_use]
-    pub fn divergence(mut self, divergence: Divergence<'a>) -> Self {
+    pub fn divergence(mut self, divergence: Divergence) -> Self {
         self.divergence = Some(divergence);
         self
     }

@@ -129,7 +129,7 @@ impl Sweep {
     /// If a number of the request cannot be used, or the log cannot be written.
     pub fn run(
         &self,
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         section: Option<&Section<'_>>,
         mut log: Option<&mut Log>,
         see: &mut dyn FnMut(&Row) -> bool,
@@ -184,7 +184,7 @@ impl Sweep {
     /// One value.
     fn row(
         &self,
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         section: Option<&Section<'_>>,
         state: &mut [f64],
         points: &mut Vec<f64>,
@@ -268,7 +268,7 @@ mod tests {
         drive: 1.0,
     };
 
-    fn map() -> Stroboscope<'static> {
+    fn map() -> Stroboscope {
         let flow = Affine::new(&MODEL, &[0.032, 1.0, 1.0], 1.0).expect("affine");
         Stroboscope::new(Box::new(flow))
     }

@@ -288,7 +288,7 @@ impl Bifurcations {
             }
         };
         let options = time::Options::default().tolerance(SETTLED);
-        let flow = time::at(self.system.as_ref(), &parameters, omega, options)?;
+        let flow = time::at(&self.system, &parameters, omega, options)?;
         let found = basin.compute(vec![flow], None, watch);
         found.map_err(|reason| Error::Search { value, reason })
     }

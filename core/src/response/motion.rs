@@ -22,7 +22,7 @@ pub(super) fn moved(follower: &Follower, moving: Moving<'_>) -> Moved {
         Variable::Parameter(index) => parameters[index] = moving.value,
     }
     let options = Options::default().tolerance(TOLERANCE);
-    let Ok(mut flow) = time::at(follower.system.as_ref(), &parameters, omega, options) else {
+    let Ok(mut flow) = time::at(&follower.system, &parameters, omega, options) else {
         return Moved {
             positions: None,
             operations: 0,

@@ -21,11 +21,7 @@ const SAME: f64 = 1e-9;
 ///
 /// # Errors
 /// If the orbit between two neighbours is not found.
-pub(super) fn at(
-    setting: &Setting<'_>,
-    branch: &CycleBranch,
-    value: f64,
-) -> Result<Vec<Cycle>, Error> {
+pub(super) fn at(setting: &Setting, branch: &CycleBranch, value: f64) -> Result<Vec<Cycle>, Error> {
     let chain = chain(branch);
     let mut found: Vec<Cycle> = Vec::new();
     for (index, cycle) in chain.iter().enumerate() {
@@ -60,7 +56,7 @@ fn chain(branch: &CycleBranch) -> Vec<&Cycle> {
         .collect()
 }
 
-fn between(setting: &Setting<'_>, [a, b]: [&Cycle; 2], value: f64) -> Result<Cycle, Error> {
+fn between(setting: &Setting, [a, b]: [&Cycle; 2], value: f64) -> Result<Cycle, Error> {
     let motion = |reason| Error::Motion { value, reason };
     let (equations, u) = start::known(setting, a)?;
     let mut first = First {

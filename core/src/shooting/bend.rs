@@ -32,8 +32,8 @@ const FARTHER: f64 = 2.0;
 const PARTS: [f64; 3] = [1.0, 0.25, 0.0625];
 
 /// Orbits of the new branch, beside those of a curve.
-pub(super) struct Bend<'a> {
-    equations: Equations<'a>,
+pub(super) struct Bend {
+    equations: Equations,
     newton: Newton,
     second: Variable,
     symmetric: bool,
@@ -42,14 +42,14 @@ pub(super) struct Bend<'a> {
     distance: f64,
 }
 
-impl<'a> Bend<'a> {
+impl Bend {
     /// Of a curve; at a larger distance to compare with.
     ///
     /// # Errors
     /// If there is no flow.
     pub(super) fn new(
-        setting: &Setting<'a>,
-        curve: &Curve<'a>,
+        setting: &Setting,
+        curve: &Curve<'_>,
         symmetric: bool,
         farther: bool,
     ) -> Result<Self, Error> {
@@ -87,12 +87,7 @@ impl<'a> Bend<'a> {
     }
 
     /// `k` at a point of the curve, whose unknowns end with both parameters.
-    pub(super) fn at(
-        &mut self,
-        setting: &Setting<'a>,
-        curve: &Curve<'a>,
-        u: &[f64],
-    ) -> Option<f64> {
+    pub(super) fn at(&mut self, setting: &Setting, curve: &Curve<'_>, u: &[f64]) -> Option<f64> {
         let last = u.len() - 1;
         self.equations.flow.set(self.second, u[last]).ok()?;
         let mut states = curve.equations.states_of(&u[..last]);
@@ -124,7 +119,7 @@ impl<'a> Bend<'a> {
     /// `(lambda(e) - lambda(0)) / e^2`, and the orbit.
     fn coefficient(
         &mut self,
-        setting: &Setting<'a>,
+        setting: &Setting,
         u: &[f64],
         direction: &[f64],
         e: f64,

@@ -38,11 +38,11 @@ pub(super) struct Earlier {
     pub(super) tests: Tests,
 }
 
-impl<'a> Run<'_, 'a> {
+impl Run<'_> {
     /// A step divided so that no test function changes its sign twice in a part, as far as can be seen.
     pub(super) fn parts(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         [a, b]: [Seen; 2],
     ) -> Vec<Seen> {
@@ -80,7 +80,7 @@ impl<'a> Run<'_, 'a> {
     /// An orbit inside a step where a test function has the other sign than at both ends.
     fn dip(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         ([a, b], earlier): ([&Seen; 2], Earlier),
         test: Test,
@@ -140,7 +140,7 @@ impl<'a> Run<'_, 'a> {
     /// Orbits before and behind the turn in a step, if nothing else vanishes there.
     fn beside_turn(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         [a, b]: [&Seen; 2],
     ) -> Option<[Seen; 2]> {
@@ -175,7 +175,7 @@ impl<'a> Run<'_, 'a> {
     }
 }
 
-fn seen(equations: &mut Equations<'_>, point: CurvePoint) -> Option<Seen> {
+fn seen(equations: &mut Equations, point: CurvePoint) -> Option<Seen> {
     let map = equations.map(&point.u, &mut |_| {}).ok()?;
     let tests = Tests::of(Some(&map), point.parameter_slope());
     Some(Seen { point, tests })

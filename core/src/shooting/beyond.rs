@@ -32,9 +32,9 @@ enum Found {
 ///
 /// # Errors
 /// [`Error::Beyond`] if the branch turns back before, and `reason` if nothing is known.
-pub(super) fn search<'a>(
-    setting: &Setting<'a>,
-    equations: &mut Equations<'a>,
+pub(super) fn search(
+    setting: &Setting,
+    equations: &mut Equations,
     u: &[f64],
     value: f64,
     reason: Error,
@@ -55,8 +55,8 @@ pub(super) fn search<'a>(
     }
 }
 
-struct Search<'e, 'a> {
-    equations: &'e mut Equations<'a>,
+struct Search<'e> {
+    equations: &'e mut Equations,
     newton: Newton,
     start: NewtonOptions,
     options: NewtonOptions,
@@ -65,7 +65,7 @@ struct Search<'e, 'a> {
     held: usize,
 }
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// How far an orbit is from the value.
     fn distance(&self, u: &[f64]) -> f64 {
         (u[u.len() - 1] - self.value).abs()

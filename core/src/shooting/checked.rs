@@ -1,5 +1,7 @@
 //! What was asked for, checked before any work.
 
+use std::sync::Arc;
+
 use super::cycle::Cycle;
 use super::request::Shooting;
 use super::setting::{Setting, Source};
@@ -70,7 +72,7 @@ impl Shooting {
     pub(crate) fn returns(&self, cycle: &Cycle) -> Result<Vec<Vec<f64>>, Error> {
         let tolerance = self.tolerance;
         let flow = time::at(
-            self.system.as_ref(),
+            &self.system,
             &cycle.parameters,
             cycle.omega,
             Options { tolerance },
@@ -94,7 +96,7 @@ impl Shooting {
     }
 
     /// The range, and everything else that was asked for, checked.
-    pub(super) fn ranged(&self) -> Result<([f64; 2], Setting<'_>), Error> {
+    pub(super) fn ranged(&self) -> Result<([f64; 2], Setting), Error> {
         let from = self.from.ok_or(Error::Missing { name: "from" })?;
         let to = self.to.ok_or(Error::Missing { name: "to" })?;
         let setting = self.setting(from, to)?;
@@ -103,7 +105,7 @@ impl Shooting {
     }
 
     /// Checks everything that was asked for.
-    pub(super) fn setting(&self, from: f64, to: f64) -> Result<Setting<'_>, Error> {
+    pub(super) fn setting(&self, from: f64, to: f64) -> Result<Setting, Error> {
         let facts = self.system.facts();
         if facts.coordinates.is_empty() {
             return Err(Error::NoCoordinates);
@@ -218,14 +220,14 @@ impl Shooting {
     }
 
     /// Where flows of the system come from.
-    fn source(&self, parameters: &[f64], omega: f64) -> Source<'_> {
-        let system = self.system.as_ref();
+    fn source(&self, parameters: &[f64], omega: f64) -> Source {
+        let system = Arc::clone(&self.system);
         let parameters = parameters.to_vec();
-        let exact = Affine::new(system, &parameters, omega).is_ok();
+        let exact = Affine::new(&system, &parameters, omega).is_ok();
         Source {
             make: Box::new(move |tolerance| {
                 let options = Options::default().tolerance(tolerance);
-                time::at(system, &parameters, omega, options)
+                time::at(&system, &parameters, omega, options)
             }),
             exact,
             tolerance: self.tolerance,

@@ -33,8 +33,8 @@ const DISTURBANCE: f64 = 1e-9;
 const ONE_UPDATE: f64 = 1e-3;
 
 /// Equations of the same orbits that are finer, or, of a closed form, disturbed.
-pub(super) struct Companion<'a> {
-    pub(super) equations: Equations<'a>,
+pub(super) struct Companion {
+    pub(super) equations: Equations,
     pub(super) newton: Newton,
     pub(super) options: NewtonOptions,
     /// Errors of events are this part of what differs here.
@@ -52,10 +52,10 @@ pub(super) struct Corrected {
     pub(super) multipliers: Vec<Complex<f64>>,
 }
 
-impl<'a> Companion<'a> {
+impl Companion {
     /// Of the equations over this span, at orbits of this size.
     pub(super) fn new(
-        setting: &Setting<'a>,
+        setting: &Setting,
         span: Span,
         frame: Frame,
         size: f64,

@@ -17,7 +17,7 @@ use crate::system::Variable;
 ///
 /// # Errors
 /// If none is found.
-pub(super) fn cycle(setting: &Setting<'_>, guess: &Guess, value: f64) -> Result<Cycle, Error> {
+pub(super) fn cycle(setting: &Setting, guess: &Guess, value: f64) -> Result<Cycle, Error> {
     let found = first(setting, guess, value, setting.omega_at(value))?;
     read(setting, found, value)
 }
@@ -26,11 +26,7 @@ pub(super) fn cycle(setting: &Setting<'_>, guess: &Guess, value: f64) -> Result<
 ///
 /// # Errors
 /// If its motion cannot be computed.
-pub(super) fn read<'a>(
-    setting: &Setting<'a>,
-    found: First<'a>,
-    value: f64,
-) -> Result<Cycle, Error> {
+pub(super) fn read(setting: &Setting, found: First, value: f64) -> Result<Cycle, Error> {
     let (mut run, mut found) = run(setting, found, value, value)?;
     let read = run.read(&mut found.equations, &found.u);
     let (cycle, _) = read.map_err(|reason| Error::Motion { value, reason })?;
@@ -45,7 +41,7 @@ pub(super) fn read<'a>(
 /// # Errors
 /// If there is no first orbit.
 pub(super) fn branch(
-    setting: &Setting<'_>,
+    setting: &Setting,
     guess: &Guess,
     [from, to]: [f64; 2],
     visit: See<'_>,
@@ -61,7 +57,7 @@ pub(super) fn branch(
 /// # Errors
 /// If there is none.
 pub(super) fn branch_at(
-    setting: &Setting<'_>,
+    setting: &Setting,
     event: &CycleEvent,
     side: f64,
     [from, to]: [f64; 2],
@@ -78,7 +74,7 @@ pub(super) fn branch_at(
 /// # Errors
 /// If there is no such orbit.
 pub(super) fn branch_through(
-    setting: &Setting<'_>,
+    setting: &Setting,
     guess: &Guess,
     value: f64,
     [from, to]: [f64; 2],
@@ -104,7 +100,7 @@ pub(super) fn branch_through(
 type See<'s> = &'s mut dyn FnMut(&Cycle) -> ControlFlow<()>;
 
 /// A frequency that velocities count by.
-fn omega_between(setting: &Setting<'_>, [from, to]: [f64; 2]) -> f64 {
+fn omega_between(setting: &Setting, [from, to]: [f64; 2]) -> f64 {
     match setting.variable {
         Variable::Omega => (from * to).sqrt(),
         Variable::Parameter(_) => setting.omega,
@@ -112,9 +108,9 @@ fn omega_between(setting: &Setting<'_>, [from, to]: [f64; 2]) -> f64 {
 }
 
 /// The branch from a solution on.
-fn followed<'a>(
-    setting: &Setting<'a>,
-    (found, start): (First<'a>, impl FnOnce(Vec<f64>) -> Start),
+fn followed(
+    setting: &Setting,
+    (found, start): (First, impl FnOnce(Vec<f64>) -> Start),
     [from, to]: [f64; 2],
     visit: See<'_>,
     started: Instant,
@@ -150,12 +146,7 @@ fn followed<'a>(
 }
 
 /// A run that begins at a solution.
-fn run<'r, 'a>(
-    setting: &'r Setting<'a>,
-    found: First<'a>,
-    from: f64,
-    to: f64,
-) -> Result<(Run<'r, 'a>, First<'a>), Error> {
+fn run(setting: &Setting, found: First, from: f64, to: f64) -> Result<(Run<'_>, First), Error> {
     let First {
         equations, size, ..
     } = &found;

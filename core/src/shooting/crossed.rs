@@ -44,12 +44,12 @@ struct Directions {
 ///
 /// # Errors
 /// [`Error::NoBranch`] if no other branch was found.
-pub(super) fn depart<'a>(
-    setting: &Setting<'a>,
+pub(super) fn depart(
+    setting: &Setting,
     event: &CycleEvent,
     side: f64,
     range: f64,
-) -> Result<Begun<'a>, Error> {
+) -> Result<Begun, Error> {
     let nothing = || Error::NoBranch {
         kind: event.kind,
         value: event.cycle.value,
@@ -76,7 +76,7 @@ pub(super) fn depart<'a>(
 }
 
 /// The equations of the event's own orbit, and the orbit as a solution of them.
-fn same<'a>(setting: &Setting<'a>, event: &CycleEvent) -> Result<First<'a>, Error> {
+fn same(setting: &Setting, event: &CycleEvent) -> Result<First, Error> {
     let cycle = &event.cycle;
     let (equations, u) = start::known(setting, cycle)?;
     let mut first = First {
@@ -96,7 +96,7 @@ fn same<'a>(setting: &Setting<'a>, event: &CycleEvent) -> Result<First<'a>, Erro
 
 /// The null vectors and the solution of (1).
 fn directions(
-    equations: &mut Equations<'_>,
+    equations: &mut Equations,
     u: &[f64],
     tangent: &[f64],
     units: &[f64],
@@ -145,8 +145,8 @@ fn directions(
 
 /// The orbit of the other branch with this component across the known one.
 fn beside(
-    setting: &Setting<'_>,
-    first: &mut First<'_>,
+    setting: &Setting,
+    first: &mut First,
     (across, other): (&DVector<f64>, &DVector<f64>),
     units: &[f64],
     step: f64,

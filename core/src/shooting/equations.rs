@@ -87,8 +87,8 @@ impl Frame {
 }
 
 /// The equations of one system, as a problem of continuation.
-pub(super) struct Equations<'a> {
-    pub(super) flow: Box<dyn Flow + 'a>,
+pub(super) struct Equations {
+    pub(super) flow: Box<dyn Flow>,
     pub(super) span: Span,
     pub(super) frame: Frame,
     /// Added to every position equation, and times the frequency to every velocity equation, with alternating signs. All
@@ -108,10 +108,10 @@ pub(super) struct Equations<'a> {
     column: Vec<f64>,
 }
 
-impl<'a> Equations<'a> {
+impl Equations {
     /// With a flow of this tolerance.
     pub(super) fn new(
-        setting: &Setting<'a>,
+        setting: &Setting,
         tolerance: f64,
         span: Span,
         frame: Frame,
@@ -135,7 +135,7 @@ impl<'a> Equations<'a> {
     }
 
     /// The same equations, with a flow of their own.
-    pub(super) fn again(&self, setting: &Setting<'a>) -> Result<Self, Error> {
+    pub(super) fn again(&self, setting: &Setting) -> Result<Self, Error> {
         let equations = Self::new(setting, self.tolerance, self.span, self.frame.clone())?;
         Ok(Self {
             disturbance: self.disturbance,
@@ -361,7 +361,7 @@ impl<'a> Equations<'a> {
     }
 }
 
-impl Problem for Equations<'_> {
+impl Problem for Equations {
     fn unknowns(&self) -> usize {
         self.order() * self.span.segments
     }

@@ -33,7 +33,7 @@ struct Place {
 }
 
 /// What the other multipliers make of a determinant that vanishes with the one nearest to a critical value, and of its rounding.
-fn others(equations: &mut Equations<'_>, u: &[f64], critical: f64) -> f64 {
+fn others(equations: &mut Equations, u: &[f64], critical: f64) -> f64 {
     let Ok(map) = equations.map(u, &mut |_| {}) else {
         return 1.0;
     };
@@ -48,16 +48,16 @@ fn others(equations: &mut Equations<'_>, u: &[f64], critical: f64) -> f64 {
 }
 
 /// Whether the pair of multipliers whose product is nearest to one is complex.
-fn complex(equations: &mut Equations<'_>, u: &[f64]) -> bool {
+fn complex(equations: &mut Equations, u: &[f64]) -> bool {
     let map = equations.map(u, &mut |_| {}).ok();
     map.is_some_and(|map| Tests::of(Some(&map), 0.0).complex)
 }
 
-impl<'a> Run<'_, 'a> {
+impl Run<'_> {
     /// Locates an event between two points.
     pub(super) fn event(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         between: (&CurvePoint, &CurvePoint),
         change: Change,
@@ -107,7 +107,7 @@ impl<'a> Run<'_, 'a> {
     /// Where a test function of these equations vanishes.
     fn place(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         between: (&CurvePoint, &CurvePoint),
         options: NewtonOptions,
@@ -143,7 +143,7 @@ impl<'a> Run<'_, 'a> {
     /// The event at a place, compared with that of the companion.
     fn event_at(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         between: (&CurvePoint, &CurvePoint),
         change: Change,
         place: &Place,
@@ -191,10 +191,10 @@ impl<'a> Run<'_, 'a> {
 
 /// An event of some equations with its errors, and the error of its value: a part of what it is in others.
 fn compared(
-    setting: &Setting<'_>,
+    setting: &Setting,
     kind: EventKind,
-    (equations, place): (&mut Equations<'_>, &Place),
-    (others, moved): (&mut Equations<'_>, &Place),
+    (equations, place): (&mut Equations, &Place),
+    (others, moved): (&mut Equations, &Place),
     (part, noise): (f64, f64),
 ) -> Option<(Cycle, f64)> {
     let half = equations.span.half;

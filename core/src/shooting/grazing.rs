@@ -27,11 +27,11 @@ struct Bracket {
     switches: Option<usize>,
 }
 
-impl<'a> Run<'_, 'a> {
+impl Run<'_> {
     /// Locates the places between two points where levels begin or cease to be crossed, one after the other.
     pub(super) fn grazings(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         (before, behind): (&CurvePoint, &CurvePoint),
     ) {
@@ -55,7 +55,7 @@ impl<'a> Run<'_, 'a> {
     /// Halves a step to where levels are not crossed so many times any more.
     fn bracket(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         between: (&CurvePoint, &CurvePoint),
         many: usize,
@@ -90,7 +90,7 @@ impl<'a> Run<'_, 'a> {
     /// The event, or what is known where its orbit cannot be read.
     fn grazing(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         between: (&CurvePoint, &CurvePoint),
         Bracket { before, behind, .. }: &Bracket,
     ) {

@@ -31,12 +31,12 @@ pub(super) struct Halved(Vec<f64>);
 
 impl Halved {
     /// Of an orbit whose last two unknowns are the parameters; `None` if half of its period is not a whole number of segments.
-    pub(super) fn of(equations: &Equations<'_>, u: &[f64]) -> Option<Self> {
+    pub(super) fn of(equations: &Equations, u: &[f64]) -> Option<Self> {
         let states = equations.states_of(&u[..u.len() - 1]);
         Self::between(equations, &states)
     }
 
-    fn between(equations: &Equations<'_>, states: &[f64]) -> Option<Self> {
+    fn between(equations: &Equations, states: &[f64]) -> Option<Self> {
         let span = equations.span;
         let order = equations.order();
         let segments = states.len() / order;
@@ -66,7 +66,7 @@ impl Halved {
     }
 
     /// The parameters (1), seen from a point of which this is the difference.
-    pub(super) fn end(&self, equations: &Equations<'_>, point: &CurvePoint) -> Option<[f64; 2]> {
+    pub(super) fn end(&self, equations: &Equations, point: &CurvePoint) -> Option<[f64; 2]> {
         let last = point.u.len() - 1;
         let along = Self::between(equations, &point.tangent[..last - 1])?;
         // s / s', with s' = d . d' / s

@@ -27,7 +27,7 @@ pub(super) struct Recurrence {
 impl Recurrence {
     /// The same at a branch point.
     pub(super) fn at_point(
-        equations: &mut Equations<'_>,
+        equations: &mut Equations,
         u: &[f64],
         (size, same): (f64, f64),
         odd: bool,
@@ -38,7 +38,7 @@ impl Recurrence {
     /// Of the orbit `u` of some size, two states of which are one if they differ by this part of it; whether it has odd symmetry only
     /// where that is possible.
     pub(super) fn of(
-        equations: &mut Equations<'_>,
+        equations: &mut Equations,
         u: &[f64],
         (size, same): (f64, f64),
         odd: bool,
@@ -75,7 +75,7 @@ impl Recurrence {
 }
 
 /// Whether a state is that at the beginning, but for this.
-fn returns(equations: &Equations<'_>, state: &[f64], first: &[f64], most: f64) -> bool {
+fn returns(equations: &Equations, state: &[f64], first: &[f64], most: f64) -> bool {
     let n = state.len() / 2;
     let mut pairs = state.iter().zip(first).enumerate();
     pairs.all(|(i, (x, y))| {
@@ -87,7 +87,7 @@ fn returns(equations: &Equations<'_>, state: &[f64], first: &[f64], most: f64) -
 /// The step along the more regular branch that passes over the point where a step from `before` to `behind` came onto it: from
 /// beyond the parameter of `before`.
 pub(super) fn step_on_other_branch(
-    equations: &mut Equations<'_>,
+    equations: &mut Equations,
     newton: &mut Newton,
     before: &CurvePoint,
     behind: &CurvePoint,

@@ -27,10 +27,10 @@ use crate::time::{FlowError, Stretch, Work};
 const NOISE: f64 = 10.0;
 
 /// What a run has gathered.
-pub(super) struct Run<'r, 'a> {
-    pub(super) setting: &'r Setting<'a>,
+pub(super) struct Run<'r> {
+    pub(super) setting: &'r Setting,
     pub(super) options: NewtonOptions,
-    companion: Companion<'a>,
+    companion: Companion,
     size: f64,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
@@ -48,11 +48,11 @@ pub(super) struct Run<'r, 'a> {
     pub(super) work: Work,
 }
 
-impl<'r, 'a> Run<'r, 'a> {
+impl<'r> Run<'r> {
     pub(super) fn new(
-        setting: &'r Setting<'a>,
+        setting: &'r Setting,
         options: NewtonOptions,
-        companion: Companion<'a>,
+        companion: Companion,
         size: f64,
     ) -> Self {
         Self {
@@ -79,7 +79,7 @@ impl<'r, 'a> Run<'r, 'a> {
     /// If there is no first orbit.
     pub(super) fn follow(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         start: Start,
         options: FollowOptions,
         visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
@@ -125,7 +125,7 @@ impl<'r, 'a> Run<'r, 'a> {
 
     fn visit(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         seen: &Visit<'_>,
         visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
@@ -142,7 +142,7 @@ impl<'r, 'a> Run<'r, 'a> {
 
     fn point(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         at: &CurvePoint,
         visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
     ) -> Result<Continue, FlowError> {
@@ -170,7 +170,7 @@ impl<'r, 'a> Run<'r, 'a> {
 
     fn between(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         newton: &mut Newton,
         before: &CurvePoint,
         behind: &CurvePoint,
@@ -219,13 +219,13 @@ impl<'r, 'a> Run<'r, 'a> {
     }
 
     /// The size of the orbits, and by what part of it two states differ that are one.
-    fn regular(&self, equations: &Equations<'_>) -> (f64, f64) {
+    fn regular(&self, equations: &Equations) -> (f64, f64) {
         (self.size, self.setting.same(equations.frame.ratio))
     }
 
     /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
     /// same orbits again, looked at from elsewhere.
-    fn meets(&mut self, equations: &mut Equations<'a>) -> bool {
+    fn meets(&mut self, equations: &mut Equations) -> bool {
         let odd = self.setting.odd;
         let Some(event) = self.events.last() else {
             return false;
@@ -252,7 +252,7 @@ impl<'r, 'a> Run<'r, 'a> {
     /// is the orbit corrected for that.
     pub(super) fn read(
         &mut self,
-        equations: &mut Equations<'a>,
+        equations: &mut Equations,
         u: &[f64],
     ) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
         let Self {
@@ -295,8 +295,8 @@ impl<'r, 'a> Run<'r, 'a> {
 
 /// An orbit without its stability, and its map if the stability is wanted.
 pub(super) fn observe(
-    setting: &Setting<'_>,
-    equations: &mut Equations<'_>,
+    setting: &Setting,
+    equations: &mut Equations,
     u: &[f64],
 ) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
     let value = u[u.len() - 1];

@@ -26,11 +26,7 @@ const HARMONICS: usize = 20;
 ///
 /// # Errors
 /// If the motion cannot be computed.
-pub(super) fn point(
-    system: &dyn System,
-    setting: &Setting<'_>,
-    cycle: &Cycle,
-) -> Result<Point, Error> {
+pub(super) fn point(system: &dyn System, setting: &Setting, cycle: &Cycle) -> Result<Point, Error> {
     let coordinates = cycle.extremes.len();
     let divisor = setting.divisor as usize;
     let samples = sampled(setting, cycle, SAMPLES * divisor)?;
@@ -88,7 +84,7 @@ pub(super) fn point(
 }
 
 /// Positions at equal distances over the period, so many in each period of the declaration, coordinate by coordinate.
-fn sampled(setting: &Setting<'_>, cycle: &Cycle, each: usize) -> Result<Vec<f64>, Error> {
+fn sampled(setting: &Setting, cycle: &Cycle, each: usize) -> Result<Vec<f64>, Error> {
     let coordinates = cycle.extremes.len();
     let count = each * cycle.period;
     let mut flow = setting.flow(setting.source.tolerance)?;

@@ -8,12 +8,12 @@ use crate::model::labels::Labels;
 use crate::system::Variable;
 use crate::time::Flow;
 
-type Make<'a> = dyn Fn(f64) -> Result<Box<dyn Flow + 'a>, Error> + 'a;
+type Make = dyn Fn(f64) -> Result<Box<dyn Flow>, Error>;
 
 /// Where flows of one system come from.
-pub(super) struct Source<'a> {
+pub(super) struct Source {
     /// Makes a flow of this tolerance.
-    pub(super) make: Box<Make<'a>>,
+    pub(super) make: Box<Make>,
     /// The flow is in closed form and has no tolerance.
     pub(super) exact: bool,
     /// The tolerance asked for.
@@ -21,8 +21,8 @@ pub(super) struct Source<'a> {
 }
 
 /// The system, what is varied, and how.
-pub(super) struct Setting<'a> {
-    pub(super) source: Source<'a>,
+pub(super) struct Setting {
+    pub(super) source: Source,
     /// Name of what is varied.
     pub(super) varied: String,
     /// What charts say.
@@ -48,9 +48,9 @@ const ITERATIONS: usize = 12;
 /// The same from a guess, where they are halved as long as they do not help.
 const ITERATIONS_AT_START: usize = 40;
 
-impl<'a> Setting<'a> {
+impl Setting {
     /// A flow of this tolerance at the parameters of the setting.
-    pub(super) fn flow(&self, tolerance: f64) -> Result<Box<dyn Flow + 'a>, Error> {
+    pub(super) fn flow(&self, tolerance: f64) -> Result<Box<dyn Flow>, Error> {
         (self.source.make)(tolerance)
     }
 

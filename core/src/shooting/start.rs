@@ -22,8 +22,8 @@ pub(super) enum Guess {
 }
 
 /// A solution.
-pub(super) struct First<'a> {
-    pub(super) equations: Equations<'a>,
+pub(super) struct First {
+    pub(super) equations: Equations,
     pub(super) u: Vec<f64>,
     /// Updates that it took.
     pub(super) iterations: usize,
@@ -32,12 +32,12 @@ pub(super) struct First<'a> {
 }
 
 /// The orbit at a value, from a guess; frequencies count by `omega`.
-pub(super) fn first<'a>(
-    setting: &Setting<'a>,
+pub(super) fn first(
+    setting: &Setting,
     guess: &Guess,
     value: f64,
     omega: f64,
-) -> Result<First<'a>, Error> {
+) -> Result<First, Error> {
     let span = Span {
         period: setting.period,
         half: false,
@@ -93,10 +93,7 @@ pub(super) fn first<'a>(
 ///
 /// # Errors
 /// If there is no flow.
-pub(super) fn known<'a>(
-    setting: &Setting<'a>,
-    cycle: &Cycle,
-) -> Result<(Equations<'a>, Vec<f64>), Error> {
+pub(super) fn known(setting: &Setting, cycle: &Cycle) -> Result<(Equations, Vec<f64>), Error> {
     through(
         setting,
         cycle,
@@ -109,12 +106,12 @@ pub(super) fn known<'a>(
 ///
 /// # Errors
 /// If there is no flow.
-pub(super) fn through<'a>(
-    setting: &Setting<'a>,
+pub(super) fn through(
+    setting: &Setting,
     cycle: &Cycle,
     (period, half): (usize, bool),
     states: &[f64],
-) -> Result<(Equations<'a>, Vec<f64>), Error> {
+) -> Result<(Equations, Vec<f64>), Error> {
     let coordinates = cycle.extremes.len();
     let span = Span {
         period,
@@ -129,8 +126,8 @@ pub(super) fn through<'a>(
 
 /// States at the beginnings of the segments.
 fn states(
-    setting: &Setting<'_>,
-    equations: &mut Equations<'_>,
+    setting: &Setting,
+    equations: &mut Equations,
     guess: &Guess,
     value: f64,
 ) -> Result<Vec<f64>, FlowError> {
@@ -152,9 +149,9 @@ fn states(
     }
 }
 
-impl First<'_> {
+impl First {
     /// Counts positions from the middle of the motion, and finds its size.
-    pub(super) fn settle(&mut self, setting: &Setting<'_>) -> Result<(), FlowError> {
+    pub(super) fn settle(&mut self, setting: &Setting) -> Result<(), FlowError> {
         let value = self.u[self.u.len() - 1];
         let n = self.equations.order() / 2;
         let rate = setting.rate_at(value);
@@ -174,7 +171,7 @@ impl First<'_> {
     }
 
     /// Goes over to the equations of half a period.
-    fn halve(&mut self, setting: &Setting<'_>) -> Result<(), Error> {
+    fn halve(&mut self, setting: &Setting) -> Result<(), Error> {
         let value = self.u[self.u.len() - 1];
         let motion = |reason| Error::Motion { value, reason };
         let mut state = self.equations.states_of(&self.u);

@@ -38,8 +38,8 @@ pub(super) const DEPARTURES: [f64; 5] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1];
 pub(super) const FARTHEST: f64 = 10.0;
 
 /// An orbit with the direction in which a branch is followed from it.
-pub(super) struct Begun<'a> {
-    pub(super) first: First<'a>,
+pub(super) struct Begun {
+    pub(super) first: First,
     pub(super) point: CurvePoint,
 }
 
@@ -48,12 +48,12 @@ pub(super) struct Begun<'a> {
 ///
 /// # Errors
 /// [`Error::NoBranch`] if no branch begins there, or its first orbit was not found.
-pub(super) fn depart<'a>(
-    setting: &Setting<'a>,
+pub(super) fn depart(
+    setting: &Setting,
     event: &CycleEvent,
     side: f64,
     range: f64,
-) -> Result<Begun<'a>, Error> {
+) -> Result<Begun, Error> {
     let nothing = Error::NoBranch {
         kind: event.kind,
         value: event.cycle.value,
@@ -102,12 +102,12 @@ pub(super) fn depart<'a>(
 ///
 /// # Errors
 /// If it does not solve the equations.
-pub(super) fn resume<'a>(
-    setting: &Setting<'a>,
-    mut first: First<'a>,
+pub(super) fn resume(
+    setting: &Setting,
+    mut first: First,
     side: f64,
     range: f64,
-) -> Result<Begun<'a>, Error> {
+) -> Result<Begun, Error> {
     let mut newton = Newton::new(&first.equations);
     let options = setting.newton(setting.source.tolerance, first.equations.frame.ratio);
     let value = first.u[first.u.len() - 1];
@@ -130,7 +130,7 @@ pub(super) fn resume<'a>(
 }
 
 /// The equations of the new branch, and the orbit as a solution of them.
-fn twice<'a>(setting: &Setting<'a>, cycle: &Cycle) -> Result<(Equations<'a>, Vec<f64>), Error> {
+fn twice(setting: &Setting, cycle: &Cycle) -> Result<(Equations, Vec<f64>), Error> {
     let sign = if cycle.symmetric { -1.0 } else { 1.0 };
     let mut states = cycle.states.clone();
     states.extend(cycle.states.iter().map(|x| sign * x));
@@ -138,11 +138,7 @@ fn twice<'a>(setting: &Setting<'a>, cycle: &Cycle) -> Result<(Equations<'a>, Vec
 }
 
 /// The direction of the new branch in extended unknowns, from (1); its entry for the parameter is zero.
-pub(super) fn direction(
-    equations: &mut Equations<'_>,
-    u: &[f64],
-    symmetric: bool,
-) -> Option<Vec<f64>> {
+pub(super) fn direction(equations: &mut Equations, u: &[f64], symmetric: bool) -> Option<Vec<f64>> {
     let order = equations.order();
     let maps = equations.segment_maps(u).ok()?;
     let part = &maps[..maps.len() / 2];
@@ -163,8 +159,8 @@ pub(super) fn direction(
 
 /// The orbit whose component in the direction is `step.0` times the size, and the tangent there, away from the old branch.
 fn first_orbit(
-    setting: &Setting<'_>,
-    first: &mut First<'_>,
+    setting: &Setting,
+    first: &mut First,
     direction: &[f64],
     (step, range): (f64, f64),
 ) -> Option<(Vec<f64>, CurvePoint)> {

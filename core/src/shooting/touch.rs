@@ -58,8 +58,8 @@ impl<'a> Touch<'a> {
     /// The gap and the level that an orbit comes nearest to touching; `None` if it touches none.
     pub(super) fn of(
         system: &'a dyn System,
-        setting: &Setting<'a>,
-        equations: &mut Equations<'a>,
+        setting: &Setting,
+        equations: &mut Equations,
         u: &[f64],
     ) -> Option<Self> {
         let layout = Layout::of(system);
@@ -123,7 +123,7 @@ impl<'a> Touch<'a> {
     /// `g` of (1); not a number if the extreme is not there any more. The last of the unknowns is a value of `second`.
     pub(super) fn distance(
         &mut self,
-        equations: &mut Equations<'_>,
+        equations: &mut Equations,
         u: &[f64],
         omega: f64,
         second: Variable,
@@ -135,7 +135,7 @@ impl<'a> Touch<'a> {
     /// Remembers where the extreme is at these unknowns.
     pub(super) fn follow(
         &mut self,
-        equations: &mut Equations<'_>,
+        equations: &mut Equations,
         u: &[f64],
         omega: f64,
         second: Variable,
@@ -147,7 +147,7 @@ impl<'a> Touch<'a> {
 
     fn nearest(
         &mut self,
-        equations: &mut Equations<'_>,
+        equations: &mut Equations,
         u: &[f64],
         omega: f64,
         second: Variable,
@@ -177,7 +177,7 @@ impl<'a> Touch<'a> {
     /// begins again, with an extreme between them if their signs differ.
     fn extremes(
         &mut self,
-        equations: &mut Equations<'_>,
+        equations: &mut Equations,
         u: &[f64],
         see: &mut dyn FnMut(Extreme),
     ) -> Option<()> {

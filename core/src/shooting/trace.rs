@@ -170,10 +170,10 @@ struct Half {
 ///
 /// # Errors
 /// If events of that kind are on no such curve, or the event does not solve its equations.
-pub(super) fn track<'a>(
-    setting: &Setting<'a>,
+pub(super) fn track(
+    setting: &Setting,
     event: &CycleEvent,
-    plane: &Plane<'a>,
+    plane: &Plane<'_>,
     visit: See<'_>,
 ) -> Result<Track, Error> {
     let at = [event.cycle.value, second_of(event, plane.second)];
@@ -232,10 +232,10 @@ pub(super) fn track<'a>(
 }
 
 /// From the event towards larger values of the second parameter, or smaller ones.
-fn half<'a>(
-    setting: &Setting<'a>,
+fn half(
+    setting: &Setting,
     event: &CycleEvent,
-    plane: &Plane<'a>,
+    plane: &Plane<'_>,
     side: f64,
     visit: See<'_>,
 ) -> Result<Half, Error> {
@@ -327,7 +327,7 @@ fn second_of(event: &CycleEvent, second: Variable) -> f64 {
 
 /// The problem of the curve, and the event as its unknowns.
 fn curve<'a>(
-    setting: &Setting<'a>,
+    setting: &Setting,
     event: &CycleEvent,
     plane: &Plane<'a>,
 ) -> Result<(Curve<'a>, Vec<f64>), Error> {

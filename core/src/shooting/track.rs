@@ -39,7 +39,7 @@ pub(super) enum Condition<'a> {
 
 /// The equations (1). The last of the extended unknowns is `mu`, the one before `lambda`.
 pub(super) struct Curve<'a> {
-    pub(super) equations: Equations<'a>,
+    pub(super) equations: Equations,
     pub(super) second: Variable,
     pub(super) condition: Condition<'a>,
     /// What counts as one: of the orbit, of `lambda`, of `mu`.
@@ -54,7 +54,7 @@ pub(super) struct Curve<'a> {
 
 impl<'a> Curve<'a> {
     pub(super) fn new(
-        equations: Equations<'a>,
+        equations: Equations,
         second: Variable,
         condition: Condition<'a>,
         units: [f64; 3],
@@ -78,13 +78,13 @@ impl<'a> Curve<'a> {
     ///
     /// # Errors
     /// If there is no flow.
-    pub(super) fn again(&self, setting: &Setting<'a>) -> Result<Self, Error> {
+    pub(super) fn again(&self, setting: &Setting) -> Result<Self, Error> {
         let equations = self.equations.again(setting)?;
         Ok(self.with(equations))
     }
 
     /// The same curve by other equations.
-    pub(super) fn with(&self, equations: Equations<'a>) -> Self {
+    pub(super) fn with(&self, equations: Equations) -> Self {
         Self::new(equations, self.second, self.condition.clone(), self.units)
     }
 

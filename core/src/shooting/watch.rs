@@ -44,13 +44,13 @@ const PARTS: [f64; 5] = [0.5, 0.4, 0.6, 0.25, 0.75];
 
 /// What is looked at along a curve.
 pub(super) struct Watch<'p, 'a> {
-    setting: &'p Setting<'a>,
+    setting: &'p Setting,
     plane: &'p Plane<'a>,
     options: NewtonOptions,
     symmetric: bool,
     /// `-1` or `1`; `None` on a curve of grazing.
     pub(super) shift: Option<f64>,
-    bend: Option<RefCell<Bend<'a>>>,
+    bend: Option<RefCell<Bend>>,
     /// The last two points.
     seen: [Option<At>; 2],
     pub(super) points: Vec<TrackPoint>,
@@ -82,7 +82,7 @@ struct At {
 
 impl<'p, 'a> Watch<'p, 'a> {
     pub(super) fn new(
-        setting: &'p Setting<'a>,
+        setting: &'p Setting,
         plane: &'p Plane<'a>,
         options: NewtonOptions,
         curve: &Curve<'a>,
@@ -181,7 +181,7 @@ impl<'p, 'a> Watch<'p, 'a> {
         curve: &Curve<'a>,
         at: &CurvePoint,
         (map, switches): (&DMatrix<f64>, usize),
-        bend: Option<&RefCell<Bend<'a>>>,
+        bend: Option<&RefCell<Bend>>,
     ) -> Option<At> {
         let shift = self.shift?;
         let bend = bend.and_then(|bend| bend.borrow_mut().at(self.setting, curve, &at.u));
@@ -364,7 +364,7 @@ impl<'p, 'a> Watch<'p, 'a> {
         (curve, newton, options): (&mut Curve<'a>, &mut Newton, NewtonOptions),
         between: (&CurvePoint, &CurvePoint),
         (tolerance, least): (f64, f64),
-        (of, bend): (&impl Fn(Option<At>) -> f64, Option<&RefCell<Bend<'a>>>),
+        (of, bend): (&impl Fn(Option<At>) -> f64, Option<&RefCell<Bend>>),
     ) -> Option<CurvePoint> {
         // The curve is busy while a test function is evaluated.
         let other = RefCell::new(curve.again(self.setting).ok()?);

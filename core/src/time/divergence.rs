@@ -18,6 +18,7 @@
 //! Integration, sections 2.12 and 6.
 
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
@@ -69,8 +70,8 @@ impl std::ops::Div<f64> for Integral {
 }
 
 /// The divergence of a system at given values.
-pub struct Divergence<'a> {
-    system: &'a dyn System,
+pub struct Divergence {
+    system: Arc<dyn System>,
     contacts: Vec<(ContactLayout, Gap)>,
     coefficients: Vec<f64>,
     inverse: DMatrix<f64>,
@@ -87,7 +88,7 @@ pub struct Divergence<'a> {
     panels: Vec<(f64, i32)>,
 }
 
-impl std::fmt::Debug for Divergence<'_> {
+impl std::fmt::Debug for Divergence {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Divergence")
             .field("system", &self.system.facts().name)
@@ -95,12 +96,12 @@ impl std::fmt::Debug for Divergence<'_> {
     }
 }
 
-impl<'a> Divergence<'a> {
+impl Divergence {
     /// The divergence at values of the parameters and of `omega`.
     ///
     /// # Errors
     /// If parameters or the frequency are outside their ranges, levels are out of order, or the mass matrix is singular.
-    pub fn new(system: &'a dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
+    pub fn new(system: &dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
         validate::values(system, parameters, omega)?;
         let layout = Layout::of(system);
         let n = layout.coordinates;
@@ -132,7 +133,7 @@ impl<'a> Divergence<'a> {
             (contact, gap)
         });
         Ok(Self {
-            system,
+            system: system.shared(),
             arguments,
             rule: Rule::new(),
             grading: Grading {

@@ -41,7 +41,7 @@ pub struct Span {
 /// # Errors
 /// If the motion cannot be continued. What came before has been shown.
 pub fn record(
-    map: &mut Stroboscope<'_>,
+    map: &mut Stroboscope,
     state: &mut [f64],
     Span { periods, samples }: Span,
     see: &mut dyn FnMut(f64, &[f64]),

@@ -131,7 +131,7 @@ impl Options {
 /// # Errors
 /// If a parameter, the frequency or the tolerance is outside its range, the levels of a law are out of order, the mass matrix is
 /// singular, or the system has no coordinates.
-pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn Flow + '_>, Error> {
+pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn Flow>, Error> {
     let mut values = vec![0.0; system.facts().parameters.len()];
     system.values(&mut values);
     at(system, &values, omega, options)
@@ -141,14 +141,15 @@ pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn F
 ///
 /// # Errors
 /// As [`of`], and if there are not as many values as parameters.
-pub fn at<'a>(
-    system: &'a dyn System,
+pub fn at(
+    system: &dyn System,
     values: &[f64],
     omega: f64,
     options: Options,
-) -> Result<Box<dyn Flow + 'a>, Error> {
-    let integrated = Integrated::new(system, values, omega, options.tolerance)?;
-    Ok(match affine::Affine::new(system, values, omega) {
+) -> Result<Box<dyn Flow>, Error> {
+    let system = system.shared();
+    let integrated = Integrated::new(&system, values, omega, options.tolerance)?;
+    Ok(match affine::Affine::new(&system, values, omega) {
         Ok(affine) => Box::new(affine),
         Err(_) => Box::new(integrated),
     })

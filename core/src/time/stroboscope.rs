@@ -31,14 +31,14 @@ use crate::time;
 /// assert!((state[0] - 9.0 / 9.04).abs() < 1e-12);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
-pub struct Stroboscope<'a> {
-    flow: Box<dyn Flow + 'a>,
+pub struct Stroboscope {
+    flow: Box<dyn Flow>,
     phase: f64,
     every: usize,
     periods: u64,
 }
 
-impl std::fmt::Debug for Stroboscope<'_> {
+impl std::fmt::Debug for Stroboscope {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Stroboscope")
             .field("phase", &self.phase)
@@ -48,17 +48,17 @@ impl std::fmt::Debug for Stroboscope<'_> {
     }
 }
 
-impl<'a> Stroboscope<'a> {
+impl Stroboscope {
     /// The map of a system at a frequency, at the values that its parameters have, over one period, from phase zero.
     ///
     /// # Errors
     /// As [`time::of`], whose default tolerance it has.
-    pub fn of(system: &'a dyn System, omega: f64) -> Result<Self, Error> {
+    pub fn of(system: &dyn System, omega: f64) -> Result<Self, Error> {
         Ok(Self::new(time::of(system, omega, Options::default())?))
     }
 
     /// The map of a flow over one period, from phase zero.
-    pub fn new(flow: Box<dyn Flow + 'a>) -> Self {
+    pub fn new(flow: Box<dyn Flow>) -> Self {
         Self {
             flow,
             phase: 0.0,

@@ -9,6 +9,10 @@ use hertzian::bifurcation::Diagram;
 use hertzian::generic::Interpreted;
 use hertzian::shooting::Track;
 use hertzian::structure::Structure;
+use hertzian::time::affine::Affine;
+use hertzian::time::divergence::Divergence;
+use hertzian::time::stroboscope::Stroboscope;
+use hertzian::time::{Flow, FlowError, Integrated};
 use hertzian::{
     Bifurcations, Branch, Cycle, CycleBranch, CycleEvent, Error, Event, FrequencyResponse, Point,
     Shooting, System,
@@ -67,6 +71,31 @@ fn everything_computed_can_be_kept_and_sent() {
     is::<Structure>();
     is::<Box<dyn System>>();
     is::<Error>();
+}
+
+#[test]
+fn motions_can_be_kept_and_sent() {
+    fn is<T: Send + 'static>() {}
+    is::<Box<dyn Flow>>();
+    is::<Stroboscope>();
+    is::<Affine>();
+    is::<Integrated>();
+    is::<Divergence>();
+    let map = || {
+        let model = Linear {
+            zeta: ZETA,
+            drive: 0.3,
+        };
+        Stroboscope::of(&model, OMEGA)
+    };
+    let mut map = map().expect("it is sound");
+    let settled = thread::spawn(move || {
+        let mut state = [0.0; 2];
+        (0..100).try_for_each(|_| map.map(&mut state))?;
+        Ok::<_, FlowError>(state)
+    });
+    let [x, velocity] = settled.join().expect("no panic").expect("a motion");
+    assert!((2.0 * x.hypot(velocity / OMEGA) / exact(0.3) - 1.0).abs() < 1e-9);
 }
 
 #[test]

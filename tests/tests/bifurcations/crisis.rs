@@ -34,7 +34,7 @@ type State = [f64; 2];
 const PERIODS: usize = 6;
 const RETURN: usize = 28;
 
-fn with_map<T>(drive: f64, then: impl FnOnce(&mut Stroboscope<'_>) -> T) -> T {
+fn with_map<T>(drive: f64, then: impl FnOnce(&mut Stroboscope) -> T) -> T {
     let model = OneSidedLinear {
         zeta: 0.032,
         load: 1.0,
@@ -44,7 +44,7 @@ fn with_map<T>(drive: f64, then: impl FnOnce(&mut Stroboscope<'_>) -> T) -> T {
     then(&mut Stroboscope::new(Box::new(flow)))
 }
 
-fn after(map: &mut Stroboscope<'_>, periods: usize, mut state: State) -> State {
+fn after(map: &mut Stroboscope, periods: usize, mut state: State) -> State {
     for _ in 0..periods {
         map.map(&mut state).expect("a motion");
     }
@@ -64,7 +64,7 @@ struct Saddle {
 
 impl Saddle {
     /// By Newton's method.
-    fn of(map: &mut Stroboscope<'_>) -> Self {
+    fn of(map: &mut Stroboscope) -> Self {
         let mut at = [0.3266, 0.0654];
         for _ in 0..20 {
             let ([x, v], [a, b, c, d]) = Self::returned(map, at);
@@ -89,7 +89,7 @@ impl Saddle {
     }
 
     /// The state after the period, and the matrix `[a b; c d]` of its derivatives.
-    fn returned(map: &mut Stroboscope<'_>, at: State) -> (State, [f64; 4]) {
+    fn returned(map: &mut Stroboscope, at: State) -> (State, [f64; 4]) {
         let (mut state, mut tangent) = (at, Tangent::of_state(1, None));
         for _ in 0..PERIODS {
             map.map_with(&mut state, &mut tangent).expect("a motion");
@@ -101,7 +101,7 @@ impl Saddle {
     }
 
     /// (1), of the state that comes back from the unstable manifold at `1e-5 beta_1^part`.
-    fn distance(&self, map: &mut Stroboscope<'_>, part: f64) -> f64 {
+    fn distance(&self, map: &mut Stroboscope, part: f64) -> f64 {
         let [first, _] = self.multipliers;
         let start = 1e-5 * first.powf(part);
         let start = [0, 1].map(|i| self.at[i] + start * self.right[i]);

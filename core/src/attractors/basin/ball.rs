@@ -70,7 +70,7 @@ impl Ball {
     /// The neighbourhood of a point of some period with the derivative `jacobian` of the map over it; `None` where not even the
     /// smallest one is mapped into itself. `size` is that of the entries of a state.
     pub(super) fn grow(
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         centre: &[f64],
         (period, jacobian): (usize, &DMatrix<f64>),
         size: &[f64],

@@ -18,10 +18,10 @@ use crate::time::stroboscope::Stroboscope;
 const BLOCK: usize = 256;
 
 /// What the threads share.
-struct Shared<'a, 'w> {
+struct Shared<'w> {
     basin: &'w Basin,
     /// Those that no thread uses now.
-    idle: Mutex<Vec<Recogniser<'a>>>,
+    idle: Mutex<Vec<Recogniser>>,
     log: Mutex<Option<Log>>,
     error: Mutex<Option<LogError>>,
     done: AtomicUsize,
@@ -29,9 +29,9 @@ struct Shared<'a, 'w> {
     watch: &'w (dyn Fn(Progress) -> bool + Sync),
 }
 
-pub(super) fn compute<'a>(
+pub(super) fn compute(
     basin: &Basin,
-    flows: Vec<Box<dyn Flow + 'a>>,
+    flows: Vec<Box<dyn Flow>>,
     log: Option<Log>,
     watch: &(dyn Fn(Progress) -> bool + Sync),
 ) -> Result<Basins, BasinError> {
@@ -100,7 +100,7 @@ pub(super) fn compute<'a>(
     Ok(basins)
 }
 
-impl Shared<'_, '_> {
+impl Shared<'_> {
     /// One block; `None` if the computation has been ended.
     fn block(&self, id: (usize, usize), cells: &[usize], known: &Catalogue) -> Option<Block> {
         if self.ended.load(Ordering::Relaxed) {

@@ -143,9 +143,9 @@ impl Basin {
     ///
     /// # Errors
     /// If the request cannot be used, the log cannot be written, threads cannot be started, or no motion of the grid can be computed.
-    pub fn compute<'a>(
+    pub fn compute(
         &self,
-        flows: Vec<Box<dyn Flow + 'a>>,
+        flows: Vec<Box<dyn Flow>>,
         log: Option<Log>,
         watch: &(dyn Fn(Progress) -> bool + Sync),
     ) -> Result<Basins, BasinError> {

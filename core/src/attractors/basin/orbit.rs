@@ -45,7 +45,7 @@ impl Finder {
     /// Refines a state that nearly returns after some periods.
     pub(super) fn refine(
         &mut self,
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         guess: &[f64],
         period: usize,
         known: [&Catalogue; 2],
@@ -59,7 +59,7 @@ impl Finder {
     /// An error or `None` says that there is no stable orbit.
     fn try_refine(
         &mut self,
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         guess: &[f64],
         period: usize,
         known: [&Catalogue; 2],
@@ -112,7 +112,7 @@ impl Finder {
     /// The fixed point of the map over some periods by Newton's method: `(I - J) d = Q(s) - s`.
     fn newton(
         &mut self,
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         guess: &[f64],
         period: usize,
     ) -> Result<Option<Vec<f64>>, FlowError> {
@@ -149,7 +149,7 @@ impl Finder {
     /// The image of a state after some periods, and its derivatives.
     fn jacobian(
         &mut self,
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         state: &[f64],
         period: usize,
     ) -> Result<(Vec<f64>, DMatrix<f64>), FlowError> {
@@ -168,11 +168,7 @@ impl Finder {
 }
 
 /// The states of some periods from a first one.
-fn points(
-    map: &mut Stroboscope<'_>,
-    first: &[f64],
-    period: usize,
-) -> Result<Vec<Vec<f64>>, FlowError> {
+fn points(map: &mut Stroboscope, first: &[f64], period: usize) -> Result<Vec<Vec<f64>>, FlowError> {
     let mut points = vec![first.to_vec()];
     for i in 1..period {
         let mut next = points[i - 1].clone();

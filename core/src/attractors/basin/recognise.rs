@@ -23,15 +23,15 @@ const BATCHES: usize = 20;
 const BATCH: usize = 100;
 
 /// Follows motions, one after the other.
-pub(super) struct Recogniser<'a> {
-    pub(super) map: Stroboscope<'a>,
+pub(super) struct Recogniser {
+    pub(super) map: Stroboscope,
     finder: Finder,
     returns: Returns,
     state: Vec<f64>,
 }
 
-impl<'a> Recogniser<'a> {
-    pub(super) fn new(map: Stroboscope<'a>) -> Self {
+impl Recogniser {
+    pub(super) fn new(map: Stroboscope) -> Self {
         let order = map.order();
         Self {
             finder: Finder::new(order),

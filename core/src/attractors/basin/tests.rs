@@ -29,7 +29,7 @@ const MODEL: OneSided = OneSided {
     drive: 1.0,
 };
 
-fn flows(model: &OneSided, count: usize) -> Vec<Box<dyn Flow + '_>> {
+fn flows(model: &OneSided, count: usize) -> Vec<Box<dyn Flow>> {
     let values = [model.zeta, model.load, model.drive];
     let flow = || Affine::new(model, &values, 1.0).expect("affine");
     (0..count)

@@ -249,7 +249,7 @@ impl FreeOscillation {
     }
 
     /// The equations of the system, checked.
-    fn equations(&self) -> Result<Equations<'_>, Error> {
+    fn equations(&self) -> Result<Equations, Error> {
         let facts = self.system.facts();
         if facts.coordinates.is_empty() {
             return Err(Error::NoCoordinates);
@@ -258,7 +258,7 @@ impl FreeOscillation {
         self.system.values(&mut parameters);
         let tolerance = self.tolerance;
         let flow = time::at(
-            self.system.as_ref(),
+            &self.system,
             &parameters,
             1.0,
             Options::default().tolerance(tolerance),
@@ -267,7 +267,7 @@ impl FreeOscillation {
     }
 
     /// The unknowns of the first oscillation.
-    fn first(&self, equations: &mut Equations<'_>, from: f64) -> Result<Vec<f64>, Error> {
+    fn first(&self, equations: &mut Equations, from: f64) -> Result<Vec<f64>, Error> {
         let n = equations.flow.coordinates();
         let Some((positions, omega)) = &self.near else {
             let time = equations.half_period(from)?;

@@ -33,8 +33,8 @@ enum Rest {
 const ELSEWHERE: f64 = 0.3;
 
 /// The equations (1) of [`free`](super::free); unknowns are the other positions and the frequency, the parameter is the first position.
-pub(super) struct Equations<'a> {
-    pub(super) flow: Box<dyn Flow + 'a>,
+pub(super) struct Equations {
+    pub(super) flow: Box<dyn Flow>,
     divisor: f64,
     state: Vec<f64>,
     tangent: Tangent,
@@ -43,8 +43,8 @@ pub(super) struct Equations<'a> {
     units: [f64; 2],
 }
 
-impl<'a> Equations<'a> {
-    pub(super) fn new(flow: Box<dyn Flow + 'a>, divisor: f64) -> Self {
+impl Equations {
+    pub(super) fn new(flow: Box<dyn Flow>, divisor: f64) -> Self {
         let n = flow.coordinates();
         Self {
             state: vec![0.0; 2 * n],
@@ -165,7 +165,7 @@ impl<'a> Equations<'a> {
     }
 }
 
-impl Problem for Equations<'_> {
+impl Problem for Equations {
     fn unknowns(&self) -> usize {
         self.column.len()
     }

@@ -43,7 +43,7 @@ const ROUNDED: f64 = 1e-13;
 
 /// The flow over a period of one orbit after the other.
 struct Map<'a> {
-    flow: Integrated<'a>,
+    flow: Integrated,
     /// Phase at its end.
     end: f64,
     /// What counts as one in each entry of a state.

@@ -35,7 +35,7 @@ fn steps(tolerance: f64) -> usize {
     (10.0 * tolerance.powf(-0.25)) as usize
 }
 
-fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting<'static> {
+fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting {
     let make = move |tolerance: f64| -> Result<Box<dyn Flow>, Error> {
         Ok(Box::new(RungeKutta {
             parameters,
@@ -66,7 +66,7 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting<'sta
 }
 
 /// The branch along a range from an orbit near a state.
-fn followed(setting: &Setting<'static>, state: [f64; 2], from: f64, to: f64) -> CycleBranch {
+fn followed(setting: &Setting, state: [f64; 2], from: f64, to: f64) -> CycleBranch {
     let guess = Guess::State(state.to_vec());
     let go = &mut |_: &Cycle| ControlFlow::Continue(());
     branch(setting, &guess, [from, to], go).unwrap()

@@ -4,7 +4,7 @@
 use super::Affine;
 use crate::time::{Flow, FlowError, See, Stretch, Tangent, Work};
 
-impl Affine<'_> {
+impl Affine {
     /// Moves from a phase to an earlier one.
     pub(super) fn go_back(
         &mut self,

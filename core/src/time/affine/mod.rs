@@ -36,8 +36,8 @@ use crate::time::{Flow, FlowError, See, Stretch, Tangent, Work};
 const MOST_SWITCHES: usize = 10_000;
 
 /// The flow of a system of which every piece of every law is affine, and stiffness and directions are constant in time.
-pub struct Affine<'a> {
-    model: Model<'a>,
+pub struct Affine {
+    model: Model,
     /// The same for one coordinate under at most one harmonic.
     scalar: Option<Scalar>,
     /// It belongs to the present values.
@@ -57,7 +57,7 @@ pub struct Affine<'a> {
     work: Work,
 }
 
-impl std::fmt::Debug for Affine<'_> {
+impl std::fmt::Debug for Affine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Affine")
             .field("coordinates", &self.model.basis.coordinates)
@@ -66,17 +66,17 @@ impl std::fmt::Debug for Affine<'_> {
     }
 }
 
-impl<'a> Affine<'a> {
+impl Affine {
     /// The flow at given values.
     ///
     /// # Errors
     /// [`Error::NotAffine`] if the system is not of this kind; if parameters or the frequency are outside their ranges, levels are
     /// out of order, or the mass matrix is singular.
-    pub fn new(system: &'a dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
+    pub fn new(system: &dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
         Model::new(system, parameters, omega).map(Self::of)
     }
 
-    fn of(model: Model<'a>) -> Self {
+    fn of(model: Model) -> Self {
         let (order, contacts) = (model.basis.order(), model.contacts.len());
         let most = order - 1 - model.basis.coordinates;
         Self {
@@ -223,7 +223,7 @@ impl<'a> Affine<'a> {
     }
 }
 
-impl Flow for Affine<'_> {
+impl Flow for Affine {
     fn coordinates(&self) -> usize {
         self.model.basis.coordinates
     }

@@ -1,6 +1,7 @@
 //! The system at present values: its terms, its levels, and the combinations of pieces that motions have met.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
@@ -45,8 +46,8 @@ pub(super) struct Contact {
 }
 
 /// The system at present values of its parameters and of `omega`.
-pub(super) struct Model<'a> {
-    system: &'a dyn System,
+pub(super) struct Model {
+    system: Arc<dyn System>,
     layout: Layout,
     pub(super) basis: Basis,
     pub(super) parameters: Vec<f64>,
@@ -71,14 +72,10 @@ pub(super) struct Model<'a> {
     room: Room,
 }
 
-impl<'a> Model<'a> {
+impl Model {
     /// # Errors
     /// Unless every piece is affine, and stiffness and directions are constant; if values are not usable.
-    pub(super) fn new(
-        system: &'a dyn System,
-        parameters: &[f64],
-        omega: f64,
-    ) -> Result<Self, Error> {
+    pub(super) fn new(system: &dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
         if system.facts().coordinates.is_empty() {
             return Err(Error::NoCoordinates);
         }
@@ -91,10 +88,10 @@ impl<'a> Model<'a> {
 
     /// The same system at the same values, with time reversed.
     pub(super) fn reversed(&self) -> Self {
-        Self::of(self.system, &self.parameters, self.omega, !self.backwards)
+        Self::of(&self.system, &self.parameters, self.omega, !self.backwards)
     }
 
-    fn of(system: &'a dyn System, parameters: &[f64], omega: f64, backwards: bool) -> Self {
+    fn of(system: &dyn System, parameters: &[f64], omega: f64, backwards: bool) -> Self {
         let layout = Layout::of(system);
         let basis = Basis::of(&layout);
         let moves = |contact: &crate::model::layout::ContactLayout| contact.offset_harmonic() > 0;
@@ -111,7 +108,7 @@ impl<'a> Model<'a> {
             }
         });
         Self {
-            system,
+            system: system.shared(),
             parameters: parameters.to_vec(),
             omega,
             backwards,
@@ -133,13 +130,13 @@ impl<'a> Model<'a> {
         }
     }
 
-    pub(super) fn system(&self) -> &'a dyn System {
-        self.system
+    pub(super) fn system(&self) -> &dyn System {
+        self.system.as_ref()
     }
 
     /// Changes the frequency or a parameter; not if the equations could not be evaluated then.
     pub(super) fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
-        check_value(self.system, variable, value)?;
+        check_value(self.system.as_ref(), variable, value)?;
         let present = match variable {
             Variable::Omega => &mut self.omega,
             Variable::Parameter(index) => &mut self.parameters[index],
@@ -172,7 +169,7 @@ impl<'a> Model<'a> {
     }
 
     fn refresh_values(&mut self, phase: f64) -> Result<(), FlowError> {
-        let (system, layout, basis) = (self.system, &self.layout, &self.basis);
+        let (system, layout, basis) = (self.system.as_ref(), &self.layout, &self.basis);
         system.coefficients(&self.parameters, self.omega, &mut self.coefficients);
         if self.coefficients.iter().any(|x| !x.is_finite()) {
             return Err(FlowError::NotFinite { phase });
@@ -214,7 +211,7 @@ impl<'a> Model<'a> {
         let Some(variable) = by else {
             return;
         };
-        let (system, layout, basis) = (self.system, &self.layout, &self.basis);
+        let (system, layout, basis) = (self.system.as_ref(), &self.layout, &self.basis);
         let derivatives = &mut self.coefficients;
         system.coefficients_by(variable, &self.parameters, self.omega, derivatives);
         self.terms_by.fill(layout, basis, derivatives);

@@ -42,7 +42,7 @@ pub(super) struct Span {
 
 impl Scalar {
     /// `None` if the system has more coordinates or harmonics, or a moving offset.
-    pub(super) fn new(model: &Model<'_>) -> Option<Self> {
+    pub(super) fn new(model: &Model) -> Option<Self> {
         let simple = model.basis.coordinates == 1 && model.basis.harmonics.len() <= 1;
         (simple && !model.moving).then(|| Self {
             intervals: Vec::new(),
@@ -56,7 +56,7 @@ impl Scalar {
     ///
     /// # Errors
     /// If one of them cannot be, also one that no motion meets.
-    pub(super) fn fill(&mut self, model: &mut Model<'_>, phase: f64) -> Result<(), FlowError> {
+    pub(super) fn fill(&mut self, model: &mut Model, phase: f64) -> Result<(), FlowError> {
         self.set_boundaries(model);
         let count = self.boundaries.len() + 1;
         self.intervals.resize_with(count, Interval::new);
@@ -78,7 +78,7 @@ impl Scalar {
     }
 
     /// The positions where pieces meet, in increasing order.
-    fn set_boundaries(&mut self, model: &Model<'_>) {
+    fn set_boundaries(&mut self, model: &Model) {
         let boundaries = &mut self.boundaries;
         boundaries.clear();
         for (index, contact) in model.contacts.iter().enumerate() {
@@ -213,7 +213,7 @@ fn inside(lower: f64, upper: f64) -> f64 {
 }
 
 /// The pieces that all gaps are on at a position.
-fn choose_pieces(model: &Model<'_>, x: f64, pieces: &mut [usize]) {
+fn choose_pieces(model: &Model, x: f64, pieces: &mut [usize]) {
     for (index, piece) in pieces.iter_mut().enumerate() {
         let (direction, offset) = model.position(index);
         let gap = direction * x - offset;

@@ -20,7 +20,7 @@ use crate::time::Tangent;
 
 /// Moves a tangent over some cells of a motion that begins at `z`.
 pub(super) fn advance(
-    model: &Model<'_>,
+    model: &Model,
     table: &Table,
     z: &[f64],
     cells: f64,
@@ -54,7 +54,7 @@ pub(super) fn advance(
 
 /// The saltation (1), where a contact crosses one of its levels, upwards or downwards.
 pub(super) fn switch(
-    model: &Model<'_>,
+    model: &Model,
     z: &[f64],
     (contact, level, upwards): (usize, usize, bool),
     tangent: &mut Tangent,

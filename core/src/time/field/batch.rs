@@ -80,7 +80,7 @@ impl<const S: usize> Samples<S> {
 }
 
 impl<const S: usize> Batch<S> {
-    pub(crate) fn new(field: &Field<'_>) -> Self {
+    pub(crate) fn new(field: &Field) -> Self {
         let n = field.coordinates();
         let rows = || vec![[0.0; S]; n];
         let moving = field.contacts.iter().any(|contact| contact.moving);
@@ -111,7 +111,7 @@ impl<const S: usize> Batch<S> {
     }
 }
 
-impl Field<'_> {
+impl Field {
     /// Puts the instants of a batch on a stretch that starts at a phase.
     pub(crate) fn place<const S: usize>(
         &self,
@@ -294,7 +294,7 @@ fn turn<const S: usize>(rows: &mut [Waves<S>], harmonics: &[u32], growth: f64, p
 
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn accelerate<const S: usize>(
-    field: &Field<'_>,
+    field: &Field,
     batch: &mut Batch<S>,
     pieces: &[usize],
     anchors: &[Anchor],

@@ -13,6 +13,8 @@
 pub(crate) mod batch;
 pub(crate) mod slopes;
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
 use super::FlowError;
@@ -24,8 +26,8 @@ use crate::numeric::linear::{Lu, Matrix};
 use crate::system::{Part, System, Variable, Wave};
 
 /// A system at values of its parameters and of `omega`.
-pub(crate) struct Field<'a> {
-    pub(crate) system: &'a dyn System,
+pub(crate) struct Field {
+    pub(crate) system: Arc<dyn System>,
     layout: Layout,
     values: Vec<f64>,
     omega: f64,
@@ -85,16 +87,12 @@ pub(crate) struct Gap {
     pub(crate) size: f64,
 }
 
-impl<'a> Field<'a> {
+impl Field {
     /// The equations of a system.
     ///
     /// # Errors
     /// If levels are out of order or the mass matrix is singular.
-    pub(crate) fn new(
-        system: &'a dyn System,
-        values: &[f64],
-        omega: f64,
-    ) -> Result<Self, FlowError> {
+    pub(crate) fn new(system: &dyn System, values: &[f64], omega: f64) -> Result<Self, FlowError> {
         let layout = Layout::of(system);
         let harmonics = harmonics(&layout);
         let position = |wave: Wave| {
@@ -123,7 +121,7 @@ impl<'a> Field<'a> {
             moving: contact.gap_harmonic().max(contact.offset_harmonic()) > 0,
         });
         let mut field = Self {
-            system,
+            system: system.shared(),
             values: values.to_vec(),
             omega,
             base: 0.0,
@@ -154,7 +152,7 @@ impl<'a> Field<'a> {
 
     /// Changes the frequency or a parameter; not if the equations could not be evaluated then.
     pub(crate) fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {
-        check_value(self.system, variable, value)?;
+        check_value(self.system.as_ref(), variable, value)?;
         let present = match variable {
             Variable::Omega => &mut self.omega,
             Variable::Parameter(index) => &mut self.values[index],
@@ -216,7 +214,7 @@ impl<'a> Field<'a> {
     }
 
     /// The law of a contact.
-    pub(crate) fn law(&self, contact: usize) -> &'a dyn Law {
+    pub(crate) fn law(&self, contact: usize) -> &dyn Law {
         self.system.law(self.contacts[contact].law)
     }
 

@@ -17,7 +17,7 @@ pub(crate) struct Slopes<const S: usize> {
 }
 
 impl<const S: usize> Slopes<S> {
-    pub(crate) fn new(field: &Field<'_>) -> Self {
+    pub(crate) fn new(field: &Field) -> Self {
         let n = field.coordinates();
         Self {
             by_q: vec![[0.0; S]; n * n],
@@ -29,7 +29,7 @@ impl<const S: usize> Slopes<S> {
     }
 }
 
-impl Field<'_> {
+impl Field {
     /// Writes the derivatives (3) at a batch whose accelerations are known, and by one variable at fixed phase and state.
     pub(crate) fn linearise<const S: usize>(
         &self,

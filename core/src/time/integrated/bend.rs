@@ -14,7 +14,7 @@ const ZERO: f64 = 1e-11;
 /// A step that goes on for less than this part of itself ends there.
 const ENDS: f64 = 1e-10;
 
-impl<const S: usize> Engine<'_, S> {
+impl<const S: usize> Engine<S> {
     /// The part of the trial after which the slope of a force first jumps.
     pub(super) fn bend(&mut self) -> Option<f64> {
         let map = self.tables[self.trial.table].map;

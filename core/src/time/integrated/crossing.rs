@@ -26,7 +26,7 @@ pub(super) struct Found {
     pub(super) doubtful: bool,
 }
 
-impl<const S: usize> Engine<'_, S> {
+impl<const S: usize> Engine<S> {
     /// The first crossing on the trial, if any; not the one that it ends on.
     pub(super) fn crossing(&mut self) -> Option<Found> {
         let mut first: Option<Found> = None;

@@ -61,7 +61,7 @@ enum Tried {
     Instead(Plan),
 }
 
-impl<const S: usize> Engine<'_, S> {
+impl<const S: usize> Engine<S> {
     pub(super) fn advance(
         &mut self,
         (from, to): (f64, f64),
@@ -405,11 +405,11 @@ impl<const S: usize> Engine<'_, S> {
 }
 
 /// The trial as a stretch of motion.
-struct View<'b, 'a, const S: usize> {
-    engine: &'b Engine<'a, S>,
+struct View<'b, const S: usize> {
+    engine: &'b Engine<S>,
 }
 
-impl<const S: usize> Stretch for View<'_, '_, S> {
+impl<const S: usize> Stretch for View<'_, S> {
     fn phases(&self) -> (f64, f64) {
         let start = self.engine.phase();
         (start, start + self.engine.trial.width)

@@ -63,8 +63,8 @@ pub(super) struct Trial {
     pub(super) sizes: Vec<[f64; 2]>,
 }
 
-pub(super) struct Engine<'a, const S: usize> {
-    pub(super) field: Field<'a>,
+pub(super) struct Engine<const S: usize> {
+    pub(super) field: Field,
     pub(super) tolerance: f64,
     pub(super) rule: Box<Rule<S>>,
     /// One for each map that has been needed; the first is plain.
@@ -114,8 +114,8 @@ pub(super) struct Engine<'a, const S: usize> {
     pub(super) work: Work,
 }
 
-impl<'a, const S: usize> Engine<'a, S> {
-    pub(super) fn new(field: Field<'a>, tolerance: f64) -> Self {
+impl<const S: usize> Engine<S> {
+    pub(super) fn new(field: Field, tolerance: f64) -> Self {
         let n = field.coordinates();
         let contacts = field.contacts.len();
         let rule = Box::new(Rule::new());

@@ -30,11 +30,11 @@ use crate::system::{System, Variable};
 use engine::Engine;
 
 /// The flow of a system by numerical integration.
-pub struct Integrated<'a> {
-    engine: Rank<'a>,
+pub struct Integrated {
+    engine: Rank,
 }
 
-impl std::fmt::Debug for Integrated<'_> {
+impl std::fmt::Debug for Integrated {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Integrated")
             .field("coordinates", &self.coordinates())
@@ -44,10 +44,10 @@ impl std::fmt::Debug for Integrated<'_> {
 }
 
 /// The engine, by its number of nodes.
-enum Rank<'a> {
-    Low(Box<Engine<'a, 8>>),
-    Middle(Box<Engine<'a, 12>>),
-    High(Box<Engine<'a, 16>>),
+enum Rank {
+    Low(Box<Engine<8>>),
+    Middle(Box<Engine<12>>),
+    High(Box<Engine<16>>),
 }
 
 macro_rules! engine {
@@ -60,7 +60,7 @@ macro_rules! engine {
     };
 }
 
-impl<'a> Integrated<'a> {
+impl Integrated {
     /// The flow of a system at values of its parameters and at a frequency. The tolerance is the error allowed in the
     /// states of a motion, relative to its largest ones; tangents are held to the same.
     ///
@@ -68,7 +68,7 @@ impl<'a> Integrated<'a> {
     /// If a parameter, the frequency or the tolerance is outside its range, levels are out of order, the mass matrix is singular,
     /// or the system has no coordinates.
     pub fn new(
-        system: &'a dyn System,
+        system: &dyn System,
         values: &[f64],
         omega: f64,
         tolerance: f64,
@@ -99,13 +99,13 @@ impl<'a> Integrated<'a> {
     }
 }
 
-impl Flow for Integrated<'_> {
+impl Flow for Integrated {
     fn coordinates(&self) -> usize {
         engine!(&self.engine, engine => engine.field.coordinates())
     }
 
     fn admits(&self, variable: Variable, value: f64) -> bool {
-        engine!(&self.engine, engine => admits(engine.field.system, variable, value))
+        engine!(&self.engine, engine => admits(engine.field.system.as_ref(), variable, value))
     }
 
     fn set(&mut self, variable: Variable, value: f64) -> Result<(), FlowError> {

@@ -77,7 +77,7 @@ impl Convergence {
     }
 }
 
-impl<const S: usize> Engine<'_, S> {
+impl<const S: usize> Engine<S> {
     /// Solves the step of a given width. If asked to, ends early where a gap leaves its piece.
     pub(super) fn solve(&mut self, width: f64, table: usize, watch: bool) -> Solved {
         self.guess(width, table);

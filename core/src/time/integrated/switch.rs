@@ -22,7 +22,7 @@ const AT_REST: f64 = 1e-14;
 /// One below this part of the largest of the motion is hardly one.
 const SLOW: f64 = 1e-4;
 
-impl<const S: usize> Engine<'_, S> {
+impl<const S: usize> Engine<S> {
     /// Finds the pieces that the motion goes to from here. Tangents jump, unless this is where the motion begins.
     pub(super) fn settle(&mut self, mut tangent: Option<&mut Tangent>) -> Result<(), FlowError> {
         self.find_levels();

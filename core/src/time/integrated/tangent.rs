@@ -17,7 +17,7 @@ use super::engine::Engine;
 use super::rule::{dot, tail};
 use super::step::larger;
 
-impl<const S: usize> Engine<'_, S> {
+impl<const S: usize> Engine<S> {
     /// Makes the matrix of (1) for the trial and factorises it.
     pub(super) fn linearise(&mut self, tangent: &Tangent) -> Result<(), FlowError> {
         let n = self.here.q.len();

@@ -150,7 +150,7 @@ impl<'a> Section<'a> {
     /// state has not the entries that the surface asks for.
     pub fn follow(
         &self,
-        map: &mut Stroboscope<'_>,
+        map: &mut Stroboscope,
         state: &mut [f64],
         periods: usize,
         see: &mut dyn FnMut(Crossing<'_>),

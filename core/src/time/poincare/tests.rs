@@ -11,7 +11,7 @@ crate::oscillator! {
     }
 }
 
-fn map(model: &Linear) -> Stroboscope<'_> {
+fn map(model: &Linear) -> Stroboscope {
     let flow = Affine::new(model, &[model.drive], 1.0).expect("affine");
     Stroboscope::new(Box::new(flow))
 }
@@ -58,7 +58,7 @@ fn crossings_are_where_the_closed_form_says() {
 #[test]
 fn two_crossings_between_samples_are_both_found() {
     let model = Linear { drive: 0.0 };
-    let flow = |exact: bool| -> Box<dyn Flow + '_> {
+    let flow = |exact: bool| -> Box<dyn Flow> {
         if exact {
             return Box::new(Affine::new(&model, &[0.0], 1.0).expect("affine"));
         }

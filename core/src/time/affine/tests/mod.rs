@@ -39,7 +39,7 @@ oscillator! {
 }
 
 /// The flow of a system at the values in it.
-fn flow(system: &dyn System, omega: f64) -> Affine<'_> {
+fn flow(system: &dyn System, omega: f64) -> Affine {
     let mut values = vec![0.0; system.facts().parameters.len()];
     system.values(&mut values);
     Affine::new(system, &values, omega).unwrap()

@@ -314,7 +314,7 @@ const PERIOD_8: &[(f64, [f64; 2], [f64; 2])] = &[
 ];
 
 /// Moves over some periods; the tangent.
-fn moved(flow: &mut Integrated<'_>, periods: usize, state: &mut [f64]) -> [f64; 4] {
+fn moved(flow: &mut Integrated, periods: usize, state: &mut [f64]) -> [f64; 4] {
     let mut tangent = Tangent::of_state(1, None);
     for _ in 0..periods {
         flow.advance(0.0, TAU, state, Some(&mut tangent), None)

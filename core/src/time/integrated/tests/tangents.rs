@@ -47,7 +47,7 @@ fn variables(values: &[f64; 6]) -> impl Iterator<Item = (Variable, f64)> {
 }
 
 /// The end of a motion over two periods and a half, with one number changed.
-fn end(change: impl FnOnce(&mut Integrated<'_>, &mut [f64])) -> [f64; 4] {
+fn end(change: impl FnOnce(&mut Integrated, &mut [f64])) -> [f64; 4] {
     let (model, values) = everything();
     let mut flow = Integrated::new(&model, &values, 0.9, 1e-13).unwrap();
     let mut state = [0.1, -0.2, 0.3, 0.4];
