@@ -6,6 +6,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use hertzian::error::chain;
+
 use crate::response::progress::Progress;
 
 /// What came of the work.
@@ -31,7 +33,7 @@ pub struct Failed {
 impl<E: Error> From<E> for Failed {
     fn from(error: E) -> Self {
         Self {
-            message: error.to_string(),
+            message: chain(&error).to_string(),
             code: 2,
         }
     }

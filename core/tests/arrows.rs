@@ -35,16 +35,8 @@ const ROOMS: &[&str] = &[
 /// Modules that only tests see.
 const TESTS: &[&str] = &["guide", "testing"];
 
-/// Arrows that run up all the same: the module, and what it names. The one type of errors holds those of the rooms as variants, until
-/// it is a box. Nothing else may be added.
-const EXCEPTIONS: &[(&str, &str)] = &[
-    ("error", "attractors::basin::BasinError"),
-    ("error", "attractors::log::LogError"),
-    ("error", "continuation::newton::NewtonError"),
-    ("error", "laws::generic::DeclarationError"),
-    ("error", "model::structure::StructureError"),
-    ("error", "time::FlowError"),
-];
+/// Arrows that run up all the same: the module, and what it names. There are none.
+const EXCEPTIONS: &[(&str, &str)] = &[];
 
 /// A module that takes something from another one.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]

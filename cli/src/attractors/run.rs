@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hertzian::attractors::basin::BasinError;
 use hertzian::attractors::log::{Log, LogError};
+use hertzian::error::chain;
 use hertzian::time;
 use hertzian::time::stroboscope::Stroboscope;
 use hertzian::time::{Flow, FlowError};
@@ -55,11 +56,11 @@ pub enum Failure {
 impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Library(error) => error.fmt(f),
+            Self::Library(error) => chain(error).fmt(f),
             Self::Option(message) => f.write_str(message),
             Self::Model(path, error) => f.write_str(&error.describe(path)),
             Self::Motion(error) => error.fmt(f),
-            Self::Basin(error) => error.fmt(f),
+            Self::Basin(error) => chain(error).fmt(f),
             Self::Checkpoint(error) => error.fmt(f),
             Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
         }

@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
+use hertzian::error::chain;
 
 use crate::program::{self, Ended, Failed};
 use crate::response::files;
@@ -46,7 +47,7 @@ const MOST_HARMONICS: usize = 2999;
 pub fn start(options: &Options) -> ExitCode {
     program::run("hertzian multipliers", false, |interrupted, progress| {
         run(options, interrupted, progress).map_err(|failure| Failed {
-            message: failure.to_string(),
+            message: chain(&*failure).to_string(),
             code: 2,
         })
     })

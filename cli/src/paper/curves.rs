@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use hertzian::chart::{Chart, Curve, Reference, Scale};
+use hertzian::error::chain;
 use hertzian::export;
 use hertzian::shooting::Side;
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop, System};
@@ -163,8 +164,9 @@ impl<'t> Curves<'t> {
                     events.extend(broken.events.iter().filter(joint).cloned());
                 }
                 Err(error) => self.notes.push(format!(
-                    "What begins at {:.6} was not followed: {error}.",
-                    event.point.value
+                    "What begins at {:.6} was not followed: {}.",
+                    event.point.value,
+                    chain(&error)
                 )),
             }
         }
@@ -186,7 +188,7 @@ impl<'t> Curves<'t> {
                 ControlFlow::Continue(())
             }
         });
-        let branch = followed.map_err(|error| error.to_string())?;
+        let branch = followed.map_err(|error| chain(&error).to_string())?;
         self.add(&case.label, &branch);
         Ok(branch)
     }

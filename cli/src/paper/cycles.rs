@@ -7,8 +7,9 @@ use std::sync::atomic::Ordering;
 
 use hertzian::bifurcation::Bifurcations;
 use hertzian::chart::{Chart, Curve, Markers, Scale};
+use hertzian::error::chain;
 use hertzian::shooting::{Cycle, CycleBranch, CycleEvent};
-use hertzian::{Error, EventKind, Shooting};
+use hertzian::{EventKind, OrbitError, Shooting};
 
 use super::exact;
 use super::figure::{Drawing, Table, Task, Value};
@@ -71,7 +72,7 @@ impl<'t> Cycles<'t> {
                     ControlFlow::Continue(())
                 }
             })
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| chain(&error).to_string())?;
         self.add(&branch);
         Ok(branch)
     }
@@ -154,7 +155,7 @@ pub fn figure_8a(task: &Task<'_>) -> Result<Drawing, String> {
     let model = model(0.1);
     let request = Bifurcations::of(&model).vary("drive").omega(1.0);
     let request = request.from(0.1).to(2.1).depth(3);
-    let diagram = request.run().map_err(|error| error.to_string())?;
+    let diagram = request.run().map_err(|error| chain(&error).to_string())?;
     let mut figure = Cycles::new(task, "drive");
     for limb in &diagram.branches {
         figure.add(&limb.branch);
@@ -202,7 +203,7 @@ pub fn figure_9a(task: &Task<'_>) -> Result<Drawing, String> {
         let state = COEXISTING.iter().find(|known| known.0 == period);
         let orbits = shooting.clone().period(period);
         let near = state.map_or(orbits.clone(), |known| orbits.near(&known.1));
-        let cycle = near.orbit(1.0).map_err(|error| error.to_string())?;
+        let cycle = near.orbit(1.0).map_err(|error| chain(&error).to_string())?;
         let what = format!("period {period} at ω = 1: peak-to-peak");
         let value = Value::of(what, cycle.peak_to_peak()).exact(Some(exact));
         figure.drawing.values.push(value);
@@ -244,13 +245,17 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
                     values.push(value.exact(exact).printed(printed[index]));
                 }
             }
-            Err(Error::Beyond { fold, .. }) if multipliers.is_none() => {
+            Err(error) => {
+                let beyond = match error.downcast_ref() {
+                    Some(&OrbitError::Beyond { fold, .. }) if multipliers.is_none() => Some(fold),
+                    _ => None,
+                };
+                let fold = beyond.ok_or_else(|| chain(&error).to_string())?;
                 let value = Value::of(format!("fold before A = {drive}"), fold);
                 let exact = exact::AMPLITUDES.iter().find(|known| known.0 == 8);
                 let value = value.exact(exact.map(|known| known.2));
                 values.push(value.printed("1.0020 and 0.1833: there is no orbit"));
             }
-            Err(error) => return Err(error.to_string()),
         }
     }
     let mut drawing = figure.drawing;

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::chart::Reference;
+use hertzian::error::chain;
 use hertzian::{Branch, Error, System};
 use serde::Serialize;
 
@@ -49,7 +50,7 @@ pub fn of(
     let mut warnings = Vec::new();
     let mut kept = |found: Result<Vec<BackbonePoint>, Error>| {
         found.unwrap_or_else(|error| {
-            warnings.push(format!("backbone: {error}"));
+            warnings.push(format!("backbone: {}", chain(&error)));
             Vec::new()
         })
     };

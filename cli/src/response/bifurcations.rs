@@ -6,9 +6,10 @@ use std::ops::ControlFlow;
 use hertzian::attractors::basin::Progress;
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
+use hertzian::error::chain;
 use hertzian::export::{Decimal, Table};
 use hertzian::shooting::{Cycle, CycleEvent, Track};
-use hertzian::{Error, EventKind, Shooting, System};
+use hertzian::{Error, EventKind, RequestError, Shooting, System};
 
 use super::options::{Options, Tracked};
 use super::records::{EventRecord, PointRecord, Record, TrackRecord};
@@ -161,7 +162,7 @@ impl Found {
                 Ok(track) => self.tracks.push(track),
                 Err(error) => self
                     .warnings
-                    .push(format!("{event} is not tracked: {error}")),
+                    .push(format!("{event} is not tracked: {}", chain(&error))),
             }
         }
         Ok(())
@@ -378,7 +379,7 @@ fn second<'o>(options: &'o Options, model: &dyn System) -> Result<&'o str, Error
     }
     let unknown = names.iter().find(|name| !known.contains(name));
     let name = unknown.cloned().unwrap_or_else(|| names.join(","));
-    Err(Error::UnknownParameter { name, known })
+    Err(RequestError::UnknownParameter { name, known }.into())
 }
 
 fn value_of(options: &Options, model: &dyn System, name: &str) -> f64 {

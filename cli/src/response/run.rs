@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hertzian::chart::{Chart, Reference};
+use hertzian::error::chain;
 use hertzian::export::{self, Table};
-use hertzian::{Branch, Error, FrequencyResponse, Point, Stop, System, remarks};
+use hertzian::{Branch, Error, FrequencyResponse, OrbitError, Point, Stop, System, remarks};
 
 use super::backbone;
 use super::bifurcations;
@@ -56,7 +57,10 @@ impl Failure {
     /// 3 if the branch could not begin, 2 if what was asked for is at fault.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Library(Error::NoStart { .. } | Error::NoSuchPeriod { .. }) => 3,
+            Self::Library(error) => match error.downcast_ref() {
+                Some(OrbitError::NoStart { .. } | OrbitError::NoSuchPeriod { .. }) => 3,
+                _ => 2,
+            },
             _ => 2,
         }
     }
@@ -65,7 +69,7 @@ impl Failure {
 impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Library(error) => error.fmt(f),
+            Self::Library(error) => chain(error).fmt(f),
             Self::Option(message) => f.write_str(message),
             Self::Model(path, error) => f.write_str(&error.describe(path)),
             Self::At(value) => write!(f, "at = {value}: must be finite"),
@@ -243,7 +247,7 @@ fn solutions_at(options: &Options, branch: &Branch, warnings: &mut Vec<String>) 
                 warnings.push(format!("the branch does not pass {name} = {value}"));
             }
             Ok(found) => solutions.extend(found),
-            Err(error) => warnings.push(format!("at {name} = {value}: {error}")),
+            Err(error) => warnings.push(format!("at {name} = {value}: {}", chain(&error))),
         }
     }
     solutions

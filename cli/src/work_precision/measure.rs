@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use hertzian::error::chain;
+
 use super::method::{self, Family, Reference, Run, Setting};
 use super::problem::Problem;
 
@@ -117,7 +119,7 @@ pub fn measure(
             }
             match method::run(problem, measured.family, measured.setting, patience) {
                 Ok(run) => measured.add(reference, &run),
-                Err(error) => measured.failure = Some(error.to_string()),
+                Err(error) => measured.failure = Some(chain(&error).to_string()),
             }
         }
     }

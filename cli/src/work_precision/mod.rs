@@ -19,6 +19,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hertzian::chart::Page;
+use hertzian::error::chain;
 use hertzian::export;
 
 use crate::program::{self, Ended};
@@ -62,7 +63,7 @@ pub enum Failure {
 impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Reference(error) => error.fmt(f),
+            Self::Reference(error) => chain(error).fmt(f),
             Self::NoOrbit(problem) => write!(f, "{problem}: no orbit to compare with"),
             Self::Option(message) => f.write_str(message),
             Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use cpu_time::ThreadTime;
+use hertzian::error::chain;
 use hertzian::stability::{Method, Projection, Sorting};
 use hertzian::{Complex, FrequencyResponse, Point, Shooting};
 
@@ -107,7 +108,7 @@ fn shoot(problem: &Problem, reference: &Reference, tolerance: f64) -> Answer {
             error: distance(&cycle.stability.multipliers, &reference.multipliers),
             failure: None,
         },
-        Err(error) => failed(method, &setting, &error.to_string()),
+        Err(error) => failed(method, &setting, &chain(&error).to_string()),
     }
 }
 

@@ -9,6 +9,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use crate::error::Error;
+
 /// What every such file begins with; the number is that of the format.
 const HEAD: &str = "hertzian log 1, ";
 /// As much is shown of what another file says it belongs to, in bytes.
@@ -23,10 +25,11 @@ pub struct Log {
 }
 
 /// Why there is no log, or none any more.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogError {
     /// The file cannot be read or written.
+    #[error("cannot use the checkpoint {}: {kind}", .path.display())]
     File {
         /// Its path.
         path: PathBuf,
@@ -34,6 +37,7 @@ pub enum LogError {
         kind: ErrorKind,
     },
     /// The file belongs to another computation, or is no log.
+    #[error("{}", of_another(.path, .found))]
     Other {
         /// Its path.
         path: PathBuf,
@@ -188,25 +192,20 @@ impl Reader<'_> {
     }
 }
 
-impl std::fmt::Display for LogError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::File { path, kind } => {
-                write!(f, "cannot use the checkpoint {}: {kind}", path.display())
-            }
-            Self::Other { path, found } if found.is_empty() => {
-                write!(f, "{} is no checkpoint", path.display())
-            }
-            Self::Other { path, found } => write!(
-                f,
-                "the checkpoint {} belongs to another computation: {found}",
-                path.display()
-            ),
-        }
+fn of_another(path: &Path, found: &str) -> String {
+    let path = path.display();
+    if found.is_empty() {
+        format!("{path} is no checkpoint")
+    } else {
+        format!("the checkpoint {path} belongs to another computation: {found}")
     }
 }
 
-impl std::error::Error for LogError {}
+impl From<LogError> for Error {
+    fn from(error: LogError) -> Self {
+        Self::new(crate::error::ErrorKind::File, error)
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -3,8 +3,10 @@
 //! At every value the motion goes on from the last state of the value before, so that it stays with its attractor as long as
 //! there is one: a sweep up and a sweep down show hysteresis.
 
+use super::failure;
 use super::log::{Log, Reader, Writer};
 use crate::error::Error;
+use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::system::Variable;
 use crate::time::FlowError;
@@ -112,7 +114,7 @@ impl Sweep {
         if count > MOST_VALUES {
             let (name, value) = ("values", count as f64);
             let must = "must be at most 2^24";
-            return Err(Error::Option { name, value, must });
+            return Err(RequestError::Option { name, value, must }.into());
         }
         let last = count.saturating_sub(1).max(1) as f64;
         let at = |i: usize| {
@@ -220,7 +222,7 @@ impl Row {
         writer.numbers(&match self.ended {
             None => vec![],
             Some(Ended::Escaped) => vec![0.0],
-            Some(Ended::Failed(error)) => error.numbers().to_vec(),
+            Some(Ended::Failed(error)) => failure::numbers(error).to_vec(),
         });
         writer.numbers(&self.last);
         writer.0
@@ -234,7 +236,7 @@ impl Row {
             ended: match reader.numbers()?[..] {
                 [] => None,
                 [_] => Some(Ended::Escaped),
-                [kind, a, b] => Some(Ended::Failed(FlowError::of_numbers([kind, a, b])?)),
+                [kind, a, b] => Some(Ended::Failed(failure::of_numbers([kind, a, b])?)),
                 _ => return None,
             },
             last: reader.numbers()?,
@@ -359,7 +361,11 @@ mod tests {
     fn values_beyond_what_memory_holds_are_refused() {
         for count in [MOST_VALUES + 1, usize::MAX] {
             let refused = Sweep::spread(0.0, 1.0, count);
-            assert!(matches!(refused, Err(Error::Option { name: "values", .. })));
+            let refused = refused.expect_err("too many");
+            assert!(matches!(
+                refused.downcast_ref(),
+                Some(RequestError::Option { name: "values", .. })
+            ));
         }
         assert_eq!(Sweep::spread(0.0, 1.0, 3), Ok(vec![0.0, 0.5, 1.0]));
     }

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use super::known;
 use crate::continuation::follow::Stop;
-use crate::error::Error;
+use crate::error::{Error, chain};
 use crate::event::{EventKind, Side};
 use crate::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
 
@@ -131,7 +131,7 @@ impl fmt::Display for Reason {
             Self::Mirrored => f.write_str("the mirror image of a branch that is followed"),
             Self::Known { branch } => write!(f, "branch {branch} ends there"),
             Self::Interrupted => f.write_str("interrupted"),
-            Self::Failed(error) => error.fmt(f),
+            Self::Failed(error) => chain(error).fmt(f),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod backbone;
 pub(crate) mod diagram;
+pub(crate) mod error;
 mod known;
 mod request;
 

@@ -6,8 +6,10 @@ use std::time::Instant;
 
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
 use crate::attractors::basin::{Basin, Basins, Progress};
+use crate::bifurcation::error::BifurcationError;
 use crate::continuation::step;
 use crate::error::Error;
+use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::shooting::{Cycle, Shooting};
 use crate::system::{System, Variable};
@@ -213,19 +215,19 @@ impl Bifurcations {
         watch: &(dyn Fn(Progress) -> bool + Sync),
     ) -> Result<Diagram, Error> {
         let started = Instant::now();
-        let from = self.from.ok_or(Error::Missing { name: "from" })?;
-        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
+        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
         self.check()?;
         for &(value, ref basin) in &self.searched {
             if !(from.min(to)..=from.max(to)).contains(&value) {
                 let must = "must be in the range of the first branch";
                 let name = "search";
-                return Err(Error::Option { name, value, must });
+                return Err(RequestError::Option { name, value, must }.into());
             }
             let order = 2 * self.system.facts().coordinates.len();
             basin
                 .check(Some(order))
-                .map_err(|reason| Error::Search { value, reason })?;
+                .map_err(|reason| BifurcationError::Search { value, reason })?;
         }
         let first = self.shooting.clone().from(from).to(to);
         let mut seen = Watch::new(&mut visit);
@@ -284,13 +286,13 @@ impl Bifurcations {
             Variable::Omega => value,
             Variable::Parameter(index) => {
                 parameters[index] = value;
-                self.omega.ok_or(Error::Missing { name: "omega" })?
+                self.omega.ok_or(RequestError::Missing { name: "omega" })?
             }
         };
         let options = time::Options::default().tolerance(SETTLED);
         let flow = time::at(&self.system, &parameters, omega, options)?;
         let found = basin.compute(vec![flow], None, watch);
-        found.map_err(|reason| Error::Search { value, reason })
+        found.map_err(|reason| BifurcationError::Search { value, reason }.into())
     }
 
     fn check(&self) -> Result<(), Error> {

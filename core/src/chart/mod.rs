@@ -139,9 +139,11 @@ pub struct Note {
 }
 
 /// Why a chart was not written.
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum ChartError {
     /// The file could not be written.
+    #[error("cannot write the chart {}", .path.display())]
     Write {
         /// Its path.
         path: PathBuf,
@@ -271,23 +273,5 @@ impl Chart {
     /// The chart as the text of an SVG document.
     pub fn to_svg(&self) -> String {
         drawing::draw(self)
-    }
-}
-
-impl std::fmt::Display for ChartError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Write { path, source } => {
-                write!(f, "cannot write the chart {}: {source}", path.display())
-            }
-        }
-    }
-}
-
-impl std::error::Error for ChartError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Write { source, .. } => Some(source),
-        }
     }
 }

@@ -1,15 +1,17 @@
-//! `{:?}` of an error is its sentence, `{:#?}` its variant with everything that it carries.
+//! `{:?}` of an error is its sentence with its sources, `{:#?}` its variant with everything that it carries.
 //!
 //! A program whose `main` returns a `Result` shows `{:?}` of the error, and whoever runs it is to read the sentence.
 
 /// Writes [`Debug`](std::fmt::Debug) of an enum of errors, from its variants with their fields and, after a semicolon, the variants
 /// that hold another error. One that is missing, or a field of it, does not compile.
+///
+/// A variant must not show itself by `{:?}` alone: of `main() -> Result` that is all that a user reads.
 macro_rules! sentence_as_debug {
     ($error:ident: $($variant:ident { $($field:ident),* })*; $($(#[$condition:meta])* $other:ident)*) => {
         impl std::fmt::Debug for $error {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 if !f.alternate() {
-                    return std::fmt::Display::fmt(self, f);
+                    return std::fmt::Display::fmt(&crate::error::chain(self), f);
                 }
                 match self {
                     $(Self::$variant { $($field),* } => f
@@ -31,7 +33,12 @@ pub(crate) use sentence_as_debug;
 mod tests {
     use crate::attractors::basin::BasinError;
     use crate::attractors::log::LogError;
-    use crate::error::Error;
+    use crate::bifurcation::error::BifurcationError;
+    use std::error::Error as _;
+
+    use crate::branches::error::OrbitError;
+    use crate::error::{Error, ErrorKind, chain};
+    use crate::model::error::ModelError;
     use crate::model::structure::StructureError;
     use crate::numeric::linear::Singular;
     use crate::response::FrequencyResponse;
@@ -59,30 +66,53 @@ mod tests {
         assert_eq!(format!("{boxed:#?}"), "Missing {\n    name: \"to\",\n}");
     }
 
+    /// What each source says is said once, however deep it lies.
+    #[test]
+    fn a_chain_says_everything_once() {
+        let reason = BasinError::Motion {
+            reason: FlowError::Rests { phase: 1.5 },
+        };
+        let error = Error::from(BifurcationError::Search { value: 0.7, reason });
+        assert_eq!(error.kind(), ErrorKind::Motion);
+        assert_eq!(
+            chain(&error).to_string(),
+            "attractors at 0.7 could not be looked for: no motion of the grid can be computed: the motion rests on a level at which the force jumps, at the phase 1.5"
+        );
+        let path = "some".into();
+        let found = String::new();
+        let log = BasinError::from(LogError::Other { path, found });
+        assert_eq!(chain(&log).to_string(), "some is no checkpoint");
+        assert_eq!(Error::from(log).kind(), ErrorKind::File);
+        assert_eq!(error, error.clone());
+        assert_ne!(error, Error::from(ModelError::NotAffine));
+    }
+
     #[test]
     fn sentences_hold_sentences_and_details_hold_details() {
         let at = Singular {
             column: 3,
             pivot: 0.0,
         };
-        let reason = crate::error::NewtonError::Singular { iterations: 2, at };
-        let error = Error::NoStart { value: 0.2, reason };
-        assert_eq!(format!("{error:?}"), error.to_string());
-        assert!(
-            error
-                .to_string()
-                .starts_with("no periodic orbit found at 0.2: ")
-        );
+        let reason = crate::continuation::newton::NewtonError::Singular { iterations: 2, at };
+        let error = Error::from(OrbitError::NoStart { value: 0.2, reason });
+        let sentence = "no periodic orbit found at 0.2";
+        let why = "the Jacobian is singular after 2 iterations: pivot 0.0e0 in column 3";
+        assert_eq!(error.to_string(), sentence);
+        assert_eq!(error.source().expect("a reason").to_string(), why);
+        assert_eq!(format!("{error:?}"), format!("{sentence}: {why}"));
         let details = format!("{error:#?}");
         for part in ["NoStart {", "value: 0.2,", "Singular {", "column: 3,"] {
             assert!(details.contains(part), "{details}");
         }
         let flow = FlowError::Rests { phase: 1.5 };
         assert_eq!(
-            format!("{:#?}", Error::Flow(flow)),
-            "Flow(\n    Rests {\n        phase: 1.5,\n    },\n)"
+            format!("{:#?}", Error::from(flow)),
+            "Rests {\n    phase: 1.5,\n}"
         );
-        assert_eq!(format!("{:#?}", Error::NotAffine), "NotAffine");
+        assert_eq!(
+            format!("{:#?}", Error::from(ModelError::NotAffine)),
+            "NotAffine"
+        );
         let path = "some".into();
         let log = LogError::Other {
             path,

@@ -3,6 +3,7 @@
 mod branch;
 #[cfg(feature = "plot")]
 pub(crate) mod diagram;
+pub(crate) mod error;
 pub mod export;
 #[cfg(feature = "plot")]
 pub(crate) mod picture;

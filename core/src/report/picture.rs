@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::event::EventKind;
 use crate::model::labels::Labels;
 use crate::orbit::stability::Verdict;
+use crate::report::error::FileError;
 use crate::response::branch::Branch;
 
 impl Branch {
@@ -117,7 +118,7 @@ impl Line {
 impl From<ChartError> for Error {
     fn from(ChartError::Write { path, source }: ChartError) -> Self {
         let kind = source.kind();
-        Self::File { path, kind }
+        FileError::Write { path, kind }.into()
     }
 }
 

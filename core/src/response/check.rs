@@ -13,7 +13,9 @@ use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
 use crate::continuation::step;
 use crate::error::Error;
+use crate::model::error::ModelError;
 use crate::model::layout::{ContactLayout, Layout};
+use crate::model::request::RequestError;
 use crate::model::rigid::{self, Place};
 use crate::model::validate;
 use crate::numeric::fourier::series;
@@ -40,29 +42,32 @@ impl FrequencyResponse {
     pub(super) fn check(&self) -> Result<(Follower, FollowOptions), Error> {
         let facts = self.system.facts();
         if facts.coordinates.is_empty() {
-            return Err(Error::NoCoordinates);
+            return Err(ModelError::NoCoordinates.into());
         }
         let mut parameters = vec![0.0; facts.parameters.len()];
         self.system.values(&mut parameters);
         let variable = validate::variable(facts, self.vary.as_deref())?;
-        let from = self.from.ok_or(Error::Missing { name: "from" })?;
-        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
+        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
         validate::range(facts, variable, from, to)?;
         let omega = match (variable, self.omega) {
             (Variable::Omega, None) => from,
             (Variable::Omega, Some(value)) => {
                 let must = "is what is varied: give it by from and to";
-                return Err(Error::Option {
+                return Err(RequestError::Option {
                     name: "omega",
                     value,
                     must,
-                });
+                }
+                .into());
             }
             (Variable::Parameter(index), Some(omega)) => {
                 parameters[index] = from;
                 validate::omega(omega)?
             }
-            (Variable::Parameter(_), None) => return Err(Error::Missing { name: "omega" }),
+            (Variable::Parameter(_), None) => {
+                return Err(RequestError::Missing { name: "omega" }.into());
+            }
         };
         validate::parameters(facts, &parameters)?;
         self.check_options()?;
@@ -163,10 +168,11 @@ impl FrequencyResponse {
         if orbit.coordinates == expected {
             return Ok(());
         }
-        Err(Error::State {
+        Err(RequestError::State {
             entries: 2 * orbit.coordinates,
             expected: 2 * expected,
-        })
+        }
+        .into())
     }
 
     /// An event is one of the system, within the range, and at the same excitation frequency if that does not vary.
@@ -175,11 +181,12 @@ impl FrequencyResponse {
         let value = event.point.value;
         let (from, to) = (self.from.unwrap_or(value), self.to.unwrap_or(value));
         if !(from.min(to)..=from.max(to)).contains(&value) {
-            return Err(Error::Option {
+            return Err(RequestError::Option {
                 name: "event",
                 value,
                 must: "must be between from and to",
-            });
+            }
+            .into());
         }
         let varies = validate::variable(self.system.facts(), self.vary.as_deref())?;
         let expected = match varies {
@@ -189,11 +196,12 @@ impl FrequencyResponse {
         let omega = event.point.orbit.omega;
         match expected {
             Some(expected) if (omega - expected).abs() > SAME * expected.abs() => {
-                Err(Error::Option {
+                Err(RequestError::Option {
                     name: "event",
                     value: omega,
                     must: "must have the excitation frequency of this request",
-                })
+                }
+                .into())
             }
             _ => Ok(()),
         }
@@ -208,11 +216,12 @@ impl FrequencyResponse {
         if orbit.period == self.period {
             return Ok(());
         }
-        Err(Error::Option {
+        Err(RequestError::Option {
             name: "period",
             value: self.period as f64,
             must: "must be that of the orbit given by `near_orbit`",
-        })
+        }
+        .into())
     }
 
     /// Checks the numbers among the options.
@@ -288,14 +297,15 @@ impl FrequencyResponse {
         let harmonics = per_period * self.period;
         let unknowns = layout.coordinates * series::length(harmonics);
         if unknowns > MOST_UNKNOWNS {
-            return Err(Error::Unknowns {
+            return Err(RequestError::Unknowns {
                 unknowns,
                 most: MOST_UNKNOWNS,
-            });
+            }
+            .into());
         }
         let highest = layout.highest_harmonic() * self.period;
         if highest > harmonics {
-            return Err(Error::Harmonics { harmonics, highest });
+            return Err(RequestError::Harmonics { harmonics, highest }.into());
         }
         let samples_per_period = self
             .samples
@@ -309,11 +319,12 @@ impl FrequencyResponse {
         let samples = samples_per_period * self.period;
         if samples > MOST_SAMPLES {
             let must = "times the period must be at most 1e7";
-            return Err(Error::Option {
+            return Err(RequestError::Option {
                 name: "samples",
                 value: samples as f64,
                 must,
-            });
+            }
+            .into());
         }
         // The derivatives are needed up to twice the harmonics of the balance, and the waves of directions and offsets on top.
         let contacts = layout.contacts.iter();
@@ -323,11 +334,12 @@ impl FrequencyResponse {
         let waves = contacts.map(wave).max().unwrap_or(0) * self.period;
         let least = 2 * (2 * harmonics + waves) + 2;
         if samples < least {
-            return Err(Error::Samples {
+            return Err(RequestError::Samples {
                 samples,
                 least,
                 harmonics,
-            });
+            }
+            .into());
         }
         Ok(Resolution {
             harmonics,

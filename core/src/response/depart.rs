@@ -12,6 +12,7 @@
 use crate::balance::Parity;
 use crate::balance::block::{Block, Part};
 use crate::balance::resolution::resize;
+use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton};
@@ -31,14 +32,14 @@ const LEFT: f64 = 0.5;
 /// harmonics of the old branch are multiples of a stride.
 ///
 /// # Errors
-/// [`Error::NoBranch`] if no branch begins there, or its first orbit was not found.
+/// [`OrbitError::NoBranch`] if no branch begins there, or its first orbit was not found.
 pub(crate) fn depart(
     follower: &Follower,
     event: &Event,
     stride: usize,
     side: f64,
 ) -> Result<CurvePoint, Error> {
-    let nothing = Error::NoBranch {
+    let nothing = OrbitError::NoBranch {
         kind: event.kind,
         value: event.point.value,
     };
@@ -51,7 +52,7 @@ pub(crate) fn depart(
         EventKind::SymmetryBreaking => (Part::Even, Parity::Odd),
         EventKind::BranchPoint if !event.tangent.is_empty() => (Part::Own, Parity::All),
         EventKind::BranchPoint if halved => (Part::Between, Parity::All),
-        _ => return Err(nothing),
+        _ => return Err(nothing.into()),
     };
     let mut old = follower.with_harmonics(orbit.harmonics(), orbit.harmonics());
     (old.parity, old.stride, old.period) = (parity, stride, orbit.period);
@@ -116,5 +117,5 @@ pub(crate) fn depart(
         }
         return Ok(CurvePoint { u, tangent, scale });
     }
-    Err(nothing)
+    Err(nothing.into())
 }

@@ -7,6 +7,7 @@ use crate::balance::resolution::{Chooser, resize};
 use crate::balance::start::{Motion, StartRequest};
 use crate::balance::truncation::Finer;
 use crate::balance::{Balance, Parity, Resolution};
+use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::continuation::follow::{CurvePoint, FollowOptions};
@@ -270,7 +271,7 @@ impl Follower {
             VALUE_TOLERANCE,
             offset,
         );
-        let lost = Error::Lost {
+        let lost = OrbitError::Lost {
             value,
             from: a.value,
             to: b.value,

@@ -20,12 +20,14 @@ use crate::balance::Parity;
 use crate::balance::aft::Aft;
 use crate::balance::start::{Moving, start, without_symmetry};
 use crate::balance::symmetry::has_stride;
+use crate::branches::error::Attempts;
+use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::continuation::follow::Start;
 use crate::continuation::statistics::Statistics;
 use crate::continuation::step::StepControl;
-use crate::error::{Attempts, Error};
+use crate::error::Error;
 use crate::event::{EventKind, Side};
 use crate::orbit::stability::Method;
 use crate::response::branch::Branch;
@@ -263,11 +265,12 @@ impl FrequencyResponse {
         let request = self.clone().from(value).to(self.aside(value)?);
         let branch = request.run_with(|_| ControlFlow::Break(()))?;
         let first = branch.points.into_iter().next();
-        first.ok_or(Error::NoSuchPeriod {
+        let none = OrbitError::NoSuchPeriod {
             period: self.period,
             value,
             attempts: Attempts::default(),
-        })
+        };
+        first.ok_or_else(|| none.into())
     }
 
     /// Computes the branch.

@@ -7,10 +7,12 @@ use super::cycle::{Cycle, CycleBranch};
 use super::setting::Setting;
 use super::start::{self, First};
 use super::{compute, solve};
+use crate::branches::error::OrbitError;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::continuation::newton::Newton;
 use crate::error::Error;
+use crate::time::MotionError;
 
 /// The value is met to this part of the distance of the neighbours, and then exactly.
 const MET: f64 = 1e-6;
@@ -57,7 +59,7 @@ fn chain(branch: &CycleBranch) -> Vec<&Cycle> {
 }
 
 fn between(setting: &Setting, [a, b]: [&Cycle; 2], value: f64) -> Result<Cycle, Error> {
-    let motion = |reason| Error::Motion { value, reason };
+    let motion = |reason| MotionError { value, reason };
     let (equations, u) = start::known(setting, a)?;
     let mut first = First {
         u,
@@ -89,13 +91,13 @@ fn between(setting: &Setting, [a, b]: [&Cycle; 2], value: f64) -> Result<Cycle, 
     let offset = |point: &CurvePoint| (point.parameter() - value) / range;
     let ends = (&from, &to);
     let located = locate(equations, &mut newton, ends, options, MET, offset);
-    let lost = Error::Lost {
+    let lost = OrbitError::Lost {
         value,
         from: a.value,
         to: b.value,
     };
     let Some(located) = located else {
-        return Err(lost);
+        return Err(lost.into());
     };
     *u = located.point.u;
     let end = u.len() - 1;

@@ -5,6 +5,7 @@
 use super::equations::Equations;
 use super::setting::Setting;
 use super::solve;
+use crate::branches::error::OrbitError;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -31,7 +32,7 @@ enum Found {
 /// The orbit at a value where Newton's method from a guess failed with `reason` at `u`.
 ///
 /// # Errors
-/// [`Error::Beyond`] if the branch turns back before, and `reason` if nothing is known.
+/// [`OrbitError::Beyond`] if the branch turns back before, and `reason` if nothing is known.
 pub(super) fn search(
     setting: &Setting,
     equations: &mut Equations,
@@ -50,7 +51,7 @@ pub(super) fn search(
     let found = search.neighbour(u).and_then(|near| search.towards(near));
     match found {
         Some(Found::Orbit(u)) => Ok(u),
-        Some(Found::Fold(fold)) => Err(Error::Beyond { value, fold }),
+        Some(Found::Fold(fold)) => Err(OrbitError::Beyond { value, fold }.into()),
         None => Err(reason),
     }
 }

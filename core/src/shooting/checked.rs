@@ -9,13 +9,16 @@ use super::start::Guess;
 use crate::balance::symmetry::Over;
 use crate::continuation::step;
 use crate::error::Error;
+use crate::model::error::ModelError;
 use crate::model::labels::Labels;
 use crate::model::layout::Layout;
+use crate::model::request::RequestError;
 use crate::model::rigid::{self, Place};
 use crate::model::validate;
 use crate::response::FrequencyResponse;
 use crate::system::Variable;
 use crate::time;
+use crate::time::MotionError;
 use crate::time::Options;
 use crate::time::affine::Affine;
 use crate::time::stroboscope::Stroboscope;
@@ -30,11 +33,11 @@ impl Shooting {
         let expected = 2 * facts.coordinates.len();
         let entries = 2 * cycle.extremes.len();
         if entries != expected {
-            return Err(Error::State { entries, expected });
+            return Err(RequestError::State { entries, expected }.into());
         }
         let (values, expected) = (cycle.parameters.len(), facts.parameters.len());
         if values != expected {
-            return Err(Error::Values { values, expected });
+            return Err(RequestError::Values { values, expected }.into());
         }
         let variable = validate::variable(facts, self.vary.as_deref())?;
         let varied = match variable {
@@ -44,26 +47,28 @@ impl Shooting {
         if varied != cycle.value {
             let name = self.vary.clone().unwrap_or_else(|| "omega".to_owned());
             let must = "must be what the branch of the event or orbit varies";
-            return Err(Error::Varied { name, must });
+            return Err(RequestError::Varied { name, must }.into());
         }
         let mut held = vec![0.0; facts.parameters.len()];
         self.system.values(&mut held);
         let pairs = held.iter().zip(&cycle.parameters).enumerate();
         for (index, (value, of_cycle)) in pairs {
             if value != of_cycle && variable != Variable::Parameter(index) {
-                return Err(Error::Parameter {
+                return Err(RequestError::Parameter {
                     name: facts.parameters[index].name.to_string(),
                     value: *value,
                     range: format!("[{of_cycle}, {of_cycle}], that of the event or orbit"),
-                });
+                }
+                .into());
             }
         }
         match self.omega.filter(|omega| *omega != cycle.omega) {
-            Some(value) if variable != Variable::Omega => Err(Error::Option {
+            Some(value) if variable != Variable::Omega => Err(RequestError::Option {
                 name: "omega",
                 value,
                 must: "must be that of the event or orbit",
-            }),
+            }
+            .into()),
             _ => Ok(()),
         }
     }
@@ -83,7 +88,7 @@ impl Shooting {
         for _ in 1..cycle.period {
             let value = cycle.value;
             map.map(&mut state)
-                .map_err(|reason| Error::Motion { value, reason })?;
+                .map_err(|reason| MotionError { value, reason })?;
             states.push(state.clone());
         }
         Ok(states)
@@ -97,8 +102,8 @@ impl Shooting {
 
     /// The range, and everything else that was asked for, checked.
     pub(super) fn ranged(&self) -> Result<([f64; 2], Setting), Error> {
-        let from = self.from.ok_or(Error::Missing { name: "from" })?;
-        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
+        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
         let setting = self.setting(from, to)?;
         validate::range(self.system.facts(), setting.variable, from, to)?;
         Ok(([from, to], setting))
@@ -108,7 +113,7 @@ impl Shooting {
     pub(super) fn setting(&self, from: f64, to: f64) -> Result<Setting, Error> {
         let facts = self.system.facts();
         if facts.coordinates.is_empty() {
-            return Err(Error::NoCoordinates);
+            return Err(ModelError::NoCoordinates.into());
         }
         self.check_options()?;
         let variable = validate::variable(facts, self.vary.as_deref())?;
@@ -118,13 +123,16 @@ impl Shooting {
             (Variable::Omega, None) => None,
             (Variable::Omega, Some(value)) => {
                 let must = "is what is varied: it has its own value";
-                return Err(Error::Option {
+                return Err(RequestError::Option {
                     name: "omega",
                     value,
                     must,
-                });
+                }
+                .into());
             }
-            (Variable::Parameter(_), None) => return Err(Error::Missing { name: "omega" }),
+            (Variable::Parameter(_), None) => {
+                return Err(RequestError::Missing { name: "omega" }.into());
+            }
             (Variable::Parameter(_), Some(omega)) => Some(omega),
         };
         for value in [to, from] {
@@ -207,15 +215,16 @@ impl Shooting {
         };
         if entries != 2 * coordinates {
             let expected = 2 * coordinates;
-            return Err(Error::State { entries, expected });
+            return Err(RequestError::State { entries, expected }.into());
         }
         let bad = state.iter().find(|x| !x.is_finite());
         bad.map_or(Ok(()), |&value| {
-            Err(Error::Option {
+            Err(RequestError::Option {
                 name: "near",
                 value,
                 must: "must be finite",
-            })
+            }
+            .into())
         })
     }
 

@@ -12,6 +12,7 @@ use super::switch::{self, Begun};
 use crate::continuation::follow::{Start, Stop};
 use crate::error::Error;
 use crate::system::Variable;
+use crate::time::MotionError;
 
 /// The orbit near a guess where what is varied has a value.
 ///
@@ -29,7 +30,7 @@ pub(super) fn cycle(setting: &Setting, guess: &Guess, value: f64) -> Result<Cycl
 pub(super) fn read(setting: &Setting, found: First, value: f64) -> Result<Cycle, Error> {
     let (mut run, mut found) = run(setting, found, value, value)?;
     let read = run.read(&mut found.equations, &found.u);
-    let (cycle, _) = read.map_err(|reason| Error::Motion { value, reason })?;
+    let (cycle, _) = read.map_err(|reason| MotionError { value, reason })?;
     Ok(Cycle {
         iterations: found.iterations,
         ..cycle

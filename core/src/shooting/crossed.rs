@@ -21,11 +21,13 @@ use super::equations::Equations;
 use super::setting::Setting;
 use super::start::{self, First};
 use super::switch::{Begun, DEPARTURES, FARTHEST};
+use crate::branches::error::OrbitError;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Problem;
 use crate::error::Error;
+use crate::time::MotionError;
 
 /// Step of second differences, in units of the orbit's size.
 const STEP: f64 = 1e-3;
@@ -43,14 +45,14 @@ struct Directions {
 /// The first orbit of the other branch, on one side of the event, and its direction away from it.
 ///
 /// # Errors
-/// [`Error::NoBranch`] if no other branch was found.
+/// [`OrbitError::NoBranch`] if no other branch was found.
 pub(super) fn depart(
     setting: &Setting,
     event: &CycleEvent,
     side: f64,
     range: f64,
 ) -> Result<Begun, Error> {
-    let nothing = || Error::NoBranch {
+    let nothing = || OrbitError::NoBranch {
         kind: event.kind,
         value: event.cycle.value,
     };
@@ -72,7 +74,7 @@ pub(super) fn depart(
             return Ok(Begun { first, point });
         }
     }
-    Err(nothing())
+    Err(nothing().into())
 }
 
 /// The equations of the event's own orbit, and the orbit as a solution of them.
@@ -88,7 +90,7 @@ fn same(setting: &Setting, event: &CycleEvent) -> Result<First, Error> {
     // Half of an orbit with odd symmetry has no middle of its own.
     if !cycle.symmetric {
         let value = cycle.value;
-        let motion = |reason| Error::Motion { value, reason };
+        let motion = |reason| MotionError { value, reason };
         first.settle(setting).map_err(motion)?;
     }
     Ok(first)

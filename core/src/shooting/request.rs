@@ -12,6 +12,7 @@ use crate::branches::point::Point;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::event::{EventKind, Side};
+use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::system::System;
 
@@ -177,7 +178,7 @@ impl Shooting {
     /// The one orbit at a value of what is varied.
     ///
     /// # Errors
-    /// If a parameter or an option is not usable, or no orbit is found; [`Error::Beyond`] if the branch that comes near turns back
+    /// If a parameter or an option is not usable, or no orbit is found; [`OrbitError::Beyond`](crate::OrbitError::Beyond) if the branch that comes near turns back
     /// before the value.
     pub fn orbit(&self, value: f64) -> Result<Cycle, Error> {
         let setting = self.setting(value, value)?;
@@ -306,7 +307,7 @@ impl Shooting {
         if setting.varied != branch.varied {
             let name = setting.varied;
             let must = "must be what the branch varies";
-            return Err(Error::Varied { name, must });
+            return Err(RequestError::Varied { name, must }.into());
         }
         at::at(&setting, branch, value)
     }
@@ -362,7 +363,7 @@ impl Shooting {
         if variable == setting.variable {
             let name = second.to_owned();
             let must = "must be another one than what the branch varies";
-            return Err(Error::Varied { name, must });
+            return Err(RequestError::Varied { name, must }.into());
         }
         let plane = trace::Plane {
             system: self.system.as_ref(),

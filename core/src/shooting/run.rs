@@ -12,6 +12,7 @@ use super::extremes::{self, Extremes};
 use super::recurrence::{Recurrence, step_on_other_branch};
 use super::setting::Setting;
 use super::tested::{Change, Tests};
+use crate::branches::error::OrbitError;
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
@@ -21,6 +22,7 @@ use crate::error::Error;
 use crate::event::{EventKind, Turn};
 use crate::numeric::spectrum::distance;
 use crate::orbit::stability::Stability;
+use crate::time::MotionError;
 use crate::time::{FlowError, Stretch, Work};
 
 /// Test functions are noise below so many times of what must vanish.
@@ -336,8 +338,8 @@ pub(super) fn observe(
 /// Why there is no orbit.
 pub(super) fn no_orbit(value: f64, reason: NewtonError, failure: Option<FlowError>) -> Error {
     match failure {
-        Some(reason) => Error::Motion { value, reason },
-        None => Error::NoStart { value, reason },
+        Some(reason) => MotionError { value, reason }.into(),
+        None => OrbitError::NoStart { value, reason }.into(),
     }
 }
 

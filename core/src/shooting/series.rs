@@ -14,6 +14,7 @@ use crate::numeric::fourier::sampled::SampledTransform;
 use crate::numeric::fourier::series;
 use crate::orbit::observe::Observer;
 use crate::system::System;
+use crate::time::MotionError;
 use crate::time::history;
 use crate::time::history::Span;
 use crate::time::stroboscope::Stroboscope;
@@ -88,7 +89,7 @@ fn sampled(setting: &Setting, cycle: &Cycle, each: usize) -> Result<Vec<f64>, Er
     let coordinates = cycle.extremes.len();
     let count = each * cycle.period;
     let mut flow = setting.flow(setting.source.tolerance)?;
-    let motion = |reason| Error::Motion {
+    let motion = |reason| MotionError {
         value: cycle.value,
         reason,
     };

@@ -7,9 +7,12 @@ use super::recurrence::Recurrence;
 use super::run::no_orbit;
 use super::setting::Setting;
 use super::{beyond, solve};
+use crate::branches::error::Attempts;
+use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
 use crate::continuation::newton::Newton;
-use crate::error::{Attempts, Error};
+use crate::error::Error;
+use crate::time::MotionError;
 use crate::time::{FlowError, Stretch};
 
 /// What is known of an orbit beforehand.
@@ -46,7 +49,7 @@ pub(super) fn first(
     let coordinates = setting.flow(setting.source.tolerance)?.coordinates();
     let frame = Frame::plain(setting.variable, coordinates, omega);
     let mut equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
-    let motion = |reason| Error::Motion { value, reason };
+    let motion = |reason| MotionError { value, reason };
     let states = states(setting, &mut equations, guess, value).map_err(motion)?;
     let mut u = equations.unknowns_of(&states, value);
     let mut newton = Newton::new(&equations);
@@ -72,7 +75,7 @@ pub(super) fn first(
     let recurrence = Recurrence::of(&mut first.equations, &first.u, same, setting.odd);
     let recurrence = recurrence.map_err(motion)?;
     if recurrence.period < setting.period {
-        return Err(Error::NoSuchPeriod {
+        return Err(OrbitError::NoSuchPeriod {
             period: setting.period,
             value,
             attempts: Attempts {
@@ -81,7 +84,8 @@ pub(super) fn first(
                 shorter: 1,
                 evaluations: 0,
             },
-        });
+        }
+        .into());
     }
     if recurrence.odd {
         first.halve(setting)?;
@@ -173,7 +177,7 @@ impl First {
     /// Goes over to the equations of half a period.
     fn halve(&mut self, setting: &Setting) -> Result<(), Error> {
         let value = self.u[self.u.len() - 1];
-        let motion = |reason| Error::Motion { value, reason };
+        let motion = |reason| MotionError { value, reason };
         let mut state = self.equations.states_of(&self.u);
         state.truncate(self.equations.order());
         self.equations.frame.reference.fill(0.0);

@@ -24,11 +24,13 @@ use super::equations::Equations;
 use super::recurrence::Recurrence;
 use super::setting::Setting;
 use super::start::{self, First};
+use crate::branches::error::OrbitError;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Scale;
 use crate::error::Error;
 use crate::event::EventKind;
+use crate::time::MotionError;
 
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.
@@ -47,14 +49,14 @@ pub(super) struct Begun {
 /// parameter.
 ///
 /// # Errors
-/// [`Error::NoBranch`] if no branch begins there, or its first orbit was not found.
+/// [`OrbitError::NoBranch`] if no branch begins there, or its first orbit was not found.
 pub(super) fn depart(
     setting: &Setting,
     event: &CycleEvent,
     side: f64,
     range: f64,
 ) -> Result<Begun, Error> {
-    let nothing = Error::NoBranch {
+    let nothing = OrbitError::NoBranch {
         kind: event.kind,
         value: event.cycle.value,
     };
@@ -65,11 +67,11 @@ pub(super) fn depart(
         event.kind,
         EventKind::PeriodDoubling | EventKind::SymmetryBreaking
     ) {
-        return Err(nothing);
+        return Err(nothing.into());
     }
     let (mut equations, u) = twice(setting, &event.cycle)?;
     let Some(direction) = direction(&mut equations, &u, event.cycle.symmetric) else {
-        return Err(nothing);
+        return Err(nothing.into());
     };
     let mut first = First {
         equations,
@@ -77,7 +79,7 @@ pub(super) fn depart(
         iterations: 0,
         size: 1.0,
     };
-    let motion = |reason| Error::Motion {
+    let motion = |reason| MotionError {
         value: event.cycle.value,
         reason,
     };
@@ -95,7 +97,7 @@ pub(super) fn depart(
             }
         }
     }
-    Err(nothing)
+    Err(nothing.into())
 }
 
 /// An orbit that is known, with the direction of its branch: to larger values of the parameter for a positive side.

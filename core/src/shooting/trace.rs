@@ -14,6 +14,7 @@ use super::start;
 use super::touch::Touch;
 use super::track::{Condition, Curve};
 use super::watch::Watch;
+use crate::branches::error::OrbitError;
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, follow,
 };
@@ -21,6 +22,7 @@ use crate::continuation::newton::Newton;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::event::EventKind;
+use crate::model::request::RequestError;
 use crate::numeric::decimal::Decimal;
 use crate::system::{System, Variable};
 use crate::time::FlowError;
@@ -180,7 +182,7 @@ pub(super) fn track(
     for ((value, range), name) in at.into_iter().zip(plane.ranges).zip(["from", "within"]) {
         if value < range[0].min(range[1]) || value > range[0].max(range[1]) {
             let must = "is the value at the event, and must be inside the range of the curve";
-            return Err(Error::Option { name, value, must });
+            return Err(RequestError::Option { name, value, must }.into());
         }
     }
     let mut back = half(setting, event, plane, -1.0, visit)?;
@@ -333,7 +335,7 @@ fn curve<'a>(
 ) -> Result<(Curve<'a>, Vec<f64>), Error> {
     let cycle = &event.cycle;
     let (mut equations, mut u) = start::known(setting, cycle)?;
-    let nothing = Error::NoBranch {
+    let nothing = OrbitError::NoBranch {
         kind: event.kind,
         value: cycle.value,
     };
@@ -344,7 +346,7 @@ fn curve<'a>(
             let touch = Touch::of(plane.system, setting, &mut equations, &u).ok_or(nothing)?;
             Condition::Touch(Box::new(touch), setting.omega)
         }
-        _ => return Err(nothing),
+        _ => return Err(nothing.into()),
     };
     u.push(second_of(event, plane.second));
     let size = cycle.size();

@@ -27,6 +27,7 @@ use super::gap::{Gap, value};
 use super::integrated::rule::Rule;
 use crate::error::Error;
 use crate::law::{Derivatives, LawFacts, On, Quantity, Variation};
+use crate::model::error::ModelError;
 use crate::model::layout::{ContactLayout, Layout, Term};
 use crate::model::validate;
 use crate::numeric::fourier::grading;
@@ -113,7 +114,7 @@ impl Divergence {
         }
         let determinant = mass.determinant();
         let inverse = mass.try_inverse();
-        let inverse = inverse.ok_or(Error::SingularMass { determinant })?;
+        let inverse = inverse.ok_or(ModelError::SingularMass { determinant })?;
         let damping = layout.damping.iter();
         let trace: f64 = damping
             .map(|c| inverse[(c.column, c.row)] * coefficients[c.coefficient])

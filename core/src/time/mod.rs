@@ -17,7 +17,7 @@ mod integrated;
 #[cfg(test)]
 mod tests;
 
-pub use error::FlowError;
+pub use error::{FlowError, MotionError};
 pub use integrated::Integrated;
 
 use crate::error::Error;

@@ -2,7 +2,7 @@
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::shooting::{Cycle, Side};
-use hertzian::{Error, EventKind, Shooting, System};
+use hertzian::{EventKind, OrbitError, Shooting, System};
 
 hertzian::oscillator! {
     /// `y = 0`, or `y^2 = omega - at`.
@@ -123,5 +123,8 @@ fn at_a_fold_nothing_begins() {
     let branch = shooting.run().unwrap();
     let fold = branch.folds().next().unwrap();
     let error = shooting.switch(fold, Side::One).unwrap_err();
-    assert!(matches!(error, Error::NoBranch { .. }), "{error}");
+    assert!(
+        matches!(error.downcast_ref(), Some(OrbitError::NoBranch { .. })),
+        "{error}"
+    );
 }

@@ -2,7 +2,7 @@
 //! decides.
 
 use hertzian::shooting::{SpecialKind, Track};
-use hertzian::{Error, EventKind, Shooting, System};
+use hertzian::{Error, EventKind, RequestError, Shooting, System};
 use hertzian_tests::{OneSidedLinear, nearest};
 
 hertzian::oscillator! {
@@ -122,7 +122,7 @@ fn a_curve_begins_inside_its_ranges() {
     let branch = shooting.run().unwrap();
     let fold = branch.folds().next().unwrap();
     let outside = shooting.track(fold, "drive", [0.2, 0.5]).unwrap_err();
-    let is_named = |error: &Error, expected: &str| matches!(error, Error::Option { name, .. } if *name == expected);
+    let is_named = |error: &Error, expected: &str| matches!(error.downcast_ref(), Some(RequestError::Option { name, .. }) if *name == expected);
     assert!(is_named(&outside, "within"), "{outside}");
     let narrow = Shooting::of(&*model).from(1.2).to(1.6);
     let outside = narrow.track(fold, "drive", [0.03, 0.5]).unwrap_err();

@@ -5,9 +5,10 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
+use hertzian::error::chain;
 use hertzian::generic::Declaration;
-use hertzian::time::FlowError;
-use hertzian::{Error, FrequencyResponse, Shooting};
+use hertzian::time::{FlowError, MotionError};
+use hertzian::{Error, FrequencyResponse, ModelError, OrbitError, Shooting};
 use hertzian_tests::random::Random;
 
 use crate::draw;
@@ -254,34 +255,38 @@ impl Case {
     }
 
     fn no_branch(&mut self, name: &str, value: f64, error: &Error) {
-        match error {
-            Error::NoStart { .. }
-            | Error::SearchLimit { .. }
-            | Error::NoSuchPeriod { .. }
-            | Error::CarriedAway { .. } => {}
-            Error::Motion { reason, .. } | Error::Flow(reason)
-                if matches!(
-                    reason,
-                    FlowError::Rests { .. } | FlowError::StepTooShort { .. }
-                ) =>
-            {
-                self.find(Kind::Refused, format!("{name} from {value:?}: {error}"));
-                return;
-            }
-            Error::Motion { .. } | Error::Flow(_) => {
+        let refused = || format!("{name} from {value:?}: {}", chain(error));
+        let motion = error
+            .downcast_ref()
+            .map(|motion: &MotionError| &motion.reason);
+        if let Some(reason) = motion.or_else(|| error.downcast_ref()) {
+            if let FlowError::Rests { .. } | FlowError::StepTooShort { .. } = reason {
+                self.find(Kind::Refused, refused());
+            } else {
                 self.report
                     .count("branches that did not begin: a motion was lost");
-                return;
             }
-            Error::Free { .. } if self.model.is_free() => {
-                self.report
-                    .count("branches that did not begin: nothing holds the system");
-                return;
-            }
-            other => {
-                self.find(Kind::Refused, format!("{name} from {value:?}: {other}"));
-                return;
-            }
+            return;
+        }
+        if let Some(ModelError::Free { .. }) = error.downcast_ref()
+            && self.model.is_free()
+        {
+            self.report
+                .count("branches that did not begin: nothing holds the system");
+            return;
+        }
+        let carried = matches!(error.downcast_ref(), Some(ModelError::CarriedAway { .. }));
+        let none = matches!(
+            error.downcast_ref(),
+            Some(
+                OrbitError::NoStart { .. }
+                    | OrbitError::SearchLimit { .. }
+                    | OrbitError::NoSuchPeriod { .. }
+            )
+        );
+        if !carried && !none {
+            self.find(Kind::Refused, refused());
+            return;
         }
         self.report.count("branches without a start");
         let model = Rc::clone(&self.model);

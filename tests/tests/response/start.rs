@@ -1,7 +1,7 @@
 //! First orbits, and what is said where there is none.
 
-use hertzian::error::NewtonError;
-use hertzian::{Error, FrequencyResponse, System, Verdict};
+use hertzian::error::ErrorKind;
+use hertzian::{FrequencyResponse, NewtonError, OrbitError, System, Verdict};
 use hertzian_tests::TwoMasses;
 
 use crate::{CONTACT, Continuous, Duffing, Linear, OneSided, Pair};
@@ -90,10 +90,14 @@ const PERIOD_2_PEAK_TO_PEAK: f64 = 16.346_705_117_805_29;
 fn a_start_that_is_not_found_says_why() {
     let reason = |system: &dyn System, from: f64| {
         let request = FrequencyResponse::of(system).from(from).to(1.5);
-        match request.run() {
-            Err(Error::NoStart { value, reason }) if value == from => reason,
-            Err(error) => panic!("{error}"),
+        let error = match request.run() {
+            Err(error) => error,
             Ok(branch) => panic!("{} points", branch.points.len()),
+        };
+        assert_eq!(error.kind(), ErrorKind::NoOrbit);
+        match error.downcast_ref() {
+            Some(&OrbitError::NoStart { value, reason }) if value == from => reason,
+            _ => panic!("{error}"),
         }
     };
     let resonant = Linear {

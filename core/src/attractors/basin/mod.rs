@@ -25,6 +25,7 @@ pub use attractor::{Attractor, Fate};
 pub use grid::{Axis, Grid};
 
 use super::log::{Log, LogError};
+use crate::error::{Error, ErrorKind};
 use crate::time::{Flow, FlowError};
 
 /// Which basins to compute.
@@ -90,10 +91,11 @@ pub struct Progress {
 }
 
 /// Why there are no basins.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BasinError {
     /// The request is at fault.
+    #[error("{name} {must}")]
     Request {
         /// What.
         name: &'static str,
@@ -101,15 +103,19 @@ pub enum BasinError {
         must: &'static str,
     },
     /// The log cannot be used.
-    Log(LogError),
+    #[error(transparent)]
+    Log(#[from] LogError),
     /// The threads could not be started.
+    #[error("the system does not give {count} threads")]
     Threads {
         /// How many were asked for.
         count: usize,
     },
     /// No motion of the grid can be computed.
+    #[error("no motion of the grid can be computed")]
     Motion {
         /// Why the first one cannot.
+        #[source]
         reason: FlowError,
     },
 }
@@ -211,31 +217,19 @@ impl Basins {
     }
 }
 
-impl From<LogError> for BasinError {
-    fn from(error: LogError) -> Self {
-        Self::Log(error)
-    }
-}
-
-impl std::fmt::Display for BasinError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl BasinError {
+    pub(crate) fn kind(&self) -> ErrorKind {
         match self {
-            Self::Request { name, must } => write!(f, "{name} {must}"),
-            Self::Log(error) => error.fmt(f),
-            Self::Threads { count } => write!(f, "the system does not give {count} threads"),
-            Self::Motion { reason } => {
-                write!(f, "no motion of the grid can be computed: {reason}")
-            }
+            Self::Request { .. } => ErrorKind::Request,
+            Self::Log(_) => ErrorKind::File,
+            Self::Threads { .. } => ErrorKind::System,
+            Self::Motion { .. } => ErrorKind::Motion,
         }
     }
 }
 
-impl std::error::Error for BasinError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Log(error) => Some(error),
-            Self::Motion { reason } => Some(reason),
-            Self::Request { .. } | Self::Threads { .. } => None,
-        }
+impl From<BasinError> for Error {
+    fn from(error: BasinError) -> Self {
+        Self::new(error.kind(), error)
     }
 }

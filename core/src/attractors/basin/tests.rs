@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
+use crate::error::chain;
 use crate::system::Variable;
 use crate::time::affine::Affine;
 use crate::time::stroboscope::Stroboscope;
@@ -341,6 +342,6 @@ fn a_basin_without_a_motion_is_an_error() {
     let found = Basin::new(grid).compute(flows, None, &|_| true);
     let reason = FlowError::Rests { phase: 0.0 };
     assert_eq!(found, Err(BasinError::Motion { reason }));
-    let said = BasinError::Motion { reason }.to_string();
+    let said = chain(&BasinError::Motion { reason }).to_string();
     assert!(said.starts_with("no motion of the grid can be computed: the motion rests"));
 }

@@ -3,6 +3,7 @@
 //! Work is counted, not timed, so that a search ends in the same way on every machine: in multiplications, as the
 //! evaluations of the balance and the factorisations estimate them.
 
+use crate::branches::error::OrbitError;
 use crate::continuation::newton::{Newton, NewtonError};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
@@ -60,14 +61,15 @@ impl Effort {
     /// Why there is no orbit, when the last attempt said this.
     pub(super) fn error(&self, value: f64, reason: NewtonError) -> Error {
         if self.is_spent() {
-            Error::SearchLimit {
+            OrbitError::SearchLimit {
                 value,
                 evaluations: self.evaluations(),
                 multiplications: self.limit,
                 reason,
             }
+            .into()
         } else {
-            Error::NoStart { value, reason }
+            OrbitError::NoStart { value, reason }.into()
         }
     }
 }

@@ -10,8 +10,8 @@ use super::effort::Effort;
 use super::fixed::{Fixed, oscillation, spread};
 use crate::balance::Resolution;
 use crate::balance::subharmonics::has_shortest_period;
+use crate::branches::error::Attempts;
 use crate::continuation::newton::NewtonOptions;
-use crate::error::Attempts;
 use crate::numeric::fourier::series;
 
 /// Sizes of a disturbance, three a decade from a tenth of the orbit's own oscillation.

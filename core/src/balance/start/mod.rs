@@ -24,6 +24,7 @@ mod motion;
 mod rest;
 
 use crate::balance::Resolution;
+use crate::branches::error::OrbitError;
 use crate::continuation::newton::{NewtonError, NewtonOptions};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
@@ -112,10 +113,14 @@ pub(crate) fn start(
     let mut effort = Effort::of(effort::LIMIT);
     let longer = longer::orbit(request, &found, &mut effort);
     *statistics += effort.statistics;
-    longer.map_err(|attempts| Error::NoSuchPeriod {
-        period,
-        value: request.value,
-        attempts,
+    longer.map_err(|attempts| {
+        let value = request.value;
+        let none = OrbitError::NoSuchPeriod {
+            period,
+            value,
+            attempts,
+        };
+        none.into()
     })
 }
 
@@ -213,6 +218,7 @@ mod tests {
     use super::*;
     use crate::balance::Parity;
     use crate::balance::aft::Aft;
+    use crate::error::ErrorKind;
     use crate::testing::by_hand::PowerForm;
 
     fn request(system: &PowerForm, period: usize) -> StartRequest<'_> {
@@ -246,11 +252,13 @@ mod tests {
         let system = PowerForm::new(false, 0.6, 0.01, 0.0, 0.1);
         let mut effort = Effort::of(1);
         let reason = orbit_of_period_one(request(&system, 1), &mut effort).unwrap_err();
-        let Error::SearchLimit {
+        let error = effort.error(0.8, reason);
+        assert_eq!(error.kind(), ErrorKind::Limit);
+        let Some(&OrbitError::SearchLimit {
             evaluations,
             multiplications: 1,
             ..
-        } = effort.error(0.8, reason)
+        }) = error.downcast_ref()
         else {
             panic!("{reason}");
         };

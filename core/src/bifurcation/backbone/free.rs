@@ -21,16 +21,21 @@ use std::time::Instant;
 
 use super::Backbone;
 use super::oscillation::Equations;
+use crate::bifurcation::error::BifurcationError;
+use crate::branches::error::OrbitError;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::step::{self, StepControl};
 use crate::error::Error;
+use crate::model::error::ModelError;
+use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::shooting::End;
 use crate::system::System;
 use crate::time;
+use crate::time::MotionError;
 use crate::time::Options;
 
 /// A motion that has not come back to this part of its size is not free.
@@ -206,12 +211,12 @@ impl FreeOscillation {
             .last()
             .map_or(options.from, |last: &FreePoint| last.ends[0][0]);
         let end = match (failure, outcome) {
-            (Some(Ok(apart)), _) => return Err(Error::NotFree { apart }),
+            (Some(Ok(apart)), _) => return Err(BifurcationError::NotFree { apart }.into()),
             (Some(Err(reason)), _) if points.is_empty() => {
-                return Err(Error::Motion { value, reason });
+                return Err(MotionError { value, reason }.into());
             }
             (Some(Err(reason)), _) => End::Motion { value, reason },
-            (None, Err(reason)) => return Err(Error::NoStart { value, reason }),
+            (None, Err(reason)) => return Err(OrbitError::NoStart { value, reason }.into()),
             (None, Ok(Outcome::Stopped(stop))) => End::Stopped(stop),
             // A walk along free oscillations is never resized.
             (None, Ok(Outcome::Halted(_))) => End::Stopped(Stop::Interrupted),
@@ -227,13 +232,13 @@ impl FreeOscillation {
 
     /// Range and accuracy, checked.
     fn options(&self) -> Result<FollowOptions, Error> {
-        let from = self.from.ok_or(Error::Missing { name: "from" })?;
-        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
+        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
         for (name, value) in [("from", from), ("to", to)] {
             validate::option(name, value, -1e300..=1e300, "must be finite")?;
         }
         if from == to {
-            return Err(Error::EmptyRange { value: from });
+            return Err(RequestError::EmptyRange { value: from }.into());
         }
         Ok(FollowOptions {
             from,
@@ -252,7 +257,7 @@ impl FreeOscillation {
     fn equations(&self) -> Result<Equations, Error> {
         let facts = self.system.facts();
         if facts.coordinates.is_empty() {
-            return Err(Error::NoCoordinates);
+            return Err(ModelError::NoCoordinates.into());
         }
         let mut parameters = vec![0.0; facts.parameters.len()];
         self.system.values(&mut parameters);
@@ -274,10 +279,11 @@ impl FreeOscillation {
             return Ok((1..n).map(|_| 0.0).chain([PI / time]).collect());
         };
         if positions.len() != n {
-            return Err(Error::State {
+            return Err(RequestError::State {
                 entries: positions.len(),
                 expected: n,
-            });
+            }
+            .into());
         }
         let omega = validate::omega(*omega)?;
         Ok(positions[1..].iter().copied().chain([omega]).collect())

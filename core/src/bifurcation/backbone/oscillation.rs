@@ -3,10 +3,12 @@
 use std::f64::consts::PI;
 
 use super::free::FreePoint;
+use crate::bifurcation::error::BifurcationError;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
 use crate::error::Error;
 use crate::system::Variable;
+use crate::time::MotionError;
 use crate::time::{Flow, FlowError, Tangent};
 
 /// Times in which the first moment of rest is looked for, and how many.
@@ -66,11 +68,11 @@ impl Equations {
 
     /// The time to the first moment of rest, at any scale of time: steps grow until there is one, and shrink until it stays.
     pub(super) fn half_period(&mut self, from: f64) -> Result<f64, Error> {
-        let motion = |reason| Error::Motion {
+        let motion = |reason| MotionError {
             value: from,
             reason,
         };
-        let never = Error::NeverAtRest { position: from };
+        let never = BifurcationError::NeverAtRest { position: from };
         let mut step = STEP;
         let mut time = None;
         for _ in 0..SCALES {
@@ -79,11 +81,11 @@ impl Equations {
                     time = Some(found);
                     break;
                 }
-                Ok(Rest::Always) => return Err(never),
+                Ok(Rest::Always) => return Err(never.into()),
                 Ok(Rest::Later) => step *= COARSER,
                 // So many oscillations go into one step.
                 Err(FlowError::TooManySwitches { .. }) => step /= COARSER,
-                Err(reason) => return Err(motion(reason)),
+                Err(reason) => return Err(motion(reason).into()),
             }
         }
         let mut time = time.ok_or(never.clone())?;
@@ -99,7 +101,7 @@ impl Equations {
                 return Ok(time);
             }
         }
-        Err(never)
+        Err(never.into())
     }
 
     /// The same, looked for in steps of this time. Each is the same part of a period of the flow, whose frequency does not matter.

@@ -3,10 +3,13 @@
 use crate::numeric::linear::Singular;
 
 /// Why an iteration ended without a solution.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NewtonError {
     /// The updates did not become small.
+    #[error(
+        "Newton's method did not converge in {iterations} iterations: last update {update:.1e}, residual {residual:.1e}"
+    )]
     NotConverged {
         /// Number of updates.
         iterations: usize,
@@ -16,6 +19,11 @@ pub enum NewtonError {
         residual: f64,
     },
     /// The bordered matrix is singular.
+    #[error(
+        "the Jacobian is singular after {iterations} iterations: pivot {:.1e} in column {}",
+        .at.pivot,
+        .at.column
+    )]
     Singular {
         /// After this many updates.
         iterations: usize,
@@ -23,6 +31,7 @@ pub enum NewtonError {
         at: Singular,
     },
     /// The residual is not a number.
+    #[error("the residual is not finite after {iterations} iterations")]
     NotFinite {
         /// After this many updates.
         iterations: usize,
@@ -36,34 +45,6 @@ crate::error::sentence_as_debug! {
     NotFinite { iterations }
     ;
 }
-
-impl std::fmt::Display for NewtonError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::NotConverged {
-                iterations,
-                update,
-                residual,
-            } => write!(
-                f,
-                "Newton's method did not converge in {iterations} iterations: last update {update:.1e}, residual {residual:.1e}"
-            ),
-            Self::Singular { iterations, at } => write!(
-                f,
-                "the Jacobian is singular after {iterations} iterations: pivot {:.1e} in column {}",
-                at.pivot, at.column
-            ),
-            Self::NotFinite { iterations } => {
-                write!(
-                    f,
-                    "the residual is not finite after {iterations} iterations"
-                )
-            }
-        }
-    }
-}
-
-impl std::error::Error for NewtonError {}
 
 impl NewtonError {
     pub(super) fn after(self, iterations: usize) -> Self {

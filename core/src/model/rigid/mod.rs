@@ -33,6 +33,7 @@ mod null_space;
 use nalgebra::DMatrix;
 
 use crate::error::Error;
+use crate::model::error::ModelError;
 use crate::model::layout::{Entry, Layout};
 use crate::system::{System, Variable};
 use null_space::Rows;
@@ -220,7 +221,7 @@ impl Rigid {
 /// Refuses a system that its mean load carries away somewhere in a range of the variable: nothing holds it there.
 ///
 /// # Errors
-/// [`Error::CarriedAway`]
+/// [`ModelError::CarriedAway`]
 pub(crate) fn held(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> {
     if Directions::of(place.layout, &[place.coefficients(from)]).is_none() {
         return Ok(());
@@ -233,14 +234,15 @@ pub(crate) fn held(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> 
     for (value, coefficients) in values.into_iter().zip(&coefficients) {
         if let Some((index, load)) = directions.unbalanced(place.layout, coefficients) {
             let direction = directions.left.column(index);
-            return Err(Error::CarriedAway {
+            return Err(ModelError::CarriedAway {
                 value,
                 load,
                 direction: null_space::described(
                     &place.system.facts().coordinates,
                     direction.as_slice(),
                 ),
-            });
+            }
+            .into());
         }
     }
     Ok(())
@@ -249,16 +251,17 @@ pub(crate) fn held(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> 
 /// Refuses a system with rigid motions, for methods whose equations are singular along them.
 ///
 /// # Errors
-/// [`Error::CarriedAway`] or [`Error::Free`]
+/// [`ModelError::CarriedAway`] or [`ModelError::Free`]
 pub(crate) fn none(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> {
     held(place, [from, to])?;
     let coefficients = LOOKED_AT.map(|part| place.coefficients(from + part * (to - from)));
     Directions::of(place.layout, &coefficients).map_or(Ok(()), |directions| {
         let names = &place.system.facts().coordinates;
         let direction = directions.right.column(0);
-        Err(Error::Free {
+        Err(ModelError::Free {
             direction: null_space::described(names, direction.as_slice()),
-        })
+        }
+        .into())
     })
 }
 

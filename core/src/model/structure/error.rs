@@ -1,13 +1,16 @@
 //! What can be wrong with a structure.
 
+use crate::error::{Error, ErrorKind};
 use crate::numeric::decimal::Decimal;
-use std::fmt;
 
 /// What is wrong with a structure.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StructureError {
     /// A matrix is not as many rows and columns as the structure has coordinates.
+    #[error(
+        "the {matrix} matrix is {rows} by {columns}; the mass matrix has {coordinates} rows, and all must be square, of one size, and not empty"
+    )]
     MatrixSize {
         /// Which one.
         matrix: &'static str,
@@ -19,6 +22,9 @@ pub enum StructureError {
         coordinates: usize,
     },
     /// A direction of a contact has not as many entries as there are coordinates.
+    #[error(
+        "a direction of contact {contact} has {entries} entries; there are {coordinates} coordinates"
+    )]
     DirectionSize {
         /// Which contact.
         contact: usize,
@@ -28,6 +34,7 @@ pub enum StructureError {
         coordinates: usize,
     },
     /// A number is infinite or not a number.
+    #[error("{} in {place}", Decimal::plain(*.value))]
     NotFinite {
         /// Where it stands.
         place: String,
@@ -35,11 +42,13 @@ pub enum StructureError {
         value: f64,
     },
     /// The mass matrix has no inverse.
+    #[error("the mass matrix has no inverse: its smallest pivot is {pivot:e} of the largest")]
     SingularMass {
         /// Smallest pivot, as a share of the largest.
         pivot: f64,
     },
     /// A load acts on a coordinate that is not there.
+    #[error("a load on coordinate {coordinate}, counted from zero; there are {coordinates}")]
     NoCoordinate {
         /// The coordinate asked for, from zero.
         coordinate: usize,
@@ -47,6 +56,7 @@ pub enum StructureError {
         coordinates: usize,
     },
     /// A law has another number of arguments.
+    #[error("law `{law}` has {expected} arguments, and {given} were given")]
     Arguments {
         /// Its name.
         law: String,
@@ -56,6 +66,10 @@ pub enum StructureError {
         given: usize,
     },
     /// An argument of a law is outside the range that the law declares for it.
+    #[error(
+        "argument `{argument}` of law `{law}` is {}, outside its range {range}",
+        Decimal::plain(*.value)
+    )]
     Range {
         /// Name of the law.
         law: String,
@@ -67,11 +81,15 @@ pub enum StructureError {
         range: String,
     },
     /// A parameter has no name, or that of the excitation frequency, `omega`.
+    #[error(
+        "a parameter cannot be called `{parameter}`: it needs a name, and `omega` is the excitation frequency"
+    )]
     Name {
         /// The name.
         parameter: String,
     },
     /// One name was used with two values.
+    #[error("parameter `{parameter}` is {first} in one place and {second} in another")]
     TwoValues {
         /// The name.
         parameter: String,
@@ -96,72 +114,8 @@ crate::error::sentence_as_debug! {
     ;
 }
 
-impl fmt::Display for StructureError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::MatrixSize {
-                matrix,
-                rows,
-                columns,
-                coordinates,
-            } => write!(
-                formatter,
-                "the {matrix} matrix is {rows} by {columns}; the mass matrix has {coordinates} rows, and all must be square, of one size, and not empty"
-            ),
-            Self::DirectionSize {
-                contact,
-                entries,
-                coordinates,
-            } => write!(
-                formatter,
-                "a direction of contact {contact} has {entries} entries; there are {coordinates} coordinates"
-            ),
-            Self::NotFinite { place, value } => {
-                write!(formatter, "{} in {place}", Decimal::plain(*value))
-            }
-            Self::SingularMass { pivot } => write!(
-                formatter,
-                "the mass matrix has no inverse: its smallest pivot is {pivot:e} of the largest"
-            ),
-            Self::NoCoordinate {
-                coordinate,
-                coordinates,
-            } => write!(
-                formatter,
-                "a load on coordinate {coordinate}, counted from zero; there are {coordinates}"
-            ),
-            Self::Arguments {
-                law,
-                expected,
-                given,
-            } => write!(
-                formatter,
-                "law `{law}` has {expected} arguments, and {given} were given"
-            ),
-            Self::Range {
-                law,
-                argument,
-                value,
-                range,
-            } => write!(
-                formatter,
-                "argument `{argument}` of law `{law}` is {}, outside its range {range}",
-                Decimal::plain(*value)
-            ),
-            Self::Name { parameter } => write!(
-                formatter,
-                "a parameter cannot be called `{parameter}`: it needs a name, and `omega` is the excitation frequency"
-            ),
-            Self::TwoValues {
-                parameter,
-                first,
-                second,
-            } => write!(
-                formatter,
-                "parameter `{parameter}` is {first} in one place and {second} in another"
-            ),
-        }
+impl From<StructureError> for Error {
+    fn from(error: StructureError) -> Self {
+        Self::new(ErrorKind::Model, error)
     }
 }
-
-impl std::error::Error for StructureError {}

@@ -8,7 +8,9 @@ use std::ops::RangeInclusive;
 use nalgebra::DMatrix;
 
 use crate::error::Error;
+use crate::model::error::ModelError;
 use crate::model::layout::Layout;
+use crate::model::request::RequestError;
 use crate::numeric::decimal::Decimal;
 use crate::system::{Bound, ParameterFacts, System, SystemFacts, Variable};
 
@@ -29,12 +31,13 @@ pub(crate) fn variable(facts: &SystemFacts, name: Option<&str>) -> Result<Variab
 /// There is no parameter of this name.
 pub(crate) fn unknown(facts: &SystemFacts, name: &str) -> Error {
     let parameters = facts.parameters.iter();
-    Error::UnknownParameter {
+    RequestError::UnknownParameter {
         name: name.to_owned(),
         known: parameters
             .map(|parameter| parameter.name.to_string())
             .collect(),
     }
+    .into()
 }
 
 /// Both ends of a range are usable and differ.
@@ -53,7 +56,7 @@ pub(crate) fn range(
         }
     }
     if from == to {
-        return Err(Error::EmptyRange { value: from });
+        return Err(RequestError::EmptyRange { value: from }.into());
     }
     Ok(())
 }
@@ -63,11 +66,12 @@ pub(crate) fn omega(value: f64) -> Result<f64, Error> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
-        Err(Error::Option {
+        Err(RequestError::Option {
             name: "omega",
             value,
             must: "must be positive and finite",
-        })
+        }
+        .into())
     }
 }
 
@@ -82,10 +86,11 @@ pub(crate) fn values(system: &dyn System, values: &[f64], frequency: f64) -> Res
 /// There is a value for every parameter, finite and within its declared range.
 pub(crate) fn parameters(facts: &SystemFacts, values: &[f64]) -> Result<(), Error> {
     if values.len() != facts.parameters.len() {
-        return Err(Error::Values {
+        return Err(RequestError::Values {
             values: values.len(),
             expected: facts.parameters.len(),
-        });
+        }
+        .into());
     }
     facts
         .parameters
@@ -98,11 +103,12 @@ fn parameter(facts: &ParameterFacts, value: f64) -> Result<(), Error> {
     if facts.admits(value) {
         return Ok(());
     }
-    Err(Error::Parameter {
+    Err(RequestError::Parameter {
         name: facts.name.to_string(),
         value,
         range: described(facts.minimum, facts.maximum),
-    })
+    }
+    .into())
 }
 
 /// A range as text.
@@ -139,7 +145,7 @@ pub(crate) fn option(
     if range.contains(&value) {
         Ok(())
     } else {
-        Err(Error::Option { name, value, must })
+        Err(RequestError::Option { name, value, must }.into())
     }
 }
 
@@ -172,10 +178,11 @@ pub(crate) fn levels(system: &dyn System, parameters: &[f64], omega: f64) -> Res
         let mut levels = vec![0.0; law.facts().levels.len()];
         law.levels(&arguments, &mut levels);
         if !in_order(&levels) {
-            return Err(Error::Levels {
+            return Err(ModelError::Levels {
                 law: law.facts().name.to_string(),
                 levels,
-            });
+            }
+            .into());
         }
     }
     Ok(())
@@ -191,7 +198,7 @@ pub(crate) fn mass(system: &dyn System, parameters: &[f64], omega: f64) -> Resul
         mass[(entry.row, entry.column)] += coefficients[entry.coefficient];
     }
     let determinant: f64 = mass.determinant();
-    regular(&mass).map_err(|_| Error::SingularMass { determinant })?;
+    regular(&mass).map_err(|_| ModelError::SingularMass { determinant })?;
     energy_is_positive(system.facts(), &mass)
 }
 
@@ -204,10 +211,11 @@ fn energy_is_positive(facts: &SystemFacts, mass: &DMatrix<f64>) -> Result<(), Er
             && own < 0.0
         {
             let coordinate = facts.coordinates[column].to_string();
-            return Err(Error::NegativeMass {
+            return Err(ModelError::NegativeMass {
                 coordinate,
                 mass: own,
-            });
+            }
+            .into());
         }
     }
     let largest = mass.amax();
@@ -215,7 +223,7 @@ fn energy_is_positive(facts: &SystemFacts, mass: &DMatrix<f64>) -> Result<(), Er
     if is_symmetric && mass.diagonal().min() > 0.0 {
         let eigenvalue = mass.symmetric_eigenvalues().min();
         if eigenvalue < 0.0 {
-            return Err(Error::IndefiniteMass { eigenvalue });
+            return Err(ModelError::IndefiniteMass { eigenvalue }.into());
         }
     }
     Ok(())

@@ -5,7 +5,8 @@ use crate::attractors::lyapunov::Lyapunov;
 use crate::attractors::sweep::Sweep;
 use crate::bifurcation::Bifurcations;
 use crate::bifurcation::backbone::{FreeOscillation, PhaseResonance};
-use crate::error::Error;
+use crate::bifurcation::error::BifurcationError;
+use crate::error::{Error, chain};
 use crate::response::FrequencyResponse;
 use crate::shooting::Shooting;
 use crate::system::Variable;
@@ -38,7 +39,7 @@ where
 {
     for (asked, sentence) in rows {
         let error = request(asked).expect_err(&format!("{asked:?}"));
-        let text = error.to_string();
+        let text = chain(&error).to_string();
         assert!(text.contains(sentence), "{asked:?}: {text}");
         assert!(text.lines().count() == 1 && text.len() < 200, "{text}");
     }
@@ -198,7 +199,7 @@ fn basins() {
         let value = 0.5;
         basins
             .map(drop)
-            .map_err(|reason| Error::Search { value, reason })
+            .map_err(|reason| BifurcationError::Search { value, reason }.into())
     };
     let basin = |escape, longest| Basin {
         longest,

@@ -12,6 +12,7 @@ use std::ops::ControlFlow;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
+use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit,
@@ -180,10 +181,11 @@ impl<'a> Run<'a> {
     /// No orbit where the walk begins: no branch at all, or the end of the one that there is.
     fn lost(&self, reason: NewtonError) -> Result<Stop, Error> {
         match self.points.last() {
-            None => Err(Error::NoStart {
+            None => Err(OrbitError::NoStart {
                 value: self.options.from,
                 reason,
-            }),
+            }
+            .into()),
             Some(point) => Ok(Stop::StepTooShort {
                 step: 0.0,
                 value: point.value,

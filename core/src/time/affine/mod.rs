@@ -70,7 +70,7 @@ impl Affine {
     /// The flow at given values.
     ///
     /// # Errors
-    /// [`Error::NotAffine`] if the system is not of this kind; if parameters or the frequency are outside their ranges, levels are
+    /// [`ModelError::NotAffine`](crate::ModelError::NotAffine) if the system is not of this kind; if parameters or the frequency are outside their ranges, levels are
     /// out of order, or the mass matrix is singular.
     pub fn new(system: &dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
         Model::new(system, parameters, omega).map(Self::of)

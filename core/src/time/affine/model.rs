@@ -10,6 +10,7 @@ use super::exponential::Room;
 use super::table::{Table, Watch};
 use super::terms::{Basis, Line, Terms};
 use crate::error::Error;
+use crate::model::error::ModelError;
 use crate::model::layout::Layout;
 use crate::model::validate;
 use crate::model::validate::in_order;
@@ -77,10 +78,10 @@ impl Model {
     /// Unless every piece is affine, and stiffness and directions are constant; if values are not usable.
     pub(super) fn new(system: &dyn System, parameters: &[f64], omega: f64) -> Result<Self, Error> {
         if system.facts().coordinates.is_empty() {
-            return Err(Error::NoCoordinates);
+            return Err(ModelError::NoCoordinates.into());
         }
         if !is_covered(system) {
-            return Err(Error::NotAffine);
+            return Err(ModelError::NotAffine.into());
         }
         validate::values(system, parameters, omega)?;
         Ok(Self::of(system, parameters, omega, false))

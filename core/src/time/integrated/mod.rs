@@ -25,8 +25,10 @@ use super::error::{admits, check_entries};
 use super::field::Field;
 use super::{Flow, FlowError, See, Tangent, Work};
 use crate::error::Error;
+use crate::model::error::ModelError;
 use crate::model::validate;
 use crate::system::{System, Variable};
+use crate::time::MotionError;
 use engine::Engine;
 
 /// The flow of a system by numerical integration.
@@ -80,15 +82,17 @@ impl Integrated {
             "must be between 1e-14 and 1e-2",
         )?;
         if system.facts().coordinates.is_empty() {
-            return Err(Error::NoCoordinates);
+            return Err(ModelError::NoCoordinates.into());
         }
         validate::values(system, values, omega)?;
         let field = Field::new(system, values, omega).map_err(|reason| match reason {
-            FlowError::SingularMass { determinant } => Error::SingularMass { determinant },
-            _ => Error::Motion {
+            FlowError::SingularMass { determinant } => {
+                ModelError::SingularMass { determinant }.into()
+            }
+            _ => Error::from(MotionError {
                 value: omega,
                 reason,
-            },
+            }),
         })?;
         let engine = match tolerance {
             t if t > 1e-6 => Rank::Low(Box::new(Engine::new(field, tolerance))),

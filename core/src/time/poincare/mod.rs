@@ -11,6 +11,7 @@ use super::stroboscope::Stroboscope;
 use super::{FlowError, Stretch};
 use crate::error::Error;
 use crate::model::layout::Layout;
+use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::system::System;
 use search::Search;
@@ -117,7 +118,7 @@ impl<'a> Section<'a> {
     ) -> Result<Self, Error> {
         validate::values(system, parameters, omega)?;
         let layout = Layout::of(system);
-        let contact = layout.contacts.get(contact).ok_or(Error::Option {
+        let contact = layout.contacts.get(contact).ok_or(RequestError::Option {
             name: "contact",
             value: contact as f64,
             must: "must be the position of a contact, counted from zero",

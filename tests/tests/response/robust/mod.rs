@@ -16,8 +16,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use draw::{Request, model};
-use hertzian::error::NewtonError;
-use hertzian::{Branch, Error, Point, Stop, System};
+use hertzian::error::chain;
+use hertzian::{Branch, Error, NewtonError, OrbitError, Point, Stop, System};
 use hertzian_tests::random::Random;
 
 /// Cases by default.
@@ -109,16 +109,16 @@ fn ended(stop: Stop) -> String {
 
 /// Why there is no branch.
 fn refused(error: &Error) -> String {
-    match error {
-        Error::NoStart { reason, .. } => format!("no start: {}", in_words(*reason)),
-        Error::SearchLimit { reason, .. } => {
+    match error.downcast_ref() {
+        Some(OrbitError::NoStart { reason, .. }) => format!("no start: {}", in_words(*reason)),
+        Some(OrbitError::SearchLimit { reason, .. }) => {
             format!("no start within the limit: {}", in_words(*reason))
         }
-        Error::NoSuchPeriod { attempts, .. } if attempts.made < attempts.planned => {
+        Some(OrbitError::NoSuchPeriod { attempts, .. }) if attempts.made < attempts.planned => {
             "no start of that period within the limit".to_owned()
         }
-        Error::NoSuchPeriod { .. } => "no start of that period".to_owned(),
-        other => format!("refused: {other}"),
+        Some(OrbitError::NoSuchPeriod { .. }) => "no start of that period".to_owned(),
+        _ => format!("refused: {}", chain(error)),
     }
 }
 

@@ -10,7 +10,7 @@
 )]
 
 use hertzian::shooting::{Cycle, CycleBranch, CycleEvent};
-use hertzian::{Complex, Error, EventKind, FrequencyResponse, Shooting, Verdict};
+use hertzian::{Complex, EventKind, FrequencyResponse, OrbitError, Shooting, Verdict};
 use hertzian_tests::OneSidedLinear;
 
 const MODEL: OneSidedLinear = OneSidedLinear {
@@ -231,7 +231,7 @@ fn multipliers_of_table_1_and_no_solution_at_the_last() {
     }
     let request = shooting().period(8).near(&near);
     let error = request.orbit(1.77983603).unwrap_err();
-    let Error::Beyond { value, fold } = error else {
+    let Some(&OrbitError::Beyond { value, fold }) = error.downcast_ref() else {
         panic!("{error}");
     };
     assert_eq!(value, 1.77983603);

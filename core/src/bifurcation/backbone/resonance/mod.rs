@@ -22,6 +22,8 @@ use super::Backbone;
 use crate::balance::aft::Aft;
 use crate::balance::resolution::resize;
 use crate::balance::{Balance, Parity, Resolution};
+use crate::bifurcation::error::BifurcationError;
+use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
@@ -32,6 +34,7 @@ use crate::continuation::problem::Problem;
 use crate::continuation::statistics::Statistics;
 use crate::continuation::step::{self, StepControl};
 use crate::error::Error;
+use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::numeric::fourier::series;
 use crate::orbit::observe::Motion;
@@ -206,7 +209,7 @@ impl PhaseResonance {
             }
         };
         let outcome = follow(&mut equations, &mut newton, Start::Near(u), options, see);
-        let stop = match outcome.map_err(|reason| Error::NoStart { value, reason })? {
+        let stop = match outcome.map_err(|reason| OrbitError::NoStart { value, reason })? {
             Outcome::Stopped(stop) => stop,
             // A walk of one number of harmonics is never resized.
             Outcome::Halted(_) => Stop::Interrupted,
@@ -225,16 +228,16 @@ impl PhaseResonance {
     fn options(&self) -> Result<(usize, Vec<f64>, FollowOptions), Error> {
         let facts = self.system.facts();
         let name = self.vary.as_deref();
-        let name = name.ok_or(Error::Missing { name: "vary" })?;
+        let name = name.ok_or(RequestError::Missing { name: "vary" })?;
         let Variable::Parameter(index) = validate::variable(facts, Some(name))? else {
             let name = name.to_owned();
             let must = "must be a parameter: the frequency follows from the resonance";
-            return Err(Error::Varied { name, must });
+            return Err(RequestError::Varied { name, must }.into());
         };
         let mut parameters = vec![0.0; facts.parameters.len()];
         self.system.values(&mut parameters);
         let from = parameters[index];
-        let to = self.to.ok_or(Error::Missing { name: "to" })?;
+        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
         validate::range(facts, Variable::Parameter(index), from, to)?;
         let harmonics = self.harmonics as f64;
         validate::option(
@@ -278,14 +281,16 @@ impl PhaseResonance {
 
     /// The orbit of the frequency response that is next to phase resonance, and what it cost.
     fn first(&self, parameters: &[f64], value: f64) -> Result<(Orbit, Statistics), Error> {
-        let [low, high] = self.between.ok_or(Error::Missing { name: "between" })?;
+        let [low, high] = self
+            .between
+            .ok_or(RequestError::Missing { name: "between" })?;
         let response = FrequencyResponse::of(&self.system).from(low).to(high);
         let response = response.harmonics(self.harmonics).stability(false);
         let branch = response.run()?;
         let mut balance = self.balance(parameters, low);
         let mut room = vec![0.0; balance.unknowns()];
         if load(&balance, &mut room).1 == [0.0; 2] {
-            return Err(Error::NoLoad);
+            return Err(BifurcationError::NoLoad.into());
         }
         let mut lag = |orbit: &Orbit| {
             balance.set(orbit.omega);
@@ -300,7 +305,7 @@ impl PhaseResonance {
             branch.points[i - usize::from(nearer)].orbit.clone()
         });
         let between = [low, high];
-        let nearest = nearest.ok_or(Error::NoResonance { value, between })?;
+        let nearest = nearest.ok_or(BifurcationError::NoResonance { value, between })?;
         Ok((nearest, branch.statistics))
     }
 }

@@ -14,7 +14,7 @@ pub use hertzian_compiler::text::Fault;
 use super::InterpretedLaw;
 use super::law::{constant, evaluate_constant};
 use super::program::Program;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::law::Law;
 use crate::model::validate;
 use crate::system::{System, SystemFacts, Variable};
@@ -48,7 +48,8 @@ pub struct Declaration {
 }
 
 /// Everything that is wrong with a declaration; at least one fault.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", lines(.faults))]
 #[non_exhaustive]
 pub struct DeclarationError {
     /// What is wrong, and where.
@@ -155,14 +156,10 @@ fn run(program: &Program, parameters: &[f64], omega: f64, out: &mut [f64]) {
     });
 }
 
-impl fmt::Display for DeclarationError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, fault) in self.faults.iter().enumerate() {
-            let separator = if index == 0 { "" } else { "\n" };
-            write!(formatter, "{separator}{fault}")?;
-        }
-        Ok(())
-    }
+/// Every fault on a line of its own.
+fn lines(faults: &[Fault]) -> String {
+    let lines: Vec<_> = faults.iter().map(Fault::to_string).collect();
+    lines.join("\n")
 }
 
 // As of every error: the sentence, and with `{:#?}` what it consists of.
@@ -177,4 +174,8 @@ impl fmt::Debug for DeclarationError {
     }
 }
 
-impl std::error::Error for DeclarationError {}
+impl From<DeclarationError> for Error {
+    fn from(error: DeclarationError) -> Self {
+        Self::new(ErrorKind::Model, error)
+    }
+}

@@ -1,0 +1,75 @@
+//! Why there is no diagram, or no backbone curve.
+
+use crate::attractors::basin::BasinError;
+use crate::error::{Error, ErrorKind};
+use crate::numeric::decimal::Decimal;
+
+/// Why there is no diagram, or no backbone curve.
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BifurcationError {
+    /// A motion that begins at rest does not come to rest again.
+    #[error("the motion from rest at {position} does not come to rest again")]
+    NeverAtRest {
+        /// Position of the first coordinate where it begins.
+        position: f64,
+    },
+    /// A motion that should be free does not come back: the system has damping or an excitation.
+    #[error(
+        "the motion misses its beginning by {apart:.1e} of its size after a period: set damping and excitation to zero"
+    )]
+    NotFree {
+        /// How far it misses its beginning, relative to its size.
+        apart: f64,
+    },
+    /// The first coordinate has no load with the frequency of the excitation: there is no phase to speak of.
+    #[error(
+        "no load with the frequency of the excitation acts on the first coordinate: it has no phase resonance"
+    )]
+    NoLoad,
+    /// No orbit in phase resonance was found.
+    #[error(
+        "no orbit in phase resonance found at {} between the excitation frequencies {} and {}",
+        Decimal::plain(*.value),
+        Decimal::plain(.between[0]),
+        Decimal::plain(.between[1])
+    )]
+    NoResonance {
+        /// Value of what is varied.
+        value: f64,
+        /// The excitation frequencies between which it was looked for.
+        between: [f64; 2],
+    },
+    /// What motions settle to could not be looked for.
+    #[error("attractors at {} could not be looked for", Decimal::plain(*.value))]
+    Search {
+        /// Value of what is varied.
+        value: f64,
+        /// Why.
+        #[source]
+        reason: BasinError,
+    },
+}
+
+crate::error::sentence_as_debug! {
+    BifurcationError:
+    NeverAtRest { position }
+    NotFree { apart }
+    NoLoad {}
+    NoResonance { value, between }
+    Search { value, reason }
+    ;
+}
+
+impl From<BifurcationError> for Error {
+    fn from(error: BifurcationError) -> Self {
+        let kind = match &error {
+            BifurcationError::NotFree { .. } | BifurcationError::NoLoad => ErrorKind::Model,
+            BifurcationError::NeverAtRest { .. } | BifurcationError::NoResonance { .. } => {
+                ErrorKind::NoOrbit
+            }
+            BifurcationError::Search { reason, .. } => reason.kind(),
+        };
+        Self::new(kind, error)
+    }
+}

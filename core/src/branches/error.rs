@@ -1,0 +1,148 @@
+//! Why there is no orbit, or none was found.
+
+use crate::continuation::newton::NewtonError;
+use crate::error::{Error, ErrorKind};
+use crate::event::EventKind;
+use crate::numeric::decimal::Decimal;
+
+/// Why there is no orbit, or none was found.
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OrbitError {
+    /// No orbit was found at the start of the range.
+    #[error("no periodic orbit found at {}", Decimal::plain(*.value))]
+    NoStart {
+        /// Where.
+        value: f64,
+        /// What the last attempt said.
+        #[source]
+        reason: NewtonError,
+    },
+    /// No orbit was found at the start of the range with the work that a search may take.
+    #[error(
+        "no periodic orbit found at {} in {evaluations} evaluations of the balance, which took the {:.0e} multiplications that a search is allowed",
+        Decimal::plain(*.value),
+        *.multiplications as f64
+    )]
+    SearchLimit {
+        /// Where.
+        value: f64,
+        /// Evaluations of the balance.
+        evaluations: usize,
+        /// The limit that was reached: multiplications, as estimated.
+        multiplications: u64,
+        /// What the last attempt said.
+        #[source]
+        reason: NewtonError,
+    },
+    /// Orbits were found, but none whose shortest period is the one asked for.
+    #[error(
+        "no orbit of period {period} found at {}: {attempts}; start where there is one, and follow it from there",
+        Decimal::plain(*.value)
+    )]
+    NoSuchPeriod {
+        /// The period asked for, in periods of the declaration.
+        period: usize,
+        /// Where.
+        value: f64,
+        /// What the attempts to find one came to.
+        attempts: Attempts,
+    },
+    /// There is no orbit: the branch that comes near turns back before.
+    #[error(
+        "no periodic orbit at {} near the given one: its branch turns back at {}, {:.1e} away",
+        Decimal::plain(*.value),
+        Decimal::rounded(*.fold, 12),
+        (.value - .fold).abs()
+    )]
+    Beyond {
+        /// The value asked for.
+        value: f64,
+        /// The fold.
+        fold: f64,
+    },
+    /// A branch passes a value between two of its points, but the orbit there could not be computed.
+    #[error(
+        "the orbit at {}, between those at {} and {}, could not be computed",
+        Decimal::plain(*.value),
+        Decimal::plain(*.from),
+        Decimal::plain(*.to)
+    )]
+    Lost {
+        /// The value.
+        value: f64,
+        /// The value at the point before.
+        from: f64,
+        /// The value at the point behind.
+        to: f64,
+    },
+    /// No branch begins at an event, or none was found.
+    #[error("no further branch was found at the {kind} at {}", Decimal::rounded(*.value, 9))]
+    NoBranch {
+        /// What kind of event it is.
+        kind: EventKind,
+        /// Value of what is varied there.
+        value: f64,
+    },
+}
+
+crate::error::sentence_as_debug! {
+    OrbitError:
+    NoStart { value, reason }
+    SearchLimit { value, evaluations, multiplications, reason }
+    NoSuchPeriod { period, value, attempts }
+    Beyond { value, fold }
+    Lost { value, from, to }
+    NoBranch { kind, value }
+    ;
+}
+
+impl From<OrbitError> for Error {
+    fn from(error: OrbitError) -> Self {
+        let kind = match &error {
+            OrbitError::SearchLimit { .. } => ErrorKind::Limit,
+            OrbitError::NoSuchPeriod { attempts, .. } if attempts.made < attempts.planned => {
+                ErrorKind::Limit
+            }
+            _ => ErrorKind::NoOrbit,
+        };
+        Self::new(kind, error)
+    }
+}
+
+/// What attempts to find an orbit of a longer period came to.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Attempts {
+    /// As many as there are disturbances to begin with.
+    pub planned: usize,
+    /// Fewer if they took the work that a search is allowed.
+    pub made: usize,
+    /// Those that led to an orbit of a shorter period.
+    pub shorter: usize,
+    /// Evaluations of the balance.
+    pub evaluations: usize,
+}
+
+impl std::fmt::Display for Attempts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self {
+            planned,
+            made,
+            shorter,
+            evaluations,
+        } = self;
+        if made < planned {
+            write!(
+                f,
+                "a search may take no more work after {made} of {planned} attempts and {evaluations} evaluations of the balance; {shorter}"
+            )?;
+        } else {
+            write!(f, "{shorter} of {made} attempts")?;
+        }
+        write!(
+            f,
+            " led to an orbit of a shorter period, the others to none"
+        )
+    }
+}

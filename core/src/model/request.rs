@@ -1,0 +1,143 @@
+//! What can be wrong with a request.
+
+use crate::error::{Error, ErrorKind};
+use crate::numeric::decimal::Decimal;
+
+/// What is wrong with a request.
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RequestError {
+    /// A parameter is outside its declared range, or not finite.
+    #[error("parameter {name} = {} is outside its range {range}", Decimal::plain(*.value))]
+    Parameter {
+        /// Its name.
+        name: String,
+        /// Its value.
+        value: f64,
+        /// The range, as declared.
+        range: String,
+    },
+    /// There is no parameter of this name.
+    #[error("there is no parameter {name}; there are {}", listed(.known))]
+    UnknownParameter {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// An option of a computation is outside its range.
+    #[error("{name} = {}: {must}", Decimal::plain(*.value))]
+    Option {
+        /// The option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// An option that has no default has not been given: an end of the range, or the frequency at which a parameter is varied.
+    #[error("{}", missing(.name))]
+    Missing {
+        /// The option.
+        name: &'static str,
+    },
+    /// What was asked for cannot be varied.
+    #[error("what is varied is {name}: it {must}")]
+    Varied {
+        /// Its name.
+        name: String,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// Both ends of the range are the same.
+    #[error("the range is empty: from and to are both {}", Decimal::plain(*.value))]
+    EmptyRange {
+        /// The value of both.
+        value: f64,
+    },
+    /// Too few samples for the harmonics.
+    #[error("{samples} samples are too few for {harmonics} harmonics: take {least} or more")]
+    Samples {
+        /// Samples asked for.
+        samples: usize,
+        /// The least that can be used.
+        least: usize,
+        /// Harmonics of the balance.
+        harmonics: usize,
+    },
+    /// More unknowns than a dense matrix can be afforded for.
+    #[error(
+        "{unknowns} unknowns are too many, at most {most}: take fewer harmonics or a shorter period"
+    )]
+    Unknowns {
+        /// Coordinates times harmonics, cosine and sine and mean.
+        unknowns: usize,
+        /// The most there may be.
+        most: usize,
+    },
+    /// The declaration has harmonics that the balance does not carry.
+    #[error(
+        "the declaration has harmonic {highest} of the orbit, and the balance only {harmonics}: take more harmonics"
+    )]
+    Harmonics {
+        /// Harmonics of the balance.
+        harmonics: usize,
+        /// The highest harmonic of loads, stiffness and directions, counted in the orbit's own period.
+        highest: usize,
+    },
+    /// A state has another number of entries than the system.
+    #[error(
+        "the state has {entries} entries instead of {expected}: all positions, then all velocities"
+    )]
+    State {
+        /// Entries given.
+        entries: usize,
+        /// Twice the number of coordinates.
+        expected: usize,
+    },
+    /// There are not as many values as parameters.
+    #[error("{values} values were given for {expected} parameters")]
+    Values {
+        /// Values given.
+        values: usize,
+        /// Number of parameters.
+        expected: usize,
+    },
+}
+
+crate::error::sentence_as_debug! {
+    RequestError:
+    Parameter { name, value, range }
+    UnknownParameter { name, known }
+    Option { name, value, must }
+    Missing { name }
+    Varied { name, must }
+    EmptyRange { value }
+    Samples { samples, least, harmonics }
+    Unknowns { unknowns, most }
+    Harmonics { harmonics, highest }
+    State { entries, expected }
+    Values { values, expected }
+    ;
+}
+
+fn listed(names: &[String]) -> String {
+    match names {
+        [] => "none".to_owned(),
+        names => names.join(", "),
+    }
+}
+
+fn missing(name: &str) -> String {
+    match name {
+        "omega" => "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`".to_owned(),
+        "from" | "to" => format!("the range is not complete: `{name}(...)` has not been called"),
+        _ => format!("`{name}` has not been given"),
+    }
+}
+
+impl From<RequestError> for Error {
+    fn from(error: RequestError) -> Self {
+        Self::new(ErrorKind::Request, error)
+    }
+}
