@@ -130,12 +130,12 @@ pub fn measure(oscillator: &Oscillator, harmonics: &[usize]) -> Result<Vec<Measu
         let branch = oscillator.branch(harmonics)?;
         let exact = oscillator.exact(&branch)?.stability.multipliers;
         for method in METHODS {
-            let answer = branch.multipliers(&branch.points[0], method);
+            let answer = branch.multipliers(&branch.points[0], method)?;
             let mut least = answer.elapsed;
             for _ in 0..TURNS {
                 // What takes long is as well timed once.
                 if least < LONG {
-                    let again = branch.multipliers(&branch.points[0], method);
+                    let again = branch.multipliers(&branch.points[0], method)?;
                     least = least.min(again.elapsed);
                 }
             }

@@ -69,7 +69,9 @@ pub fn measure(problem: &Problem, reference: &Reference) -> Vec<Answer> {
         for (method, of) in METHODS.into_iter().enumerate() {
             let mut last = Vec::new();
             let seconds = median(|| {
-                let answer = branch.multipliers(&orbit, of);
+                let Ok(answer) = branch.multipliers(&orbit, of) else {
+                    return Duration::MAX;
+                };
                 last = answer.stability.multipliers;
                 answer.elapsed
             });

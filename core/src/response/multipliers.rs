@@ -6,6 +6,8 @@ use crate::balance::truncation::Finer;
 use crate::branches::point::Point;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Problem;
+use crate::error::Error;
+use crate::model::request::RequestError;
 use crate::numeric::linear::dot;
 use crate::orbit::stability::judge::Judge;
 use crate::orbit::stability::{Answer, Method};
@@ -16,14 +18,19 @@ const MOVED: f64 = 1e-3;
 impl Branch {
     /// Applies a method to an orbit of this branch.
     ///
-    /// # Panics
-    /// If the orbit belongs to a system with another number of coordinates.
-    pub fn multipliers(&self, point: &Point, method: Method) -> Answer {
-        assert_eq!(
-            point.orbit.coordinates(),
-            self.system().facts().coordinates.len(),
-            "the orbit belongs to another system"
-        );
+    /// # Errors
+    /// If the orbit belongs to a system with another number of coordinates or parameters.
+    pub fn multipliers(&self, point: &Point, method: Method) -> Result<Answer, Error> {
+        let facts = self.system().facts();
+        let (entries, expected) = (point.orbit.coordinates(), facts.coordinates.len());
+        if entries != expected {
+            let (entries, expected) = (2 * entries, 2 * expected);
+            return Err(RequestError::State { entries, expected }.into());
+        }
+        let (values, expected) = (point.parameters.len(), facts.parameters.len());
+        if values != expected {
+            return Err(RequestError::Values { values, expected }.into());
+        }
         let follower = &self.follower;
         let harmonics = point.orbit.harmonics();
         let resolution = follower.with_harmonics(harmonics, harmonics);
@@ -41,7 +48,7 @@ impl Branch {
         let corrected =
             factorise(follower, &mut balance, &mut newton, &u) && finer.correct(&u, &mut newton);
         balance.set(point.value);
-        Judge::new(method).answer(&balance, corrected.then_some(&finer), &u)
+        Ok(Judge::new(method).answer(&balance, corrected.then_some(&finer), &u))
     }
 }
 

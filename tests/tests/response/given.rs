@@ -181,7 +181,7 @@ fn hill_matrices_have_a_largest_order() {
         let request = FrequencyResponse::of(&model).harmonics(harmonics);
         let branch = request.stability(false).from(0.5).to(0.6).max_points(2);
         let branch = branch.run().unwrap();
-        let answer = branch.multipliers(&branch.points[0], method);
+        let answer = branch.multipliers(&branch.points[0], method).unwrap();
         assert_eq!(answer.stability.multipliers.is_empty(), !found);
     }
 }

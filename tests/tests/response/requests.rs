@@ -313,3 +313,21 @@ hertzian::oscillator! {
 }
 
 const NEIGHBOURS: Neighbours = Neighbours {};
+
+/// Multipliers are asked of an orbit of another system.
+#[test]
+fn multipliers_of_an_orbit_of_another_system_are_refused() {
+    let branch = FrequencyResponse::of(&CONTACT).from(1.5).to(1.6).run();
+    let branch = branch.unwrap();
+    let other = FrequencyResponse::of(&NEIGHBOURS).orbit(1.5).unwrap();
+    let error = branch
+        .multipliers(&other, hertzian::Method::Default)
+        .unwrap_err();
+    let expected = RequestError::State {
+        entries: 4,
+        expected: 2,
+    };
+    assert_eq!(error.downcast_ref(), Some(&expected));
+    let own = &branch.points[0];
+    assert!(branch.multipliers(own, hertzian::Method::Default).is_ok());
+}

@@ -76,7 +76,7 @@ fn orbits_of_few_harmonics_have_multipliers_as_good_as_they_can_be() {
             if (drive, period) == (1.0, 1) {
                 assert!(distance(&exact, &pair(EXACT[0].1)) < 1e-9);
             }
-            let answer = branch.multipliers(point, Method::Monodromy);
+            let answer = branch.multipliers(point, Method::Monodromy).unwrap();
             let plain = distance(&answer.uncorrected, &exact);
             let given = distance(&answer.stability.multipliers, &exact);
             let estimate = answer.stability.error;

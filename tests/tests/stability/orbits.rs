@@ -85,7 +85,7 @@ impl Summary {
         }
         if ratio > FACTOR {
             // The corrected orbit is a little farther along the axis, which counts beside a fold.
-            let answer = branch.multipliers(point, Method::Default);
+            let answer = branch.multipliers(point, Method::Default).unwrap();
             let left = refined_at(system, point, answer.value).map_or(ratio, |there| {
                 let (given, there) = (answer.stability, there.stability);
                 let moved = distance(&there.multipliers, exact);

@@ -46,7 +46,9 @@ fn zeros(system: &dyn System, harmonics: usize) -> Vec<[f64; 3]> {
     let request = FrequencyResponse::of(system).from(0.6).to(1.2);
     let branch = request.harmonics(harmonics).stability(false).run().unwrap();
     let of = |branch: &Branch, index: usize| {
-        branch.multipliers(&branch.points[index], Method::Monodromy)
+        branch
+            .multipliers(&branch.points[index], Method::Monodromy)
+            .unwrap()
     };
     let answers: Vec<_> = (0..branch.points.len()).map(|i| of(&branch, i)).collect();
     let mut found = Vec::new();

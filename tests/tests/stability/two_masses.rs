@@ -99,7 +99,7 @@ fn every_method_beside_the_bifurcations() {
                 Method::KoopmanHill(Projection::Direct),
                 Method::KoopmanHill(Projection::Subharmonic),
             ] {
-                let answer = branch.multipliers(&point, method);
+                let answer = branch.multipliers(&point, method).unwrap();
                 let [plain, given] = [&answer.uncorrected, &answer.stability.multipliers]
                     .map(|found| distance(found, &exact.multipliers));
                 let (estimate, verdict) = (answer.stability.error, answer.stability.verdict);

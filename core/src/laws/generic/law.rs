@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use super::consistent::{DataError, check};
 use super::program::{BLOCK, Inputs, Program, Slot, Values};
 use super::{LawData, Node};
 use crate::law::{Derivatives, Law, LawFacts, On, Parts};
@@ -55,12 +56,17 @@ thread_local! {
 impl InterpretedLaw {
     /// A law of given facts and data, without [`parts`](Law::parts).
     ///
-    /// # Panics
+    /// # Errors
     /// If facts and data do not describe one law: their counts of levels, pieces or arguments differ, a node does not
     /// come after its operands, a position or the index of an argument is out of range, or a level depends on gap or
     /// rate. What the compiler makes is never so.
-    pub fn new(facts: LawFacts, data: LawData) -> Self {
-        check(&facts, &data);
+    pub fn new(facts: LawFacts, data: LawData) -> Result<Self, DataError> {
+        check(&facts, &data)?;
+        Ok(Self::compiled(facts, data))
+    }
+
+    /// The same of facts and data that are known to describe one law.
+    pub(super) fn compiled(facts: LawFacts, data: LawData) -> Self {
         let nodes = &data.nodes;
         let values: Vec<usize> = data.levels.iter().map(|level| level.value).collect();
         let levels_by = |argument| {
@@ -102,12 +108,10 @@ impl InterpretedLaw {
         }
     }
 
-    /// The interpreted twin of a law, made from the law's own facts and data; `None` if it or one of its parts has no data.
-    ///
-    /// # Panics
-    /// As [`InterpretedLaw::new`].
+    /// The interpreted twin of a law, made from the law's own facts and data; `None` if it or one of its parts has no data, or
+    /// data that do not describe it.
     pub fn of(law: &dyn Law) -> Option<Self> {
-        let twin = |law: &dyn Law| Some(Self::new(law.facts().clone(), law.data()?.clone()));
+        let twin = |law: &dyn Law| Self::new(law.facts().clone(), law.data()?.clone()).ok();
         let whole = twin(law)?;
         Some(match law.parts() {
             None => whole,
@@ -324,7 +328,7 @@ fn select(values: Values<'_>, piece: usize, chosen: &[usize], out: &mut [f64]) {
 /// A program whose outputs depend on arguments alone.
 pub(super) fn constant(nodes: &[Node], outputs: &[usize]) -> Program {
     let program = Program::new(nodes, outputs);
-    assert!(program.is_constant(), "a level depends on gap or rate");
+    debug_assert!(program.is_constant(), "a level depends on gap or rate");
     program
 }
 
@@ -349,21 +353,4 @@ pub(super) fn evaluate_constant(program: &Program, arguments: &[f64], out: &mut 
     SCRATCH.with_borrow_mut(|scratch| {
         run_constant(program, inputs, scratch.slots(program.slots()), out);
     });
-}
-
-/// Whether facts and data have the same counts, and arguments are in range; the rest is checked as programs are made.
-fn check(facts: &LawFacts, data: &LawData) {
-    let arguments = facts.arguments.len();
-    assert_eq!(data.levels.len(), facts.levels.len(), "levels");
-    assert_eq!(data.pieces.len(), facts.levels.len() + 1, "pieces");
-    let in_levels = data.levels.iter().map(|level| &level.by_argument);
-    let in_pieces = data.pieces.iter().map(|piece| &piece.by_argument);
-    for by_argument in in_levels.chain(in_pieces) {
-        assert_eq!(by_argument.len(), arguments, "derivatives by arguments");
-    }
-    for node in data.nodes.iter() {
-        if let Node::Argument(index) = *node {
-            assert!(index < arguments, "argument {index} of {arguments}");
-        }
-    }
 }

@@ -3,6 +3,7 @@
 //! A law is a list of nodes in which every operand comes before its use, and, for each piece, the nodes that are its
 //! force and its derivatives. The data come from the same front end as the generated code, so the two cannot drift.
 
+mod consistent;
 mod law;
 mod program;
 pub(crate) mod scales;
@@ -17,12 +18,13 @@ use crate::law::Law;
 use crate::system::{System, SystemFacts, Variable};
 
 pub use crate::law::data::{LawData, LevelData, Node, PieceData};
+pub use consistent::DataError;
 pub use law::InterpretedLaw;
 #[cfg(feature = "text")]
 pub use text::{Declaration, DeclarationError, Fault};
 
 /// A system whose laws are interpreted; everything else is the system's own, and so is a law that has no
-/// [data](Law::data).
+/// [data](Law::data), or data that do not describe it.
 ///
 /// It computes what the system computes, from the same declaration, without the generated kernels.
 #[derive(Clone)]
@@ -42,9 +44,6 @@ impl std::fmt::Debug for Interpreted {
 
 impl Interpreted {
     /// The same system at the values that its parameters have now, its laws interpreted.
-    ///
-    /// # Panics
-    /// If the data of a law are not what [`InterpretedLaw::new`] asks for; those of generated laws are.
     pub fn of(system: &dyn System) -> Self {
         let laws = (0..system.facts().laws)
             .map(|index| InterpretedLaw::of(system.law(index)))

@@ -93,10 +93,7 @@ enum Operation {
 }
 
 impl Program {
-    /// The program that computes the given nodes.
-    ///
-    /// # Panics
-    /// If a position is out of range, or a node does not come after its operands.
+    /// The program that computes the given nodes, which are there and come after their operands.
     pub(super) fn new(nodes: &[Node], outputs: &[usize]) -> Self {
         let needed = needed(nodes, outputs);
         let varying = varying(nodes);
@@ -351,7 +348,7 @@ pub(super) fn needed(nodes: &[Node], outputs: &[usize]) -> Vec<bool> {
     for position in (0..nodes.len()).rev() {
         if needed[position] {
             for operand in operands(nodes, position).into_iter().flatten() {
-                assert!(
+                debug_assert!(
                     operand < position,
                     "node {position} does not come after its operand {operand}"
                 );

@@ -20,6 +20,7 @@
 //! Source: Trefethen (2013), Approximation Theory and Approximation Practice, chapter 8: what an analytic function asks for is
 //! the distance of its nearest singularity from the interval.
 
+use super::consistent::check;
 use super::program::{BLOCK, Inputs, Program, Slot, Values, needed, varying};
 use super::{LawData, Node};
 use crate::law::Law;
@@ -85,9 +86,11 @@ pub(crate) enum Sight {
 }
 
 impl Scales {
-    /// Those of a law; `None` if no function of it brings a scale of its own, or if the law has no data.
+    /// Those of a law; `None` if no function of it brings a scale of its own, or if the law has no data,
+    /// or data that do not describe it.
     pub(crate) fn of(law: &dyn Law) -> Option<Self> {
         let data = law.data()?;
+        check(law.facts(), data).ok()?;
         let pieces: Vec<Piece> = (0..data.pieces.len())
             .map(|index| Piece::of(data, index))
             .collect();

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::{InterpretedLaw, LawData, LevelData, Node, PieceData};
+use super::scales::Scales;
+use super::{DataError, InterpretedLaw, LawData, LevelData, Node, PieceData};
 use crate::law::{
-    ArgumentFacts, Derivatives, Exponent, Law, LawFacts, LevelFacts, On, PieceFacts, Quantity,
-    RateDependence, TermFacts, Variation,
+    ArgumentFacts, Derivatives, Exponent, Law, LawFacts, LevelFacts, On, Parts, PieceFacts,
+    Quantity, RateDependence, TermFacts, Variation,
 };
 
 const ARGUMENTS: [ArgumentFacts; 2] = [
@@ -37,7 +38,7 @@ fn hertz(exponent: Option<f64>) -> InterpretedLaw {
     ];
     let free = piece(5, 5, 5, [5, 5]);
     let contact = piece(10, 13, 7, [14, 15]);
-    InterpretedLaw::new(facts(), data(nodes, vec![free, contact]))
+    InterpretedLaw::new(facts(), data(nodes, vec![free, contact])).expect("a law")
 }
 
 fn piece(force: usize, by_gap: usize, by_rate: usize, by_argument: [usize; 2]) -> PieceData {
@@ -184,7 +185,7 @@ fn the_level_belongs_to_the_piece_that_the_facts_say() {
     let law = hertz(None);
     let mut facts = law.facts().clone();
     facts.levels.to_mut()[0].belongs_above = true;
-    let above = InterpretedLaw::new(facts, law.data().expect("data").clone());
+    let above = InterpretedLaw::new(facts, law.data().expect("data").clone()).expect("a law");
     let of = |law: &dyn Law| evaluate(law, 0, On::AllPieces, &[ZETA, 1.5], &[0.0], &[1.0])[0][0];
     assert_eq!(of(&law), 0.0);
     assert_eq!(of(&above), 2.0 * ZETA);
@@ -228,7 +229,7 @@ fn a_twin_has_the_same_parts() {
         let pieces = vec![piece(5, 5, 5, [5, 5]), piece(force, by_gap, 5, by)];
         let mut nodes = nodes.to_vec();
         nodes.extend([Node::Multiply(7, 0), Node::Multiply(4, 0)]);
-        InterpretedLaw::new(facts.clone(), data(nodes, pieces))
+        InterpretedLaw::new(facts.clone(), data(nodes, pieces)).expect("a law")
     };
     let law = law
         .clone()
@@ -268,7 +269,7 @@ fn levels_follow_the_arguments() {
         levels: vec![level(1, 3), level(0, 2)].into(),
         pieces: vec![piece(4, 4, 4, [4, 4]); 3].into(),
     };
-    let law = InterpretedLaw::new(facts, data);
+    let law = InterpretedLaw::new(facts, data).expect("a law");
     let mut levels = [0.0; 2];
     law.levels(&[0.7, 1.5], &mut levels);
     assert_eq!(levels, [-0.7, 0.7]);
@@ -277,7 +278,6 @@ fn levels_follow_the_arguments() {
 }
 
 #[test]
-#[should_panic(expected = "node 0 does not come after its operand 0")]
 fn a_node_that_uses_itself_is_refused() {
     let nodes = vec![Node::Negate(0)];
     let data = LawData {
@@ -287,5 +287,155 @@ fn a_node_that_uses_itself_is_refused() {
     };
     let mut facts = facts();
     facts.levels = Cow::Borrowed(&[]);
-    InterpretedLaw::new(facts, data);
+    let error = InterpretedLaw::new(facts, data).expect_err("a circle");
+    assert_eq!(
+        error,
+        DataError::Operand {
+            node: 0,
+            operand: 0
+        }
+    );
+    assert_eq!(
+        error.to_string(),
+        "node 0 does not come after its operand 0"
+    );
+}
+
+/// A law by hand: the force is its own, and its data are what somebody wrote.
+struct ByHand {
+    law: InterpretedLaw,
+    data: LawData,
+}
+
+impl Law for ByHand {
+    fn facts(&self) -> &LawFacts {
+        self.law.facts()
+    }
+
+    fn data(&self) -> Option<&LawData> {
+        Some(&self.data)
+    }
+
+    fn levels(&self, arguments: &[f64], levels: &mut [f64]) {
+        self.law.levels(arguments, levels);
+    }
+
+    fn levels_by(&self, arguments: &[f64], argument: usize, derivatives: &mut [f64]) {
+        self.law.levels_by(arguments, argument, derivatives);
+    }
+
+    fn force(&self, on: On, arguments: &[f64], gap: &[f64], rate: &[f64], force: &mut [f64]) {
+        self.law.force(on, arguments, gap, rate, force);
+    }
+
+    fn derivatives(
+        &self,
+        on: On,
+        arguments: &[f64],
+        gap: &[f64],
+        rate: &[f64],
+        out: Derivatives<'_>,
+    ) {
+        self.law.derivatives(on, arguments, gap, rate, out);
+    }
+
+    fn derivatives_and_by(
+        &self,
+        argument: usize,
+        on: On,
+        arguments: &[f64],
+        gap: &[f64],
+        rate: &[f64],
+        out: Derivatives<'_>,
+        by_argument: &mut [f64],
+    ) {
+        let law = &self.law;
+        law.derivatives_and_by(argument, on, arguments, gap, rate, out, by_argument);
+    }
+
+    fn parts(&self) -> Option<Parts<'_>> {
+        None
+    }
+}
+
+type Spoil = fn(&mut LawData);
+
+/// Whatever is written in the data of a law, an error says what does not fit, and nothing is known of the law by them.
+#[test]
+fn data_that_do_not_describe_their_law_are_refused() {
+    let law = hertz(None);
+    let good = law.data().expect("data").clone();
+    let rows: [(Spoil, DataError); 9] = [
+        (
+            |data| data.levels = Cow::Borrowed(&[]),
+            DataError::Levels { facts: 1, data: 0 },
+        ),
+        (
+            |data| data.pieces.to_mut().truncate(1),
+            DataError::Pieces {
+                levels: 1,
+                pieces: 1,
+            },
+        ),
+        (
+            |data| data.pieces.to_mut()[1].by_argument = vec![5].into(),
+            DataError::Derivatives {
+                derivatives: 1,
+                arguments: 2,
+            },
+        ),
+        (
+            |data| data.levels.to_mut()[0].by_argument = vec![5; 3].into(),
+            DataError::Derivatives {
+                derivatives: 3,
+                arguments: 2,
+            },
+        ),
+        (
+            |data| data.nodes.to_mut()[2] = Node::Argument(7),
+            DataError::Argument {
+                node: 2,
+                argument: 7,
+                arguments: 2,
+            },
+        ),
+        (
+            |data| data.nodes.to_mut()[8] = Node::Tanh(99),
+            DataError::Operand {
+                node: 8,
+                operand: 99,
+            },
+        ),
+        (
+            |data| data.nodes.to_mut()[9] = Node::Power(0, 12),
+            DataError::Operand {
+                node: 9,
+                operand: 12,
+            },
+        ),
+        (
+            |data| data.pieces.to_mut()[0].force = 16,
+            DataError::NoNode {
+                node: 16,
+                nodes: 16,
+            },
+        ),
+        (
+            |data| data.levels.to_mut()[0].value = 0,
+            DataError::LevelVaries { level: 0 },
+        ),
+    ];
+    for (spoil, expected) in rows {
+        let mut data = good.clone();
+        spoil(&mut data);
+        let refused = InterpretedLaw::new(law.facts().clone(), data.clone());
+        assert_eq!(refused.expect_err("no law"), expected);
+        let law = law.clone();
+        let by_hand = ByHand { law, data };
+        assert!(Scales::of(&by_hand).is_none(), "{expected}");
+        assert!(InterpretedLaw::of(&by_hand).is_none(), "{expected}");
+    }
+    let by_hand = ByHand { law, data: good };
+    assert!(Scales::of(&by_hand).is_some());
+    assert!(InterpretedLaw::of(&by_hand).is_some());
 }

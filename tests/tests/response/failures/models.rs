@@ -27,7 +27,7 @@ pub fn first(request: &FrequencyResponse) -> Branch {
 
 /// What a method says of the first orbit of a branch.
 pub fn answer(branch: &Branch, method: Method) -> Answer {
-    branch.multipliers(&branch.points[0], method)
+    branch.multipliers(&branch.points[0], method).unwrap()
 }
 
 /// A number in a row of a table, if there is one.

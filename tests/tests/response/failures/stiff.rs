@@ -35,7 +35,7 @@ fn projection_at_a_stiff_stop() {
             });
             let Some(alike) = nearest else { continue };
             let method = Method::KoopmanHill(Projection::Direct);
-            let projected = coarse.multipliers(&alike, method);
+            let projected = coarse.multipliers(&alike, method).unwrap();
             let by_projection = distance(&projected.uncorrected, &exact.multipliers);
             assert!(projected.bound.is_none());
             println!(

@@ -46,7 +46,7 @@ pub(super) fn law(family: Family) -> InterpretedLaw {
     let nodes: Cow<'static, [Node]> = nodes(&family.nodes).into();
     let part = |member: Member| {
         let data = data(&member, nodes.clone());
-        InterpretedLaw::new(facts(member), data)
+        InterpretedLaw::compiled(facts(member), data)
     };
     let whole = part(family.whole);
     match family.parts.map(|parts| parts.map(part)) {
