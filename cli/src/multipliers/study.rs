@@ -168,7 +168,7 @@ fn distance(found: &[Complex<f64>], exact: &[Complex<f64>]) -> f64 {
 /// If the orbit is not found.
 pub fn decay(oscillator: &Oscillator) -> Result<f64, Error> {
     let branch = oscillator.branch(FIT[1] + 50)?;
-    let series = branch.points[0].orbit.series(0);
+    let series = branch.points[0].orbit.series(0).unwrap_or_default();
     let points = (FIT[0]..=FIT[1]).map(|k| {
         let size = series[2 * k - 1].hypot(series[2 * k]);
         [(k as f64).ln(), size.ln()]

@@ -265,7 +265,7 @@ impl PointRecord {
     /// Of a point.
     pub fn of(point: &Point, facts: &SystemFacts) -> Self {
         let motion = point.motion();
-        let series = point.orbit.series(0);
+        let series = point.orbit.series(0).unwrap_or_default();
         let multipliers = point.stability.multipliers.iter();
         let contact = point.observed.contacts.first();
         Self {

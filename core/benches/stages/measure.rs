@@ -121,7 +121,7 @@ impl Parts {
         let mut stages = Stages::at(&of_observed, point);
         let of_plain = branch(system, harmonics);
         let mut plain = self::stages(&of_plain);
-        let mut search = Search::new(point.orbit.series(0));
+        let mut search = Search::new(point.orbit.series(0).unwrap());
 
         observed.take();
         stages.contacts();

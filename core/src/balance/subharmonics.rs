@@ -60,7 +60,7 @@ impl Addition {
         let (mut product, mut square, mut other) = (0.0, 0.0, 0.0);
         for i in 0..from.coordinates() {
             let next = &u[i * length..][..length];
-            for (index, x) in from.series(i).iter().enumerate() {
+            for (index, x) in from.row(i).iter().enumerate() {
                 if chosen(index.div_ceil(2)) {
                     let y = next.get(index).copied().unwrap_or(0.0);
                     product += x * y;
@@ -112,7 +112,7 @@ pub(crate) fn is_shifted(a: &Orbit, b: &Orbit) -> bool {
         let angle = std::f64::consts::TAU * shift as f64 / a.period as f64;
         let (mut apart, mut size) = (0.0, 0.0);
         for i in 0..a.coordinates() {
-            let (x, y) = (a.series(i), b.series(i));
+            let (x, y) = (a.row(i), b.row(i));
             apart += (x[0] - y[0]) * (x[0] - y[0]);
             for k in 1..=series::harmonics(x).min(series::harmonics(y)) {
                 let (sine, cosine) = (k as f64 * angle).sin_cos();

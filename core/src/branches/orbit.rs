@@ -18,16 +18,14 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// Fourier series of one coordinate, `[mean, cos 1, sin 1, ...]` in harmonics of the base frequency.
-    ///
-    /// # Panics
-    /// If there is no such coordinate.
-    pub fn series(&self, coordinate: usize) -> &[f64] {
-        assert!(
-            coordinate < self.coordinates,
-            "the orbit has {} coordinates",
-            self.coordinates
-        );
+    /// Fourier series of one coordinate, `[mean, cos 1, sin 1, ...]` in harmonics of the base frequency; `None` if there is no such
+    /// coordinate.
+    pub fn series(&self, coordinate: usize) -> Option<&[f64]> {
+        (coordinate < self.coordinates).then(|| self.row(coordinate))
+    }
+
+    /// The series of a coordinate that there is.
+    pub(crate) fn row(&self, coordinate: usize) -> &[f64] {
         let length = self.series.len() / self.coordinates;
         &self.series[coordinate * length..][..length]
     }
@@ -39,7 +37,7 @@ impl Orbit {
 
     /// Number of harmonics.
     pub fn harmonics(&self) -> usize {
-        series::harmonics(self.series(0))
+        series::harmonics(self.row(0))
     }
 
     /// Position and velocity of one coordinate at a time.
@@ -47,8 +45,7 @@ impl Orbit {
     /// # Panics
     /// If there is no such coordinate.
     pub fn state(&self, coordinate: usize, time: f64) -> (f64, f64) {
-        let (x, slope, _) =
-            series::value_and_derivatives(self.series(coordinate), self.base * time);
+        let (x, slope, _) = series::value_and_derivatives(self.row(coordinate), self.base * time);
         (x, self.base * slope)
     }
 }

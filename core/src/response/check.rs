@@ -377,5 +377,5 @@ fn most_harmonics(layout: &Layout) -> usize {
 }
 
 fn lacks_symmetry(orbit: &Orbit) -> bool {
-    is_broken(&orbit.series, orbit.series(0).len())
+    is_broken(&orbit.series, orbit.row(0).len())
 }

@@ -305,6 +305,6 @@ fn chain<'p>(points: &'p [Point], events: &'p [Event]) -> Vec<&'p Point> {
 fn is_same(a: &Orbit, b: &Orbit) -> bool {
     let size = a.series.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let near = |(x, y): (&f64, &f64)| (x - y).abs() <= 1e-9 * size;
-    let same = |i| a.series(i).iter().zip(b.series(i)).all(near);
+    let same = |i| a.row(i).iter().zip(b.row(i)).all(near);
     a.omega == b.omega && (0..a.coordinates).all(same)
 }

@@ -171,12 +171,13 @@ fn assert_crossed(system: &dyn System, expected: impl Fn(f64, f64) -> f64) {
         "{crossing} {error:.1e}"
     );
     let limbs = [Side::One, Side::Other].map(|side| request.switch(crossing, side).unwrap());
-    let signs = [&limbs[0], &limbs[1]].map(|limb| limb.points[0].orbit.series(1)[0].signum());
+    let signs =
+        [&limbs[0], &limbs[1]].map(|limb| limb.points[0].orbit.series(1).unwrap()[0].signum());
     assert_eq!(signs[0], -signs[1]);
     for (limb, sign) in limbs.iter().zip(signs) {
         assert!(matches!(limb.stopped, Stop::ReachedEnd | Stop::LeftAtStart));
         for point in &limb.points {
-            let y = point.orbit.series(1);
+            let y = point.orbit.series(1).unwrap();
             let error = (y[0] - expected(point.value, sign)).abs();
             assert!(error < 1e-8, "{} {error:.1e}", point.value);
             assert!(y[1..].iter().all(|x| x.abs() < 1e-8));

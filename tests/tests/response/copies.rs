@@ -71,7 +71,7 @@ fn doubling(mut from: f64, mut to: f64) -> f64 {
 
 /// The largest coefficient of harmonics that are no multiples of one.
 fn others(point: &Point, stride: usize) -> f64 {
-    let series = point.orbit.series(0).iter().enumerate();
+    let series = point.orbit.series(0).unwrap().iter().enumerate();
     let others = series.filter(|(index, _)| !index.div_ceil(2).is_multiple_of(stride));
     others.fold(0.0, |largest: f64, (_, x)| largest.max(x.abs()))
 }

@@ -329,5 +329,7 @@ fn multipliers_of_an_orbit_of_another_system_are_refused() {
     };
     assert_eq!(error.downcast_ref(), Some(&expected));
     let own = &branch.points[0];
+    assert!(own.orbit.series(0).is_some());
+    assert_eq!(own.orbit.series(1), None);
     assert!(branch.multipliers(own, hertzian::Method::Default).is_ok());
 }

@@ -31,7 +31,10 @@ fn a_branch_by_harmonic_balance() {
     assert_eq!(all["points"].as_array().unwrap().len(), branch.points.len());
     for (written, point) in all["points"].as_array().unwrap().iter().zip(&branch.points) {
         assert_eq!(written["value"], json!(point.value));
-        assert_eq!(written["orbit"]["series"], json!(point.orbit.series(0)));
+        assert_eq!(
+            written["orbit"]["series"],
+            json!(point.orbit.series(0).unwrap())
+        );
         let stability = &written["stability"];
         assert_eq!(stability["verdict"], point.stability.verdict.to_string());
         let first = point.stability.multipliers[0];

@@ -80,7 +80,7 @@ fn divisor(number: usize, entries: &[Entry], values: &[f64]) -> usize {
 pub(crate) fn has_stride(orbit: &Orbit, stride: usize) -> bool {
     let (mut others, mut all) = (0.0, 0.0);
     for i in 0..orbit.coordinates {
-        for (index, x) in orbit.series(i).iter().enumerate().skip(1) {
+        for (index, x) in orbit.row(i).iter().enumerate().skip(1) {
             all += x * x;
             if !index.div_ceil(2).is_multiple_of(stride) {
                 others += x * x;

@@ -36,7 +36,7 @@ fn updates(core: usize) -> Vec<f64> {
         .stability(false)
         .run()
         .unwrap();
-    let mut u = branch.points.last().unwrap().orbit.series(0).to_vec();
+    let mut u = branch.points.last().unwrap().orbit.row(0).to_vec();
     u.push(1.0);
     u[1] += 1.0;
     u[4] -= 0.8;

@@ -148,7 +148,7 @@ impl Run<'_> {
     pub(super) fn joins(&self, u: &[f64]) -> bool {
         let orbit = self.points.last().map(|point| &point.orbit);
         orbit.is_some_and(|orbit| {
-            let length = orbit.series(0).len();
+            let length = orbit.row(0).len();
             let least = BEYOND_NEWTON * self.options.newton.tolerance;
             let symmetric = self.follower.asymmetric
                 && broken_share(&orbit.series, length) > least * least

@@ -68,7 +68,7 @@ fn power_balances_to_rounding() {
         // What viscous damping takes up is 2 zeta <v^2>, known from the series itself. The work of the spring vanishes
         // only as well as it is sampled: for a kink in its second derivative as the power -2.5 of 4096 samples.
         let base = point.orbit.base;
-        let square: f64 = point.orbit.series(0)[1..]
+        let square: f64 = point.orbit.series(0).unwrap()[1..]
             .chunks_exact(2)
             .enumerate()
             .map(|(k, c)| 0.5 * (base * (k + 1) as f64).powi(2) * (c[0] * c[0] + c[1] * c[1]))

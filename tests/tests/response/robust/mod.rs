@@ -160,7 +160,7 @@ fn usable(branch: &Branch) -> Result<(), String> {
 }
 
 fn finite(point: &Point) -> Result<(), String> {
-    let series = (0..point.orbit.coordinates()).flat_map(|i| point.orbit.series(i));
+    let series = (0..point.orbit.coordinates()).flat_map(|i| point.orbit.series(i).unwrap());
     let motions = point.observed.motions.iter();
     let contacts = point.observed.contacts.iter();
     let observed = &point.observed;

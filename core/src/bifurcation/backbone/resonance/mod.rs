@@ -185,7 +185,7 @@ impl PhaseResonance {
         let (index, parameters, options) = self.options()?;
         let value = options.from;
         let (first, mut statistics) = self.first(&parameters, value)?;
-        let motion = Motion::of(first.series(0));
+        let motion = Motion::of(first.row(0));
         let mut u = first.series.clone();
         u.push(first.omega);
         let mut u = resize(&u, first.coordinates(), series::length(self.harmonics));
@@ -295,7 +295,7 @@ impl PhaseResonance {
         let mut lag = |orbit: &Orbit| {
             balance.set(orbit.omega);
             let (place, [a, b]) = load(&balance, &mut room);
-            let series = orbit.series(0);
+            let series = orbit.row(0);
             a * series[place] + b * series[place + 1]
         };
         let lags: Vec<f64> = branch.points.iter().map(|p| lag(&p.orbit)).collect();
@@ -364,7 +364,7 @@ impl<'a> Resonance<'a> {
         };
         ResonancePoint {
             value: u[n + 1],
-            motion: Motion::of(orbit.series(0)),
+            motion: Motion::of(orbit.row(0)),
             orbit,
         }
     }
