@@ -10,7 +10,7 @@
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, SIAM Review 46, equation (4.2).
 
 use super::follow::CurvePoint;
-use super::problem::Problem;
+use super::problem::{AsProblem, Problem};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 
 /// Orbits on each side.
@@ -41,12 +41,12 @@ pub(crate) struct Crossing {
 }
 
 /// Where a test function vanishes between two points although the bordered matrix is singular there.
-pub(crate) fn locate_crossing(
-    problem: &mut dyn Problem,
+pub(crate) fn locate_crossing<P: AsProblem + ?Sized>(
+    problem: &mut P,
     newton: &mut Newton,
     (a, b): (&CurvePoint, &CurvePoint),
     options: NewtonOptions,
-    mut test: impl FnMut(&CurvePoint) -> f64,
+    mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Crossing> {
     let mut border = vec![0.0; a.u.len()];
     newton.norm().linear_form(a.scale, &a.tangent, &mut border);
@@ -58,7 +58,7 @@ pub(crate) fn locate_crossing(
             s: dot(&border, &point.u) - origin,
             u: point.u.clone(),
             slope: point.tangent.iter().map(|t| t / along).collect(),
-            test: test(point),
+            test: test(problem, point),
         }
     });
     let length = ends[1].s;
@@ -80,15 +80,15 @@ pub(crate) fn locate_crossing(
                     value: origin + s,
                 };
                 if newton
-                    .correct(problem, &mut u, row, a.scale, options)
+                    .correct(problem.problem(), &mut u, row, a.scale, options)
                     .is_err()
                 {
                     continue;
                 }
                 let mut slope = vec![0.0; u.len()];
-                newton.tangent(problem, &u, &mut slope, true);
+                newton.tangent(problem.problem(), &u, &mut slope, true);
                 let point = normalised(newton, a, u, slope.clone());
-                let test = test(&point);
+                let test = test(problem, &point);
                 let u = point.u;
                 found.push(Node { s, u, slope, test });
             }
@@ -102,8 +102,14 @@ pub(crate) fn locate_crossing(
     let u = interpolated(&nodes, zero, |node| &node.u);
     let slope = interpolated(&nodes, zero, |node| &node.slope);
     let point = normalised(newton, a, u, slope);
-    let solves = newton_update(problem, newton, &point, (&border, &nodes), options)
-        .is_some_and(|update| update <= options.tolerance);
+    let solves = newton_update(
+        problem.problem(),
+        newton,
+        &point,
+        (&border, &nodes),
+        options,
+    )
+    .is_some_and(|update| update <= options.tolerance);
     let mut error = 0.0_f64;
     for left_out in 0..nodes.len() {
         let node = nodes.remove(left_out);
@@ -113,7 +119,7 @@ pub(crate) fn locate_crossing(
         nodes.insert(left_out, node);
     }
     solves.then(|| Crossing {
-        test: test(&point),
+        test: test(problem, &point),
         error: LEFT_OUT * error,
         point,
     })

@@ -12,7 +12,7 @@
 //!
 //! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems.
 
-use super::problem::{Problem, Scale};
+use super::problem::{AsProblem, Scale};
 use super::step::StepControl;
 use super::walk::{Begun, Walk};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
@@ -191,7 +191,7 @@ pub(crate) enum Outcome {
 /// Follows the curve until the parameter reaches `to`, calling `visit` at every point in order. The factors that Newton's
 /// method holds then are those of the point. Then it is called with the step that led there. A walk that was resized visits its
 /// point again.
-pub(crate) fn follow<P: Problem>(
+pub(crate) fn follow<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
     start: Start,
@@ -202,7 +202,7 @@ pub(crate) fn follow<P: Problem>(
 }
 
 /// The same, and where no step led on, as it is to be resumed with another matrix.
-pub(crate) fn follow_until_stuck<P: Problem>(
+pub(crate) fn follow_until_stuck<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
     start: Start,
@@ -219,7 +219,7 @@ pub(crate) fn follow_until_stuck<P: Problem>(
         mut previous,
         passed,
         ended,
-    } = Walk::begin(problem, newton, start, options)?;
+    } = Walk::begin(problem.problem(), newton, start, options)?;
     let mut count = passed;
     let mut stop = ended;
     let mut again = resumed;
@@ -260,8 +260,8 @@ pub(crate) fn follow_until_stuck<P: Problem>(
             });
         }
         let next = walk
-            .next(problem, newton, &point)
-            .and_then(|next| walk.cut_at_range(problem, newton, &point, next));
+            .next(problem.problem(), newton, &point)
+            .and_then(|next| walk.cut_at_range(problem.problem(), newton, &point, next));
         match next {
             Ok((next, end)) => {
                 previous = Some(std::mem::replace(&mut point, next));

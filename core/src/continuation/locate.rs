@@ -8,7 +8,7 @@
 //! using derivatives.
 
 use super::follow::CurvePoint;
-use super::problem::{Problem, Scale};
+use super::problem::{AsProblem, Problem, Scale};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 
 /// A point where the test function vanishes.
@@ -27,22 +27,22 @@ const CLOSEST: f64 = 1e-14;
 /// Where a test function changes sign between `a` and `b`: its zero, or the place where it jumps.
 ///
 /// `None` if corrections fail on the way, or a tangent is not that of the whole system.
-pub(crate) fn locate(
-    problem: &mut dyn Problem,
+pub(crate) fn locate<P: AsProblem + ?Sized>(
+    problem: &mut P,
     newton: &mut Newton,
     (a, b): (&CurvePoint, &CurvePoint),
     options: NewtonOptions,
     tolerance: f64,
-    test: impl Fn(&CurvePoint) -> f64,
+    mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let difference: Vec<f64> = b.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
     let length = newton.norm().product(a.scale, &a.tangent, &difference);
     let mut border = vec![0.0; a.u.len()];
     newton.norm().linear_form(a.scale, &a.tangent, &mut border);
     let origin = crate::numeric::linear::dot(&border, &a.u);
-    let side = |s, point: &CurvePoint| Side {
+    let mut side = |s, point: &CurvePoint| Side {
         s,
-        value: test(point),
+        value: test(problem, point),
         point: point.clone(),
     };
     let (mut far, mut near) = (side(0.0, a), side(length, b));
@@ -58,7 +58,7 @@ pub(crate) fn locate(
                 row: &border,
                 value: origin + s,
             };
-            let point = corrected(problem, newton, trial, row, a.scale, options)?;
+            let point = corrected(problem.problem(), newton, trial, row, a.scale, options)?;
             Some((s, point))
         };
         // Where a correction fails, another place may do.
@@ -66,7 +66,7 @@ pub(crate) fn locate(
             Some(found) => found,
             None => at(0.5 * part + 0.2)?,
         };
-        let value = test(&point);
+        let value = test(problem, &point);
         if value.abs() <= tolerance {
             return Some(Located {
                 point,

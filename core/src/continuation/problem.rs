@@ -45,6 +45,24 @@ pub trait Problem {
     }
 }
 
+/// A problem, or a trait object of what a room adds to one: searches along a curve hand it to the test function they look at.
+pub(crate) trait AsProblem {
+    /// The equations alone.
+    fn problem(&mut self) -> &mut dyn Problem;
+}
+
+impl<P: Problem> AsProblem for P {
+    fn problem(&mut self) -> &mut dyn Problem {
+        self
+    }
+}
+
+impl AsProblem for dyn Problem + '_ {
+    fn problem(&mut self) -> &mut dyn Problem {
+        self
+    }
+}
+
 /// The lengths that count as one.
 ///
 /// A large mean, as under a heavy load, must not hide the oscillation from the step control; so it has a scale of its own.

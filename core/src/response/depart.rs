@@ -14,9 +14,9 @@ use crate::balance::block::{Block, Part};
 use crate::balance::resolution::resize;
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
+use crate::branches::switch::Departure;
 use crate::continuation::follow::CurvePoint;
-use crate::continuation::newton::{Border, Newton};
-use crate::continuation::problem::Problem;
+use crate::continuation::newton::Newton;
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::numeric::fourier::series;
@@ -25,8 +25,6 @@ use crate::response::follower::Follower;
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.
 const DEPARTURES: [f64; 4] = [0.02, 0.05, 0.01, 0.1];
-/// Part of the component that must be left for the orbit to be one of the new branch.
-const LEFT: f64 = 0.5;
 
 /// The first orbit of the branch that begins at an event, with its direction, in the resolution of the new branch's follower. The
 /// harmonics of the old branch are multiples of a stride.
@@ -82,40 +80,23 @@ pub(crate) fn depart(
             *x -= part * t;
         }
     }
-    for departure in DEPARTURES {
+    for part in DEPARTURES {
         let scale = newton.norm().scale_at(&start, range, &mut [0.0; 2]);
         let length = newton.norm().length(scale, &direction);
         let unit: Vec<f64> = direction.iter().map(|x| x / length).collect();
         let mut row = vec![0.0; unit.len()];
         newton.norm().linear_form(scale, &unit, &mut row);
-        let step = side * departure;
-        let mut u: Vec<f64> = start.iter().zip(&unit).map(|(x, d)| x + step * d).collect();
-        let border = Border {
-            row: &row,
-            value: crate::numeric::linear::dot(&row, &u),
+        let departure = Departure {
+            from: &start,
+            along: &unit,
+            held: &row,
+            scale,
         };
         let options = follower.newton;
-        if newton
-            .correct(&mut balance, &mut u, border, scale, options)
-            .is_err()
-        {
-            continue;
+        let first = departure.first_point(&mut balance, &mut newton, side * part, options);
+        if let Some(first) = first {
+            return Ok(first);
         }
-        let difference: Vec<f64> = u.iter().zip(&start).map(|(x, y)| x - y).collect();
-        let along = crate::numeric::linear::dot(&row, &difference);
-        if along.abs() < LEFT * departure
-            || newton.norm().length(scale, &difference) > 10.0 * departure
-        {
-            continue;
-        }
-        let mut tangent = vec![0.0; balance.unknowns() + 1];
-        newton.tangent(&mut balance, &u, &mut tangent, true);
-        let outwards = step * crate::numeric::linear::dot(&row, &tangent);
-        let length = newton.norm().length(scale, &tangent) * outwards.signum();
-        for t in &mut tangent {
-            *t /= length;
-        }
-        return Ok(CurvePoint { u, tangent, scale });
     }
     Err(nothing.into())
 }

@@ -10,11 +10,11 @@ use crate::balance::{Balance, Parity, Resolution};
 use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
-use crate::continuation::follow::{CurvePoint, FollowOptions};
+use crate::branches::value::{Chord, chain, solutions};
+use crate::continuation::follow::FollowOptions;
 use crate::continuation::jacobian::Jacobian;
-use crate::continuation::locate::locate;
 use crate::continuation::newton::{Newton, NewtonOptions};
-use crate::continuation::problem::{Norm, Problem};
+use crate::continuation::problem::Problem;
 use crate::error::Error;
 use crate::numeric::fourier::series;
 use crate::orbit::stability::Method;
@@ -183,32 +183,19 @@ impl Follower {
         events: &[Event],
         value: f64,
     ) -> Result<Vec<Point>, Error> {
-        let mut found: Vec<Point> = Vec::new();
-        // Between folds the branch is monotonic, so every part of this chain passes a value at most once.
-        let chain = chain(points, events);
-        for (index, point) in chain.iter().enumerate() {
-            let solution = if point.value == value {
-                Some((*point).clone())
-            } else {
-                match chain.get(index + 1) {
-                    Some(next)
-                        if next.value != value && (point.value < value) != (next.value < value) =>
-                    {
-                        Some(self.between((point, next), value)?)
-                    }
-                    _ => None,
-                }
-            };
-            // A closed branch ends where it began.
-            found.extend(
-                solution.filter(|new| !found.iter().any(|old| is_same(&old.orbit, &new.orbit))),
-            );
-        }
-        Ok(found)
+        let turns = events.iter().filter(|event| event.kind.turns());
+        let turns: Vec<_> = turns.map(|event| (event.after, &event.point)).collect();
+        solutions(
+            &chain(points, &turns),
+            value,
+            |point| point.value,
+            |ends| self.between(ends, value),
+            |a, b| is_same(&a.orbit, &b.orbit),
+        )
     }
 
     /// The orbit at a value between those of two neighbours, with their harmonics, or more where the tolerance asks for them.
-    fn between(&self, (a, b): (&Point, &Point), value: f64) -> Result<Point, Error> {
+    fn between(&self, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {
         let mut harmonics = a.orbit.harmonics().max(b.orbit.harmonics());
         let mut point = self.searched((a, b), value, harmonics)?;
         let mut chooser = self.chooser.clone();
@@ -241,36 +228,12 @@ impl Follower {
             u.push(point.value);
             resize(&u, point.orbit.coordinates, series::length(harmonics))
         };
-        let (from, to) = (extended(a), extended(b));
-        let range = (self.to - self.from).abs();
-        let norm: &Norm = newton.norm();
-        let mut largest = [0.0; 2];
-        norm.scale_at(&to, range, &mut largest);
-        let scale = norm.scale_at(&from, range, &mut largest);
-        let mut tangent: Vec<f64> = to.iter().zip(&from).map(|(x, y)| x - y).collect();
-        let length = norm.length(scale, &tangent);
-        for t in &mut tangent {
-            *t /= length;
-        }
-        let first = CurvePoint {
-            u: from,
-            tangent: tangent.clone(),
-            scale,
+        let chord = Chord {
+            ends: [extended(a), extended(b)],
+            range: (self.to - self.from).abs(),
+            tolerance: VALUE_TOLERANCE,
         };
-        let second = CurvePoint {
-            u: to,
-            tangent,
-            scale,
-        };
-        let offset = |point: &CurvePoint| (point.parameter() - value) / range;
-        let located = locate(
-            &mut balance,
-            newton,
-            (&first, &second),
-            self.newton,
-            VALUE_TOLERANCE,
-            offset,
-        );
+        let located = chord.at(&mut balance, newton, value, self.newton);
         let lost = OrbitError::Lost {
             value,
             from: a.value,
@@ -286,19 +249,6 @@ impl Follower {
         let mut reader = self.reader(balance.resolution());
         Ok(reader.read(&mut balance, newton, &u))
     }
-}
-
-/// Points of a branch, and where it turns back, in their order along it.
-fn chain<'p>(points: &'p [Point], events: &'p [Event]) -> Vec<&'p Point> {
-    let mut chain = Vec::with_capacity(points.len() + events.len());
-    for (index, point) in points.iter().enumerate() {
-        let turns = events
-            .iter()
-            .filter(|event| event.after == index && event.kind.turns());
-        chain.extend(turns.map(|event| &event.point));
-        chain.push(point);
-    }
-    chain
 }
 
 /// Whether two orbits are one to nine digits.

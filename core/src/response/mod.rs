@@ -33,7 +33,7 @@ use crate::orbit::stability::Method;
 use crate::response::branch::Branch;
 use crate::response::depart::depart;
 use crate::response::follower::Sought;
-use crate::response::run::Run;
+use crate::response::run::{Followed, Run};
 use crate::system::System;
 
 /// What to follow, set up step by step, then [run](FrequencyResponse::run).
@@ -391,20 +391,19 @@ impl FrequencyResponse {
     /// The branch that a run gives.
     fn followed(
         &self,
-        mut run: Run<'_>,
+        run: Run<'_>,
         start: Start,
-        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
+        visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
         (mut statistics, started): (Statistics, Instant),
     ) -> Result<Branch, Error> {
-        let stopped = run.follow(start, visit)?;
         let follower = run.follower.clone();
-        let Run {
+        let Followed {
+            stopped,
             points,
             mut events,
             mut turns,
             statistics: followed,
-            ..
-        } = run;
+        } = run.follow(start, visit)?;
         // What a step hid is found one step later.
         events.sort_by_key(|event| event.after);
         turns.sort_by_key(|turn| turn.after);

@@ -8,8 +8,7 @@ use super::setting::Setting;
 use super::start::{self, First};
 use super::{compute, solve};
 use crate::branches::error::OrbitError;
-use crate::continuation::follow::CurvePoint;
-use crate::continuation::locate::locate;
+use crate::branches::value::{Chord, chain, solutions};
 use crate::continuation::newton::Newton;
 use crate::error::Error;
 use crate::time::MotionError;
@@ -24,38 +23,15 @@ const SAME: f64 = 1e-9;
 /// # Errors
 /// If the orbit between two neighbours is not found.
 pub(super) fn at(setting: &Setting, branch: &CycleBranch, value: f64) -> Result<Vec<Cycle>, Error> {
-    let chain = chain(branch);
-    let mut found: Vec<Cycle> = Vec::new();
-    for (index, cycle) in chain.iter().enumerate() {
-        let next = chain.get(index + 1);
-        let passes =
-            |next: &&&Cycle| next.value != value && (cycle.value < value) != (next.value < value);
-        let solution = if cycle.value == value {
-            (*cycle).clone()
-        } else if let Some(next) = next.filter(passes) {
-            between(setting, [cycle, next], value)?
-        } else {
-            continue;
-        };
-        // A closed branch ends where it began.
-        if !found.iter().any(|known| is_same(known, &solution)) {
-            found.push(solution);
-        }
-    }
-    Ok(found)
-}
-
-/// Orbits and turns of a branch in their order along it.
-fn chain(branch: &CycleBranch) -> Vec<&Cycle> {
-    let turns_after = |index| {
-        let events = branch.events.iter();
-        let events = events.filter(move |event| event.after == index && event.kind.turns());
-        events.map(|event| &event.cycle)
-    };
-    let cycles = branch.cycles.iter().enumerate();
-    cycles
-        .flat_map(|(index, cycle)| turns_after(index).chain([cycle]))
-        .collect()
+    let turns = branch.events.iter().filter(|event| event.kind.turns());
+    let turns: Vec<_> = turns.map(|event| (event.after, &event.cycle)).collect();
+    solutions(
+        &chain(&branch.cycles, &turns),
+        value,
+        |cycle| cycle.value,
+        |ends| between(setting, ends, value),
+        is_same,
+    )
 }
 
 fn between(setting: &Setting, [a, b]: [&Cycle; 2], value: f64) -> Result<Cycle, Error> {
@@ -73,24 +49,13 @@ fn between(setting: &Setting, [a, b]: [&Cycle; 2], value: f64) -> Result<Cycle, 
     let First { equations, u, .. } = &mut first;
     let last = equations.unknowns_of(&b.states, b.value);
     let mut newton = Newton::new(equations);
-    let range = (b.value - a.value).abs();
-    let mut largest = [0.0; 2];
-    newton.norm().scale_at(&last, range, &mut largest);
-    let scale = newton.norm().scale_at(u, range, &mut largest);
-    let mut tangent: Vec<f64> = last.iter().zip(&*u).map(|(x, y)| x - y).collect();
-    let length = newton.norm().length(scale, &tangent);
-    for t in &mut tangent {
-        *t /= length;
-    }
-    let [from, to] = [u.clone(), last].map(|u| CurvePoint {
-        u,
-        tangent: tangent.clone(),
-        scale,
-    });
     let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
-    let offset = |point: &CurvePoint| (point.parameter() - value) / range;
-    let ends = (&from, &to);
-    let located = locate(equations, &mut newton, ends, options, MET, offset);
+    let chord = Chord {
+        ends: [u.clone(), last],
+        range: (b.value - a.value).abs(),
+        tolerance: MET,
+    };
+    let located = chord.at(equations, &mut newton, value, options);
     let lost = OrbitError::Lost {
         value,
         from: a.value,

@@ -158,7 +158,15 @@ impl Search<'_> {
             let slope = CurvePoint::parameter_slope;
             let options = self.options;
             let newton = &mut self.newton;
-            end = locate(self.equations, newton, between, options, VANISHED, slope)?.point;
+            end = locate(
+                self.equations,
+                newton,
+                between,
+                options,
+                VANISHED,
+                |_, at| slope(at),
+            )?
+            .point;
         }
         let (a, b) = (
             before.parameter() - self.value,

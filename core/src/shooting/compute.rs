@@ -116,14 +116,9 @@ fn followed(
     visit: See<'_>,
     started: Instant,
 ) -> Result<CycleBranch, Error> {
-    let (
-        mut run,
-        First {
-            mut equations, u, ..
-        },
-    ) = run(setting, found, from, to)?;
+    let (mut run, First { equations, u, .. }) = run(setting, found, from, to)?;
     let options = setting.follow(from, to, equations.frame.ratio);
-    let end = run.follow(&mut equations, start(u), options, visit)?;
+    let end = run.follow(equations, start(u), options, visit)?;
     let Run {
         cycles,
         events,

@@ -20,11 +20,12 @@ use super::cycle::CycleEvent;
 use super::equations::Equations;
 use super::setting::Setting;
 use super::start::{self, First};
-use super::switch::{Begun, DEPARTURES, FARTHEST};
+use super::switch::{Begun, DEPARTURES};
 use crate::branches::error::OrbitError;
+use crate::branches::switch::Departure;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::jacobian::{Jacobian, Partition};
-use crate::continuation::newton::{Border, Newton};
+use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
 use crate::error::Error;
 use crate::time::MotionError;
@@ -158,27 +159,13 @@ fn beside(
     let range = units[units.len() - 1];
     let scale = newton.norm().scale_at(&first.u, range, &mut [0.0; 2]);
     let row: Vec<f64> = across.iter().zip(units).map(|(x, unit)| x / unit).collect();
-    let moved = other.iter().zip(units).map(|(x, unit)| step * x * unit);
-    let mut u: Vec<f64> = first.u.iter().zip(moved).map(|(x, by)| x + by).collect();
-    let border = Border {
-        row: &row,
-        value: crate::numeric::linear::dot(&row, &u),
+    let along: Vec<f64> = other.iter().zip(units).map(|(x, unit)| x * unit).collect();
+    let departure = Departure {
+        from: &first.u,
+        along: &along,
+        held: &row,
+        scale,
     };
     let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
-    newton
-        .correct(equations, &mut u, border, scale, options)
-        .ok()?;
-    let pairs = u.iter().zip(&first.u).zip(units);
-    let farthest = pairs.fold(0.0, |m: f64, ((x, y), unit)| m.max((x - y).abs() / unit));
-    if farthest > FARTHEST * step.abs() * other.norm() {
-        return None;
-    }
-    let mut tangent = vec![0.0; u.len()];
-    newton.tangent(equations, &u, &mut tangent, true);
-    let outwards = step * crate::numeric::linear::dot(&row, &tangent);
-    let length = newton.norm().length(scale, &tangent) * outwards.signum();
-    for t in &mut tangent {
-        *t /= length;
-    }
-    Some(CurvePoint { u, tangent, scale })
+    departure.first_point(equations, &mut newton, step, options)
 }

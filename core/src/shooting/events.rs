@@ -8,19 +8,19 @@ use std::cell::RefCell;
 use super::companion::{self, Companion, multipliers};
 use super::cycle::{Cycle, CycleEvent};
 use super::equations::Equations;
+use super::method::VANISHED;
 use super::run::{Run, add, observe};
 use super::setting::Setting;
-use super::tested::{Change, Test, Tests};
+use super::tested::{Test, Tests};
+use crate::branches::problem::{Change, Zero};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::continuation::newton::{Newton, NewtonOptions};
-use crate::event::{EventKind, Turn};
+use crate::event::EventKind;
 use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::orbit::stability::Stability;
 
-/// Brackets of an event are narrowed until rounding stops it, or this is reached.
-const VANISHED: f64 = 1e-14;
 /// What rounding leaves in the value of an event.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -33,7 +33,7 @@ struct Place {
 }
 
 /// What the other multipliers make of a determinant that vanishes with the one nearest to a critical value, and of its rounding.
-fn others(equations: &mut Equations, u: &[f64], critical: f64) -> f64 {
+pub(super) fn others(equations: &mut Equations, u: &[f64], critical: f64) -> f64 {
     let Ok(map) = equations.map(u, &mut |_| {}) else {
         return 1.0;
     };
@@ -47,63 +47,7 @@ fn others(equations: &mut Equations, u: &[f64], critical: f64) -> f64 {
     product.max(1.0) * largest.max(1.0)
 }
 
-/// Whether the pair of multipliers whose product is nearest to one is complex.
-fn complex(equations: &mut Equations, u: &[f64]) -> bool {
-    let map = equations.map(u, &mut |_| {}).ok();
-    map.is_some_and(|map| Tests::of(Some(&map), 0.0).complex)
-}
-
 impl Run<'_> {
-    /// Locates an event between two points.
-    pub(super) fn event(
-        &mut self,
-        equations: &mut Equations,
-        newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
-        change: Change,
-    ) {
-        let options = self.options;
-        // The point behind the event has been stored already, unless it is on the branch that this one joins.
-        let after = self.cycles.len() - usize::from(self.joined.is_none());
-        let place = self.place(equations, newton, between, options, change, VANISHED);
-        let Some(place) = place else {
-            let value = 0.5 * (between.0.parameter() + between.1.parameter());
-            let (kind, test) = (change.kind, f64::NAN);
-            self.turns.push(Turn {
-                kind,
-                value,
-                test,
-                after,
-            });
-            return;
-        };
-        // A pair of real multipliers whose product is one is nothing special.
-        if change.test == Test::Pairs && !complex(equations, &place.point.u) {
-            return;
-        }
-        let (value, test) = (place.point.parameter(), place.test);
-        // A slope is relative to the range, and rounding to the value.
-        let unit = match change.test {
-            Test::Slope => (value.abs() / place.point.scale.parameter).max(1.0),
-            Test::Bordered => {
-                others(equations, &place.point.u, 1.0) / place.point.parameter_slope().abs()
-            }
-            Test::Plus => others(equations, &place.point.u, -1.0),
-            Test::Pairs => 1.0,
-        };
-        let vanishes = test.abs() <= self.setting.vanishing(equations.frame.ratio) * unit;
-        let event = vanishes.then(|| self.event_at(equations, between, change, &place));
-        match event.flatten() {
-            Some(event) => self.events.push(CycleEvent { after, ..event }),
-            None => self.turns.push(Turn {
-                kind: change.kind,
-                value,
-                test,
-                after,
-            }),
-        }
-    }
-
     /// Where a test function of these equations vanishes.
     fn place(
         &mut self,
@@ -112,16 +56,16 @@ impl Run<'_> {
         between: (&CurvePoint, &CurvePoint),
         options: NewtonOptions,
         change: Change,
-        vanished: f64,
     ) -> Option<Place> {
         // The problem is busy while a test function is evaluated.
         let other = RefCell::new(equations.again(self.setting).ok()?);
-        let value = |point: &CurvePoint| {
-            if change.test == Test::Slope {
+        let value = |_: &mut Equations, point: &CurvePoint| {
+            let test = Test::of(change.test);
+            if test == Test::Slope {
                 return point.parameter_slope();
             }
             let map = other.borrow_mut().map(&point.u, &mut |_| {}).ok();
-            Tests::of(map.as_ref(), point.parameter_slope()).value(change.test)
+            Tests::of(map.as_ref(), point.parameter_slope()).value(test)
         };
         let place = if change.kind == EventKind::BranchPoint {
             locate_crossing(equations, newton, between, options, value).map(|crossing| Place {
@@ -130,7 +74,7 @@ impl Run<'_> {
                 error: crossing.error,
             })
         } else {
-            locate(equations, newton, between, options, vanished, value).map(|located| Place {
+            locate(equations, newton, between, options, VANISHED, value).map(|located| Place {
                 point: located.point,
                 test: located.test,
                 error: 0.0,
@@ -141,13 +85,18 @@ impl Run<'_> {
     }
 
     /// The event at a place, compared with that of the companion.
-    fn event_at(
+    pub(super) fn event_at(
         &mut self,
         equations: &mut Equations,
         between: (&CurvePoint, &CurvePoint),
-        change: Change,
-        place: &Place,
+        zero: &Zero,
     ) -> Option<CycleEvent> {
+        let change = zero.change;
+        let place = &Place {
+            point: zero.located.point.clone(),
+            test: zero.located.test,
+            error: zero.error,
+        };
         let (span, frame) = (equations.span, equations.frame.clone());
         let size = between.0.scale.oscillation;
         let Companion {
@@ -158,7 +107,7 @@ impl Run<'_> {
             finer,
             noise,
         } = Companion::new(self.setting, span, frame, size).ok()?;
-        let moved = self.place(&mut others, &mut newton, between, options, change, VANISHED);
+        let moved = self.place(&mut others, &mut newton, between, options, change);
         self.statistics += newton.statistics;
         let (event, at) = match &moved {
             None => {
@@ -183,7 +132,7 @@ impl Run<'_> {
             cycle,
             error,
             test: at.test,
-            after: 0,
+            after: zero.after,
             direction: at.point.tangent.clone(),
         })
     }

@@ -67,7 +67,7 @@ impl Run<'_> {
             behind: between.1.clone(),
             switches: None,
         });
-        let side = |point: &CurvePoint| {
+        let side = |_: &mut Equations, point: &CurvePoint| {
             let mut other = other.borrow_mut();
             let before = other.flow.work().switches;
             let counted = other.trace(&point.u, &mut |_| {});

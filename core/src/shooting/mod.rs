@@ -6,7 +6,6 @@
 
 mod at;
 mod bend;
-mod between;
 mod beyond;
 mod checked;
 mod companion;
@@ -18,6 +17,7 @@ mod events;
 mod extremes;
 mod grazing;
 mod halved;
+mod method;
 mod recurrence;
 mod request;
 mod run;

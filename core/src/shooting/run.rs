@@ -4,29 +4,24 @@ use std::ops::ControlFlow;
 
 use nalgebra::DMatrix;
 
-use super::between::{Earlier, Seen, distance as along};
 use super::companion::{Companion, multipliers};
 use super::cycle::{Cycle, CycleEvent, End};
 use super::equations::Equations;
 use super::extremes::{self, Extremes};
-use super::recurrence::{Recurrence, step_on_other_branch};
+use super::method::ShootingBranch;
+use super::recurrence::Recurrence;
 use super::setting::Setting;
-use super::tested::{Change, Tests};
+use crate::branches::engine;
 use crate::branches::error::OrbitError;
-use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
-};
-use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
+use crate::continuation::follow::{FollowOptions, Start, Stop};
+use crate::continuation::newton::{NewtonError, NewtonOptions};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
-use crate::event::{EventKind, Turn};
+use crate::event::Turn;
 use crate::numeric::spectrum::distance;
 use crate::orbit::stability::Stability;
 use crate::time::MotionError;
 use crate::time::{FlowError, Stretch, Work};
-
-/// Test functions are noise below so many times of what must vanish.
-const NOISE: f64 = 10.0;
 
 /// What a run has gathered.
 pub(super) struct Run<'r> {
@@ -36,15 +31,11 @@ pub(super) struct Run<'r> {
     size: f64,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
-    /// Test functions at the last orbits, the newest last.
-    pub(super) earlier: Option<Earlier>,
-    before: Option<Tests>,
-    last: Option<Tests>,
     pub(super) cycles: Vec<Cycle>,
     pub(super) events: Vec<CycleEvent>,
     pub(super) turns: Vec<Turn>,
     /// Why an orbit that was found could not be read.
-    failure: Option<FlowError>,
+    pub(super) failure: Option<FlowError>,
     pub(super) statistics: Statistics,
     /// Work of flows that are no more.
     pub(super) work: Work,
@@ -63,9 +54,6 @@ impl<'r> Run<'r> {
             companion,
             size,
             joined: None,
-            earlier: None,
-            before: None,
-            last: None,
             cycles: Vec::new(),
             events: Vec::new(),
             turns: Vec::new(),
@@ -81,23 +69,17 @@ impl<'r> Run<'r> {
     /// If there is no first orbit.
     pub(super) fn follow(
         &mut self,
-        equations: &mut Equations,
+        equations: Equations,
         start: Start,
         options: FollowOptions,
         visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
     ) -> Result<End, Error> {
-        let mut newton = Newton::new(equations);
-        let outcome = follow(
-            equations,
-            &mut newton,
-            start,
-            options,
-            &mut |equations, newton, seen| self.visit(equations, newton, &seen, visit),
-        );
-        let failure = self.failure.or(equations.failure);
-        self.statistics += newton.statistics;
+        let mut branch = ShootingBranch::new(self, equations, visit);
+        let outcome = engine::run(&mut branch, start, options);
+        branch.count_flows();
+        let failed = branch.equations.failure;
+        let failure = self.failure.or(failed);
         self.statistics += self.companion.newton.statistics;
-        add(&mut self.work, equations.flow.work());
         add(&mut self.work, self.companion.work());
         if let Some(Recurrence { period, odd }) = self.joined {
             return Ok(End::Joined {
@@ -108,13 +90,11 @@ impl<'r> Run<'r> {
         let last = self.cycles.last().map_or(options.from, |cycle| cycle.value);
         let end = match (outcome, failure) {
             (Err(reason), failure) => return Err(no_orbit(options.from, reason, failure)),
-            (Ok(Outcome::Stopped(Stop::StepTooShort { .. })), Some(reason)) => {
+            (Ok(Stop::StepTooShort { .. }), Some(reason)) => {
                 let value = last;
                 End::Motion { value, reason }
             }
-            (Ok(Outcome::Stopped(stop)), _) => End::Stopped(stop),
-            // A walk by shooting is never resized.
-            (Ok(Outcome::Halted(_)), _) => End::Stopped(Stop::Interrupted),
+            (Ok(stop), _) => End::Stopped(stop),
         };
         Ok(match self.failure {
             Some(reason) => End::Motion {
@@ -125,109 +105,14 @@ impl<'r> Run<'r> {
         })
     }
 
-    fn visit(
-        &mut self,
-        equations: &mut Equations,
-        newton: &mut Newton,
-        seen: &Visit<'_>,
-        visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
-    ) -> Continue {
-        match seen {
-            Visit::Again(_) => Continue::Continue(()),
-            Visit::Point(at) => self.point(equations, at, visit).unwrap_or_else(|failure| {
-                self.failure = Some(failure);
-                Continue::Break(Halt::Stop)
-            }),
-            Visit::Between(before, behind) => self.between(equations, newton, before, behind),
-        }
-    }
-
-    fn point(
-        &mut self,
-        equations: &mut Equations,
-        at: &CurvePoint,
-        visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
-    ) -> Result<Continue, FlowError> {
-        let span = equations.span;
-        let odd = self.setting.odd;
-        if !self.cycles.is_empty() && (span.period > 1 || odd) {
-            let recurrence = Recurrence::of(equations, &at.u, self.regular(equations), odd)?;
-            if recurrence.period < span.period || recurrence.odd != span.half {
-                // The step that led here is seen next, and is the last one.
-                self.joined = Some(recurrence);
-                return Ok(Continue::Continue(()));
-            }
-        }
-        let (cycle, map) = self.read(equations, &at.u)?;
-        self.before = self.last.take();
-        self.last = Some(Tests::of(map.as_ref(), at.parameter_slope()));
-        let answer = visit(&cycle);
-        self.cycles.push(cycle);
-        Ok(if answer.is_break() {
-            Continue::Break(Halt::Stop)
-        } else {
-            Continue::Continue(())
-        })
-    }
-
-    fn between(
-        &mut self,
-        equations: &mut Equations,
-        newton: &mut Newton,
-        before: &CurvePoint,
-        behind: &CurvePoint,
-    ) -> Continue {
-        if self.joined.is_some() {
-            let options = self.options;
-            let other = step_on_other_branch(equations, newton, before, behind, options);
-            if let Some(other) = other {
-                self.event(equations, newton, (behind, &other), Change::BRANCHES);
-            }
-            return Continue::Break(Halt::Stop);
-        }
-        if let (Some(a), Some(b)) = (self.before, self.last) {
-            let ends = [(before, a), (behind, b)].map(|(point, tests)| Seen {
-                point: point.clone(),
-                tests,
-            });
-            let parts = self.parts(equations, newton, ends);
-            let noise = NOISE * self.setting.vanishing(equations.frame.ratio);
-            self.earlier = Some(Earlier {
-                distance: along(newton, before, behind),
-                tests: a,
-            });
-            for pair in parts.windows(2) {
-                let step = (&pair[0].point, &pair[1].point);
-                let half = equations.span.half;
-                for change in Tests::changes(pair[0].tests, pair[1].tests, half, noise) {
-                    let known = self.events.len();
-                    self.event(equations, newton, step, change);
-                    if change.kind == EventKind::BranchPoint
-                        && self.events.len() > known
-                        && self.meets(equations)
-                    {
-                        return Continue::Break(Halt::Stop);
-                    }
-                }
-            }
-        }
-        if self.setting.stability
-            && let [.., a, b] = &self.cycles[..]
-            && a.switches != b.switches
-        {
-            self.grazings(equations, newton, (before, behind));
-        }
-        Continue::Continue(())
-    }
-
     /// The size of the orbits, and by what part of it two states differ that are one.
-    fn regular(&self, equations: &Equations) -> (f64, f64) {
+    pub(super) fn regular(&self, equations: &Equations) -> (f64, f64) {
         (self.size, self.setting.same(equations.frame.ratio))
     }
 
     /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
     /// same orbits again, looked at from elsewhere.
-    fn meets(&mut self, equations: &mut Equations) -> bool {
+    pub(super) fn meets(&mut self, equations: &mut Equations) -> bool {
         let odd = self.setting.odd;
         let Some(event) = self.events.last() else {
             return false;

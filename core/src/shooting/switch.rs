@@ -25,8 +25,9 @@ use super::recurrence::Recurrence;
 use super::setting::Setting;
 use super::start::{self, First};
 use crate::branches::error::OrbitError;
+use crate::branches::switch::Departure;
 use crate::continuation::follow::CurvePoint;
-use crate::continuation::newton::{Border, Newton};
+use crate::continuation::newton::Newton;
 use crate::continuation::problem::Scale;
 use crate::error::Error;
 use crate::event::EventKind;
@@ -35,9 +36,6 @@ use crate::time::MotionError;
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.
 pub(super) const DEPARTURES: [f64; 5] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1];
-
-/// An orbit farther away than so many times its component in the direction is one of another branch.
-pub(super) const FARTHEST: f64 = 10.0;
 
 /// An orbit with the direction in which a branch is followed from it.
 pub(super) struct Begun {
@@ -86,13 +84,12 @@ pub(super) fn depart(
     first.settle(setting).map_err(motion)?;
     for departure in DEPARTURES {
         let step = (side * departure, range);
-        if let Some(found) = first_orbit(setting, &mut first, &direction, step) {
-            let (u, point) = found;
+        if let Some(point) = first_orbit(setting, &mut first, &direction, step) {
             let same = (first.size, setting.same(first.equations.frame.ratio));
-            let recurrence = Recurrence::of(&mut first.equations, &u, same, setting.odd);
+            let recurrence = Recurrence::of(&mut first.equations, &point.u, same, setting.odd);
             let is_new = |found: Recurrence| found.period == setting.period && !found.odd;
             if recurrence.is_ok_and(is_new) {
-                first.u = u;
+                first.u.clone_from(&point.u);
                 return Ok(Begun { first, point });
             }
         }
@@ -165,7 +162,7 @@ fn first_orbit(
     first: &mut First,
     direction: &[f64],
     (step, range): (f64, f64),
-) -> Option<(Vec<f64>, CurvePoint)> {
+) -> Option<CurvePoint> {
     let equations = &mut first.equations;
     let mut newton = Newton::new(equations);
     let scale = scale_of(&newton, &first.u, range);
@@ -173,37 +170,14 @@ fn first_orbit(
     let unit: Vec<f64> = direction.iter().map(|x| x / length).collect();
     let mut row = vec![0.0; unit.len()];
     newton.norm().linear_form(scale, &unit, &mut row);
-    let mut u: Vec<f64> = first
-        .u
-        .iter()
-        .zip(&unit)
-        .map(|(x, d)| x + step * d)
-        .collect();
-    let border = Border {
-        row: &row,
-        value: crate::numeric::linear::dot(&row, &u),
-    };
-    let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
-    newton
-        .correct(equations, &mut u, border, scale, options)
-        .ok()?;
-    let moved: Vec<f64> = u.iter().zip(&first.u).map(|(x, y)| x - y).collect();
-    if newton.norm().length(scale, &moved) > FARTHEST * step.abs() {
-        return None;
-    }
-    let mut tangent = vec![0.0; u.len()];
-    newton.tangent(equations, &u, &mut tangent, true);
-    let outwards = step * crate::numeric::linear::dot(&row, &tangent);
-    let length = newton.norm().length(scale, &tangent) * outwards.signum();
-    for t in &mut tangent {
-        *t /= length;
-    }
-    let point = CurvePoint {
-        u: u.clone(),
-        tangent,
+    let departure = Departure {
+        from: &first.u,
+        along: &unit,
+        held: &row,
         scale,
     };
-    Some((u, point))
+    let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
+    departure.first_point(equations, &mut newton, step, options)
 }
 
 fn scale_of(newton: &Newton, u: &[f64], range: f64) -> Scale {

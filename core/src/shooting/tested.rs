@@ -1,4 +1,4 @@
-//! Test functions of a branch: what changes its sign from one orbit to the next, and what that means.
+//! Test functions of a branch. What a change of sign means is told by the [engine](crate::branches::engine).
 //!
 //! With the map `M` of [`equations`](super::equations) and the slope `l'` of the parameter along the branch:
 //!
@@ -18,6 +18,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::branches::problem::{self as engine, Watched};
 use crate::event::EventKind;
 use crate::numeric::spectrum::eigenvalues;
 use crate::orbit::stability::product_of_pairs;
@@ -45,24 +46,36 @@ pub(super) enum Test {
     Pairs,
 }
 
-/// A test function that changed its sign, and what that means.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Change {
-    pub(super) test: Test,
-    pub(super) kind: EventKind,
+/// Those that are watched, in the order of [`Test::watched`].
+pub(super) fn watched(half: bool) -> [Watched; 3] {
+    let plus = if half {
+        EventKind::SymmetryBreaking
+    } else {
+        EventKind::PeriodDoubling
+    };
+    let of = |kind| Watched {
+        kind,
+        bordered: kind == EventKind::BranchPoint,
+    };
+    [EventKind::BranchPoint, plus, EventKind::NeimarkSacker].map(of)
 }
 
-impl Change {
-    /// A branch that another one meets or crosses.
-    pub(super) const BRANCHES: Self = Self {
-        test: Test::Bordered,
-        kind: EventKind::BranchPoint,
-    };
-    /// A branch that turns where it meets another one.
-    pub(super) const TURNED: Self = Self {
-        test: Test::Slope,
-        kind: EventKind::BranchPoint,
-    };
+impl Test {
+    /// By its place among those that are watched.
+    pub(super) fn watched(index: usize) -> Self {
+        match index {
+            0 => Self::Bordered,
+            1 => Self::Plus,
+            _ => Self::Pairs,
+        }
+    }
+
+    pub(super) fn of(test: engine::Test) -> Self {
+        match test {
+            engine::Test::Slope => Self::Slope,
+            engine::Test::Watched(index) => Self::watched(index),
+        }
+    }
 }
 
 impl Tests {
@@ -91,40 +104,5 @@ impl Tests {
             Test::Plus => self.plus,
             Test::Pairs => self.pairs,
         }
-    }
-
-    /// What changes its sign from one orbit to the next. Without maps every turn counts as a fold. Without damping the product of
-    /// pairs is rounding all along, and so is what is below `noise` at both orbits.
-    pub(super) fn changes(a: Self, b: Self, half: bool, noise: f64) -> Vec<Change> {
-        let turned = (a.slope < 0.0) != (b.slope < 0.0);
-        let minus = a.minus * b.minus < 0.0;
-        let known = !a.minus.is_nan() && !b.minus.is_nan();
-        let mut changes = Vec::new();
-        if turned && (minus || !known) {
-            changes.push(Change {
-                test: Test::Slope,
-                kind: EventKind::Fold,
-            });
-        } else if turned {
-            changes.push(Change::TURNED);
-        } else if minus {
-            changes.push(Change::BRANCHES);
-        }
-        if a.plus * b.plus < 0.0 {
-            let kind = if half {
-                EventKind::SymmetryBreaking
-            } else {
-                EventKind::PeriodDoubling
-            };
-            let test = Test::Plus;
-            changes.push(Change { test, kind });
-        }
-        if a.pairs * b.pairs < 0.0 && a.pairs.abs().max(b.pairs.abs()) > noise {
-            changes.push(Change {
-                test: Test::Pairs,
-                kind: EventKind::NeimarkSacker,
-            });
-        }
-        changes
     }
 }

@@ -242,7 +242,8 @@ impl<'p, 'a> Watch<'p, 'a> {
         let find = |curve: &mut Curve<'a>, newton: &mut Newton, options| {
             let slope = CurvePoint::parameter_slope;
             // Where the slopes jump, as at a touch, nothing is born.
-            locate(curve, newton, between, options, VANISHED, slope).filter(|found| found.vanishes)
+            locate(curve, newton, between, options, VANISHED, |_, at| slope(at))
+                .filter(|found| found.vanishes)
         };
         let Some(found) = find(curve, newton, self.options) else {
             return;
@@ -368,7 +369,7 @@ impl<'p, 'a> Watch<'p, 'a> {
     ) -> Option<CurvePoint> {
         // The curve is busy while a test function is evaluated.
         let other = RefCell::new(curve.again(self.setting).ok()?);
-        let value = |at: &CurvePoint| {
+        let value = |_: &mut Curve, at: &CurvePoint| {
             let mut other = other.borrow_mut();
             let counted = counted(&mut other, &at.u);
             let tests = counted.and_then(|(map, many)| self.tests(&other, at, (&map, many), bend));

@@ -5,43 +5,36 @@ use super::watch::{Between, ROUNDING, Test, known, three_quarters};
 use crate::balance::Balance;
 use crate::balance::truncation::BEYOND;
 use crate::branches::point::Event;
-use crate::continuation::crossing::locate_crossing;
+use crate::branches::problem::Zero;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton};
-use crate::event::EventKind;
 
 /// Derivatives along the branch are differences over this part of the step: close by, the matrix of a step is singular.
 const BESIDE: f64 = 0.1;
 /// What interpolation leaves of a determinant at a branch point, as a part of what it is at the ends of the step.
-const CROSSED: f64 = 1e-6;
+pub(super) const CROSSED: f64 = 1e-6;
 
 impl<'a> Run<'a> {
-    /// Locates where another branch crosses, by interpolation: close by, the matrix of a step is singular.
+    /// Reads the orbit where another branch crosses.
     pub(super) fn branch_point(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         between: Between<'_>,
-        test: &mut Test<'_, 'a>,
+        (zero, test): (&Zero, &mut Test<'_, 'a>),
     ) {
-        let kind = EventKind::BranchPoint;
-        let options = self.options.newton;
-        let value = |point: &CurvePoint| test.at(&point.u, &point.tangent);
-        let found = locate_crossing(balance, newton, between, options, value);
-        let Some(found) = found.filter(|found| found.test.abs() <= CROSSED) else {
-            return self.omit(kind, between, f64::NAN);
-        };
-        let shift = self.crossing_shift(balance, newton, between, &found.point, test);
-        let error = BEYOND * shift + found.error + ROUNDING * found.point.parameter().abs();
-        let point = self.reader.read(balance, newton, &found.point.u);
+        let at = &zero.located.point;
+        let shift = self.crossing_shift(balance, newton, between, at, test);
+        let error = BEYOND * shift + zero.error + ROUNDING * at.parameter().abs();
+        let point = self.reader.read(balance, newton, &at.u);
         self.events.push(Event {
-            kind,
+            kind: zero.change.kind,
             point,
             error: known(error),
-            test: found.test,
-            after: self.points.len() - 1,
+            test: zero.located.test,
+            after: zero.after,
             contacts: 0,
-            tangent: found.point.tangent,
+            tangent: at.tangent.clone(),
         });
     }
 

@@ -5,11 +5,11 @@ use crate::balance::subharmonics::{is_shifted, passes_shorter_period};
 use crate::balance::symmetry::{broken, broken_share};
 use crate::balance::{Balance, Resolution};
 use crate::branches::point::Event;
+use crate::branches::problem::{Kept, Zero};
 use crate::continuation::follow::{CurvePoint, Stop};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Norm;
-use crate::event::{EventKind, Turn};
 
 /// The test function of a fold is driven below this.
 pub(super) const FOLD_TOLERANCE: f64 = 1e-10;
@@ -23,37 +23,6 @@ const BEYOND_NEWTON: f64 = 100.0;
 const LEFT: f64 = 0.05;
 
 impl Run<'_> {
-    /// Locates the fold between two points, or the jump that is there instead, behind so many points of the branch: the one behind the
-    /// turn has been stored already.
-    pub(super) fn turn(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
-        after: usize,
-    ) {
-        let slope = CurvePoint::parameter_slope;
-        let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, fold: &Located| {
-            run.fold(b, n, fold, after);
-        };
-        let Err(jump) = self.locate_zero(balance, newton, between, slope, read) else {
-            return;
-        };
-        let (value, test) = jump.map_or_else(
-            || {
-                let (a, b) = between;
-                (0.5 * (a.parameter() + b.parameter()), a.parameter_slope())
-            },
-            |jump| (jump.point.parameter(), jump.test),
-        );
-        self.turns.push(Turn {
-            kind: EventKind::Fold,
-            value,
-            test,
-            after,
-        });
-    }
-
     /// Locates the zero of a test function between two points, with core and tail, or else with the whole system, and has it read
     /// while Newton's method holds its factors.
     ///
@@ -68,7 +37,14 @@ impl Run<'_> {
         mut read: impl FnMut(&mut Self, &mut Balance<'_>, &mut Newton, &Located),
     ) -> Result<(), Option<Located>> {
         let options = self.options.newton;
-        let found = locate(balance, newton, between, options, FOLD_TOLERANCE, &test);
+        let found = locate(
+            balance,
+            newton,
+            between,
+            options,
+            FOLD_TOLERANCE,
+            |_, at| test(at),
+        );
         if let Some(zero) = found.as_ref().filter(|located| located.vanishes) {
             read(self, balance, newton, zero);
             return Ok(());
@@ -86,7 +62,7 @@ impl Run<'_> {
                 between,
                 options,
                 FOLD_TOLERANCE,
-                &test,
+                |_, at| test(at),
             );
             let zero = again.filter(|located| located.vanishes);
             if let Some(zero) = &zero {
@@ -100,15 +76,21 @@ impl Run<'_> {
         Err(found)
     }
 
-    /// Reads a fold that was located. One of longer orbits that was passed before, but for a shift in time, is the sign of a
-    /// branch that closes after a part of the period.
-    fn fold(
+    /// Reads a fold that was located, or a place where the branch ends on another one. A fold of longer orbits that was passed before,
+    /// but for a shift in time, is the sign of a branch that closes after a part of the period.
+    pub(super) fn fold(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        located: &Located,
-        after: usize,
-    ) {
+        zero: &Zero,
+    ) -> Kept {
+        let Zero {
+            change,
+            located,
+            after,
+            ..
+        } = zero;
+        let (kind, after) = (change.kind, *after);
         let u = &located.point.u;
         let error = self.reader.finer.fold_error(u, newton);
         let point = self.reader.read(balance, newton, u);
@@ -120,20 +102,16 @@ impl Run<'_> {
             let range = (self.options.to - self.options.from).abs();
             // The two folds of a narrow hysteresis turn opposite ways.
             let alike = turns(other.after, other.point.value) == same_way;
-            other.kind == EventKind::Fold
-                && alike
-                && errors.is_finite()
-                && apart <= errors + 1e-9 * range
+            other.kind == kind && alike && errors.is_finite() && apart <= errors + 1e-9 * range
         };
         let mut passed = self.events.iter().filter(near);
         if point.orbit.period > 1
             && passed.any(|other| is_shifted(&other.point.orbit, &point.orbit))
         {
-            self.ended = Some(Stop::Closed);
-            return;
+            return Kept::Ends(Stop::Closed);
         }
         self.events.push(Event {
-            kind: EventKind::Fold,
+            kind,
             point,
             error,
             test: located.test,
@@ -141,6 +119,7 @@ impl Run<'_> {
             contacts: 0,
             tangent: Vec::new(),
         });
+        Kept::Event
     }
 
     /// Whether the branch has passed an orbit of a shorter period, or a symmetric one, since its last point: what its orbits have
@@ -177,7 +156,7 @@ impl Run<'_> {
         let period = joined.map_or(last.orbit.period, |joined| joined.period);
         let options = self.options.newton;
         let between = (before, behind);
-        let along = |point: &CurvePoint| addition(point).along();
+        let along = |_: &mut Balance<'_>, point: &CurvePoint| addition(point).along();
         let value = match locate(balance, newton, between, options, JOINED, along) {
             // It turned, and did not vanish: the branch goes on.
             Some(located) if addition(&located.point).size() > LEFT => return false,

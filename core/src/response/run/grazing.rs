@@ -134,7 +134,8 @@ impl<'a> Run<'a> {
         };
         if let Some(found) = closed_in(balance, newton) {
             let mut test = Test::Touch(touches, *extreme);
-            return self.located(balance, newton, between, kind, (&mut test, &found));
+            let found = (&mut test, &found, self.points.len() - 1);
+            return self.located(balance, newton, between, kind, found);
         }
         if self.resolution.core < self.resolution.harmonics {
             // What core and tail cannot locate, the whole system may.
@@ -146,7 +147,8 @@ impl<'a> Run<'a> {
             let found = closed_in(&mut whole, &mut newton);
             if let Some(found) = &found {
                 let mut test = Test::Touch(touches, *extreme);
-                self.located(&mut whole, &mut newton, between, kind, (&mut test, found));
+                let found = (&mut test, found, self.points.len() - 1);
+                self.located(&mut whole, &mut newton, between, kind, found);
             }
             self.statistics += newton.statistics;
             if found.is_some() {

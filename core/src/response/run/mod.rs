@@ -4,7 +4,7 @@
 mod crossed;
 mod events;
 mod grazing;
-mod hidden;
+mod method;
 mod touch;
 mod watch;
 
@@ -12,12 +12,11 @@ use std::ops::ControlFlow;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
+use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
-use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit,
-    follow_until_stuck,
-};
+use crate::branches::problem::Read;
+use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Stop};
 use crate::continuation::newton::{Border, Newton, NewtonError};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
@@ -25,6 +24,7 @@ use crate::event::Turn;
 use crate::numeric::fourier::series;
 use crate::response::follower::Follower;
 use crate::response::reader::Reader;
+use method::BalanceBranch;
 use watch::Watch;
 
 /// The core grows when updates shrink by less than this at so many points in succession.
@@ -34,6 +34,15 @@ const SLOW_POINTS: usize = 2;
 const ROUNDINGS: f64 = 100.0;
 /// A core that no number of harmonics exceeds.
 const ALL: usize = 1 << 24;
+
+/// A branch as it was followed.
+pub(crate) struct Followed {
+    pub(crate) stopped: Stop,
+    pub(crate) points: Vec<Point>,
+    pub(crate) events: Vec<Event>,
+    pub(crate) turns: Vec<Turn>,
+    pub(crate) statistics: Statistics,
+}
 
 /// What a run has gathered.
 pub(crate) struct Run<'a> {
@@ -49,14 +58,10 @@ pub(crate) struct Run<'a> {
     chooser: Option<Chooser>,
     /// The resolution asked for when the walk was halted.
     wanted: Resolution,
-    /// The point before the last step.
-    earlier: Option<CurvePoint>,
-    /// Number of points before the last step in which two folds were hidden.
-    split: Option<usize>,
-    /// The last point was refused and is to be read again.
-    refused: bool,
+    /// The resolution before it was changed last, and the core then.
+    former: Option<(Resolution, usize)>,
     slow: usize,
-    /// Why the walk was ended from here.
+    /// What the branch ended on.
     ended: Option<Stop>,
     pub(crate) points: Vec<Point>,
     pub(crate) events: Vec<Event>,
@@ -78,9 +83,7 @@ impl<'a> Run<'a> {
             watch: Watch::new(follower, resolution),
             chooser: follower.chooser.clone(),
             wanted: resolution,
-            earlier: None,
-            split: None,
-            refused: false,
+            former: None,
             slow: 0,
             ended: None,
             points: Vec::new(),
@@ -95,63 +98,38 @@ impl<'a> Run<'a> {
     /// # Errors
     /// If there is no first point.
     pub(crate) fn follow(
-        &mut self,
-        mut start: Start,
-        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
-    ) -> Result<Stop, Error> {
-        // Where the walk was halted last, in case that another resolution fails there.
-        let mut last: Option<(Box<Halted>, Resolution, usize)> = None;
+        mut self,
+        start: Start,
+        visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
+    ) -> Result<Followed, Error> {
         if matches!(start, Start::Along(_)) {
             // Where another branch is near, what the tail leaves out decides between the two.
             self.couple_all();
-            self.reader = self.follower.reader(self.resolution);
-            self.watch = Watch::new(self.follower, self.resolution);
+            self.renew();
         }
-        loop {
-            let begun = start.clone();
-            let mut balance = self.follower.balance(self.resolution);
-            let mut newton = Newton::new(&balance);
-            let options = self.options;
-            let mut stuck = None;
-            let outcome = follow_until_stuck(
-                &mut balance,
-                &mut newton,
-                start,
-                options,
-                &mut |b, n, seen| self.visit(b, n, &seen, visit),
-                &mut stuck,
-            );
-            self.statistics += newton.statistics;
-            self.count_others();
-            match outcome {
-                Ok(Outcome::Stopped(stop)) => {
-                    let Some(halted) = stuck.filter(|_| self.has_tail()) else {
-                        return Ok(self.ended.unwrap_or(stop));
-                    };
-                    self.couple_all();
-                    start = Start::At(halted);
-                }
-                Ok(Outcome::Halted(halted)) => {
-                    start = Start::At(Box::new(self.resized(&halted, &balance)));
-                    last = Some((halted, self.resolution, self.core_before));
-                    self.resolution = self.wanted;
-                }
-                Err(_) if self.has_tail() => {
-                    self.couple_all();
-                    start = begun;
-                }
-                Err(reason) => {
-                    let Some((halted, resolution, core)) = last.take() else {
-                        return self.lost(reason);
-                    };
-                    // What was found with the former resolution stands, and is read with its error.
-                    self.settle(resolution, core);
-                    start = Start::At(halted);
-                }
-            }
-            self.reader = self.follower.reader(self.resolution);
-            self.watch = Watch::new(self.follower, self.resolution);
-        }
+        let options = self.options;
+        let mut branch = BalanceBranch::new(self, visit);
+        let stopped = engine::run(&mut branch, start, options);
+        let mut run = branch.run;
+        run.count_others();
+        let stopped = match stopped {
+            Ok(stop) => run.ended.unwrap_or(stop),
+            Err(reason) => run.lost(reason)?,
+        };
+        Ok(Followed {
+            stopped,
+            points: run.points,
+            events: run.events,
+            turns: run.turns,
+            statistics: run.statistics,
+        })
+    }
+
+    /// Reads and watches orbits of the resolution from here on.
+    fn renew(&mut self) {
+        self.count_others();
+        self.reader = self.follower.reader(self.resolution);
+        self.watch = Watch::new(self.follower, self.resolution);
     }
 
     /// Whether harmonics are coupled to the core alone.
@@ -167,15 +145,16 @@ impl<'a> Run<'a> {
         self.wanted = self.resolution;
     }
 
-    /// The state of a halted walk in the resolution wanted.
-    fn resized(&self, halted: &Halted, balance: &Balance<'_>) -> Halted {
+    /// Puts a halted walk into the resolution wanted.
+    fn remap(&mut self, halted: &mut Halted) {
         let length = series::length(self.wanted.harmonics);
-        let coordinates = balance.layout().coordinates;
-        let mut resized = halted.clone();
-        for vector in resized.vectors() {
+        let coordinates = self.follower.system.facts().coordinates.len();
+        for vector in halted.vectors() {
             *vector = resize(vector, coordinates, length);
         }
-        resized
+        self.former = Some((self.resolution, self.core_before));
+        self.resolution = self.wanted;
+        self.renew();
     }
 
     /// No orbit where the walk begins: no branch at all, or the end of the one that there is.
@@ -194,14 +173,18 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Returns to a resolution and keeps it for some points.
-    fn settle(&mut self, resolution: Resolution, core: usize) {
+    /// Returns to the former resolution and keeps it for some points.
+    fn revert(&mut self) {
+        let Some((resolution, core)) = self.former.take() else {
+            return;
+        };
         self.resolution = resolution;
         self.wanted = resolution;
         self.core = core;
         if let Some(chooser) = &mut self.chooser {
             chooser.keep();
         }
+        self.renew();
     }
 
     /// Adds the work that Newton's method does not count.
@@ -213,71 +196,28 @@ impl<'a> Run<'a> {
         self.statistics.factorisations += determinants;
     }
 
-    fn visit(
+    /// Reads a point, and decides on the resolution of the next one.
+    fn read(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        seen: &Visit<'_>,
-        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
-    ) -> Continue {
-        match seen {
-            Visit::Again(_) if !self.refused => Continue::Continue(()),
-            // It belongs to what comes after the end, which is located between this point and the one before.
-            Visit::Point(at) if self.joins(&at.u) => Continue::Continue(()),
-            Visit::Point(at) | Visit::Again(at) => {
-                let point = self.reader.read(balance, newton, &at.u);
-                self.choose(&point, newton.contraction());
-                let change = self.wanted != self.resolution;
-                self.refused = self.wanted.harmonics > self.resolution.harmonics;
-                if self.refused {
-                    return Continue::Break(Halt::Resize);
-                }
-                let answer = visit(&point);
-                self.points.push(point);
-                if answer.is_break() {
-                    Continue::Break(Halt::Stop)
-                } else if change {
-                    Continue::Break(Halt::Resize)
-                } else {
-                    Continue::Continue(())
-                }
-            }
-            Visit::Between(before, behind) => self.step(balance, newton, (before, behind), visit),
+        at: &CurvePoint,
+        visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
+    ) -> Read {
+        let point = self.reader.read(balance, newton, &at.u);
+        self.choose(&point, newton.contraction());
+        let change = self.wanted != self.resolution;
+        if self.wanted.harmonics > self.resolution.harmonics {
+            return Read::Refused;
         }
-    }
-
-    /// Looks at the step between two points.
-    fn step(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        (before, behind): (&CurvePoint, &CurvePoint),
-        visit: &mut impl FnMut(&Point) -> ControlFlow<()>,
-    ) -> Continue {
-        if self.joins(&behind.u) {
-            if self.join(balance, newton, (before, behind)) {
-                return Continue::Break(Halt::Stop);
-            }
-            // It only seemed to belong to what comes after the end. The walk cannot be halted here for more harmonics, so
-            // that the point stands with the error it has.
-            let point = self.read_again(balance, newton, behind);
-            let answer = visit(&point);
-            self.points.push(point);
-            if answer.is_break() {
-                return Continue::Break(Halt::Stop);
-            }
-        }
-        let known = self.turns.len();
-        if (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0) {
-            self.turn(balance, newton, (before, behind), self.points.len() - 1);
-        }
-        let turned = self.turns.get(known).copied();
-        self.hidden(balance, newton, (before, behind));
-        self.look_between(balance, newton, (before, behind), turned);
-        if self.ended.is_some() {
-            Continue::Break(Halt::Stop)
+        let answer = visit(&point);
+        self.points.push(point);
+        if answer.is_break() {
+            Read::Stop
+        } else if change {
+            Read::Resize
         } else {
-            Continue::Continue(())
+            Read::Kept
         }
     }
 

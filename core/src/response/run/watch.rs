@@ -25,6 +25,7 @@ use crate::balance::resolution::resize;
 use crate::balance::truncation::BEYOND;
 use crate::balance::{Balance, Resolution};
 use crate::branches::point::{Event, Point};
+use crate::branches::problem::{self as engine, TestValue, Watched};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::Located;
 use crate::continuation::newton::Newton;
@@ -73,11 +74,13 @@ impl Test<'_, '_> {
 /// What is watched along a branch, at one resolution.
 #[derive(Debug, Default)]
 pub(super) struct Watch<'a> {
-    blocks: Vec<Block<'a>>,
-    pairs: Option<Pairs<'a>>,
-    touches: Option<Touches<'a>>,
+    /// Test functions: of the blocks, then of the pairs.
+    pub(super) watched: Vec<Watched>,
+    pub(super) blocks: Vec<Block<'a>>,
+    pub(super) pairs: Option<Pairs<'a>>,
+    pub(super) touches: Option<Touches<'a>>,
     /// Extremes at the ends of the step looked at.
-    extremes: [Vec<Extreme>; 2],
+    pub(super) extremes: [Vec<Extreme>; 2],
 }
 
 impl<'a> Watch<'a> {
@@ -86,11 +89,38 @@ impl<'a> Watch<'a> {
         let all = follower.sought == Sought::All;
         // Two multipliers on the unit circle, of one coordinate, are there with no damping only.
         let pairs = all && follower.stability.is_some() && coordinates > 1;
+        let blocks = follower.blocks(resolution);
+        let mut watched: Vec<Watched> = blocks.iter().map(|block| watched(block.part)).collect();
+        watched.extend(pairs.then_some(Watched {
+            kind: EventKind::NeimarkSacker,
+            bordered: false,
+        }));
         Self {
-            blocks: follower.blocks(resolution),
+            watched,
+            blocks,
             pairs: pairs.then(|| Pairs::new(follower.balance(resolution))),
             touches: all.then(|| Touches::new(follower.balance(resolution))),
             extremes: Default::default(),
+        }
+    }
+
+    /// Value of a test function; pairs are looked at only where some are `near` the unit circle.
+    pub(super) fn value(&mut self, index: usize, at: &CurvePoint, near: bool) -> TestValue {
+        if let Some(block) = self.blocks.get_mut(index) {
+            let (mantissa, exponent) = block.determinant_along(&at.u, &at.tangent);
+            return TestValue { mantissa, exponent };
+        }
+        let pairs = self.pairs.as_mut().filter(|_| near);
+        pairs.map_or(TestValue::UNKNOWN, |pairs| {
+            TestValue::plain(pairs.product(&at.u).0)
+        })
+    }
+
+    /// Whether the matrix of Newton's method is singular where a test function vanishes.
+    pub(super) fn is_bordered(&self, test: engine::Test) -> bool {
+        match test {
+            engine::Test::Slope => true,
+            engine::Test::Watched(index) => self.watched[index].bordered,
         }
     }
 
@@ -108,86 +138,17 @@ impl<'a> Watch<'a> {
 pub(super) type Between<'b> = (&'b CurvePoint, &'b CurvePoint);
 
 impl<'a> Run<'a> {
-    /// Locates everything but folds between two points, and where the branch `turned` back without one.
-    pub(super) fn look_between(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        between: Between<'_>,
-        turned: Option<Turn>,
-    ) {
-        let mut watch = std::mem::take(&mut self.watch);
-        for block in &mut watch.blocks {
-            self.determinant(balance, newton, between, block);
-        }
-        if let Some(pairs) = &mut watch.pairs {
-            self.torus(balance, newton, between, pairs);
-        }
-        if let Some(touches) = &mut watch.touches {
-            self.grazing(
-                balance,
-                newton,
-                between,
-                (touches, &mut watch.extremes),
-                turned,
-            );
-        }
-        self.watch = watch;
-    }
-
-    /// Where the determinant of a block changes its sign.
-    fn determinant(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        between: Between<'_>,
-        block: &mut Block<'a>,
-    ) {
-        let part = block.part;
-        let mut at = |point: &CurvePoint| block.determinant_along(&point.u, &point.tangent);
-        let (a, b) = (at(between.0), at(between.1));
-        // A block that is singular at a point counts for one side, so that its event belongs to one step.
-        if (a.0 < 0.0) == (b.0 < 0.0) || a.0.is_nan() || b.0.is_nan() {
-            return;
-        }
-        let mut test = Test::Block(block, Some(a.1.max(b.1)));
-        if part == Part::Own {
-            self.branch_point(balance, newton, between, &mut test);
-        } else {
-            self.event(balance, newton, between, part.kind(), &mut test);
-        }
-    }
-
-    /// Where a pair of complex multipliers crosses the unit circle.
-    fn torus(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        between: Between<'_>,
-        pairs: &mut Pairs<'a>,
-    ) {
-        let count = self.points.len();
+    /// Whether a pair of complex multipliers is near the unit circle at one of the last two points.
+    pub(super) fn is_near_circle(&self) -> bool {
         let near = |point: &Point| {
             let multipliers = &point.stability.multipliers;
             let complex = multipliers.iter().filter(|m| m.im > 0.0);
             let mut distances = complex.map(|m| (m.norm_sqr() - 1.0).abs());
             distances.any(|distance| distance < NEAR_CIRCLE)
         };
-        // The points of the step are the last two.
-        if !self.points[count.saturating_sub(2)..].iter().any(near) {
-            return;
-        }
-        let (a, b) = (pairs.product(&between.0.u), pairs.product(&between.1.u));
-        if a.0 * b.0 < 0.0 && a.1 && b.1 {
-            let mut test = Test::Pairs(pairs);
-            self.event(
-                balance,
-                newton,
-                between,
-                EventKind::NeimarkSacker,
-                &mut test,
-            );
-        }
+        self.points[self.points.len().saturating_sub(2)..]
+            .iter()
+            .any(near)
     }
 
     /// Records what could not be located.
@@ -214,7 +175,8 @@ impl<'a> Run<'a> {
         let value = |point: &CurvePoint| cell.borrow_mut().at(&point.u, &point.tangent);
         let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, found: &Located| {
             let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
-            run.located(b, n, between, kind, (test, found));
+            let after = run.points.len() - 1;
+            run.located(b, n, between, kind, (test, found, after));
         };
         if self
             .locate_zero(balance, newton, between, value, read)
@@ -231,7 +193,7 @@ impl<'a> Run<'a> {
         newton: &mut Newton,
         (before, behind): Between<'_>,
         kind: EventKind,
-        (test, located): (&mut Test<'_, 'a>, &Located),
+        (test, located, after): (&mut Test<'_, 'a>, &Located, usize),
     ) {
         let u = &located.point.u;
         let left = newton.left_in_parameter();
@@ -249,7 +211,7 @@ impl<'a> Run<'a> {
             point,
             error,
             test: located.test,
-            after: self.points.len() - 1,
+            after,
             contacts: usize::from(matches!(kind, EventKind::Grazing { .. })),
             tangent: Vec::new(),
         });
@@ -321,6 +283,14 @@ impl<'a> Run<'a> {
     pub(super) fn with_harmonics_of(&self, v: &[f64], resolution: Resolution) -> Vec<f64> {
         let coordinates = self.follower.system.facts().coordinates.len();
         resize(v, coordinates, series::length(resolution.harmonics))
+    }
+}
+
+/// What a block tells. The determinant of all of the Jacobian has the tangent as its border.
+fn watched(part: Part) -> Watched {
+    Watched {
+        kind: part.kind(),
+        bordered: part == Part::Own,
     }
 }
 

@@ -1,0 +1,274 @@
+//! A branch of algebraic equations, all of whose events are known:
+//!
+//! ```text
+//! x^3 - 3 x = lambda,     y (x - 3/2) - y^3 = 0,     z = x^2 (only on a part of the branch)                         (1)
+//! ```
+//!
+//! On the branch `y = 0` there are folds at `x = -1` and `1`, and the branch `y^2 = x - 3/2` crosses at `x = 3/2`. A function that
+//! vanishes at `x = 1/2` plays a doubling, and one that vanishes at `x = 1.70` and `1.71` two of them within a step.
+
+use nalgebra::DMatrix;
+
+use super::run;
+use crate::branches::problem::{BranchProblem, Change, Kept, Read, Step, TestValue, Watched, Zero};
+use crate::branches::switch::Departure;
+use crate::branches::value::{Chord, chain, solutions};
+use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Stop};
+use crate::continuation::jacobian::Jacobian;
+use crate::continuation::locate::Located;
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::{Problem, Scale};
+use crate::continuation::step::StepControl;
+use crate::event::{EventKind, Turn};
+
+const WATCHED: [Watched; 3] = [
+    Watched {
+        kind: EventKind::BranchPoint,
+        bordered: true,
+    },
+    Watched {
+        kind: EventKind::PeriodDoubling,
+        bordered: false,
+    },
+    Watched {
+        kind: EventKind::NeimarkSacker,
+        bordered: false,
+    },
+];
+
+#[derive(Default)]
+struct Algebraic {
+    /// Whether `z` is an unknown.
+    three: bool,
+    points: Vec<Vec<f64>>,
+    events: Vec<(EventKind, f64)>,
+    turns: Vec<Turn>,
+}
+
+impl Problem for Algebraic {
+    fn unknowns(&self) -> usize {
+        if self.three { 3 } else { 2 }
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
+        let (x, y, parameter) = (u[0], u[1], u[u.len() - 1]);
+        residual[0] = x * x * x - 3.0 * x - parameter;
+        residual[1] = y * (x - 1.5) - y * y * y;
+        if self.three {
+            residual[2] = u[2] - x * x;
+        }
+        let Some(jacobian) = jacobian else { return };
+        jacobian.core_mut().row_mut(0)[0] = 3.0 * x * x - 3.0;
+        jacobian.core_mut().row_mut(1)[0] = y;
+        jacobian.core_mut().row_mut(1)[1] = x - 1.5 - 3.0 * y * y;
+        let mut column = vec![0.0; self.unknowns()];
+        column[0] = -1.0;
+        if self.three {
+            jacobian.core_mut().row_mut(2)[0] = -2.0 * x;
+            jacobian.core_mut().row_mut(2)[2] = 1.0;
+        }
+        jacobian.set_column(&column);
+    }
+
+    fn weights(&self, weights: &mut [f64]) {
+        weights.fill(1.0);
+    }
+
+    fn is_mean(&self, _: usize) -> bool {
+        false
+    }
+}
+
+impl BranchProblem for Algebraic {
+    fn equations(&mut self) -> &mut dyn Problem {
+        self
+    }
+
+    fn watched(&self) -> &[Watched] {
+        &WATCHED
+    }
+
+    fn test(&mut self, index: usize, at: &CurvePoint, _: bool) -> TestValue {
+        let (x, y) = (at.u[0], at.u[1]);
+        TestValue::plain(match index {
+            // z = x^2 has one on its diagonal, and adds to the border what x has.
+            0 => {
+                let [t, s, l] = [0, 1, at.u.len() - 1].map(|i| at.tangent[i]);
+                let t = if self.three {
+                    t + 2.0 * x * at.tangent[2]
+                } else {
+                    t
+                };
+                let rows = [
+                    [3.0 * x * x - 3.0, 0.0, -1.0],
+                    [y, x - 1.5 - 3.0 * y * y, 0.0],
+                    [t, s, l],
+                ];
+                DMatrix::from_fn(3, 3, |i, j| rows[i][j]).determinant()
+            }
+            1 => x - 0.5,
+            _ => (x - 1.70) * (x - 1.71),
+        })
+    }
+
+    fn aim(&self) -> f64 {
+        1e-12
+    }
+
+    fn vanishes(&mut self, _: Change, located: &Located) -> bool {
+        located.test.abs() <= 1e-9
+    }
+
+    fn points(&self) -> usize {
+        self.points.len()
+    }
+
+    fn read(&mut self, _: &mut Newton, at: &CurvePoint) -> Read {
+        self.points.push(at.u.clone());
+        // From here on, and for a while.
+        if [20, 60].contains(&self.points.len()) {
+            Read::Resize
+        } else {
+            Read::Kept
+        }
+    }
+
+    fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> Kept {
+        let at = &zero.located.point;
+        self.events.push((zero.change.kind, at.u[0]));
+        Kept::Event
+    }
+
+    fn keep_turn(&mut self, turn: Turn) {
+        self.turns.push(turn);
+    }
+
+    fn remap(&mut self, halted: &mut Halted) {
+        self.three = !self.three;
+        for vector in halted.vectors() {
+            if self.three {
+                vector.insert(2, 0.0);
+            } else {
+                vector.remove(2);
+            }
+        }
+    }
+
+    fn count(&mut self, _: &Newton) {}
+}
+
+const OPTIONS: FollowOptions = FollowOptions {
+    from: -8.0,
+    to: 8.0,
+    points: 2000,
+    steps: StepControl {
+        initial: 0.01,
+        smallest: 1e-9,
+        largest: 0.1,
+        range: 0.015,
+        angle: 0.2,
+        distance: 0.003,
+    },
+    newton: NewtonOptions {
+        tolerance: 1e-11,
+        iterations: 12,
+        damped: false,
+    },
+};
+
+fn followed(from: f64, to: f64, start: Start) -> (Algebraic, Stop) {
+    let mut branch = Algebraic::default();
+    let options = FollowOptions {
+        from,
+        to,
+        ..OPTIONS
+    };
+    let stop = run(&mut branch, start, options).unwrap();
+    (branch, stop)
+}
+
+/// All of them in both directions, while the number of unknowns changes twice.
+#[test]
+fn every_event_is_found_where_it_is() {
+    let known = [
+        (EventKind::Fold, -1.0),
+        (EventKind::PeriodDoubling, 0.5),
+        (EventKind::Fold, 1.0),
+        (EventKind::BranchPoint, 1.5),
+        (EventKind::NeimarkSacker, 1.70),
+        (EventKind::NeimarkSacker, 1.71),
+    ];
+    for (from, to, x) in [(-8.0, 8.0, -2.4), (8.0, -8.0, 2.4)] {
+        let (mut branch, stop) = followed(from, to, Start::Near(vec![x, 0.0, from]));
+        assert_eq!((stop, &branch.turns[..]), (Stop::ReachedEnd, &[][..]));
+        assert!(branch.points.iter().any(|u| u.len() == 4));
+        branch.events.sort_by(|a, b| a.1.total_cmp(&b.1));
+        assert_eq!(branch.events.len(), known.len(), "{:?}", branch.events);
+        for ((kind, at), (wanted, exact)) in branch.events.iter().zip(known) {
+            assert!(
+                *kind == wanted && (at - exact).abs() < 1e-9,
+                "{kind} at {at}"
+            );
+        }
+    }
+}
+
+/// Between the folds the branch has three solutions at a value.
+#[test]
+fn solutions_at_a_value_are_the_roots_of_the_cubic() {
+    let (branch, _) = followed(-8.0, 8.0, Start::Near(vec![-2.4, 0.0, -8.0]));
+    let [x, y] = [-1.0, 1.0].map(|x: f64| vec![x, 0.0, x * x * x - 3.0 * x]);
+    let plain = |u: &[f64]| vec![u[0], u[1], u[u.len() - 1]];
+    let points: Vec<Vec<f64>> = branch.points.iter().map(|u| plain(u)).collect();
+    let after = |fold: f64| points.iter().filter(|u| u[0] < fold).count();
+    let turns = [(after(-1.0), &x), (after(1.0), &y)];
+    let found = solutions(
+        &chain(&points, &turns),
+        1.0,
+        |u| u[2],
+        |[a, b]| {
+            let mut problem = Algebraic::default();
+            let mut newton = Newton::new(&problem);
+            let chord = Chord {
+                ends: [a.clone(), b.clone()],
+                range: 16.0,
+                tolerance: 1e-13,
+            };
+            let found = chord.at(&mut problem, &mut newton, 1.0, OPTIONS.newton);
+            found.map(|found| found.point.u).ok_or(())
+        },
+        |a, b| (a[0] - b[0]).abs() < 1e-9,
+    );
+    // x^3 - 3 x = 1 has the roots 2 cos(pi/9 + 2 pi k/3).
+    let exact = [7, 5, 1].map(|k| 2.0 * (f64::from(k) * std::f64::consts::PI / 9.0).cos());
+    let found = found.unwrap();
+    assert_eq!(found.len(), exact.len());
+    for (u, x) in found.iter().zip(exact) {
+        assert!((u[0] - x).abs() < 1e-10, "{} {x}", u[0]);
+    }
+}
+
+/// Onto the other branch, `y^2 = x - 3/2`, on both sides.
+#[test]
+fn the_branch_that_crosses_is_followed() {
+    let from = [1.5, 0.0, 1.5_f64.powi(3) - 4.5];
+    let along = [0.0, 1.0, 0.0];
+    for side in [-1.0, 1.0] {
+        let mut problem = Algebraic::default();
+        let mut newton = Newton::new(&problem);
+        let departure = Departure {
+            from: &from,
+            along: &along,
+            held: &along,
+            scale: Scale::UNIT,
+        };
+        let step = 0.01 * side;
+        let first = departure.first_point(&mut problem, &mut newton, step, OPTIONS.newton);
+        let start = Start::Along(Box::new(first.unwrap()));
+        let (branch, stop) = followed(from[2], 8.0, start);
+        assert_eq!(stop, Stop::ReachedEnd);
+        for u in &branch.points {
+            assert!((u[1] * u[1] - (u[0] - 1.5)).abs() < 1e-10 && u[1] * side > 0.0);
+        }
+    }
+}

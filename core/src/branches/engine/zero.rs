@@ -1,0 +1,153 @@
+//! Locates where a test function vanishes between two points, and has the orbit there read.
+
+use super::{Engine, Seen};
+use crate::branches::problem::{BranchProblem, Change, Kept, Step, Test, TestValue, Zero};
+use crate::continuation::crossing::locate_crossing;
+use crate::continuation::follow::{CurvePoint, Stop};
+use crate::continuation::locate::{Located, locate};
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::event::{EventKind, Turn};
+
+/// What came of a change of sign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Recorded {
+    /// An event, or nothing.
+    Found,
+    /// The branch ends there.
+    Ends(Stop),
+    /// A place that is none.
+    Turn(Turn),
+}
+
+/// A step in which a test function changes its sign, behind so many points of the branch.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Search<'s> {
+    pub(crate) step: Step<'s>,
+    pub(crate) change: Change,
+    /// Values of the test function at both ends.
+    pub(crate) ends: [TestValue; 2],
+    pub(crate) after: usize,
+    pub(crate) options: NewtonOptions,
+}
+
+impl Engine {
+    /// Locates an event and keeps it, or the place where the test function jumps, which is returned.
+    pub(super) fn record(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        [a, b]: [&Seen; 2],
+        change: Change,
+        after: usize,
+    ) -> Option<Turn> {
+        let search = Search {
+            step: (&a.point, &b.point),
+            change,
+            ends: [a, b].map(|seen| seen.value(change.test)),
+            after,
+            options: self.options.newton,
+        };
+        match search.record(problem, newton) {
+            Recorded::Found => None,
+            Recorded::Ends(stop) => {
+                self.ended = Some(stop);
+                None
+            }
+            Recorded::Turn(turn) => Some(turn),
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Locates an event, with what the matrix has now or else with more of the equations in it, and keeps it; or the place where the test
+    /// function jumps.
+    pub(crate) fn record(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Recorded {
+        let (mut kept, jump) = self.search(problem, newton);
+        let stronger = kept == Kept::Unread && !is_crossing(problem, self.change);
+        if stronger && problem.strengthen_for_one(true) {
+            let mut newton = Newton::new(problem.equations());
+            kept = self.search(problem, &mut newton).0;
+            problem.count(&newton);
+            problem.strengthen_for_one(false);
+        }
+        match kept {
+            Kept::Event | Kept::Nothing => return Recorded::Found,
+            Kept::Ends(stop) => return Recorded::Ends(stop),
+            Kept::Unread => {}
+        }
+        let middle = 0.5 * (self.step.0.parameter() + self.step.1.parameter());
+        let (value, test) = jump.map_or_else(
+            || (middle, self.ends[0].relative_to(self.reference())),
+            |jump| (jump.point.parameter(), jump.test),
+        );
+        let turn = Turn {
+            kind: self.change.kind,
+            value,
+            test,
+            after: self.after,
+        };
+        problem.keep_turn(turn);
+        Recorded::Turn(turn)
+    }
+
+    /// Determinants are in units of the larger one of those at both ends.
+    fn reference(&self) -> f64 {
+        self.ends[0].exponent.max(self.ends[1].exponent)
+    }
+
+    /// What became of the zero, and where the function jumps instead.
+    fn search(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+    ) -> (Kept, Option<Located>) {
+        let Some((located, error)) = self.located(problem, newton) else {
+            return (Kept::Unread, None);
+        };
+        if !problem.vanishes(self.change, &located) {
+            return (Kept::Unread, Some(located));
+        }
+        let zero = Zero {
+            change: self.change,
+            located,
+            error,
+            reference: self.reference(),
+            after: self.after,
+        };
+        let kept = problem.keep(newton, self.step, &zero);
+        (kept, Some(zero.located))
+    }
+
+    /// Where the test function changes its sign, and what the search leaves in the parameter.
+    fn located(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+    ) -> Option<(Located, f64)> {
+        let (options, aim, reference) = (self.options, problem.aim(), self.reference());
+        let test = self.change.test;
+        let value = |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| match test {
+            Test::Slope => at.parameter_slope(),
+            Test::Watched(index) => problem.test(index, at, true).relative_to(reference),
+        };
+        if is_crossing(problem, self.change) {
+            let found = locate_crossing(problem, newton, self.step, options, value)?;
+            let located = Located {
+                point: found.point,
+                test: found.test,
+                vanishes: true,
+            };
+            return Some((located, found.error));
+        }
+        let located = locate(problem, newton, self.step, options, aim, value)?;
+        Some((located, 0.0))
+    }
+}
+
+/// Whether the matrix of Newton's method is singular at the zero.
+fn is_crossing(problem: &dyn BranchProblem, change: Change) -> bool {
+    match change.test {
+        Test::Slope => change.kind == EventKind::BranchPoint,
+        Test::Watched(index) => problem.watched()[index].bordered,
+    }
+}

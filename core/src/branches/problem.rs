@@ -1,0 +1,201 @@
+//! What a method of computing periodic orbits gives to the [engine](super::engine) that follows branches of them.
+//!
+//! The engine knows the curve, test functions and what their changes of sign mean. A method knows its equations, how orbits are read
+//! off solutions, what errors it makes, and where its branches end because they become those of more regular orbits.
+
+use crate::continuation::follow::{CurvePoint, Halted, Stop};
+use crate::continuation::locate::Located;
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::{AsProblem, Problem};
+use crate::event::{EventKind, Turn};
+
+/// Value of a test function: `mantissa exp(exponent)`, since determinants of many unknowns leave the range of numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TestValue {
+    pub(crate) mantissa: f64,
+    pub(crate) exponent: f64,
+}
+
+impl TestValue {
+    /// It was not computed, or cannot be.
+    pub(crate) const UNKNOWN: Self = Self::plain(f64::NAN);
+
+    /// A number.
+    pub(crate) const fn plain(value: f64) -> Self {
+        Self {
+            mantissa: value,
+            exponent: 0.0,
+        }
+    }
+
+    /// In units of `exp(reference)`.
+    pub(crate) fn relative_to(self, reference: f64) -> f64 {
+        self.mantissa * (self.exponent - reference).exp()
+    }
+
+    pub(crate) fn is_known(self) -> bool {
+        !self.mantissa.is_nan()
+    }
+
+    /// Zero counts for one side, so that an event at a point belongs to one step.
+    pub(crate) fn is_negative(self) -> bool {
+        self.mantissa < 0.0
+    }
+}
+
+/// A test function that the engine watches besides the slope of the parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Watched {
+    /// What happens where it vanishes.
+    pub(crate) kind: EventKind,
+    /// It is the determinant of the equations with the tangent as their border (Keller 1977), which stays away from zero at a fold.
+    pub(crate) bordered: bool,
+}
+
+/// What became of a point that was given to be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Read {
+    /// It was kept.
+    Kept,
+    /// It was kept, and the walk goes on with other unknowns.
+    Resize,
+    /// It is to be read again with other unknowns.
+    Refused,
+    /// It was kept, and the walk ends: the caller asked for it, or the orbit could not be read.
+    Stop,
+}
+
+/// What became of a place where a test function vanishes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Kept {
+    /// It is an event.
+    Event,
+    /// Nothing happens there.
+    Nothing,
+    /// It could not be read.
+    Unread,
+    /// It is an event, or one passed before, and the branch ends there.
+    Ends(Stop),
+}
+
+/// A test function of an event: the slope of the parameter, or one that is [`Watched`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Test {
+    Slope,
+    Watched(usize),
+}
+
+/// A sign that changes within a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Change {
+    pub(crate) test: Test,
+    pub(crate) kind: EventKind,
+}
+
+/// A zero of a test function.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Zero {
+    pub(crate) change: Change,
+    pub(crate) located: Located,
+    /// What the search leaves in the parameter.
+    pub(crate) error: f64,
+    /// Test functions are in units of `exp(reference)`.
+    pub(crate) reference: f64,
+    /// Number of points of the branch before it.
+    pub(crate) after: usize,
+}
+
+/// Equations of periodic orbits by some method. Unknowns may change in number and meaning after any point.
+pub(crate) trait BranchProblem: Problem {
+    /// The equations alone.
+    fn equations(&mut self) -> &mut dyn Problem;
+
+    /// Test functions besides the slope of the parameter.
+    fn watched(&self) -> &[Watched];
+
+    /// Value of a test function. It may stay unknown where nothing happens near, unless it is `needed`.
+    fn test(&mut self, index: usize, at: &CurvePoint, needed: bool) -> TestValue;
+
+    /// What is smaller is rounding: of all test functions, and of the slope.
+    fn vanishing(&self) -> f64 {
+        0.0
+    }
+
+    /// A function that is smaller at both ends of a step is rounding all along.
+    fn noise(&self, index: usize) -> f64 {
+        let _ = index;
+        0.0
+    }
+
+    /// A test function is driven below this.
+    fn aim(&self) -> f64;
+
+    /// Whether a test function has vanished, or jumps where it was located.
+    fn vanishes(&mut self, change: Change, located: &Located) -> bool;
+
+    /// Number of points kept.
+    fn points(&self) -> usize;
+
+    /// Whether a point belongs to what comes after the end of the branch. It is not kept then.
+    fn is_beyond(&mut self, at: &CurvePoint) -> bool {
+        let _ = at;
+        false
+    }
+
+    /// Ends the branch within the step to a point beyond its end. If it only seemed to be one, the point is kept, and how it was read
+    /// returned.
+    fn end(
+        &mut self,
+        newton: &mut Newton,
+        between: Step<'_>,
+        options: NewtonOptions,
+    ) -> Option<Read> {
+        let _ = (newton, between, options);
+        None
+    }
+
+    /// Reads the orbit at a point, whose factors Newton's method holds, and keeps it.
+    fn read(&mut self, newton: &mut Newton, at: &CurvePoint) -> Read;
+
+    /// Reads a zero of a test function, whose factors Newton's method holds unless it is one of the bordered determinant, and keeps it.
+    fn keep(&mut self, newton: &mut Newton, between: Step<'_>, zero: &Zero) -> Kept;
+
+    /// Keeps a place that is none.
+    fn keep_turn(&mut self, turn: Turn);
+
+    /// Looks for touches of levels in a step, where the branch may have `turned` without a fold.
+    fn graze(&mut self, newton: &mut Newton, between: Step<'_>, turned: Option<Turn>) {
+        let _ = (newton, between, turned);
+    }
+
+    /// Takes more of the equations into the matrix from here on. Says whether there was something to take.
+    fn strengthen(&mut self) -> bool {
+        false
+    }
+
+    /// The same for one search; `false` takes it back.
+    fn strengthen_for_one(&mut self, on: bool) -> bool {
+        let _ = on;
+        false
+    }
+
+    /// Changes the unknowns as the last point asked for, and the vectors of a walk with them.
+    fn remap(&mut self, halted: &mut Halted) {
+        let _ = halted;
+    }
+
+    /// Takes the last change back, since nothing was found with it.
+    fn revert(&mut self) {}
+
+    /// Adds up the work of a walk that ended or is resumed.
+    fn count(&mut self, newton: &Newton);
+}
+
+/// Two successive points.
+pub(crate) type Step<'b> = (&'b CurvePoint, &'b CurvePoint);
+
+impl AsProblem for dyn BranchProblem + '_ {
+    fn problem(&mut self) -> &mut dyn Problem {
+        self.equations()
+    }
+}

@@ -1,0 +1,94 @@
+//! Solutions of a branch at a value of what it varies.
+//!
+//! Where the branch turns has been located, so that it passes a value at most once between two neighbours among its points and turns.
+//! There the solution is searched along the chord of the two.
+
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::locate::{Located, locate};
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::Problem;
+
+/// Points and turns of a branch in their order along it. Each turn comes with the number of points before it.
+pub(crate) fn chain<'p, T>(points: &'p [T], turns: &[(usize, &'p T)]) -> Vec<&'p T> {
+    let points = points.iter().enumerate();
+    let with_turns = points.flat_map(|(index, point)| {
+        let before = turns.iter().filter(move |(after, _)| *after == index);
+        before.map(|(_, turn)| *turn).chain([point])
+    });
+    with_turns.collect()
+}
+
+/// What a branch has at a value, in its order; what is the same is there once, since a closed branch ends where it began.
+///
+/// # Errors
+/// Those of `between`, which finds what lies between two neighbours.
+pub(crate) fn solutions<T: Clone, E>(
+    chain: &[&T],
+    value: f64,
+    value_of: impl Fn(&T) -> f64,
+    mut between: impl FnMut([&T; 2]) -> Result<T, E>,
+    is_same: impl Fn(&T, &T) -> bool,
+) -> Result<Vec<T>, E> {
+    let mut found: Vec<T> = Vec::new();
+    for (index, point) in chain.iter().enumerate() {
+        let here = value_of(point);
+        let passes = |next: &&&T| {
+            let next = value_of(next);
+            next != value && (here < value) != (next < value)
+        };
+        let solution = if here == value {
+            (*point).clone()
+        } else if let Some(next) = chain.get(index + 1).filter(passes) {
+            between([point, next])?
+        } else {
+            continue;
+        };
+        if !found.iter().any(|known| is_same(known, &solution)) {
+            found.push(solution);
+        }
+    }
+    Ok(found)
+}
+
+/// Where to look for the solution at a value, between two that are given as extended unknowns.
+#[derive(Debug, Clone)]
+pub(crate) struct Chord {
+    pub(crate) ends: [Vec<f64>; 2],
+    /// What counts as one for the parameter.
+    pub(crate) range: f64,
+    /// The value is met to this part of it.
+    pub(crate) tolerance: f64,
+}
+
+impl Chord {
+    /// The solution at a value; one that does not [vanish](Located::vanishes) is only near it.
+    pub(crate) fn at(
+        self,
+        problem: &mut dyn Problem,
+        newton: &mut Newton,
+        value: f64,
+        options: NewtonOptions,
+    ) -> Option<Located> {
+        let Self {
+            ends: [from, to],
+            range,
+            tolerance,
+        } = self;
+        let norm = newton.norm();
+        let mut largest = [0.0; 2];
+        norm.scale_at(&to, range, &mut largest);
+        let scale = norm.scale_at(&from, range, &mut largest);
+        let mut tangent: Vec<f64> = to.iter().zip(&from).map(|(x, y)| x - y).collect();
+        let length = norm.length(scale, &tangent);
+        for t in &mut tangent {
+            *t /= length;
+        }
+        let [a, b] = [from, to].map(|u| CurvePoint {
+            u,
+            tangent: tangent.clone(),
+            scale,
+        });
+        let offset = |_: &mut (dyn Problem + '_), at: &CurvePoint| (at.parameter() - value) / range;
+        locate(problem, newton, (&a, &b), options, tolerance, offset)
+    }
+}

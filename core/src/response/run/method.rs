@@ -1,0 +1,231 @@
+//! Harmonic balance as the engine of branches sees it.
+
+use std::ops::ControlFlow;
+
+use super::Run;
+use super::crossed::CROSSED;
+use super::events::FOLD_TOLERANCE;
+use super::watch::{Test as OfOrbit, Watch};
+use crate::balance::{Balance, Resolution};
+use crate::branches::point::Point;
+use crate::branches::problem::{
+    BranchProblem, Change, Kept, Read, Step, Test, TestValue, Watched, Zero,
+};
+use crate::continuation::follow::{CurvePoint, Halted};
+use crate::continuation::jacobian::{Jacobian, Partition};
+use crate::continuation::locate::Located;
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::Problem;
+use crate::event::{EventKind, Turn};
+
+/// A branch by the balance at its present resolution.
+pub(super) struct BalanceBranch<'r, 'v> {
+    pub(super) run: Run<'r>,
+    balance: Balance<'r>,
+    visit: &'v mut dyn FnMut(&Point) -> ControlFlow<()>,
+}
+
+impl<'r, 'v> BalanceBranch<'r, 'v> {
+    pub(super) fn new(run: Run<'r>, visit: &'v mut dyn FnMut(&Point) -> ControlFlow<()>) -> Self {
+        Self {
+            balance: run.follower.balance(run.resolution),
+            run,
+            visit,
+        }
+    }
+
+    fn renew(&mut self) {
+        self.balance = self.run.follower.balance(self.run.resolution);
+    }
+}
+
+impl Problem for BalanceBranch<'_, '_> {
+    fn unknowns(&self) -> usize {
+        self.balance.unknowns()
+    }
+
+    fn partition(&self) -> Partition {
+        self.balance.partition()
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
+        self.balance.evaluate(u, residual, jacobian);
+    }
+
+    fn apply(&mut self, u: &[f64], direction: &[f64], derivative: &mut [f64]) {
+        self.balance.apply(u, direction, derivative);
+    }
+
+    fn terms(&mut self, u: &[f64], terms: &mut [f64]) -> bool {
+        self.balance.terms(u, terms)
+    }
+
+    fn weights(&self, weights: &mut [f64]) {
+        self.balance.weights(weights);
+    }
+
+    fn is_mean(&self, unknown: usize) -> bool {
+        self.balance.is_mean(unknown)
+    }
+
+    fn operations(&self) -> u64 {
+        self.balance.operations()
+    }
+}
+
+impl BranchProblem for BalanceBranch<'_, '_> {
+    fn equations(&mut self) -> &mut dyn Problem {
+        &mut self.balance
+    }
+
+    fn watched(&self) -> &[Watched] {
+        &self.run.watch.watched
+    }
+
+    fn test(&mut self, index: usize, at: &CurvePoint, needed: bool) -> TestValue {
+        let near = needed || self.run.is_near_circle();
+        self.run.watch.value(index, at, near)
+    }
+
+    fn aim(&self) -> f64 {
+        FOLD_TOLERANCE
+    }
+
+    fn vanishes(&mut self, change: Change, located: &Located) -> bool {
+        if change.kind == EventKind::BranchPoint && self.run.watch.is_bordered(change.test) {
+            located.test.abs() <= CROSSED
+        } else {
+            located.vanishes
+        }
+    }
+
+    fn points(&self) -> usize {
+        self.run.points.len()
+    }
+
+    fn is_beyond(&mut self, at: &CurvePoint) -> bool {
+        self.run.joins(&at.u)
+    }
+
+    fn end(&mut self, newton: &mut Newton, step: Step<'_>, _: NewtonOptions) -> Option<Read> {
+        if self.run.join(&mut self.balance, newton, step) {
+            return None;
+        }
+        // It only seemed to belong to what comes after the end. The walk cannot be halted here for more harmonics, so that the point
+        // stands with the error it has.
+        let point = self.run.read_again(&mut self.balance, newton, step.1);
+        let answer = (self.visit)(&point);
+        self.run.points.push(point);
+        Some(if answer.is_break() {
+            Read::Stop
+        } else {
+            Read::Kept
+        })
+    }
+
+    fn read(&mut self, newton: &mut Newton, at: &CurvePoint) -> Read {
+        self.run.read(&mut self.balance, newton, at, self.visit)
+    }
+
+    fn keep(&mut self, newton: &mut Newton, step: Step<'_>, zero: &Zero) -> Kept {
+        let (run, balance) = (&mut self.run, &mut self.balance);
+        let Test::Watched(index) = zero.change.test else {
+            return run.fold(balance, newton, zero);
+        };
+        let mut watch = std::mem::take(&mut run.watch);
+        let kept = run.keep(balance, newton, step, zero, (&mut watch, index));
+        run.watch = watch;
+        kept
+    }
+
+    fn keep_turn(&mut self, turn: Turn) {
+        self.run.turns.push(turn);
+    }
+
+    fn graze(&mut self, newton: &mut Newton, step: Step<'_>, turned: Option<Turn>) {
+        let (run, balance) = (&mut self.run, &mut self.balance);
+        let mut watch = std::mem::take(&mut run.watch);
+        if let Some(touches) = &mut watch.touches {
+            run.grazing(
+                balance,
+                newton,
+                step,
+                (touches, &mut watch.extremes),
+                turned,
+            );
+        }
+        run.watch = watch;
+    }
+
+    fn strengthen(&mut self) -> bool {
+        if !self.run.has_tail() {
+            return false;
+        }
+        self.run.couple_all();
+        self.run.renew();
+        self.renew();
+        true
+    }
+
+    fn strengthen_for_one(&mut self, on: bool) -> bool {
+        let resolution = self.run.resolution;
+        if !self.run.has_tail() {
+            return false;
+        }
+        let core = if on {
+            resolution.harmonics
+        } else {
+            resolution.core
+        };
+        self.balance = self.run.follower.balance(Resolution { core, ..resolution });
+        true
+    }
+
+    fn remap(&mut self, halted: &mut Halted) {
+        self.run.remap(halted);
+        self.renew();
+    }
+
+    fn revert(&mut self) {
+        self.run.revert();
+        self.renew();
+    }
+
+    fn count(&mut self, newton: &Newton) {
+        self.run.statistics += newton.statistics;
+    }
+}
+
+impl<'r> Run<'r> {
+    /// Keeps an event of a test function that is watched.
+    fn keep(
+        &mut self,
+        balance: &mut Balance<'_>,
+        newton: &mut Newton,
+        step: Step<'_>,
+        zero: &Zero,
+        (watch, index): (&mut Watch<'r>, usize),
+    ) -> Kept {
+        let bordered = watch.watched[index].bordered;
+        let at = &zero.located.point.u;
+        let mut test = if let Some(block) = watch.blocks.get_mut(index) {
+            OfOrbit::Block(block, Some(zero.reference))
+        } else if let Some(pairs) = &mut watch.pairs {
+            if !pairs.product(at).1 {
+                // A pair of real multipliers whose product is one is nothing special.
+                return Kept::Nothing;
+            }
+            OfOrbit::Pairs(pairs)
+        } else {
+            return Kept::Nothing;
+        };
+        if bordered {
+            self.branch_point(balance, newton, step, (zero, &mut test));
+        } else {
+            let kind = zero.change.kind;
+            let found = (&mut test, &zero.located, zero.after);
+            self.located(balance, newton, step, kind, found);
+        }
+        Kept::Event
+    }
+}
