@@ -52,8 +52,8 @@ impl Case {
                 Ok(state)
             };
             let stated = point.error.filter(|error| error.is_finite());
-            // Three times what is stated, of half of a peak-to-peak.
-            let allowed = 3.0 * 2.0 * stated.unwrap_or(0.0);
+            // Three times what is stated, of half of a peak-to-peak. Where that is infinite nothing is said of the orbit.
+            let allowed = 3.0 * 2.0 * point.error.unwrap_or(0.0);
             let Some(truth) = self.truth(&question, state, (&name, allowed), &point.stability)
             else {
                 continue;
@@ -112,7 +112,7 @@ impl Case {
         let truth = match question.truth(state) {
             Ok(truth) => truth,
             Err(unsure) => {
-                self.unsure(name, unsure, stability);
+                self.unsure((name, stated), unsure, stability);
                 return None;
             }
         };
@@ -131,7 +131,7 @@ impl Case {
         Some(truth)
     }
 
-    fn unsure(&mut self, name: &str, unsure: Unsure, stability: &Stability) {
+    fn unsure(&mut self, (name, stated): (&str, f64), unsure: Unsure, stability: &Stability) {
         self.report.count(match unsure {
             Unsure::Lost(_) => "orbits, the motion of which was lost",
             Unsure::Singular => "orbits with a multiplier of one",
@@ -140,7 +140,7 @@ impl Case {
             Unsure::Growing(_) => "orbits of a multiplier too large to close",
         });
         if let Unsure::Open(left) = unsure
-            && left > NEAR
+            && left > NEAR.max(stated)
         {
             let largest = stability.multipliers.first().map_or(f64::NAN, |m| m.norm());
             let text = format!("{name}: {left:.1e} of its size open, |mu| {largest:.3e}");
