@@ -106,7 +106,7 @@ pub(crate) struct Zero {
 }
 
 /// Equations of periodic orbits by some method. Unknowns may change in number and meaning after any point.
-pub(crate) trait BranchProblem: Problem {
+pub(crate) trait BranchProblem {
     /// The equations alone.
     fn equations(&mut self) -> &mut dyn Problem;
 
@@ -143,7 +143,7 @@ pub(crate) trait BranchProblem: Problem {
     }
 
     /// Ends the branch within the step to a point beyond its end. If it only seemed to be one, the point is kept, and how it was read
-    /// returned.
+    /// returned: the walk cannot be halted there for other unknowns.
     fn end(
         &mut self,
         newton: &mut Newton,
@@ -157,7 +157,7 @@ pub(crate) trait BranchProblem: Problem {
     /// Reads the orbit at a point, whose factors Newton's method holds, and keeps it.
     fn read(&mut self, newton: &mut Newton, at: &CurvePoint) -> Read;
 
-    /// Reads a zero of a test function, whose factors Newton's method holds unless it is one of the bordered determinant, and keeps it.
+    /// Reads a zero of a test function, whose factors Newton's method holds unless branches cross there, and keeps it.
     fn keep(&mut self, newton: &mut Newton, between: Step<'_>, zero: &Zero) -> Kept;
 
     /// Keeps a place that is none.
@@ -184,7 +184,7 @@ pub(crate) trait BranchProblem: Problem {
         let _ = halted;
     }
 
-    /// Takes the last change back, since nothing was found with it.
+    /// Takes the last change back, since nothing was found with it. What changes its unknowns in [`remap`](Self::remap) must do so here.
     fn revert(&mut self) {}
 
     /// Adds up the work of a walk that ended or is resumed.

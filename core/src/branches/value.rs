@@ -18,6 +18,17 @@ pub(crate) fn chain<'p, T>(points: &'p [T], turns: &[(usize, &'p T)]) -> Vec<&'p
     with_turns.collect()
 }
 
+/// Whether the branch turns at an event: its value is not between those of the points before and after it.
+pub(crate) fn turns_at<T>(points: &[T], after: usize, value: f64, of: impl Fn(&T) -> f64) -> bool {
+    let neighbours = after
+        .checked_sub(1)
+        .map(|before| (points.get(before), points.get(after)));
+    match neighbours {
+        Some((Some(a), Some(b))) => (value - of(a)) * (of(b) - value) < 0.0,
+        _ => false,
+    }
+}
+
 /// What a branch has at a value, in its order; what is the same is there once, since a closed branch ends where it began.
 ///
 /// # Errors

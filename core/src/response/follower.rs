@@ -10,7 +10,7 @@ use crate::balance::{Balance, Parity, Resolution};
 use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
-use crate::branches::value::{Chord, chain, solutions};
+use crate::branches::value::{Chord, chain, solutions, turns_at};
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -183,7 +183,10 @@ impl Follower {
         events: &[Event],
         value: f64,
     ) -> Result<Vec<Point>, Error> {
-        let turns = events.iter().filter(|event| event.kind.turns());
+        let turns = events.iter().filter(|event| {
+            let place = event.point.value;
+            event.kind.turns() || turns_at(points, event.after, place, |point| point.value)
+        });
         let turns: Vec<_> = turns.map(|event| (event.after, &event.point)).collect();
         solutions(
             &chain(points, &turns),

@@ -8,7 +8,7 @@ use super::setting::Setting;
 use super::start::{self, First};
 use super::{compute, solve};
 use crate::branches::error::OrbitError;
-use crate::branches::value::{Chord, chain, solutions};
+use crate::branches::value::{Chord, chain, solutions, turns_at};
 use crate::continuation::newton::Newton;
 use crate::error::Error;
 use crate::time::MotionError;
@@ -23,7 +23,10 @@ const SAME: f64 = 1e-9;
 /// # Errors
 /// If the orbit between two neighbours is not found.
 pub(super) fn at(setting: &Setting, branch: &CycleBranch, value: f64) -> Result<Vec<Cycle>, Error> {
-    let turns = branch.events.iter().filter(|event| event.kind.turns());
+    let turns = branch.events.iter().filter(|event| {
+        let (cycles, place) = (&branch.cycles, event.cycle.value);
+        event.kind.turns() || turns_at(cycles, event.after, place, |cycle| cycle.value)
+    });
     let turns: Vec<_> = turns.map(|event| (event.after, &event.cycle)).collect();
     solutions(
         &chain(&branch.cycles, &turns),

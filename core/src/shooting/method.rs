@@ -13,7 +13,6 @@ use crate::branches::problem::{
     BranchProblem, Change, Kept, Read, Step, Test, TestValue, Watched, Zero,
 };
 use crate::continuation::follow::{CurvePoint, Stop};
-use crate::continuation::jacobian::Jacobian;
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
@@ -95,24 +94,6 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
         let found = Recurrence::of(&mut self.equations, &at.u, regular, odd)?;
         let is_regular = found.period < span.period || found.odd != span.half;
         Ok(is_regular.then_some(found))
-    }
-}
-
-impl Problem for ShootingBranch<'_, '_> {
-    fn unknowns(&self) -> usize {
-        self.equations.unknowns()
-    }
-
-    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
-        self.equations.evaluate(u, residual, jacobian);
-    }
-
-    fn weights(&self, weights: &mut [f64]) {
-        self.equations.weights(weights);
-    }
-
-    fn is_mean(&self, unknown: usize) -> bool {
-        self.equations.is_mean(unknown)
     }
 }
 

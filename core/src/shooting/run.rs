@@ -120,6 +120,7 @@ impl<'r> Run<'r> {
         if equations.span.period == 1 && !odd {
             return false;
         }
+        let after = event.after;
         let u = equations.unknowns_of(&event.cycle.states, event.cycle.value);
         let Ok(recurrence) = Recurrence::at_point(equations, &u, self.regular(equations), odd)
         else {
@@ -128,8 +129,8 @@ impl<'r> Run<'r> {
         let regular =
             recurrence.period < equations.span.period || recurrence.odd != equations.span.half;
         if regular {
-            // The orbit behind the point is one of those before it.
-            self.cycles.pop();
+            // The orbits behind the point are those before it.
+            self.cycles.truncate(after);
             self.joined = Some(recurrence);
         }
         regular

@@ -107,10 +107,10 @@ impl<'a> Fixed<'a> {
             }
             scale = found;
         }
-        effort.take(&mut self.newton);
         u[last] = self.value;
-        done?;
-        self.newton.is_told_from_rounding(&mut self.balance, u)
+        let done = done.and_then(|()| self.newton.is_told_from_rounding(&mut self.balance, u));
+        effort.take(&mut self.newton);
+        done
     }
 }
 

@@ -31,9 +31,18 @@ pub(super) fn at_rest(
     let mut smallest: Vec<&Along> = trials.iter().collect();
     smallest.sort_by(|a, b| a.size.total_cmp(&b.size));
     let mut found = Err(NewtonError::NotFinite { iterations: 0 });
+    // Where rounding hides the residual a trial comes last.
     let at_origin = line.at_origin;
-    smallest.retain(|trial| line.fixed.is_known(&trial.u, at_origin, effort));
-    for trial in smallest.into_iter().take(TRIALS) {
+    let mut hidden = Vec::new();
+    let mut known = Vec::new();
+    for trial in smallest {
+        if known.len() == TRIALS {
+            break;
+        }
+        let is_known = line.fixed.is_known(&trial.u, at_origin, effort);
+        if is_known { &mut known } else { &mut hidden }.push(trial);
+    }
+    for trial in known.into_iter().chain(hidden).take(TRIALS) {
         found = line.solved(trial.u.clone(), request, effort);
         if found.is_ok() || effort.is_spent() {
             return found;

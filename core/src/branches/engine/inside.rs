@@ -11,7 +11,7 @@
 //! Source: successive parabolic interpolation, as in Brent (1973), Algorithms for Minimization without Derivatives, chapter 5.
 
 use super::{Engine, Seen, changes};
-use crate::branches::problem::{BranchProblem, Change, Test};
+use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::{inside, locate};
 use crate::continuation::newton::Newton;
@@ -28,8 +28,8 @@ const BESIDE: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const MIDDLE: f64 = 0.2;
 
 impl Engine {
-    /// A step divided so that no test function changes its sign twice in a part, as far as can be seen. What shows in the step `before` it
-    /// is recorded.
+    /// A step divided so that no test function changes its sign twice in a part, as far as can be seen. What shows in the step
+    /// before it, from the `earlier` point on, is recorded.
     pub(super) fn parts(
         &mut self,
         problem: &mut dyn BranchProblem,
@@ -43,10 +43,7 @@ impl Engine {
             for test in [Test::Slope].into_iter().chain(watched) {
                 let ends = [parts[0].clone(), parts[parts.len() - 1].clone()];
                 match self.dip(problem, newton, [earlier, &ends[0], &ends[1]], test) {
-                    Some(Dip::Last(found)) => {
-                        self.divided.push((after, test));
-                        insert(newton, &mut parts, found);
-                    }
+                    Some(Dip::Last(found)) => insert(newton, &mut parts, found),
                     // Found as the last step, when it was that.
                     Some(Dip::Before(_)) if self.divided.contains(&(after - 1, test)) => {}
                     Some(Dip::Before(found)) => {
@@ -60,7 +57,11 @@ impl Engine {
                     }
                     None => {}
                 }
+                if self.ended.is_some() {
+                    return parts;
+                }
             }
+            self.note_divided(problem, &parts, after);
         }
         self.divided.retain(|(place, _)| *place + 1 >= after);
         let mut index = 0;
@@ -73,6 +74,22 @@ impl Engine {
             index += 1;
         }
         parts
+    }
+
+    /// Notes for which test functions the parts of a step show what its ends do not.
+    fn note_divided(&mut self, problem: &dyn BranchProblem, parts: &[Seen], after: usize) {
+        let watched = (0..problem.watched().len()).map(Test::Watched);
+        for test in [Test::Slope].into_iter().chain(watched) {
+            let negative = |seen: &Seen| seen.value(test).is_negative();
+            let [first, inner @ .., last] = parts else {
+                return;
+            };
+            let hidden = negative(first) == negative(last)
+                && inner.iter().any(|seen| negative(seen) != negative(first));
+            if hidden && !self.divided.contains(&(after, test)) {
+                self.divided.push((after, test));
+            }
+        }
     }
 
     /// Records the two zeros of one test function on both sides of an orbit.
@@ -88,6 +105,9 @@ impl Engine {
             let found = changes(problem, pair[0], pair[1]);
             for change in found.into_iter().filter(|change| change.test == test) {
                 self.record(problem, newton, pair, change, after);
+                if self.ended.is_some() {
+                    return;
+                }
             }
         }
     }
@@ -102,7 +122,7 @@ impl Engine {
     ) -> Option<Dip> {
         let values = points.map(|seen| seen.value(test));
         let sign = values[1].mantissa.signum();
-        let alike = |value: &crate::branches::problem::TestValue| sign * value.mantissa > 0.0;
+        let alike = |value: &TestValue| sign * value.mantissa > 0.0;
         if points[0].point.u.len() != points[1].point.u.len() || !values.iter().all(alike) {
             return None;
         }
@@ -125,10 +145,14 @@ impl Engine {
         };
         let least = between.map(|seen| sign * seen.value(test).relative_to(reference));
         let least = least[0].min(least[1]);
-        if least <= problem.vanishing() {
+        let noise = match test {
+            Test::Slope => 0.0,
+            Test::Watched(index) => problem.noise(index),
+        };
+        if least <= problem.vanishing().max(noise) {
             return None;
         }
-        let search = Search {
+        let descent = Descent {
             between,
             whole,
             least,
@@ -136,7 +160,7 @@ impl Engine {
             sign,
             reference,
         };
-        let found = self.lowest(problem, newton, &search, known)?;
+        let found = self.lowest(problem, newton, &descent, known)?;
         Some(if last {
             Dip::Last(found)
         } else {
@@ -148,23 +172,28 @@ impl Engine {
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        search: &Search<'_>,
+        descent: &Descent<'_>,
         mut known: [(f64, f64); 3],
     ) -> Option<Seen> {
-        let Search { between, whole, .. } = *search;
+        let Descent { between, whole, .. } = *descent;
         let ends = (&between[0].point, &between[1].point);
         let close = CLOSE * whole;
         let mut lowest = f64::NAN;
         for _ in 0..LOOKS {
             let (place, foretold) = vertex(known)?;
             let is_within = place > close && place < whole - close;
-            if !is_within || foretold > NEAR * search.least || (place - lowest).abs() < close {
+            if !is_within || foretold > NEAR * descent.least || (place - lowest).abs() < close {
                 return None;
             }
             let options = self.options.newton;
             let point = inside(problem.equations(), newton, ends, place / whole, options)?;
             let seen = Seen::at(problem, &point, true);
-            let height = search.sign * seen.value(search.test).relative_to(search.reference);
+            let mut pairs = seen.values.iter().zip(&between[0].values);
+            if pairs.any(|(here, there)| there.is_known() && !here.is_known()) {
+                // A part without a value would hide what changes its sign there.
+                return None;
+            }
+            let height = descent.sign * seen.value(descent.test).relative_to(descent.reference);
             if height < 0.0 {
                 return Some(seen);
             }
@@ -237,7 +266,7 @@ enum Dip {
 }
 
 /// A step in which a test function may come down to zero.
-struct Search<'s> {
+struct Descent<'s> {
     between: [&'s Seen; 2],
     /// Its length.
     whole: f64,

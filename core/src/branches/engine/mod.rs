@@ -96,7 +96,8 @@ pub(crate) fn run(
         let begun = start.clone();
         let mut newton = Newton::new(problem.equations());
         let mut stuck = None;
-        engine.seen.clear();
+        let length = newton.norm().unknowns() + 1;
+        engine.seen.retain(|seen| seen.point.u.len() == length);
         let outcome = follow_until_stuck(
             problem,
             &mut newton,
@@ -216,6 +217,9 @@ impl Engine {
         ];
         let ends = ends.map(Seen::clone);
         let parts = self.parts(problem, newton, (earlier.as_ref(), ends), after);
+        if self.ended.is_some() {
+            return None;
+        }
         let mut turned = None;
         for pair in parts.windows(2) {
             for change in changes(problem, &pair[0], &pair[1]) {

@@ -154,6 +154,10 @@ impl BranchProblem for Algebraic {
         }
     }
 
+    fn revert(&mut self) {
+        self.three = !self.three;
+    }
+
     fn count(&mut self, _: &Newton) {}
 }
 
@@ -270,5 +274,27 @@ fn the_branch_that_crosses_is_followed() {
         for u in &branch.points {
             assert!((u[1] * u[1] - (u[0] - 1.5)).abs() < 1e-10 && u[1] * side > 0.0);
         }
+    }
+}
+
+/// The branch that crosses turns where it does: one place, and not a fold. The doublings play on both sides of it.
+#[test]
+fn a_branch_that_turns_where_another_crosses_has_one_event_there() {
+    let from = 2.5_f64.powi(3) - 7.5;
+    let (branch, stop) = followed(from, -8.0, Start::Near(vec![2.5, -1.0, from]));
+    assert_eq!((stop, &branch.turns[..]), (Stop::LeftAtStart, &[][..]));
+    let known = [
+        (EventKind::NeimarkSacker, 1.71),
+        (EventKind::NeimarkSacker, 1.70),
+        (EventKind::BranchPoint, 1.5),
+        (EventKind::NeimarkSacker, 1.70),
+        (EventKind::NeimarkSacker, 1.71),
+    ];
+    assert_eq!(branch.events.len(), known.len(), "{:?}", branch.events);
+    for ((kind, at), (wanted, exact)) in branch.events.iter().zip(known) {
+        assert!(
+            *kind == wanted && (at - exact).abs() < 1e-8,
+            "{kind} at {at}"
+        );
     }
 }

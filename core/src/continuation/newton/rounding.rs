@@ -74,7 +74,10 @@ impl Newton {
         u: &[f64],
     ) -> Result<(), NewtonError> {
         let n = self.norm.unknowns();
-        if !problem.terms(u, &mut self.trial[..n]) {
+        let before = problem.operations();
+        let known = problem.terms(u, &mut self.trial[..n]);
+        self.operations += problem.operations() - before;
+        if !known {
             return Ok(());
         }
         let residual = largest(&self.trial[..n]) * f64::EPSILON;

@@ -12,11 +12,13 @@ use crate::branches::problem::{
     BranchProblem, Change, Kept, Read, Step, Test, TestValue, Watched, Zero,
 };
 use crate::continuation::follow::{CurvePoint, Halted};
-use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::event::{EventKind, Turn};
+
+/// Products of pairs of multipliers that are rounding.
+const NOISE: f64 = 1e-20;
 
 /// A branch by the balance at its present resolution.
 pub(super) struct BalanceBranch<'r, 'v> {
@@ -39,40 +41,6 @@ impl<'r, 'v> BalanceBranch<'r, 'v> {
     }
 }
 
-impl Problem for BalanceBranch<'_, '_> {
-    fn unknowns(&self) -> usize {
-        self.balance.unknowns()
-    }
-
-    fn partition(&self) -> Partition {
-        self.balance.partition()
-    }
-
-    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
-        self.balance.evaluate(u, residual, jacobian);
-    }
-
-    fn apply(&mut self, u: &[f64], direction: &[f64], derivative: &mut [f64]) {
-        self.balance.apply(u, direction, derivative);
-    }
-
-    fn terms(&mut self, u: &[f64], terms: &mut [f64]) -> bool {
-        self.balance.terms(u, terms)
-    }
-
-    fn weights(&self, weights: &mut [f64]) {
-        self.balance.weights(weights);
-    }
-
-    fn is_mean(&self, unknown: usize) -> bool {
-        self.balance.is_mean(unknown)
-    }
-
-    fn operations(&self) -> u64 {
-        self.balance.operations()
-    }
-}
-
 impl BranchProblem for BalanceBranch<'_, '_> {
     fn equations(&mut self) -> &mut dyn Problem {
         &mut self.balance
@@ -91,7 +59,19 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         FOLD_TOLERANCE
     }
 
+    /// Without damping the product of two pairs or more is rounding all along, each factor being so to about 1e-12.
+    fn noise(&self, index: usize) -> f64 {
+        match self.run.watch.watched[index].kind {
+            EventKind::NeimarkSacker => NOISE,
+            _ => 0.0,
+        }
+    }
+
     fn vanishes(&mut self, change: Change, located: &Located) -> bool {
+        if change.kind == EventKind::NeimarkSacker {
+            // What is nothing special need not vanish to be passed over.
+            return located.vanishes || !self.run.watch.is_complex(&located.point.u);
+        }
         if change.kind == EventKind::BranchPoint && self.run.watch.is_bordered(change.test) {
             located.test.abs() <= CROSSED
         } else {
@@ -129,7 +109,17 @@ impl BranchProblem for BalanceBranch<'_, '_> {
 
     fn keep(&mut self, newton: &mut Newton, step: Step<'_>, zero: &Zero) -> Kept {
         let (run, balance) = (&mut self.run, &mut self.balance);
-        let Test::Watched(index) = zero.change.test else {
+        let index = match zero.change.test {
+            Test::Watched(index) => Some(index),
+            // A branch that turns where it ends on another one.
+            Test::Slope if zero.change.kind == EventKind::BranchPoint => run
+                .watch
+                .watched
+                .iter()
+                .position(|watched| watched.bordered),
+            Test::Slope => None,
+        };
+        let Some(index) = index else {
             return run.fold(balance, newton, zero);
         };
         let mut watch = std::mem::take(&mut run.watch);
@@ -209,7 +199,8 @@ impl<'r> Run<'r> {
         let bordered = watch.watched[index].bordered;
         let at = &zero.located.point.u;
         let mut test = if let Some(block) = watch.blocks.get_mut(index) {
-            OfOrbit::Block(block, Some(zero.reference))
+            let slope = zero.change.test == Test::Slope;
+            OfOrbit::Block(block, (!slope).then_some(zero.reference))
         } else if let Some(pairs) = &mut watch.pairs {
             if !pairs.product(at).1 {
                 // A pair of real multipliers whose product is one is nothing special.

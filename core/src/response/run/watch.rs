@@ -116,7 +116,12 @@ impl<'a> Watch<'a> {
         })
     }
 
-    /// Whether the matrix of Newton's method is singular where a test function vanishes.
+    /// Whether the pair of multipliers whose product is nearest to one is complex.
+    pub(super) fn is_complex(&mut self, u: &[f64]) -> bool {
+        self.pairs.as_mut().is_some_and(|pairs| pairs.product(u).1)
+    }
+
+    /// Whether a branch point is located by a test function: by the slope, or by the bordered determinant.
     pub(super) fn is_bordered(&self, test: engine::Test) -> bool {
         match test {
             engine::Test::Slope => true,
