@@ -161,23 +161,10 @@ impl BranchProblem for Algebraic {
     fn count(&mut self, _: &Newton) {}
 }
 
-const OPTIONS: FollowOptions = FollowOptions {
-    from: -8.0,
-    to: 8.0,
-    points: 2000,
-    steps: StepControl {
-        initial: 0.01,
-        smallest: 1e-9,
-        largest: 0.1,
-        range: 0.015,
-        angle: 0.2,
-        distance: 0.003,
-    },
-    newton: NewtonOptions {
-        tolerance: 1e-11,
-        iterations: 12,
-        damped: false,
-    },
+const NEWTON: NewtonOptions = NewtonOptions {
+    tolerance: 1e-11,
+    iterations: 12,
+    damped: false,
 };
 
 fn followed(from: f64, to: f64, start: Start) -> (Algebraic, Stop) {
@@ -185,7 +172,9 @@ fn followed(from: f64, to: f64, start: Start) -> (Algebraic, Stop) {
     let options = FollowOptions {
         from,
         to,
-        ..OPTIONS
+        points: 2000,
+        steps: StepControl::default(),
+        newton: NEWTON,
     };
     let stop = run(&mut branch, start, options).unwrap();
     (branch, stop)
@@ -238,7 +227,7 @@ fn solutions_at_a_value_are_the_roots_of_the_cubic() {
                 range: 16.0,
                 tolerance: 1e-13,
             };
-            let found = chord.at(&mut problem, &mut newton, 1.0, OPTIONS.newton);
+            let found = chord.at(&mut problem, &mut newton, 1.0, NEWTON);
             found.map(|found| found.point.u).ok_or(())
         },
         |a, b| (a[0] - b[0]).abs() < 1e-9,
@@ -267,7 +256,7 @@ fn the_branch_that_crosses_is_followed() {
             scale: Scale::UNIT,
         };
         let step = 0.01 * side;
-        let first = departure.first_point(&mut problem, &mut newton, step, OPTIONS.newton);
+        let first = departure.first_point(&mut problem, &mut newton, step, NEWTON);
         let start = Start::Along(Box::new(first.unwrap()));
         let (branch, stop) = followed(from[2], 8.0, start);
         assert_eq!(stop, Stop::ReachedEnd);

@@ -161,7 +161,7 @@ fn check_outputs(
 }
 
 /// The nodes that a node names as its operands.
-fn named(node: Node) -> [Option<usize>; 2] {
+pub(super) fn named(node: Node) -> [Option<usize>; 2] {
     match node {
         Node::Number(_) | Node::Gap | Node::Rate | Node::Argument(_) => [None, None],
         Node::Add(a, b)

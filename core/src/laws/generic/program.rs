@@ -10,6 +10,7 @@
 use std::ops::Range;
 
 use super::Node;
+use super::consistent::named;
 use crate::laws::emitted::{exponential, power, reciprocal, sign};
 
 /// Samples per block. A slot takes 512 bytes, so programs of some sixty operations stay in the first level of the
@@ -321,21 +322,10 @@ fn by_root(exponent: Node) -> Option<Operation> {
 /// The operands of a node that its steps read.
 fn operands(nodes: &[Node], position: usize) -> [Option<usize>; 2] {
     match nodes[position] {
-        Node::Number(_) | Node::Gap | Node::Rate | Node::Argument(_) => [None, None],
-        Node::Add(a, b) | Node::Subtract(a, b) | Node::Multiply(a, b) | Node::Divide(a, b) => {
-            [Some(a), Some(b)]
-        }
         Node::Power(a, b) | Node::PowerLog(a, b) => {
             [Some(a), Some(b).filter(|&b| by_root(nodes[b]).is_none())]
         }
-        Node::Negate(a)
-        | Node::Absolute(a)
-        | Node::Sign(a)
-        | Node::Integer(a, _)
-        | Node::Sine(a)
-        | Node::Cosine(a)
-        | Node::Exponential(a)
-        | Node::Tanh(a) => [Some(a), None],
+        node => named(node),
     }
 }
 
