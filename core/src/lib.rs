@@ -72,6 +72,7 @@ extern crate self as hertzian;
 
 pub mod attractors;
 mod balance;
+mod balance_branch;
 pub mod bifurcation;
 mod branches;
 #[cfg(feature = "plot")]
@@ -96,6 +97,8 @@ mod testing;
 pub mod time;
 
 pub use balance::aft::Aft;
+#[doc(hidden)]
+pub use balance_branch::stages;
 pub use bifurcation::Bifurcations;
 pub use bifurcation::backbone;
 pub use bifurcation::error::BifurcationError;
@@ -121,8 +124,6 @@ pub use report::error::FileError;
 pub use report::export;
 pub use response::FrequencyResponse;
 pub use response::branch::Branch;
-#[doc(hidden)]
-pub use response::stages;
 pub use shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
 pub use system::System;
 

@@ -3,7 +3,7 @@
 use std::mem::discriminant;
 use std::time::Duration;
 
-use super::follower::Follower;
+use crate::balance_branch::follower::Follower;
 use crate::branches::point::{Event, Point};
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;

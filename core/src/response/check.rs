@@ -7,6 +7,7 @@ use crate::balance::aft::Aft;
 use crate::balance::resolution::Chooser;
 use crate::balance::symmetry::{Over, has_stride, is_broken};
 use crate::balance::{Parity, Resolution};
+use crate::balance_branch::follower::Follower;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Event;
 use crate::continuation::follow::FollowOptions;
@@ -19,7 +20,6 @@ use crate::model::request::RequestError;
 use crate::model::rigid::{self, Place};
 use crate::model::validate;
 use crate::numeric::fourier::series;
-use crate::response::follower::Follower;
 use crate::system::{Bound, Variable};
 
 /// More samples of an orbit would take more than a gigabyte.

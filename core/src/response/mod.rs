@@ -1,16 +1,9 @@
 //! Frequency response: what a user asks for, checked before any work.
 
 pub(crate) mod branch;
-pub(crate) mod depart;
-pub(crate) mod follower;
 mod multipliers;
-pub(crate) mod reader;
-pub(crate) mod run;
-#[doc(hidden)]
-pub mod stages;
 
 mod check;
-mod motion;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -20,6 +13,9 @@ use crate::balance::Parity;
 use crate::balance::aft::Aft;
 use crate::balance::start::{Moving, start, without_symmetry};
 use crate::balance::symmetry::has_stride;
+use crate::balance_branch::depart::depart;
+use crate::balance_branch::follower::Sought;
+use crate::balance_branch::run::{Followed, Run};
 use crate::branches::error::Attempts;
 use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
@@ -31,9 +27,6 @@ use crate::error::Error;
 use crate::event::{EventKind, Side};
 use crate::orbit::stability::Method;
 use crate::response::branch::Branch;
-use crate::response::depart::depart;
-use crate::response::follower::Sought;
-use crate::response::run::{Followed, Run};
 use crate::system::System;
 
 /// What to follow, set up step by step, then [run](FrequencyResponse::run).
@@ -295,7 +288,8 @@ impl FrequencyResponse {
         let mut statistics = Statistics::default();
         let first = match &self.near {
             None => {
-                let motion = |moving: Moving<'_>| motion::moved(&follower, moving);
+                let motion =
+                    |moving: Moving<'_>| crate::balance_branch::motion::moved(&follower, moving);
                 let request = follower.start_request(options, &motion);
                 let found = start(request, &mut statistics)?;
                 let broken = follower.asymmetric;

@@ -1,8 +1,8 @@
 //! What a method says of an orbit of a branch.
 
 use super::branch::Branch;
-use super::follower::Follower;
 use crate::balance::truncation::Finer;
+use crate::balance_branch::follower::Follower;
 use crate::branches::point::Point;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Problem;

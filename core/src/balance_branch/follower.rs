@@ -7,6 +7,7 @@ use crate::balance::resolution::{Chooser, resize};
 use crate::balance::start::{Motion, StartRequest};
 use crate::balance::truncation::Finer;
 use crate::balance::{Balance, Parity, Resolution};
+use crate::balance_branch::reader::Reader;
 use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
@@ -18,7 +19,6 @@ use crate::continuation::problem::Problem;
 use crate::error::Error;
 use crate::numeric::fourier::series;
 use crate::orbit::stability::Method;
-use crate::response::reader::Reader;
 use crate::system::{System, Variable};
 
 /// What the core leaves out, relative to the diagonal of the tail.

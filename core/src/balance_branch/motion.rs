@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::balance::start::{Moved, Moving};
-use crate::response::follower::Follower;
+use crate::balance_branch::follower::Follower;
 use crate::system::{System, Variable};
 use crate::time;
 use crate::time::{Flow, FlowError, Options, Stretch};
@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-7;
 const PER_CONTACT: u64 = 64;
 
 /// Moves a state of the system of a branch.
-pub(super) fn moved(follower: &Follower, moving: Moving<'_>) -> Moved {
+pub(crate) fn moved(follower: &Follower, moving: Moving<'_>) -> Moved {
     let mut parameters = follower.parameters.clone();
     let mut omega = moving.omega;
     match moving.variable {

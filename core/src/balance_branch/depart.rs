@@ -12,6 +12,7 @@
 use crate::balance::Parity;
 use crate::balance::block::{Block, Part};
 use crate::balance::resolution::resize;
+use crate::balance_branch::follower::Follower;
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
 use crate::branches::switch::Departure;
@@ -20,7 +21,6 @@ use crate::continuation::newton::Newton;
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::numeric::fourier::series;
-use crate::response::follower::Follower;
 
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.

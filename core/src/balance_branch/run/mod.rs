@@ -12,6 +12,8 @@ use std::ops::ControlFlow;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
+use crate::balance_branch::follower::Follower;
+use crate::balance_branch::reader::Reader;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
@@ -22,8 +24,6 @@ use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::Turn;
 use crate::numeric::fourier::series;
-use crate::response::follower::Follower;
-use crate::response::reader::Reader;
 use method::BalanceBranch;
 use watch::Watch;
 

@@ -24,6 +24,7 @@ use crate::balance::block::{Block, Part};
 use crate::balance::resolution::resize;
 use crate::balance::truncation::BEYOND;
 use crate::balance::{Balance, Resolution};
+use crate::balance_branch::follower::{Follower, Sought};
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{self as engine, TestValue, Watched};
 use crate::continuation::follow::CurvePoint;
@@ -32,7 +33,6 @@ use crate::continuation::newton::Newton;
 use crate::event::{EventKind, Turn};
 use crate::numeric::fourier::series;
 use crate::orbit::stability::pairs::Pairs;
-use crate::response::follower::{Follower, Sought};
 
 /// Derivatives along the branch are differences over this part of the step.
 const DIFFERENCE: f64 = 1e-4;
