@@ -97,11 +97,11 @@ mod testing;
 pub mod time;
 
 pub use balance::aft::Aft;
-#[doc(hidden)]
-pub use balance_branch::stages;
+pub use balance_branch::options::HarmonicBalance;
 pub use bifurcation::Bifurcations;
 pub use bifurcation::backbone;
 pub use bifurcation::error::BifurcationError;
+pub use branches::branch::{Branch, Model};
 pub use branches::error::{Attempts, OrbitError};
 pub use branches::orbit::Orbit;
 pub use branches::point::{Event, Point};
@@ -122,17 +122,18 @@ pub use orbit::stability::{Method, Stability, Verdict};
 pub use orbit::{observe, stability};
 pub use report::error::FileError;
 pub use report::export;
-pub use response::FrequencyResponse;
-pub use response::branch::Branch;
-pub use shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
+#[doc(hidden)]
+pub use response::stages;
+pub use response::{FrequencyResponse, OrbitMethod};
+pub use shooting::Shooting;
 pub use system::System;
 
 /// Computed branches of periodic orbits.
 pub mod branch {
+    pub use crate::branches::branch::{Branch, Model};
     pub use crate::branches::orbit::Orbit;
     pub use crate::branches::point::{Event, Point};
     pub use crate::event::{EventKind, Turn};
-    pub use crate::response::branch::Branch;
 }
 
 /// Declares a system of oscillators: a type with one public `f64` field per parameter, which implements

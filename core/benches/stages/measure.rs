@@ -45,7 +45,7 @@ fn largest(branch: &Branch) -> &Point {
 }
 
 fn stages(branch: &Branch) -> Stages<'_> {
-    Stages::at(branch, largest(branch))
+    Stages::at(branch, largest(branch)).expect("a branch of the balance")
 }
 
 /// Residual and Jacobian with the three kinds of laws.
@@ -118,7 +118,7 @@ impl Parts {
         };
         let of_observed = branch(&with, harmonics);
         let point = largest(&of_observed);
-        let mut stages = Stages::at(&of_observed, point);
+        let mut stages = Stages::at(&of_observed, point).expect("a branch of the balance");
         let of_plain = branch(system, harmonics);
         let mut plain = self::stages(&of_plain);
         let mut search = Search::new(point.orbit.series(0).unwrap());

@@ -8,11 +8,13 @@ use crate::balance::start::{Motion, StartRequest};
 use crate::balance::truncation::Finer;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::balance_branch::reader::Reader;
+use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
-use crate::branches::point::{Event, Point};
-use crate::branches::value::{Chord, chain, solutions, turns_at};
-use crate::continuation::follow::FollowOptions;
+use crate::branches::point::Point;
+use crate::branches::solve::{Toward, along};
+use crate::branches::value::{Chord, orbits_at};
+use crate::continuation::follow::{CurvePoint, FollowOptions};
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
@@ -176,25 +178,30 @@ impl Follower {
         }
     }
 
-    /// See [`Branch::at`].
-    pub(crate) fn at(
-        &self,
-        points: &[Point],
-        events: &[Event],
-        value: f64,
-    ) -> Result<Vec<Point>, Error> {
-        let turns = events.iter().filter(|event| {
-            let place = event.point.value;
-            event.kind.turns() || turns_at(points, event.after, place, |point| point.value)
+    /// The orbit at a value near given unknowns, with the direction of the branch: to larger values for a positive side.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub(crate) fn along(&self, first: &[f64], side: f64, value: f64) -> Result<CurvePoint, Error> {
+        let resolution = self.resolution;
+        let mut balance = self.balance(Resolution {
+            core: resolution.harmonics,
+            ..resolution
         });
-        let turns: Vec<_> = turns.map(|event| (event.after, &event.point)).collect();
-        solutions(
-            &chain(points, &turns),
-            value,
-            |point| point.value,
-            |ends| self.between(ends, value),
-            |a, b| is_same(&a.orbit, &b.orbit),
-        )
+        let mut newton = Newton::new(&balance);
+        let mut u = first.to_vec();
+        let last = u.len() - 1;
+        u[last] = value;
+        let range = (self.to - self.from).abs();
+        let toward = Toward { side, range };
+        along(&mut balance, &mut newton, u, toward, self.newton)
+            .map_err(|reason| OrbitError::NoStart { value, reason }.into())
+    }
+
+    /// See [`Branch::at`](crate::Branch::at).
+    pub(crate) fn at(&self, branch: &Branch, value: f64) -> Result<Vec<Point>, Error> {
+        let same = |a: &Point, b: &Point| is_same(&a.orbit, &b.orbit);
+        orbits_at(branch, value, |ends| self.between(ends, value), same)
     }
 
     /// The orbit at a value between those of two neighbours, with their harmonics, or more where the tolerance asks for them.

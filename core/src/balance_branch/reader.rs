@@ -1,7 +1,7 @@
 //! Everything that is read off an orbit.
 
-use crate::balance::Balance;
 use crate::balance::truncation::{BEYOND, Finer};
+use crate::balance::{Balance, Parity};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::continuation::newton::Newton;
@@ -75,6 +75,8 @@ impl<'a> Reader<'a> {
             omega: balance.omega(),
             base: balance.base(),
             period: balance.resolution().period,
+            states: Vec::new(),
+            symmetric: balance.resolution().parity == Parity::Odd,
         };
         let observed = self.observer.observe(balance, u);
         self.across = f64::INFINITY;

@@ -9,10 +9,12 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use super::known;
+use crate::branches::branch::Branch;
+use crate::branches::point::{Event, Point};
 use crate::continuation::follow::Stop;
 use crate::error::{Error, chain};
 use crate::event::{EventKind, Side};
-use crate::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
+use crate::response::{FrequencyResponse, OrbitMethod};
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -43,7 +45,7 @@ pub struct Limb {
     /// Number of bifurcations between it and the first branch.
     pub depth: usize,
     /// Its orbits and events.
-    pub branch: CycleBranch,
+    pub branch: Branch,
     /// It is the mirror image of another branch.
     pub mirrored: bool,
 }
@@ -139,14 +141,14 @@ impl fmt::Display for Reason {
 impl Limb {
     /// Period of its orbits in periods of the declaration.
     pub fn period(&self) -> usize {
-        self.branch.cycles.first().map_or(0, |cycle| cycle.period)
+        self.branch.period()
     }
 }
 
 impl Diagram {
     /// All events of one kind, each with the number of its branch. A bifurcation is an event of the branch that goes on there
     /// with the same period, and of kind [`EventKind::BranchPoint`] on one that ends there.
-    pub fn events(&self, kind: EventKind) -> impl Iterator<Item = (usize, &CycleEvent)> {
+    pub fn events(&self, kind: EventKind) -> impl Iterator<Item = (usize, &Event)> {
         let branches = self.branches.iter().enumerate();
         branches.flat_map(move |(number, limb)| {
             limb.branch.events(kind).map(move |event| (number, event))
@@ -156,12 +158,12 @@ impl Diagram {
 
 /// Who looks at every orbit, and may ask to stop.
 pub(super) struct Watch<'v> {
-    visit: &'v mut dyn FnMut(&Cycle) -> ControlFlow<()>,
+    visit: &'v mut dyn FnMut(&Point) -> ControlFlow<()>,
     pub(super) interrupted: bool,
 }
 
 impl<'v> Watch<'v> {
-    pub(super) fn new(visit: &'v mut dyn FnMut(&Cycle) -> ControlFlow<()>) -> Self {
+    pub(super) fn new(visit: &'v mut dyn FnMut(&Point) -> ControlFlow<()>) -> Self {
         Self {
             visit,
             interrupted: false,
@@ -169,17 +171,17 @@ impl<'v> Watch<'v> {
     }
 
     /// Shows an orbit.
-    pub(super) fn see(&mut self, cycle: &Cycle) -> ControlFlow<()> {
-        let answer = (self.visit)(cycle);
+    pub(super) fn see(&mut self, point: &Point) -> ControlFlow<()> {
+        let answer = (self.visit)(point);
         self.interrupted |= answer.is_break();
         answer
     }
 }
 
 /// The search, and what it has found.
-pub(super) struct Search<'v> {
+pub(super) struct Search<'v, M> {
     pub(super) watch: Watch<'v>,
-    shooting: Shooting,
+    response: FrequencyResponse<M>,
     /// Length of the range.
     range: f64,
     depth: usize,
@@ -190,16 +192,16 @@ pub(super) struct Search<'v> {
     pub(super) diagram: Diagram,
 }
 
-impl<'v> Search<'v> {
+impl<'v, M: OrbitMethod> Search<'v, M> {
     /// To a depth, with no more branches and orbits than this.
     pub(super) fn new(
-        shooting: Shooting,
+        response: FrequencyResponse<M>,
         (depth, branches, points): (usize, usize, usize),
         watch: Watch<'v>,
     ) -> Self {
         Self {
-            range: shooting.length(),
-            shooting,
+            range: response.request.length(),
+            response,
             depth,
             most_branches: branches,
             points_left: points,
@@ -210,8 +212,8 @@ impl<'v> Search<'v> {
     }
 
     /// Takes in a branch, and what begins at it.
-    pub(super) fn add(&mut self, origin: Origin, depth: usize, branch: CycleBranch) {
-        self.points_left = self.points_left.saturating_sub(branch.cycles.len());
+    pub(super) fn add(&mut self, origin: Origin, depth: usize, branch: Branch) {
+        self.points_left = self.points_left.saturating_sub(branch.points.len());
         let number = self.diagram.branches.len();
         let begins = (0..branch.events.len()).filter(|&index| match branch.events[index].kind {
             EventKind::PeriodDoubling | EventKind::SymmetryBreaking => true,
@@ -269,9 +271,9 @@ impl<'v> Search<'v> {
         if self.watch.interrupted {
             return Err(Reason::Interrupted);
         }
-        let request = self.shooting.clone().period(period).near(state);
+        let request = self.response.clone().period(period).near_state(state);
         let orbit = request.orbit(value).map_err(Reason::Failed)?;
-        let known = |limb: &Limb| known::contains(&self.shooting, limb, &orbit);
+        let known = |limb: &Limb| known::contains(&self.response, limb, &orbit);
         if self.diagram.branches.iter().any(known) {
             return Ok(());
         }
@@ -279,8 +281,10 @@ impl<'v> Search<'v> {
             return Err(Reason::Budget);
         }
         // Each of two parts may have half.
-        let request = request.near(orbit.state()).max_points(self.points_left / 2);
-        let branch = request.through_with(value, |cycle| self.watch.see(cycle));
+        let request = request
+            .near_orbit(&orbit.orbit)
+            .max_points(self.points_left / 2);
+        let branch = request.through_with(value, |point| self.watch.see(point));
         let branch = branch.map_err(Reason::Failed)?;
         self.add(Origin::Attractor { value }, 0, branch);
         Ok(())
@@ -315,8 +319,8 @@ impl<'v> Search<'v> {
             if self.diagram.branches.len() >= self.most_branches || self.points_left < 2 {
                 return Err(Reason::Budget);
             }
-            let request = self.shooting.clone().max_points(self.points_left);
-            let branch = match request.switch_with(&event, side, |cycle| self.watch.see(cycle)) {
+            let request = self.response.clone().max_points(self.points_left);
+            let branch = match request.switch_with(&event, side, |point| self.watch.see(point)) {
                 Ok(branch) => branch,
                 Err(error) => {
                     // The other side may begin all the same.
@@ -329,7 +333,7 @@ impl<'v> Search<'v> {
                 event: index,
                 side,
             };
-            let closed = branch.end == End::Stopped(Stop::Closed);
+            let closed = branch.stopped == Stop::Closed;
             self.add(origin, depth, branch);
             if closed {
                 // It came back on the other side.
@@ -340,12 +344,12 @@ impl<'v> Search<'v> {
     }
 
     /// Another branch that passes the same crossing.
-    fn crossing_at(&self, number: usize, event: &CycleEvent) -> Option<usize> {
-        let same = |other: &&CycleEvent| known::is_same_place(other, event, self.range);
+    fn crossing_at(&self, number: usize, event: &Event) -> Option<usize> {
+        let same = |other: &&Event| known::is_same_place(other, event, self.range);
         let mut limbs = self.diagram.branches.iter().enumerate();
         let crosses = |limb: &Limb| {
             let mut crossings = limb.branch.events(EventKind::BranchPoint);
-            limb.period() == event.cycle.period && crossings.any(|other| same(&other))
+            limb.period() == event.point.orbit.period && crossings.any(|other| same(&other))
         };
         let found = limbs.find(|(index, limb)| *index != number && crosses(limb));
         let crossed = event.kind == EventKind::BranchPoint;
@@ -353,16 +357,21 @@ impl<'v> Search<'v> {
     }
 
     /// The branches that end at an event of another one.
-    fn ending_at(&self, event: &CycleEvent) -> Vec<usize> {
+    fn ending_at(&self, event: &Event) -> Vec<usize> {
         let limbs = self.diagram.branches.iter().enumerate();
-        let is_joint = |end: Option<End>, joint: Option<&CycleEvent>| {
-            let regular =
-                matches!(end, Some(End::Joined { period, .. }) if period == event.cycle.period);
-            regular && joint.is_some_and(|joint| known::is_same_place(joint, event, self.range))
+        let is_joint = |end: Option<Stop>, joint: Option<&Event>| match end {
+            Some(Stop::Joined { period, value, .. }) => {
+                period == event.point.orbit.period
+                    && joint.map_or_else(
+                        || known::is_same_value(value, event, self.range),
+                        |joint| known::is_same_place(joint, event, self.range),
+                    )
+            }
+            _ => false,
         };
         let ends = limbs.filter(|(_, limb)| {
             let joints = || limb.branch.events(EventKind::BranchPoint);
-            is_joint(Some(limb.branch.end), joints().last())
+            is_joint(Some(limb.branch.stopped), joints().next_back())
                 || is_joint(limb.branch.begin, joints().next())
         });
         ends.map(|(number, _)| number).collect()
@@ -370,8 +379,8 @@ impl<'v> Search<'v> {
 }
 
 /// Whether a branch ends at one of its events on a branch of more regular orbits.
-fn is_joint(branch: &CycleBranch, index: usize) -> bool {
-    let joined = |end: Option<End>| matches!(end, Some(End::Joined { .. }));
+fn is_joint(branch: &Branch, index: usize) -> bool {
+    let joined = |end: Option<Stop>| matches!(end, Some(Stop::Joined { .. }));
     let points = || {
         let events = branch.events.iter().enumerate();
         let points = events.filter(|(_, event)| event.kind == EventKind::BranchPoint);
@@ -379,5 +388,5 @@ fn is_joint(branch: &CycleBranch, index: usize) -> bool {
     };
     let (first, last) = (points().next(), points().next_back());
     (joined(branch.begin) && first == Some(index))
-        || (joined(Some(branch.end)) && last == Some(index))
+        || (joined(Some(branch.stopped)) && last == Some(index))
 }

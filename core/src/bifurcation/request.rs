@@ -1,17 +1,18 @@
 //! A request for all branches that are connected with one, set up step by step.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
 use crate::attractors::basin::{Basin, Basins, Progress};
 use crate::bifurcation::error::BifurcationError;
+use crate::branches::point::Point;
 use crate::continuation::step;
 use crate::error::Error;
 use crate::model::request::RequestError;
 use crate::model::validate;
-use crate::shooting::{Cycle, Shooting};
+use crate::response::{FrequencyResponse, OrbitMethod};
+use crate::shooting::Shooting;
 use crate::system::{System, Variable};
 use crate::time;
 
@@ -27,7 +28,7 @@ const MARGIN: f64 = 0.1;
 /// All branches of periodic orbits that are connected with a first one by bifurcations, to a depth: set up step by step, then
 /// [run](Bifurcations::run).
 ///
-/// The first branch is followed by [`Shooting`] along the range. At every period doubling, where an odd symmetry breaks, and where
+/// The first branch is followed along the range, by [`Shooting`] unless another method is [asked for](Bifurcations::by). At every period doubling, where an odd symmetry breaks, and where
 /// branches cross, the branch that begins there is followed too, and so on. A bifurcation where a known branch ends is not followed
 /// again. What begins at these and was not followed is in [`Diagram::omitted`], with the reason.
 ///
@@ -50,18 +51,13 @@ const MARGIN: f64 = 0.1;
 /// let of_period_2 = &diagram.branches[1].branch;
 /// // A4 and A6 of Wang et al. (2021), figure 8, where period 4 begins.
 /// let doublings: Vec<f64> =
-///     of_period_2.events(EventKind::PeriodDoubling).map(|event| event.cycle.value).collect();
+///     of_period_2.events(EventKind::PeriodDoubling).map(|event| event.point.value).collect();
 /// assert!((doublings[0] - 1.531044135499983).abs() < 1e-11);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct Bifurcations {
-    system: Arc<dyn System>,
-    shooting: Shooting,
-    vary: Option<String>,
-    omega: Option<f64>,
-    from: Option<f64>,
-    to: Option<f64>,
+pub struct Bifurcations<M = Shooting> {
+    response: FrequencyResponse<M>,
     depth: usize,
     branches: usize,
     points: usize,
@@ -69,10 +65,10 @@ pub struct Bifurcations {
     searched: Vec<(f64, Basin)>,
 }
 
-impl std::fmt::Debug for Bifurcations {
+impl<M: std::fmt::Debug> std::fmt::Debug for Bifurcations<M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Bifurcations")
-            .field("shooting", &self.shooting)
+            .field("response", &self.response)
             .field("depth", &self.depth)
             .finish_non_exhaustive()
     }
@@ -81,14 +77,8 @@ impl std::fmt::Debug for Bifurcations {
 impl Bifurcations {
     /// Of this system, at the values that its parameters have now.
     pub fn of(system: &dyn System) -> Self {
-        let system = system.shared();
         Self {
-            shooting: Shooting::of(&system),
-            system,
-            vary: None,
-            omega: None,
-            from: None,
-            to: None,
+            response: FrequencyResponse::of(system).by(Shooting::new()),
             depth: 3,
             branches: BRANCHES,
             points: POINTS,
@@ -96,42 +86,55 @@ impl Bifurcations {
             searched: Vec::new(),
         }
     }
+}
+
+impl<M: OrbitMethod> Bifurcations<M> {
+    /// Computes orbits by another method, with its options. The balance looks for what it is
+    /// [told to](crate::HarmonicBalance::bifurcations).
+    #[must_use]
+    pub fn by<N: OrbitMethod>(self, method: N) -> Bifurcations<N> {
+        Bifurcations {
+            response: self.response.by(method),
+            depth: self.depth,
+            branches: self.branches,
+            points: self.points,
+            margin: self.margin,
+            searched: self.searched,
+        }
+    }
 
     /// Where the first branch starts.
     #[must_use]
     pub fn from(mut self, value: f64) -> Self {
-        self.from = Some(value);
+        self.response = self.response.from(value);
         self
     }
 
     /// Where it ends.
     #[must_use]
     pub fn to(mut self, value: f64) -> Self {
-        self.to = Some(value);
+        self.response = self.response.to(value);
         self
     }
 
     /// Varies a parameter instead of the excitation frequency, which is then [`omega`](Self::omega).
     #[must_use]
     pub fn vary(mut self, parameter: impl Into<String>) -> Self {
-        let parameter = parameter.into();
-        self.shooting = self.shooting.vary(parameter.clone());
-        self.vary = Some(parameter);
+        self.response = self.response.vary(parameter);
         self
     }
 
     /// The excitation frequency, in radians per unit of time, when a parameter is varied.
     #[must_use]
     pub fn omega(mut self, omega: f64) -> Self {
-        self.shooting = self.shooting.omega(omega);
-        self.omega = Some(omega);
+        self.response = self.response.omega(omega);
         self
     }
 
-    /// Period of the orbits of the first branch, in periods of the declaration; see [`Shooting::period`]. Default: 1.
+    /// Period of the orbits of the first branch, in periods of the declaration; see [`FrequencyResponse::period`]. Default: 1.
     #[must_use]
     pub fn period(mut self, period: usize) -> Self {
-        self.shooting = self.shooting.period(period);
+        self.response = self.response.period(period);
         self
     }
 
@@ -173,17 +176,17 @@ impl Bifurcations {
         self
     }
 
-    /// Tolerance of the flow; see [`Shooting::tolerance`].
+    /// Accuracy of the output; see [`FrequencyResponse::tolerance`].
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.shooting = self.shooting.tolerance(tolerance);
+        self.response = self.response.tolerance(tolerance);
         self
     }
 
-    /// Largest step along a branch; see [`Shooting::largest_step`].
+    /// Largest step along a branch; see [`FrequencyResponse::largest_step`].
     #[must_use]
     pub fn largest_step(mut self, step: f64) -> Self {
-        self.shooting = self.shooting.largest_step(step);
+        self.response = self.response.largest_step(step);
         self
     }
 
@@ -200,7 +203,7 @@ impl Bifurcations {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn run_with(&self, visit: impl FnMut(&Cycle) -> ControlFlow<()>) -> Result<Diagram, Error> {
+    pub fn run_with(&self, visit: impl FnMut(&Point) -> ControlFlow<()>) -> Result<Diagram, Error> {
         self.run_watched(visit, &|_| true)
     }
 
@@ -211,12 +214,11 @@ impl Bifurcations {
     /// As [`run`](Self::run).
     pub fn run_watched(
         &self,
-        mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
+        mut visit: impl FnMut(&Point) -> ControlFlow<()>,
         watch: &(dyn Fn(Progress) -> bool + Sync),
     ) -> Result<Diagram, Error> {
         let started = Instant::now();
-        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
-        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
+        let [from, to] = self.response.request.range()?;
         self.check()?;
         for &(value, ref basin) in &self.searched {
             if !(from.min(to)..=from.max(to)).contains(&value) {
@@ -224,18 +226,17 @@ impl Bifurcations {
                 let name = "search";
                 return Err(RequestError::Option { name, value, must }.into());
             }
-            let order = 2 * self.system.facts().coordinates.len();
+            let order = 2 * self.response.request.system.facts().coordinates.len();
             basin
                 .check(Some(order))
                 .map_err(|reason| BifurcationError::Search { value, reason })?;
         }
-        let first = self.shooting.clone().from(from).to(to);
         let mut seen = Watch::new(&mut visit);
-        let first = first.max_points(self.points.max(2));
-        let branch = first.run_with(|cycle| seen.see(cycle))?;
+        let first = self.response.clone().max_points(self.points.max(2));
+        let branch = first.run_with(|point| seen.see(point))?;
         let [low, high] = self.wider(from, to)?;
         let mut search = Search::new(
-            self.shooting.clone().from(low).to(high),
+            self.response.clone().from(low).to(high),
             (self.depth, self.branches, self.points),
             seen,
         );
@@ -278,19 +279,15 @@ impl Bifurcations {
         basin: &Basin,
         watch: &(dyn Fn(Progress) -> bool + Sync),
     ) -> Result<Basins, Error> {
-        let facts = self.system.facts();
-        let variable = validate::variable(facts, self.vary.as_deref())?;
-        let mut parameters = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut parameters);
-        let omega = match variable {
-            Variable::Omega => value,
-            Variable::Parameter(index) => {
-                parameters[index] = value;
-                self.omega.ok_or(RequestError::Missing { name: "omega" })?
-            }
-        };
+        let request = &self.response.request;
+        let variable = request.variable()?;
+        let mut parameters = request.parameters();
+        let omega = request.held_omega(variable)?.unwrap_or(value);
+        if let Variable::Parameter(index) = variable {
+            parameters[index] = value;
+        }
         let options = time::Options::default().tolerance(SETTLED);
-        let flow = time::at(&self.system, &parameters, omega, options)?;
+        let flow = time::at(&request.system, &parameters, omega, options)?;
         let found = basin.compute(vec![flow], None, watch);
         found.map_err(|reason| BifurcationError::Search { value, reason }.into())
     }
@@ -304,20 +301,20 @@ impl Bifurcations {
 
     /// The range with what lies beyond its ends, as far as that is admissible.
     fn wider(&self, from: f64, to: f64) -> Result<[f64; 2], Error> {
-        let facts = self.system.facts();
-        let variable = validate::variable(facts, self.vary.as_deref())?;
-        let mut parameters = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut parameters);
+        let request = &self.response.request;
+        let (facts, system) = (request.system.facts(), request.system.as_ref());
+        let variable = request.variable()?;
+        let parameters = request.parameters();
         let makes_sense = |value: f64| {
-            let (mut parameters, mut omega) = (parameters.clone(), self.omega.unwrap_or(value));
+            let (mut parameters, mut omega) = (parameters.clone(), request.omega.unwrap_or(value));
             match variable {
                 Variable::Omega => omega = value,
                 Variable::Parameter(index) => parameters[index] = value,
             }
             validate::omega(omega).is_ok()
                 && validate::parameters(facts, &parameters).is_ok()
-                && validate::levels(self.system.as_ref(), &parameters, omega).is_ok()
-                && validate::mass(self.system.as_ref(), &parameters, omega).is_ok()
+                && validate::levels(system, &parameters, omega).is_ok()
+                && validate::mass(system, &parameters, omega).is_ok()
         };
         let margin = self.margin * (to - from);
         // As much of it as makes sense.

@@ -1,11 +1,14 @@
 //! Branches of periodic orbits: as data, and what follows them, whichever method computes the orbits.
 
+pub(crate) mod branch;
 pub(crate) mod engine;
 pub(crate) mod error;
 pub(crate) mod observed;
 pub(crate) mod orbit;
 pub(crate) mod point;
 pub(crate) mod problem;
+pub(crate) mod request;
+pub(crate) mod solve;
 pub(crate) mod stability;
 pub(crate) mod switch;
 pub(crate) mod value;

@@ -1,22 +1,39 @@
 //! What is read off an orbit, as data.
 
-/// What is read off one orbit.
+/// What is read off one orbit: of one by the balance everything, of one by shooting the extremes of its coordinates, and the rest by
+/// [`Branch::complete`](crate::Branch::complete).
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Observed {
     /// One entry per coordinate.
     pub motions: Vec<Motion>,
-    /// One entry per contact.
+    /// One entry per contact; none where only the extremes were read off.
     pub contacts: Vec<ContactMotion>,
     /// For each contact, the part of the period that its gap spends on each piece of its law, from the piece of the lowest gaps to
     /// that of the highest: `gap > 0 => ..., else => ...` has the time without contact first. They add up to one.
     pub on_pieces: Vec<Vec<f64>>,
-    /// Mean power of the load: `<f . q'>`.
-    pub input_power: f64,
+    /// Mean power of the load: `<f . q'>`; `None` where only the extremes were read off.
+    pub input_power: Option<f64>,
     /// Mean power that damping, stiffness and contacts take up. In the discrete balance it equals the input power
-    /// exactly, for a symmetric mass matrix: the residual is orthogonal to the velocity.
-    pub dissipated_power: f64,
+    /// exactly, for a symmetric mass matrix: the residual is orthogonal to the velocity. `None` where only the extremes were read off.
+    pub dissipated_power: Option<f64>,
+    /// How often a gap crosses a level in the period, where shooting has counted that.
+    pub switches: Option<usize>,
+}
+
+impl Observed {
+    /// Extremes of the coordinates alone.
+    pub(crate) fn extremes(motions: Vec<Motion>, switches: usize) -> Self {
+        Self {
+            motions,
+            contacts: Vec::new(),
+            on_pieces: Vec::new(),
+            input_power: None,
+            dissipated_power: None,
+            switches: Some(switches),
+        }
+    }
 }
 
 /// What is read off the motion of one coordinate over a period.
@@ -28,16 +45,44 @@ pub struct Motion {
     pub maximum: f64,
     /// Smallest value.
     pub minimum: f64,
-    /// Mean.
-    pub mean: f64,
-    /// Root of the mean square, mean included.
-    pub rms: f64,
+    /// Mean; `None` where only the extremes were read off.
+    pub mean: Option<f64>,
+    /// Root of the mean square, mean included; `None` where only the extremes were read off.
+    pub rms: Option<f64>,
 }
 
 impl Motion {
     /// Largest less smallest value.
     pub fn peak_to_peak(&self) -> f64 {
         self.maximum - self.minimum
+    }
+
+    /// Before anything was seen of it.
+    pub(crate) const NONE: Self = Self {
+        minimum: f64::INFINITY,
+        maximum: f64::NEG_INFINITY,
+        mean: None,
+        rms: None,
+    };
+
+    /// In the middle between its extremes.
+    pub(crate) fn middle(&self) -> f64 {
+        0.5 * (self.maximum + self.minimum)
+    }
+
+    pub(crate) fn include(&mut self, x: f64) {
+        self.minimum = self.minimum.min(x);
+        self.maximum = self.maximum.max(x);
+    }
+
+    /// Of an orbit of which this is half, `q(tau + pi n) = -q(tau)`.
+    pub(crate) fn mirrored(self) -> Self {
+        let largest = self.maximum.max(-self.minimum);
+        Self {
+            minimum: -largest,
+            maximum: largest,
+            ..self
+        }
     }
 }
 

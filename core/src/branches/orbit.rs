@@ -2,12 +2,15 @@
 
 use crate::numeric::fourier::series;
 
-/// A periodic orbit as Fourier series of its coordinates.
+/// A periodic orbit: the Fourier series of its coordinates, as the balance finds them, or states along it, as shooting does; or both.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Orbit {
-    /// Coordinate by coordinate, each laid out as in [`series`].
+    /// Coordinate by coordinate, each laid out as in [`series`]; nothing where the series are not known.
     pub(crate) series: Vec<f64>,
+    /// States at the beginnings of the segments; nothing where they are not known.
+    pub(crate) states: Vec<f64>,
     pub(crate) coordinates: usize,
     /// Excitation frequency.
     pub omega: f64,
@@ -15,16 +18,22 @@ pub struct Orbit {
     pub base: f64,
     /// Number of periods of the declaration (`2 pi divisor / omega`) in its period.
     pub period: usize,
+    /// Whether it was followed as one of odd symmetry: half a period later every coordinate has the opposite sign.
+    pub symmetric: bool,
 }
 
 impl Orbit {
     /// Fourier series of one coordinate, `[mean, cos 1, sin 1, ...]` in harmonics of the base frequency; `None` if there is no such
-    /// coordinate.
+    /// coordinate, or the orbit is known by its states alone: [`Branch::complete`](crate::Branch::complete) has the series.
     pub fn series(&self, coordinate: usize) -> Option<&[f64]> {
-        (coordinate < self.coordinates).then(|| self.row(coordinate))
+        (coordinate < self.coordinates && self.has_series()).then(|| self.row(coordinate))
     }
 
-    /// The series of a coordinate that there is.
+    pub(crate) fn has_series(&self) -> bool {
+        !self.series.is_empty()
+    }
+
+    /// The series of a coordinate that there is, where series are known.
     pub(crate) fn row(&self, coordinate: usize) -> &[f64] {
         let length = self.series.len() / self.coordinates;
         &self.series[coordinate * length..][..length]
@@ -35,17 +44,35 @@ impl Orbit {
         self.coordinates
     }
 
-    /// Number of harmonics.
+    /// Number of harmonics; zero where the series are not known.
     pub fn harmonics(&self) -> usize {
-        series::harmonics(self.row(0))
+        if self.has_series() {
+            series::harmonics(self.row(0))
+        } else {
+            0
+        }
     }
 
-    /// Position and velocity of one coordinate at a time.
-    ///
-    /// # Panics
-    /// If there is no such coordinate.
-    pub fn state(&self, coordinate: usize, time: f64) -> (f64, f64) {
-        let (x, slope, _) = series::value_and_derivatives(self.row(coordinate), self.base * time);
-        (x, self.base * slope)
+    /// Position and velocity of one coordinate at a time, from the series; `None` where [`series`](Self::series) is.
+    pub fn state_at(&self, coordinate: usize, time: f64) -> Option<(f64, f64)> {
+        let row = self.series(coordinate)?;
+        let (x, slope, _) = series::value_and_derivatives(row, self.base * time);
+        Some((x, self.base * slope))
+    }
+
+    /// The state `(q, dq/dt)` at phase zero: all positions, then all velocities.
+    pub fn state(&self) -> Vec<f64> {
+        if let Some(state) = self.states.get(..2 * self.coordinates) {
+            return state.to_vec();
+        }
+        let at_start = (0..self.coordinates).filter_map(|i| self.state_at(i, 0.0));
+        let (positions, velocities): (Vec<f64>, Vec<f64>) = at_start.unzip();
+        [positions, velocities].concat()
+    }
+
+    /// The states at the beginnings of the segments, of equal length, that shooting divides the orbit into, or half of it if it is
+    /// symmetric: by default one for each period of the declaration. None of an orbit of the balance.
+    pub fn states(&self) -> impl Iterator<Item = &[f64]> {
+        self.states.chunks_exact(2 * self.coordinates.max(1))
     }
 }

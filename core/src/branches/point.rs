@@ -23,7 +23,7 @@ pub struct Point {
     pub stability: Stability,
     /// What is read off it.
     pub observed: Observed,
-    /// Estimated error of peak-to-peak from the harmonics that were left out: of the first coordinate relative to its own, of the others
+    /// Estimated error of peak-to-peak, from the harmonics that were left out or from the tolerance of the flow, and from rounding: of the first coordinate relative to its own, of the others
     /// relative to the largest of all, at this very value of what is varied. A first coordinate whose motion is not told from what is left
     /// of the equations is at rest, and measured by the largest. `None` where neither the tolerance nor the stability asked for it. Infinite where it could not be estimated: nothing is known of the error then.
     pub error: Option<f64>,
@@ -44,6 +44,13 @@ impl Point {
     pub fn peak_to_peak(&self) -> f64 {
         self.motion().peak_to_peak()
     }
+
+    /// Half of the largest peak-to-peak of a coordinate; one at rest.
+    pub(crate) fn size(&self) -> f64 {
+        let motions = self.observed.motions.iter();
+        let size = motions.fold(0.0, |m: f64, motion| m.max(0.5 * motion.peak_to_peak()));
+        if size > 0.0 { size } else { 1.0 }
+    }
 }
 
 /// A special orbit of a branch, located until its test function vanished.
@@ -55,8 +62,9 @@ pub struct Event {
     pub kind: EventKind,
     /// The orbit.
     pub point: Point,
-    /// Estimated error of [`Point::value`], from the harmonics and samples that were left out. Infinite where it could not be
-    /// estimated: the event is one of the truncated balance then, and nothing is known of the true one.
+    /// Estimated error of [`Point::value`], from the harmonics and samples that were left out or from the tolerance of the flow, and from
+    /// rounding. Infinite where it could not be estimated: the event is one of the discrete equations then, and nothing is known of
+    /// the true one.
     pub error: f64,
     /// Value of the test function that was reached.
     pub test: f64,
@@ -65,8 +73,7 @@ pub struct Event {
     /// Where an orbit grazes, the number of contacts that touch a level there; several at once where they are copies of each other,
     /// as the balls of a bearing. Zero otherwise.
     pub contacts: usize,
-    /// At a crossing with another branch of the same harmonics the tangent of the branch, in extended unknowns; otherwise nothing.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    /// The tangent of the branch, in extended unknowns. By the balance at a crossing with another branch of the same harmonics only.
     pub(crate) tangent: Vec<f64>,
 }
 
@@ -79,8 +86,14 @@ impl fmt::Display for Event {
             contacts,
             ..
         } = self;
-        let value = Decimal::rounded(point.value, 9);
-        let size = Decimal::rounded(point.peak_to_peak(), 6);
+        // What is left out of series shows earlier than what a flow leaves.
+        let digits = if point.orbit.has_series() {
+            [9, 6]
+        } else {
+            [12, 9]
+        };
+        let value = Decimal::rounded(point.value, digits[0]);
+        let size = Decimal::rounded(point.peak_to_peak(), digits[1]);
         write!(
             f,
             "{kind} at {value} (error {error:.0e}), peak-to-peak {size}"

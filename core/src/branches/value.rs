@@ -3,10 +3,13 @@
 //! Where the branch turns has been located, so that it passes a value at most once between two neighbours among its points and turns.
 //! There the solution is searched along the chord of the two.
 
+use super::branch::Branch;
+use super::point::Point;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
+use crate::error::Error;
 
 /// Points and turns of a branch in their order along it. Each turn comes with the number of points before it.
 pub(crate) fn chain<'p, T>(points: &'p [T], turns: &[(usize, &'p T)]) -> Vec<&'p T> {
@@ -27,6 +30,26 @@ pub(crate) fn turns_at<T>(points: &[T], after: usize, value: f64, of: impl Fn(&T
         Some((Some(a), Some(b))) => (value - of(a)) * (of(b) - value) < 0.0,
         _ => false,
     }
+}
+
+/// The orbits of a branch at a value, in its order.
+///
+/// # Errors
+/// Those of `between`, which finds the orbit between two neighbours.
+pub(crate) fn orbits_at(
+    branch: &Branch,
+    value: f64,
+    between: impl FnMut([&Point; 2]) -> Result<Point, Error>,
+    is_same: impl Fn(&Point, &Point) -> bool,
+) -> Result<Vec<Point>, Error> {
+    let points = &branch.points;
+    let turns = branch.events.iter().filter(|event| {
+        let place = event.point.value;
+        event.kind.turns() || turns_at(points, event.after, place, |point| point.value)
+    });
+    let turns: Vec<_> = turns.map(|event| (event.after, &event.point)).collect();
+    let chain = chain(points, &turns);
+    solutions(&chain, value, |point| point.value, between, is_same)
 }
 
 /// What a branch has at a value, in its order; what is the same is there once, since a closed branch ends where it began.

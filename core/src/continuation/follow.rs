@@ -17,6 +17,7 @@ use super::step::StepControl;
 use super::walk::{Begun, Walk};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::numeric::decimal::Decimal;
+use crate::time::FlowError;
 
 /// What to follow, and how far.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +67,8 @@ pub enum Stop {
     Joined {
         /// The shorter period, in periods of the declaration.
         period: usize,
+        /// Whether the orbits met have an odd symmetry that those of the branch lack.
+        symmetric: bool,
         /// Where.
         value: f64,
     },
@@ -82,6 +85,13 @@ pub enum Stop {
         value: f64,
         /// What the last correction said.
         reason: NewtonError,
+    },
+    /// The motion near the last orbit, or the one that would be next, cannot be computed.
+    Motion {
+        /// Value at the last orbit.
+        value: f64,
+        /// Why.
+        reason: FlowError,
     },
     /// The orbits grow without bound while what is varied hardly moves: a resonance that no damping limits.
     Unbounded {
@@ -100,9 +110,14 @@ impl std::fmt::Display for Stop {
             Self::ReachedEnd => write!(f, "reached the end of the range"),
             Self::LeftAtStart => write!(f, "turned back and left the range at its start"),
             Self::Closed => write!(f, "closed upon itself"),
-            Self::Joined { period, value } => write!(
+            Self::Joined {
+                period,
+                symmetric,
+                value,
+            } => write!(
                 f,
-                "joined a branch of orbits of period {period} at {}; beyond, the same orbits would follow again, shifted or mirrored",
+                "joined a branch of {}orbits of period {period} at {}; beyond, the same orbits would follow again, shifted or mirrored",
+                if *symmetric { "symmetric " } else { "" },
                 Decimal::rounded(*value, 9)
             ),
             Self::PointLimit { points } => write!(f, "reached the limit of {points} points"),
@@ -117,6 +132,11 @@ impl std::fmt::Display for Stop {
                     Decimal::plain(*value)
                 )
             }
+            Self::Motion { value, reason } => write!(
+                f,
+                "no further motion computed at {}: {reason}",
+                Decimal::plain(*value)
+            ),
             Self::Unbounded { value, growth } => write!(
                 f,
                 "the oscillation grew {growth:.0e} times towards {}, without an end: a resonance without damping",

@@ -95,6 +95,17 @@ pub enum RequestError {
         /// Twice the number of coordinates.
         expected: usize,
     },
+    /// A branch that was read from a file was asked for what takes its model.
+    #[error("the branch was read from a file and has no model: give it one by `attach(&model)`")]
+    Detached,
+    /// The model given to a branch is not its own.
+    #[error("the branch is one of {expected}, and {found} has another name or other equations")]
+    OtherModel {
+        /// Name of the branch's own model.
+        expected: String,
+        /// Name of the one given.
+        found: String,
+    },
     /// There are not as many values as parameters.
     #[error("{values} values were given for {expected} parameters")]
     Values {
@@ -117,6 +128,8 @@ crate::error::sentence_as_debug! {
     Unknowns { unknowns, most }
     Harmonics { harmonics, highest }
     State { entries, expected }
+    Detached {}
+    OtherModel { expected, found }
     Values { values, expected }
     ;
 }

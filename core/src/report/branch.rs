@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
+use crate::branches::branch::Branch;
 use crate::error::Error;
 use crate::file;
 use crate::report::error::FileError;
-use crate::response::branch::Branch;
 
 use super::export::Table;
 
 impl Branch {
     /// The orbits as a table with names of the columns, one row for each: see [`COLUMNS`](super::export::COLUMNS).
     pub fn to_csv(&self) -> String {
-        let mut table = Table::of(self.system());
+        let mut table = Table::of_model(&self.model);
         for point in &self.points {
             table.add(0, point);
         }

@@ -1,11 +1,10 @@
-//! The charts of a branch by shooting, and of a diagram.
+//! The chart of a diagram.
 
 use crate::bifurcation::diagram::{Diagram, Limb};
-use crate::chart::{Chart, Curve, Run};
+use crate::branches::branch::Branch;
+use crate::chart::{Chart, Curve};
 use crate::error::Error;
-use crate::event::EventKind;
-use crate::report::picture::runs;
-use crate::shooting::{Cycle, CycleBranch};
+use crate::report::labels::Labels;
 
 impl Diagram {
     /// Peak-to-peak of the first coordinate over what is varied, one curve for each period: stable solid, unstable dashed,
@@ -24,14 +23,14 @@ impl Diagram {
                 .branches
                 .iter()
                 .filter(|limb| limb.period() == period)
-                .flat_map(|limb| limb.branch.runs(place))
+                .flat_map(|limb| limb.branch.runs())
                 .collect(),
         });
-        let chart = curves.fold(first.branch.labels.chart(), Chart::curve);
+        let chart = curves.fold(Labels::of(&first.branch).chart(), Chart::curve);
         let branches = || self.branches.iter().map(|limb| &limb.branch);
         chart
-            .events(branches().flat_map(CycleBranch::marked))
-            .unlocated(branches().flat_map(CycleBranch::unlocated).collect())
+            .events(branches().flat_map(Branch::marked))
+            .unlocated(branches().flat_map(Branch::unlocated).collect())
     }
 
     /// Draws the [`chart`](Self::chart) as an SVG file.
@@ -40,62 +39,5 @@ impl Diagram {
     /// If the file cannot be written.
     pub fn plot(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
         Ok(self.chart().write(path)?)
-    }
-}
-
-fn place(cycle: &Cycle) -> [f64; 2] {
-    [cycle.value, cycle.peak_to_peak()]
-}
-
-impl CycleBranch {
-    /// Peak-to-peak of the first coordinate over what the branch varies, drawn as [`Branch::chart`](crate::response::branch::Branch::chart) draws a
-    /// branch of the balance.
-    pub fn chart(&self) -> Chart {
-        let curve = Curve {
-            label: String::new(),
-            runs: self.runs(place),
-        };
-        let period = self.cycles.first().map_or(1, |cycle| cycle.period);
-        let labels = self.labels.clone().with_period(period);
-        let chart = labels.chart().curve(curve);
-        chart
-            .events(self.marked())
-            .unlocated(self.unlocated().collect())
-    }
-
-    /// Draws the [`chart`](Self::chart) as an SVG file.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub fn plot(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
-        Ok(self.chart().write(path)?)
-    }
-
-    /// Runs of one stability each for a chart, with every orbit at its place; neighbours share the point where they meet, which is the
-    /// event if there is one between them.
-    #[must_use]
-    pub fn runs(&self, place: impl Fn(&Cycle) -> [f64; 2]) -> Vec<Run> {
-        let cycles = self.cycles.iter();
-        let cycles = cycles.map(|cycle| (place(cycle), cycle.stability.verdict));
-        let events = self.events.iter();
-        let events = events.map(|event| (event.after, place(&event.cycle)));
-        runs(cycles, &events.collect::<Vec<_>>())
-    }
-
-    fn marked(&self) -> impl Iterator<Item = (EventKind, [f64; 2])> {
-        let events = self.events.iter();
-        events.map(|event| (event.kind, place(&event.cycle)))
-    }
-
-    /// Where test functions change their sign without an event.
-    fn unlocated(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.turns.iter().filter_map(|turn| {
-            let [before, behind] = [
-                self.cycles.get(turn.after.checked_sub(1)?)?,
-                self.cycles.get(turn.after)?,
-            ];
-            let size = 0.5 * (before.peak_to_peak() + behind.peak_to_peak());
-            Some([turn.value, size])
-        })
     }
 }

@@ -6,4 +6,6 @@ pub(crate) mod diagram;
 pub(crate) mod error;
 pub mod export;
 #[cfg(feature = "plot")]
+mod labels;
+#[cfg(feature = "plot")]
 pub(crate) mod picture;

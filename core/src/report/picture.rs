@@ -3,14 +3,14 @@
 use std::mem::discriminant;
 use std::path::Path;
 
+use crate::branches::branch::Branch;
 use crate::branches::point::Point;
 use crate::chart::{Chart, ChartError, Curve, Line, Markers, Run};
 use crate::error::Error;
 use crate::event::EventKind;
-use crate::model::labels::Labels;
 use crate::orbit::stability::Verdict;
 use crate::report::error::FileError;
-use crate::response::branch::Branch;
+use crate::report::labels::Labels;
 
 impl Branch {
     /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.
@@ -25,37 +25,43 @@ impl Branch {
     /// dotted; events are marked, each kind by a shape of its own, and so are places where an event could not be located.
     /// More can be added before it is written.
     pub fn chart(&self) -> Chart {
+        let curve = Curve {
+            label: String::new(),
+            runs: self.runs(),
+        };
+        let labels = Labels::of(self).with_period(self.period());
+        let chart = labels.chart().curve(curve);
+        chart
+            .events(self.marked())
+            .unlocated(self.unlocated().collect())
+    }
+
+    /// Its events at their places.
+    pub(crate) fn marked(&self) -> impl Iterator<Item = (EventKind, [f64; 2])> {
         let events = self.events.iter();
-        let turns = self.turns.iter().filter_map(|turn| {
+        events.map(|event| (event.kind, place(&event.point)))
+    }
+
+    /// Where test functions change their sign without an event.
+    pub(crate) fn unlocated(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.turns.iter().filter_map(|turn| {
             let [before, behind] = [
                 self.points.get(turn.after.checked_sub(1)?)?,
                 self.points.get(turn.after)?,
             ];
             let size = 0.5 * (before.peak_to_peak() + behind.peak_to_peak());
             Some([turn.value, size])
-        });
-        let curve = Curve {
-            label: String::new(),
-            runs: self.runs(),
-        };
-        let chart = self.labels().chart().curve(curve);
-        let events = events.map(|event| (event.kind, place(&event.point)));
-        chart.events(events).unlocated(turns.collect())
-    }
-
-    /// What a chart says of it.
-    fn labels(&self) -> Labels {
-        let facts = self.follower.system.facts();
-        let Some(point) = self.points.first() else {
-            return Labels::of(facts, &self.varied, &[], 0.0);
-        };
-        let labels = Labels::of(facts, &self.varied, &point.parameters, point.omega());
-        labels.with_period(point.orbit.period)
+        })
     }
 
     /// The branch as runs of one stability each; neighbours share the point where they meet, which is the event if
     /// there is one between them.
     pub fn runs(&self) -> Vec<Run> {
+        self.runs_of(place)
+    }
+
+    /// The same with every orbit at a place of one's own.
+    pub fn runs_of(&self, place: impl Fn(&Point) -> [f64; 2]) -> Vec<Run> {
         let points = self.points.iter();
         let points = points.map(|point| (place(point), point.stability.verdict));
         let events = self.events.iter();
@@ -66,7 +72,7 @@ impl Branch {
 
 /// Points with their verdicts as runs of one stability each, with events, each behind so many points. Neighbours share the point
 /// where they meet.
-pub(crate) fn runs(
+fn runs(
     points: impl Iterator<Item = ([f64; 2], Verdict)>,
     events: &[(usize, [f64; 2])],
 ) -> Vec<Run> {

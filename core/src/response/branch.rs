@@ -1,90 +1,205 @@
-//! A branch of orbits that was computed by the balance.
+//! What a branch computes when it is asked: it knows what followed it.
 
-use std::mem::discriminant;
-use std::time::Duration;
+use std::sync::Arc;
 
+use super::by_shooting::{self, Second};
+use super::sealed::Follow;
+use crate::balance_branch::check::Asked;
 use crate::balance_branch::follower::Follower;
+use crate::balance_branch::options::HarmonicBalance;
+use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::point::{Event, Point};
-use crate::continuation::follow::Stop;
-use crate::continuation::statistics::Statistics;
+use crate::branches::request::Request;
 use crate::error::Error;
-use crate::event::{EventKind, Turn};
+use crate::event::Side;
+use crate::model::request::RequestError;
+use crate::model::validate;
+use crate::shooting::{self, Shooting, Track, at};
 use crate::system::System;
 
-/// A branch of orbits in the order in which it was followed.
-///
-/// It owns a copy of the system, so that it can be returned, kept, and sent to another thread:
-///
-/// ```
-/// use hertzian::{Branch, Error, FrequencyResponse};
-///
-/// fn resonance(drive: f64) -> Result<Branch, Error> {
-///     hertzian::oscillator! {
-///         Duffing(x) {
-///             param drive;
-///             ddot(x) + 0.1*dot(x) + x + x^3 = drive*cos(omega*t);
-///         }
-///     }
-///
-///     let model = Duffing { drive };
-///     FrequencyResponse::of(&model).from(0.5).to(2.0).harmonics(7).samples(64).run()
-/// }
-///
-/// let branch = resonance(0.2)?;
-/// // Further orbits are computed when they are asked for.
-/// let at = std::thread::spawn(move || branch.at(1.3)).join().unwrap()?;
-/// assert_eq!(at.len(), 3);
-/// # Ok::<(), hertzian::Error>(())
-/// ```
-#[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Branch {
-    /// Name of what it varies.
-    pub varied: String,
-    /// The orbits.
-    pub points: Vec<Point>,
-    /// Special orbits.
-    pub events: Vec<Event>,
-    /// Turns that are not folds, and other events that could not be located.
-    pub turns: Vec<Turn>,
-    /// Why it ended.
-    pub stopped: Stop,
-    /// What it cost.
-    pub statistics: Statistics,
-    /// Time of the computation.
-    #[cfg_attr(
-        feature = "serde",
-        serde(serialize_with = "crate::numeric::serialise::seconds")
-    )]
-    pub elapsed: Duration,
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) follower: Follower,
+/// What a branch was asked for by.
+pub(super) enum Following {
+    Balance(Box<Follower>, Request, HarmonicBalance),
+    Shooting(Request, Shooting),
+}
+
+impl Following {
+    fn request(&self) -> &Request {
+        match self {
+            Self::Balance(_, request, _) | Self::Shooting(request, _) => request,
+        }
+    }
 }
 
 impl Branch {
-    /// The system that it belongs to.
-    pub fn system(&self) -> &dyn System {
-        self.follower.system.as_ref()
-    }
-
-    /// The events of one kind. Whether the branch turns back is not asked: `Grazing` of either kind gives all.
-    pub fn events(&self, kind: EventKind) -> impl Iterator<Item = &Event> {
-        let alike = move |event: &&Event| discriminant(&event.kind) == discriminant(&kind);
-        self.events.iter().filter(alike)
-    }
-
-    /// The folds.
-    pub fn folds(&self) -> impl Iterator<Item = &Event> {
-        self.events(EventKind::Fold)
-    }
-
     /// Every orbit of the branch at a value of what it varies, in branch order; empty where the branch does not pass. Harmonics
     /// follow the tolerance as along the branch.
     ///
     /// # Errors
-    /// If the value is not finite, or an orbit between two points cannot be computed.
+    /// If the value is not finite, an orbit between two points cannot be computed, or the branch was read from a file and has no
+    /// [model](Self::attach).
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
-        crate::model::validate::finite("at", value)?;
-        self.follower.at(&self.points, &self.events, value)
+        validate::finite("at", value)?;
+        match self.following()? {
+            Following::Balance(follower, ..) => follower.at(self, value),
+            Following::Shooting(request, shooting) => {
+                let Some(point) = self.points.first() else {
+                    return Ok(Vec::new());
+                };
+                let period = point.orbit.period;
+                let (shooting, request) = by_shooting::of_period(*shooting, request, period);
+                let asked = shooting::Asked {
+                    request: &request,
+                    shooting: &shooting,
+                };
+                at::at(&asked.setting(value, value)?, self, value)
+            }
+        }
+    }
+
+    /// The branch that begins at one of the events of this one, in the same range, by the same method: see
+    /// [`FrequencyResponse::switch`](crate::FrequencyResponse::switch).
+    ///
+    /// # Errors
+    /// If no branch begins there, its first orbit was not found, or the branch was read from a file and has no
+    /// [model](Self::attach).
+    pub fn switch(&self, event: &Event, side: Side) -> Result<Self, Error> {
+        let visit = &mut |_: &Point| std::ops::ControlFlow::Continue(());
+        match self.following()? {
+            Following::Balance(_, request, balance) => balance.switch(request, event, side, visit),
+            Following::Shooting(request, shooting) => shooting.switch(request, event, side, visit),
+        }
+    }
+
+    /// The curve of bifurcations through one of its events, as a second parameter (or `"omega"`) varies between two values: see
+    /// [`FrequencyResponse::track`](crate::FrequencyResponse::track).
+    ///
+    /// # Errors
+    /// If a parameter is not usable, there is no such curve, or the branch was read from a file and has no [model](Self::attach).
+    pub fn track(&self, event: &Event, second: &str, range: [f64; 2]) -> Result<Track, Error> {
+        let following = self.following()?;
+        let shooting = match following {
+            Following::Balance(..) => Shooting::new(),
+            Following::Shooting(_, shooting) => *shooting,
+        };
+        let second = Second {
+            name: second,
+            range,
+        };
+        let visit = &mut |_: &shooting::TrackPoint| std::ops::ControlFlow::Continue(());
+        by_shooting::track(following.request(), shooting, event, second, visit)
+    }
+
+    /// An orbit of this branch with its Fourier series, and everything that is read off. By the balance it has that already; by shooting
+    /// its motion is computed once more, and 20 harmonics for each period of the excitation are kept.
+    ///
+    /// # Errors
+    /// If the orbit is not one of this system, its motion cannot be computed, or the branch was read from a file and has no
+    /// [model](Self::attach).
+    pub fn complete(&self, point: &Point) -> Result<Point, Error> {
+        if point.orbit.has_series() {
+            return Ok(point.clone());
+        }
+        match self.following()? {
+            Following::Balance(_, request, _) => {
+                by_shooting::completed(request, Shooting::new(), point)
+            }
+            Following::Shooting(request, shooting) => {
+                by_shooting::completed(request, *shooting, point)
+            }
+        }
+    }
+
+    /// Gives a branch that was read from a file its model back, so that it can compute further orbits.
+    ///
+    /// # Errors
+    /// If the model has another name, other equations, or other values of what the branch does not vary.
+    pub fn attach(&mut self, model: &dyn System) -> Result<(), Error> {
+        let system = model.shared();
+        if Model::of(model) != self.model {
+            return Err(RequestError::OtherModel {
+                expected: self.model.name.clone(),
+                found: model.facts().name.to_string(),
+            }
+            .into());
+        }
+        let Some(point) = self.points.first() else {
+            self.further.system = Some(system);
+            return Ok(());
+        };
+        let mut request = Request::of(model);
+        if self.varied != "omega" {
+            request.vary = Some(self.varied.clone());
+            request.omega = Some(point.orbit.omega);
+        }
+        let values = || self.points.iter().map(|point| point.value);
+        request.from = Some(values().fold(f64::INFINITY, f64::min));
+        request.to = Some(values().fold(f64::NEG_INFINITY, f64::max));
+        request.period = Some(point.orbit.period);
+        let shooting = Shooting::new();
+        let asked = shooting::Asked {
+            request: &request,
+            shooting: &shooting,
+        };
+        asked.belongs(point)?;
+        let following = if point.orbit.states.is_empty() {
+            let balance = HarmonicBalance::new().bifurcations(true);
+            let near = Request {
+                near: Some(crate::branches::request::Guess::Orbit(point.orbit.clone())),
+                ..request.clone()
+            };
+            let asked = Asked {
+                request: &near,
+                balance: &balance,
+            };
+            let (follower, _) = asked.check()?;
+            Following::Balance(Box::new(follower), request, balance)
+        } else {
+            Following::Shooting(request, shooting)
+        };
+        self.further = Further {
+            system: Some(system),
+            request: Some(Arc::new(following)),
+        };
+        Ok(())
+    }
+
+    /// A balance of orbits like this one of the branch, whatever method found it.
+    pub(super) fn follower(&self, point: &Point) -> Result<Follower, Error> {
+        let request = match self.following()? {
+            Following::Balance(follower, ..) => return Ok(follower.as_ref().clone()),
+            Following::Shooting(request, _) => request,
+        };
+        let balance = HarmonicBalance::new();
+        let mut request = Request {
+            near: None,
+            period: Some(point.orbit.period),
+            from: Some(point.value),
+            ..request.clone()
+        };
+        let asked = Asked {
+            request: &request,
+            balance: &balance,
+        };
+        request.to = Some(asked.aside(point.value)?);
+        let asked = Asked {
+            request: &request,
+            balance: &balance,
+        };
+        Ok(asked.check()?.0)
+    }
+
+    /// What followed it, if it is one of the balance.
+    pub(super) fn by_balance(&self) -> Option<&Follower> {
+        match self.following() {
+            Ok(Following::Balance(follower, ..)) => Some(follower),
+            _ => None,
+        }
+    }
+
+    fn following(&self) -> Result<&Following, Error> {
+        let request = self.further.request.as_ref();
+        let following = request.and_then(|request| request.downcast_ref::<Following>());
+        following.ok_or_else(|| RequestError::Detached.into())
     }
 }

@@ -1,38 +1,65 @@
-//! Frequency response: what a user asks for, checked before any work.
+//! What a user asks of a branch: the system, what is varied and how far, and the method.
 
-pub(crate) mod branch;
+mod branch;
+mod by_balance;
+mod by_shooting;
 mod multipliers;
-
-mod check;
+#[doc(hidden)]
+pub mod stages;
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::time::Instant;
 
-use crate::balance::Parity;
 use crate::balance::aft::Aft;
-use crate::balance::start::{Moving, start, without_symmetry};
-use crate::balance::symmetry::has_stride;
-use crate::balance_branch::depart::depart;
-use crate::balance_branch::follower::Sought;
-use crate::balance_branch::run::{Followed, Run};
-use crate::branches::error::Attempts;
-use crate::branches::error::OrbitError;
+use crate::balance_branch::options::HarmonicBalance;
+use crate::branches::branch::Branch;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
-use crate::continuation::follow::Start;
-use crate::continuation::statistics::Statistics;
-use crate::continuation::step::StepControl;
+use crate::branches::request::{Guess, Request};
 use crate::error::Error;
-use crate::event::{EventKind, Side};
+use crate::event::Side;
 use crate::orbit::stability::Method;
-use crate::response::branch::Branch;
+use crate::shooting::{Shooting, Track, TrackPoint};
 use crate::system::System;
+
+/// Called at every orbit as it is found.
+type See<'v> = &'v mut dyn FnMut(&Point) -> ControlFlow<()>;
+
+mod sealed {
+    use super::{Branch, Error, Event, Point, Request, See, Side};
+
+    /// What a method of computing periodic orbits does for a request.
+    pub trait Follow {
+        /// The one orbit at a value.
+        fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error>;
+
+        /// The branch from one end of the range to the other.
+        fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error>;
+
+        /// The branch that begins at an event, on one side of it.
+        fn switch(
+            &self,
+            request: &Request,
+            event: &Event,
+            side: Side,
+            visit: See<'_>,
+        ) -> Result<Branch, Error>;
+
+        /// The branch through the orbit at a value, both ways.
+        fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error>;
+    }
+}
+
+/// A method of computing periodic orbits: [`HarmonicBalance`] or [`Shooting`].
+pub trait OrbitMethod: sealed::Follow + Clone + Send + Sync + 'static {}
+
+impl OrbitMethod for HarmonicBalance {}
+impl OrbitMethod for Shooting {}
 
 /// What to follow, set up step by step, then [run](FrequencyResponse::run).
 ///
 /// Only the two ends of the range have to be given. By default the excitation frequency is varied, the orbit has the
-/// period of the excitation, and everything else follows from the tolerance.
+/// period of the excitation, orbits are found by [`HarmonicBalance`], and everything else follows from the tolerance. Setters may be
+/// called in any order.
 ///
 /// ```
 /// hertzian::oscillator! {
@@ -51,33 +78,19 @@ use crate::system::System;
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct FrequencyResponse {
-    system: Arc<dyn System>,
-    vary: Option<String>,
-    omega: Option<f64>,
-    from: Option<f64>,
-    to: Option<f64>,
-    harmonics: Option<usize>,
-    samples: Option<usize>,
-    aft: Aft,
-    period: usize,
-    tolerance: f64,
-    max_points: usize,
-    largest_step: f64,
-    stability: bool,
-    method: Method,
-    near: Option<Orbit>,
-    sought: Sought,
-    symmetric: bool,
+pub struct FrequencyResponse<M = HarmonicBalance> {
+    pub(crate) request: Request,
+    pub(crate) method: M,
 }
 
-impl std::fmt::Debug for FrequencyResponse {
+impl<M: std::fmt::Debug> std::fmt::Debug for FrequencyResponse<M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("FrequencyResponse")
-            .field("system", &self.system.facts().name)
-            .field("vary", &self.vary)
-            .field("from", &self.from)
-            .field("to", &self.to)
+            .field("system", &self.request.system.facts().name)
+            .field("vary", &self.request.vary)
+            .field("from", &self.request.from)
+            .field("to", &self.request.to)
+            .field("method", &self.method)
             .finish_non_exhaustive()
     }
 }
@@ -86,109 +99,141 @@ impl FrequencyResponse {
     /// Of this system, at the values that its parameters have now.
     pub fn of(system: &dyn System) -> Self {
         Self {
-            system: system.shared(),
-            vary: None,
-            omega: None,
-            from: None,
-            to: None,
-            harmonics: None,
-            samples: None,
-            aft: Aft::default(),
-            period: 1,
-            tolerance: 1e-6,
-            max_points: 20_000,
-            largest_step: StepControl::default().largest,
-            stability: true,
-            near: None,
-            sought: Sought::Folds,
-            symmetric: true,
-            method: Method::default(),
+            request: Request::of(system),
+            method: HarmonicBalance::default(),
+        }
+    }
+
+    /// As [`HarmonicBalance::harmonics`].
+    #[must_use]
+    pub fn harmonics(mut self, harmonics: usize) -> Self {
+        self.method = self.method.harmonics(harmonics);
+        self
+    }
+
+    /// As [`HarmonicBalance::samples`].
+    #[must_use]
+    pub fn samples(mut self, samples: usize) -> Self {
+        self.method = self.method.samples(samples);
+        self
+    }
+
+    /// As [`HarmonicBalance::aft`].
+    #[must_use]
+    pub fn aft(mut self, aft: Aft) -> Self {
+        self.method = self.method.aft(aft);
+        self
+    }
+
+    /// As [`HarmonicBalance::multipliers`].
+    #[must_use]
+    pub fn multipliers(mut self, method: Method) -> Self {
+        self.method = self.method.multipliers(method);
+        self
+    }
+
+    /// As [`HarmonicBalance::doublings`].
+    #[must_use]
+    pub fn doublings(mut self, wanted: bool) -> Self {
+        self.method = self.method.doublings(wanted);
+        self
+    }
+
+    /// As [`HarmonicBalance::bifurcations`].
+    #[must_use]
+    pub fn bifurcations(mut self, wanted: bool) -> Self {
+        self.method = self.method.bifurcations(wanted);
+        self
+    }
+
+    /// As [`HarmonicBalance::symmetric`].
+    #[must_use]
+    pub fn symmetric(mut self, wanted: bool) -> Self {
+        self.method = self.method.symmetric(wanted);
+        self
+    }
+}
+
+impl<M: OrbitMethod> FrequencyResponse<M> {
+    /// Computes orbits by another method, with its options.
+    ///
+    /// ```
+    /// use hertzian::{FrequencyResponse, Shooting};
+    ///
+    /// hertzian::oscillator! {
+    ///     Duffing(x) {
+    ///         param drive;
+    ///         ddot(x) + 0.1*dot(x) + x + x^3 = drive*cos(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let request = FrequencyResponse::of(&Duffing { drive: 0.2 }).from(0.5).to(2.0);
+    /// let by_balance = request.clone().run()?;
+    /// let by_shooting = request.by(Shooting::new().segments(2)).run()?;
+    /// for (a, b) in by_balance.folds().zip(by_shooting.folds()) {
+    ///     assert!((a.point.value - b.point.value).abs() < 1e-5);
+    /// }
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    #[must_use]
+    pub fn by<N: OrbitMethod>(self, method: N) -> FrequencyResponse<N> {
+        FrequencyResponse {
+            request: self.request,
+            method,
         }
     }
 
     /// Where the branch starts.
     #[must_use]
     pub fn from(mut self, value: f64) -> Self {
-        self.from = Some(value);
+        self.request.from = Some(value);
         self
     }
 
     /// Where it ends.
     #[must_use]
     pub fn to(mut self, value: f64) -> Self {
-        self.to = Some(value);
+        self.request.to = Some(value);
         self
     }
 
     /// Varies a parameter instead of the excitation frequency, which is then [`omega`](Self::omega).
     #[must_use]
     pub fn vary(mut self, parameter: impl Into<String>) -> Self {
-        self.vary = Some(parameter.into());
+        self.request.vary = Some(parameter.into());
         self
     }
 
     /// The excitation frequency, in radians per unit of time, when a parameter is varied.
     #[must_use]
     pub fn omega(mut self, omega: f64) -> Self {
-        self.omega = Some(omega);
+        self.request.omega = Some(omega);
         self
     }
 
     /// Period of the orbit in periods of the declaration, `2 pi divisor / omega`: those of the excitation, unless the declaration
-    /// has fractions of `omega`. Default: 1.
+    /// has fractions of `omega`. Default: that of the orbit [given](Self::near_orbit), or 1.
     #[must_use]
     pub fn period(mut self, period: usize) -> Self {
-        self.period = period;
+        self.request.period = Some(period);
         self
     }
 
-    /// Relative accuracy asked of peak-to-peak. Default: 1e-6. Harmonics and the tolerance of Newton's method follow from it.
-    /// Harmonics are chosen at every point such that its estimated error, [`Point::error`], is below the tolerance; at most 150
-    /// for each period of the excitation.
+    /// Relative accuracy asked of peak-to-peak. Default: 1e-6. The balance chooses harmonics at every point such that its estimated
+    /// error, [`Point::error`], is below the tolerance, at most 150 for each period of the excitation; the
+    /// [tolerance of flows](Shooting::tolerance) and that of Newton's method follow from it.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
-    /// The same number of harmonics at every point, whatever the tolerance. They are harmonics of the base frequency, which is
-    /// omega over the divisor of the declaration (one, unless it has fractions of omega), for an orbit of period one; an orbit of
-    /// period `n` has `n` times as many. Default: chosen by the tolerance; where the force is sampled, 20 times the divisor at the
-    /// default tolerance, twice as many for every two digits more, and between 5 and 100.
-    #[must_use]
-    pub fn harmonics(mut self, harmonics: usize) -> Self {
-        self.harmonics = Some(harmonics);
-        self
-    }
-
-    /// How the harmonics of contact forces are found. Default: [`Aft::Switched`], exact; the others are for comparison.
-    #[must_use]
-    pub fn aft(mut self, aft: Aft) -> Self {
-        self.aft = aft;
-        self
-    }
-
-    /// Samples per period of the declaration, for the methods that sample. Default: at least 200 per harmonic, a power of two. The
-    /// derivative of a force like `g^1.5` has a kink where contact begins; folds feel it as the power -1.5 of the samples.
-    #[must_use]
-    pub fn samples(mut self, samples: usize) -> Self {
-        self.samples = Some(samples);
+        self.request.tolerance = tolerance;
         self
     }
 
     /// Whether Floquet multipliers are computed. Default: yes; without them every verdict is
-    /// [`Verdict::Undecided`](crate::orbit::stability::Verdict::Undecided) and a branch takes a fraction of the time.
+    /// [`Verdict::Undecided`](crate::orbit::stability::Verdict::Undecided), a branch takes a fraction of the time, and shooting finds
+    /// no events but folds.
     #[must_use]
     pub fn stability(mut self, wanted: bool) -> Self {
-        self.stability = wanted;
-        self
-    }
-
-    /// How Floquet multipliers are computed. Default: [`Method::Default`]. [`Branch::multipliers`] applies any method to an orbit
-    /// that is there already.
-    #[must_use]
-    pub fn multipliers(mut self, method: Method) -> Self {
-        self.method = method;
+        self.request.stability = wanted;
         self
     }
 
@@ -196,77 +241,42 @@ impl FrequencyResponse {
     /// part of the range in one step is about 0.15 of it at most. Steps are shorter where the branch bends.
     #[must_use]
     pub fn largest_step(mut self, step: f64) -> Self {
-        self.largest_step = step;
+        self.request.largest_step = step;
         self
     }
 
-    /// Whether doublings of the period are located too, where another balance, of twice the period, has the branch that begins.
-    /// Orbits of odd symmetry have none. Default: no, since it takes about as long again. [`bifurcations`](Self::bifurcations)
-    /// include doublings, whatever is said here.
-    #[must_use]
-    pub fn doublings(mut self, wanted: bool) -> Self {
-        self.sought = match self.sought {
-            Sought::All => Sought::All,
-            _ if wanted => Sought::Doublings,
-            _ => Sought::Folds,
-        };
-        self
-    }
-
-    /// Whether all bifurcations are located and not folds alone: doublings of the period, crossings with other branches,
-    /// Neimark-Sacker bifurcations, and where a gap touches a level. Default: no, folds alone, or what
-    /// [`doublings`](Self::doublings) says after this. Neimark-Sacker bifurcations are seen by the multipliers, so they need
-    /// [`stability`](Self::stability).
-    #[must_use]
-    pub fn bifurcations(mut self, wanted: bool) -> Self {
-        self.sought = if wanted { Sought::All } else { Sought::Folds };
-        self
-    }
-
-    /// Whether orbits of period one have the symmetry that the system has. Default: yes. Of the odd symmetry, `x(t + T/2) = -x(t)`,
-    /// they have odd harmonics only then, and where the symmetry breaks is located. Otherwise a first orbit without the symmetry is
-    /// looked for, as in one of two wells, and one with it taken if none is found; the branch may pass from one to the other. Where
-    /// contacts take each other's place after a part of the period, as the balls of a bearing or the blades of a rotor, orbits come
-    /// back after that part; otherwise all harmonics are unknowns, whatever the orbits have. An orbit without the symmetry that is
-    /// [given](Self::near_orbit) does not need this.
-    #[must_use]
-    pub fn symmetric(mut self, wanted: bool) -> Self {
-        self.symmetric = wanted;
-        self
-    }
-
-    /// The first orbit is near this one, and has its period.
+    /// The first orbit is near this one, found by whatever method, and has its period.
     #[must_use]
     pub fn near_orbit(mut self, orbit: &Orbit) -> Self {
-        self.period = orbit.period;
-        self.near = Some(orbit.clone());
+        self.request.near = Some(Guess::Orbit(orbit.clone()));
+        self
+    }
+
+    /// The first orbit is near this state `(q, dq/dt)` at phase zero: all positions, then all velocities. It takes the place of an orbit
+    /// given by [`near_orbit`](Self::near_orbit), and the other way round.
+    #[must_use]
+    pub fn near_state(mut self, state: &[f64]) -> Self {
+        self.request.near = Some(Guess::State(state.to_vec()));
         self
     }
 
     /// Stop after this many points. Default: 20000.
     #[must_use]
     pub fn max_points(mut self, points: usize) -> Self {
-        self.max_points = points;
+        self.request.max_points = points;
         self
     }
 
     /// The one orbit at a value of what is varied; the ends of a range are not needed.
     ///
     /// # Errors
-    /// If a parameter or an option is not usable, or no orbit is found.
+    /// If a parameter or an option is not usable, or no orbit is found; by shooting
+    /// [`OrbitError::Beyond`](crate::OrbitError::Beyond) if the branch that comes near turns back before the value.
     pub fn orbit(&self, value: f64) -> Result<Point, Error> {
-        let request = self.clone().from(value).to(self.aside(value)?);
-        let branch = request.run_with(|_| ControlFlow::Break(()))?;
-        let first = branch.points.into_iter().next();
-        let none = OrbitError::NoSuchPeriod {
-            period: self.period,
-            value,
-            attempts: Attempts::default(),
-        };
-        first.ok_or_else(|| none.into())
+        self.method.orbit(&self.request, value)
     }
 
-    /// Computes the branch.
+    /// Computes the branch, from one end of the range to the other.
     ///
     /// # Errors
     /// Before any work, if a parameter or an option is not usable; and if no first orbit is found. A branch that ends
@@ -283,23 +293,7 @@ impl FrequencyResponse {
         &self,
         mut visit: impl FnMut(&Point) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
-        let started = Instant::now();
-        let (follower, options) = self.check()?;
-        let mut statistics = Statistics::default();
-        let first = match &self.near {
-            None => {
-                let motion =
-                    |moving: Moving<'_>| crate::balance_branch::motion::moved(&follower, moving);
-                let request = follower.start_request(options, &motion);
-                let found = start(request, &mut statistics)?;
-                let broken = follower.asymmetric;
-                let broken = broken.then(|| without_symmetry(request, &found, &mut statistics));
-                broken.flatten().unwrap_or(found)
-            }
-            Some(orbit) => follower.unknowns_of(orbit, options.from),
-        };
-        let run = Run::new(&follower, options, &first);
-        self.followed(run, Start::Near(first), &mut visit, (statistics, started))
+        self.method.run(&self.request, &mut visit)
     }
 
     /// The branch that begins at an event of another one, as [`run`](Self::run) would follow it: of twice the period at a doubling
@@ -347,70 +341,65 @@ impl FrequencyResponse {
         side: Side,
         mut visit: impl FnMut(&Point) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
-        let started = Instant::now();
-        self.has(event)?;
-        let doubles = event.kind == EventKind::PeriodDoubling;
-        let request = Self {
-            period: event.point.orbit.period * if doubles { 2 } else { 1 },
-            near: None,
-            ..self.clone()
-        };
-        let (mut follower, options) = request.check()?;
-        // Of the system, where orbits of period one may have it.
-        let odd = follower.asymmetric || follower.resolution.parity == Parity::Odd;
-        follower.resolution.parity = Parity::All;
-        follower.asymmetric = odd && !doubles;
-        let orbit = &event.point.orbit;
-        let mut stride = follower.resolution.stride;
-        if !has_stride(orbit, stride) {
-            stride = 1;
-        }
-        let halves = event.kind == EventKind::BranchPoint && event.tangent.is_empty();
-        follower.resolution.stride = if halves && stride.is_multiple_of(2) {
-            stride / 2
-        } else {
-            stride
-        };
-        if let Some(chooser) = &follower.chooser {
-            let times = request.period / event.point.orbit.period;
-            let known = times * event.point.orbit.harmonics();
-            follower.resolution.harmonics = chooser.admitted(known);
-        }
-        let point = depart(&follower, event, stride, side.sign())?;
-        let run = Run::new(&follower, options, &point.u);
-        let start = Start::Along(Box::new(point));
-        self.followed(run, start, &mut visit, (Statistics::default(), started))
+        self.method.switch(&self.request, event, side, &mut visit)
     }
 
-    /// The branch that a run gives.
-    fn followed(
+    /// The branch through the orbit at a value inside the range, both ways as far as it goes; [`Branch::stopped`] is that of the
+    /// part to the side where the range ends, [`Branch::begin`] that of the other. A branch that closes upon itself (an isola) is
+    /// followed once around.
+    ///
+    /// # Errors
+    /// As [`orbit`](Self::orbit).
+    pub fn through(&self, value: f64) -> Result<Branch, Error> {
+        self.through_with(value, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`through`](Self::through), and calls `visit` at every orbit as it is found, first on the one side of the value, then on
+    /// the other: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`orbit`](Self::orbit).
+    pub fn through_with(
         &self,
-        run: Run<'_>,
-        start: Start,
-        visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
-        (mut statistics, started): (Statistics, Instant),
+        value: f64,
+        mut visit: impl FnMut(&Point) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
-        let follower = run.follower.clone();
-        let Followed {
-            stopped,
-            points,
-            mut events,
-            mut turns,
-            statistics: followed,
-        } = run.follow(start, visit)?;
-        // What a step hid is found one step later.
-        events.sort_by_key(|event| event.after);
-        turns.sort_by_key(|turn| turn.after);
-        statistics += followed;
-        Ok(Branch {
-            varied: self.vary.clone().unwrap_or_else(|| "omega".to_owned()),
-            points,
-            events,
-            turns,
-            stopped,
-            statistics,
-            elapsed: started.elapsed(),
-            follower,
-        })
+        self.method.through(&self.request, value, &mut visit)
+    }
+
+    /// The curve of bifurcations through an event of a branch, as a second parameter (or `"omega"`) varies between two values: of
+    /// folds, period doublings, points where an odd symmetry breaks, or grazing. What is varied here stays in the range from
+    /// [`from`](Self::from) to [`to`](Self::to). It is followed by shooting, whatever method found the event.
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, or there is no such curve.
+    pub fn track(&self, event: &Event, second: &str, range: [f64; 2]) -> Result<Track, Error> {
+        self.track_with(event, second, range, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`track`](Self::track), and calls `visit` at every bifurcation as it is found: to show progress, or to stop. What was found
+    /// until then comes back.
+    ///
+    /// # Errors
+    /// As [`track`](Self::track).
+    pub fn track_with(
+        &self,
+        event: &Event,
+        second: &str,
+        range: [f64; 2],
+        mut visit: impl FnMut(&TrackPoint) -> ControlFlow<()>,
+    ) -> Result<Track, Error> {
+        let method: &dyn std::any::Any = &self.method;
+        let shooting = method.downcast_ref::<Shooting>().copied();
+        by_shooting::track(
+            &self.request,
+            shooting.unwrap_or_default(),
+            event,
+            by_shooting::Second {
+                name: second,
+                range,
+            },
+            &mut visit,
+        )
     }
 }

@@ -1,8 +1,8 @@
 //! What a method says of an orbit of a branch.
 
-use super::branch::Branch;
 use crate::balance::truncation::Finer;
 use crate::balance_branch::follower::Follower;
+use crate::branches::branch::Branch;
 use crate::branches::point::Point;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Problem;
@@ -19,9 +19,12 @@ impl Branch {
     /// Applies a method to an orbit of this branch.
     ///
     /// # Errors
-    /// If the orbit belongs to a system with another number of coordinates or parameters.
+    /// If the orbit belongs to a system with another number of coordinates or parameters, or the branch was read from a file and has no
+    /// [model](Self::attach).
     pub fn multipliers(&self, point: &Point, method: Method) -> Result<Answer, Error> {
-        let facts = self.system().facts();
+        let point = &self.complete(point)?;
+        let follower = &self.follower(point)?;
+        let facts = follower.system.facts();
         let (entries, expected) = (point.orbit.coordinates(), facts.coordinates.len());
         if entries != expected {
             let (entries, expected) = (2 * entries, 2 * expected);
@@ -31,7 +34,6 @@ impl Branch {
         if values != expected {
             return Err(RequestError::Values { values, expected }.into());
         }
-        let follower = &self.follower;
         let harmonics = point.orbit.harmonics();
         let resolution = follower.with_harmonics(harmonics, harmonics);
         let mut balance = follower.balance(resolution);

@@ -3,12 +3,14 @@
 //! Where the branch turns has been located, so that it passes a value at most once between two neighbours of its orbits and turns. There
 //! the orbit is searched along the chord of the two.
 
-use super::cycle::{Cycle, CycleBranch};
+use super::compute;
 use super::setting::Setting;
 use super::start::{self, First};
-use super::{compute, solve};
+use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
-use crate::branches::value::{Chord, chain, solutions, turns_at};
+use crate::branches::point::Point;
+use crate::branches::solve;
+use crate::branches::value::{Chord, orbits_at};
 use crate::continuation::newton::Newton;
 use crate::error::Error;
 use crate::time::MotionError;
@@ -22,35 +24,24 @@ const SAME: f64 = 1e-9;
 ///
 /// # Errors
 /// If the orbit between two neighbours is not found.
-pub(super) fn at(setting: &Setting, branch: &CycleBranch, value: f64) -> Result<Vec<Cycle>, Error> {
-    let turns = branch.events.iter().filter(|event| {
-        let (cycles, place) = (&branch.cycles, event.cycle.value);
-        event.kind.turns() || turns_at(cycles, event.after, place, |cycle| cycle.value)
-    });
-    let turns: Vec<_> = turns.map(|event| (event.after, &event.cycle)).collect();
-    solutions(
-        &chain(&branch.cycles, &turns),
-        value,
-        |cycle| cycle.value,
-        |ends| between(setting, ends, value),
-        is_same,
-    )
+pub(crate) fn at(setting: &Setting, branch: &Branch, value: f64) -> Result<Vec<Point>, Error> {
+    let same = |a: &Point, b: &Point| is_same(a, b);
+    orbits_at(branch, value, |ends| between(setting, ends, value), same)
 }
 
-fn between(setting: &Setting, [a, b]: [&Cycle; 2], value: f64) -> Result<Cycle, Error> {
+fn between(setting: &Setting, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {
     let motion = |reason| MotionError { value, reason };
     let (equations, u) = start::known(setting, a)?;
     let mut first = First {
         u,
         equations,
-        iterations: 0,
         size: a.size(),
     };
-    if !a.symmetric {
+    if !a.orbit.symmetric {
         first.settle(setting).map_err(motion)?;
     }
     let First { equations, u, .. } = &mut first;
-    let last = equations.unknowns_of(&b.states, b.value);
+    let last = equations.unknowns_of(&b.orbit.states, b.value);
     let mut newton = Newton::new(equations);
     let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
     let chord = Chord {
@@ -74,12 +65,16 @@ fn between(setting: &Setting, [a, b]: [&Cycle; 2], value: f64) -> Result<Cycle, 
     compute::read(setting, first, value)
 }
 
-fn is_same(a: &Cycle, b: &Cycle) -> bool {
+fn is_same(a: &Point, b: &Point) -> bool {
     let size = a.size();
-    let coordinates = a.extremes.len();
-    let mut pairs = a.state().iter().zip(b.state()).enumerate();
+    let (first, second) = (a.orbit.state(), b.orbit.state());
+    let mut pairs = first.iter().zip(&second).enumerate();
     pairs.all(|(i, (x, y))| {
-        let unit = if i < coordinates { 1.0 } else { a.omega };
+        let unit = if i < a.orbit.coordinates {
+            1.0
+        } else {
+            a.orbit.omega
+        };
         (x - y).abs() <= SAME * size * unit
     })
 }

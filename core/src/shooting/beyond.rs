@@ -4,8 +4,8 @@
 
 use super::equations::Equations;
 use super::setting::Setting;
-use super::solve;
 use crate::branches::error::OrbitError;
+use crate::branches::solve;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::continuation::newton::{Newton, NewtonOptions};

@@ -2,20 +2,18 @@
 
 use std::sync::Arc;
 
-use super::cycle::Cycle;
-use super::request::Shooting;
+use super::options::Shooting;
 use super::setting::{Setting, Source};
-use super::start::Guess;
 use crate::balance::symmetry::Over;
+use crate::branches::point::Point;
+use crate::branches::request::{Guess, Request};
 use crate::continuation::step;
 use crate::error::Error;
 use crate::model::error::ModelError;
-use crate::model::labels::Labels;
 use crate::model::layout::Layout;
 use crate::model::request::RequestError;
 use crate::model::rigid::{self, Place};
 use crate::model::validate;
-use crate::response::FrequencyResponse;
 use crate::system::Variable;
 use crate::time;
 use crate::time::MotionError;
@@ -26,32 +24,38 @@ use crate::time::stroboscope::Stroboscope;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
-impl Shooting {
+/// What was asked for.
+#[derive(Clone, Copy)]
+pub(crate) struct Asked<'r> {
+    pub(crate) request: &'r Request,
+    pub(crate) shooting: &'r Shooting,
+}
+
+impl Asked<'_> {
     /// An orbit that is given is one of this system, and its value is that of what is varied here.
-    pub(super) fn belongs(&self, cycle: &Cycle) -> Result<(), Error> {
-        let facts = self.system.facts();
+    pub(crate) fn belongs(&self, point: &Point) -> Result<(), Error> {
+        let facts = self.request.system.facts();
         let expected = 2 * facts.coordinates.len();
-        let entries = 2 * cycle.extremes.len();
+        let entries = 2 * point.observed.motions.len();
         if entries != expected {
             return Err(RequestError::State { entries, expected }.into());
         }
-        let (values, expected) = (cycle.parameters.len(), facts.parameters.len());
+        let (values, expected) = (point.parameters.len(), facts.parameters.len());
         if values != expected {
             return Err(RequestError::Values { values, expected }.into());
         }
-        let variable = validate::variable(facts, self.vary.as_deref())?;
+        let variable = self.request.variable()?;
         let varied = match variable {
-            Variable::Omega => cycle.omega,
-            Variable::Parameter(index) => cycle.parameters[index],
+            Variable::Omega => point.orbit.omega,
+            Variable::Parameter(index) => point.parameters[index],
         };
-        if varied != cycle.value {
-            let name = self.vary.clone().unwrap_or_else(|| "omega".to_owned());
+        if varied != point.value {
+            let name = self.request.varied();
             let must = "must be what the branch of the event or orbit varies";
             return Err(RequestError::Varied { name, must }.into());
         }
-        let mut held = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut held);
-        let pairs = held.iter().zip(&cycle.parameters).enumerate();
+        let held = self.request.parameters();
+        let pairs = held.iter().zip(&point.parameters).enumerate();
         for (index, (value, of_cycle)) in pairs {
             if value != of_cycle && variable != Variable::Parameter(index) {
                 return Err(RequestError::Parameter {
@@ -62,7 +66,11 @@ impl Shooting {
                 .into());
             }
         }
-        match self.omega.filter(|omega| *omega != cycle.omega) {
+        match self
+            .request
+            .omega
+            .filter(|omega| *omega != point.orbit.omega)
+        {
             Some(value) if variable != Variable::Omega => Err(RequestError::Option {
                 name: "omega",
                 value,
@@ -73,82 +81,38 @@ impl Shooting {
         }
     }
 
-    /// The states of an orbit at the beginnings of its periods of the declaration, the first of which it is given by.
-    pub(crate) fn returns(&self, cycle: &Cycle) -> Result<Vec<Vec<f64>>, Error> {
-        let tolerance = self.tolerance;
-        let flow = time::at(
-            &self.system,
-            &cycle.parameters,
-            cycle.omega,
-            Options { tolerance },
-        )?;
-        let mut map = Stroboscope::new(flow);
-        let mut state = cycle.state().to_vec();
-        let mut states = vec![state.clone()];
-        for _ in 1..cycle.period {
-            let value = cycle.value;
-            map.map(&mut state)
-                .map_err(|reason| MotionError { value, reason })?;
-            states.push(state.clone());
-        }
-        Ok(states)
-    }
-
-    /// Length of the range; zero without one.
-    pub(crate) fn length(&self) -> f64 {
-        let ends = self.from.zip(self.to);
-        ends.map_or(0.0, |(from, to)| (to - from).abs())
-    }
-
     /// The range, and everything else that was asked for, checked.
-    pub(super) fn ranged(&self) -> Result<([f64; 2], Setting), Error> {
-        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
-        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
+    pub(crate) fn ranged(&self) -> Result<([f64; 2], Setting), Error> {
+        let [from, to] = self.request.range()?;
         let setting = self.setting(from, to)?;
-        validate::range(self.system.facts(), setting.variable, from, to)?;
+        validate::range(self.request.system.facts(), setting.variable, from, to)?;
         Ok(([from, to], setting))
     }
 
     /// Checks everything that was asked for.
-    pub(super) fn setting(&self, from: f64, to: f64) -> Result<Setting, Error> {
-        let facts = self.system.facts();
+    pub(crate) fn setting(&self, from: f64, to: f64) -> Result<Setting, Error> {
+        let facts = self.request.system.facts();
         if facts.coordinates.is_empty() {
             return Err(ModelError::NoCoordinates.into());
         }
         self.check_options()?;
-        let variable = validate::variable(facts, self.vary.as_deref())?;
-        let mut parameters = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut parameters);
-        let given = match (variable, self.omega) {
-            (Variable::Omega, None) => None,
-            (Variable::Omega, Some(value)) => {
-                let must = "is what is varied: it has its own value";
-                return Err(RequestError::Option {
-                    name: "omega",
-                    value,
-                    must,
-                }
-                .into());
-            }
-            (Variable::Parameter(_), None) => {
-                return Err(RequestError::Missing { name: "omega" }.into());
-            }
-            (Variable::Parameter(_), Some(omega)) => Some(omega),
-        };
+        let variable = self.request.variable()?;
+        let mut parameters = self.request.parameters();
+        let given = self.request.held_omega(variable)?;
         for value in [to, from] {
             let omega = validate::omega(given.unwrap_or(value))?;
             if let Variable::Parameter(index) = variable {
                 parameters[index] = value;
             }
             validate::parameters(facts, &parameters)?;
-            validate::levels(self.system.as_ref(), &parameters, omega)?;
-            validate::mass(self.system.as_ref(), &parameters, omega)?;
+            validate::levels(self.request.system.as_ref(), &parameters, omega)?;
+            validate::mass(self.request.system.as_ref(), &parameters, omega)?;
         }
         let omega = given.unwrap_or(from);
-        let layout = Layout::of(self.system.as_ref());
+        let layout = Layout::of(self.request.system.as_ref());
         let range = [from, to];
         let place = Place {
-            system: self.system.as_ref(),
+            system: self.request.system.as_ref(),
             layout: &layout,
             parameters: &parameters,
             omega,
@@ -156,7 +120,7 @@ impl Shooting {
         };
         rigid::none(place, range)?;
         let over = Over {
-            system: self.system.as_ref(),
+            system: self.request.system.as_ref(),
             layout: &layout,
             parameters: &parameters,
             omega,
@@ -164,38 +128,42 @@ impl Shooting {
             range,
         };
         let odd = over.is_odd();
-        let varied = self.vary.clone().unwrap_or_else(|| "omega".to_owned());
         Ok(Setting {
+            system: Arc::clone(&self.request.system),
             source: self.source(&parameters, omega),
-            labels: Labels::of(facts, &varied, &parameters, omega),
-            varied,
+            varied: self.request.varied(),
             parameters,
             omega,
             variable,
             divisor: facts.divisor,
-            period: self.period,
-            segments: self.segments.unwrap_or(self.period),
-            odd: odd && !self.period.is_multiple_of(2),
-            stability: self.stability,
-            points: step::max_points(self.max_points)?,
-            steps: step::largest_step(self.largest_step)?,
+            period: self.request.period(),
+            segments: self.shooting.segments.unwrap_or(self.request.period()),
+            odd: odd && !self.request.period().is_multiple_of(2),
+            stability: self.request.stability,
+            points: step::max_points(self.request.max_points)?,
+            steps: step::largest_step(self.request.largest_step)?,
         })
+    }
+
+    /// The tolerance of the flow.
+    fn tolerance(&self) -> f64 {
+        self.shooting.flow_tolerance(self.request.tolerance)
     }
 
     /// Checks the numbers among the options.
     fn check_options(&self) -> Result<(), Error> {
-        let coordinates = self.system.facts().coordinates.len();
-        let segments = self.segments.unwrap_or(self.period);
+        let coordinates = self.request.system.facts().coordinates.len();
+        let segments = self.shooting.segments.unwrap_or(self.request.period());
         for (name, value, range, must) in [
             (
                 "period",
-                self.period as f64,
+                self.request.period() as f64,
                 1.0..=1000.0,
                 "must be from 1 to 1000",
             ),
             (
                 "tolerance",
-                self.tolerance,
+                self.tolerance(),
                 1e-14..=1e-3,
                 "must be from 1e-14 to 1e-3",
             ),
@@ -208,10 +176,10 @@ impl Shooting {
         ] {
             validate::option(name, value, range, must)?;
         }
-        let (entries, state) = match &self.near {
+        let (entries, state) = match &self.request.near {
             None => return Ok(()),
             Some(Guess::State(state)) => (state.len(), &state[..]),
-            Some(Guess::Series(orbit)) => (2 * orbit.coordinates, &[][..]),
+            Some(Guess::Orbit(orbit)) => (2 * orbit.coordinates, &[][..]),
         };
         if entries != 2 * coordinates {
             let expected = 2 * coordinates;
@@ -220,7 +188,7 @@ impl Shooting {
         let bad = state.iter().find(|x| !x.is_finite());
         bad.map_or(Ok(()), |&value| {
             Err(RequestError::Option {
-                name: "near",
+                name: "near_state",
                 value,
                 must: "must be finite",
             }
@@ -230,7 +198,7 @@ impl Shooting {
 
     /// Where flows of the system come from.
     fn source(&self, parameters: &[f64], omega: f64) -> Source {
-        let system = Arc::clone(&self.system);
+        let system = Arc::clone(&self.request.system);
         let parameters = parameters.to_vec();
         let exact = Affine::new(&system, &parameters, omega).is_ok();
         Source {
@@ -239,21 +207,30 @@ impl Shooting {
                 time::at(&system, &parameters, omega, options)
             }),
             exact,
-            tolerance: self.tolerance,
+            tolerance: self.tolerance(),
         }
     }
+}
 
-    /// What the orbit at a value is near.
-    pub(super) fn guess(&self, value: f64) -> Result<Guess, Error> {
-        if let Some(guess) = &self.near {
-            return Ok(guess.clone());
+impl Request {
+    /// The states of an orbit at the beginnings of its periods of the declaration, the first of which it is given by.
+    pub(crate) fn returns(&self, point: &Point) -> Result<Vec<Vec<f64>>, Error> {
+        let tolerance = Shooting::new().flow_tolerance(self.tolerance);
+        let flow = time::at(
+            &self.system,
+            &point.parameters,
+            point.orbit.omega,
+            Options { tolerance },
+        )?;
+        let mut map = Stroboscope::new(flow);
+        let mut state = point.orbit.state();
+        let mut states = vec![state.clone()];
+        for _ in 1..point.orbit.period {
+            let value = point.value;
+            map.map(&mut state)
+                .map_err(|reason| MotionError { value, reason })?;
+            states.push(state.clone());
         }
-        let mut request = FrequencyResponse::of(&self.system)
-            .period(self.period)
-            .stability(false);
-        if let (Some(name), Some(omega)) = (&self.vary, self.omega) {
-            request = request.vary(name).omega(omega);
-        }
-        Ok(Guess::Series(request.orbit(value)?.orbit))
+        Ok(states)
     }
 }

@@ -93,7 +93,7 @@ impl Companion {
             ..self.options
         };
         let (equations, newton) = (&mut self.equations, &mut self.newton);
-        super::solve::at_value(equations, newton, &mut corrected, options).ok()?;
+        crate::branches::solve::at_value(equations, newton, &mut corrected, options).ok()?;
         Some(Corrected {
             u: corrected,
             multipliers: multipliers(&equations.product, equations.span.half),

@@ -4,11 +4,13 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::companion::Companion;
-use super::cycle::{Cycle, CycleBranch, CycleEvent, End};
 use super::run::Run;
 use super::setting::Setting;
-use super::start::{First, Guess, first};
+use super::start::{First, first};
 use super::switch::{self, Begun};
+use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::point::{Event, Point};
+use crate::branches::request::Guess;
 use crate::continuation::follow::{Start, Stop};
 use crate::error::Error;
 use crate::system::Variable;
@@ -18,7 +20,7 @@ use crate::time::MotionError;
 ///
 /// # Errors
 /// If none is found.
-pub(super) fn cycle(setting: &Setting, guess: &Guess, value: f64) -> Result<Cycle, Error> {
+pub(crate) fn orbit(setting: &Setting, guess: &Guess, value: f64) -> Result<Point, Error> {
     let found = first(setting, guess, value, setting.omega_at(value))?;
     read(setting, found, value)
 }
@@ -27,26 +29,23 @@ pub(super) fn cycle(setting: &Setting, guess: &Guess, value: f64) -> Result<Cycl
 ///
 /// # Errors
 /// If its motion cannot be computed.
-pub(super) fn read(setting: &Setting, found: First, value: f64) -> Result<Cycle, Error> {
+pub(super) fn read(setting: &Setting, found: First, value: f64) -> Result<Point, Error> {
     let (mut run, mut found) = run(setting, found, value, value)?;
     let read = run.read(&mut found.equations, &found.u);
-    let (cycle, _) = read.map_err(|reason| MotionError { value, reason })?;
-    Ok(Cycle {
-        iterations: found.iterations,
-        ..cycle
-    })
+    let (point, _) = read.map_err(|reason| MotionError { value, reason })?;
+    Ok(point)
 }
 
 /// The branch from near a guess at the first value to the second.
 ///
 /// # Errors
 /// If there is no first orbit.
-pub(super) fn branch(
+pub(crate) fn branch(
     setting: &Setting,
     guess: &Guess,
     [from, to]: [f64; 2],
     visit: See<'_>,
-) -> Result<CycleBranch, Error> {
+) -> Result<Branch, Error> {
     let started = Instant::now();
     let found = first(setting, guess, from, omega_between(setting, [from, to]))?;
     let near = |u: Vec<f64>| Start::Near(u);
@@ -57,13 +56,13 @@ pub(super) fn branch(
 ///
 /// # Errors
 /// If there is none.
-pub(super) fn branch_at(
+pub(crate) fn branch_at(
     setting: &Setting,
-    event: &CycleEvent,
+    event: &Event,
     side: f64,
     [from, to]: [f64; 2],
     visit: See<'_>,
-) -> Result<CycleBranch, Error> {
+) -> Result<Branch, Error> {
     let started = Instant::now();
     let Begun { first, point } = switch::depart(setting, event, side, (to - from).abs())?;
     let along = |_| Start::Along(Box::new(point));
@@ -74,13 +73,13 @@ pub(super) fn branch_at(
 ///
 /// # Errors
 /// If there is no such orbit.
-pub(super) fn branch_through(
+pub(crate) fn branch_through(
     setting: &Setting,
     guess: &Guess,
     value: f64,
     [from, to]: [f64; 2],
     visit: See<'_>,
-) -> Result<CycleBranch, Error> {
+) -> Result<Branch, Error> {
     let mut part = |side: f64| {
         let started = Instant::now();
         let found = first(setting, guess, value, setting.omega_at(value))?;
@@ -91,14 +90,14 @@ pub(super) fn branch_through(
     let forwards = (to - from).signum();
     let forth = part(forwards)?;
     // Once around, or interrupted: there is no other side.
-    if matches!(forth.end, End::Stopped(Stop::Closed | Stop::Interrupted)) {
+    if matches!(forth.stopped, Stop::Closed | Stop::Interrupted) {
         return Ok(forth);
     }
-    Ok(CycleBranch::joined(part(-forwards)?, forth))
+    Ok(Branch::joined(part(-forwards)?, forth))
 }
 
 /// Called at every orbit.
-type See<'s> = &'s mut dyn FnMut(&Cycle) -> ControlFlow<()>;
+type See<'s> = &'s mut dyn FnMut(&Point) -> ControlFlow<()>;
 
 /// A frequency that velocities count by.
 fn omega_between(setting: &Setting, [from, to]: [f64; 2]) -> f64 {
@@ -115,29 +114,30 @@ fn followed(
     [from, to]: [f64; 2],
     visit: See<'_>,
     started: Instant,
-) -> Result<CycleBranch, Error> {
+) -> Result<Branch, Error> {
     let (mut run, First { equations, u, .. }) = run(setting, found, from, to)?;
     let options = setting.follow(from, to, equations.frame.ratio);
-    let end = run.follow(equations, start(u), options, visit)?;
+    let stopped = run.follow(equations, start(u), options, visit)?;
     let Run {
-        cycles,
+        points,
         events,
         turns,
         statistics,
         work,
         ..
     } = run;
-    Ok(CycleBranch {
+    Ok(Branch {
+        model: Model::of(setting.system.as_ref()),
         varied: setting.varied.clone(),
-        labels: setting.labels.clone(),
-        cycles,
+        points,
         events,
         turns,
         begin: None,
-        end,
+        stopped,
         statistics,
         work,
         elapsed: started.elapsed(),
+        further: Further::default(),
     })
 }
 

@@ -16,12 +16,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::cycle::CycleEvent;
 use super::equations::Equations;
 use super::setting::Setting;
 use super::start::{self, First};
 use super::switch::{Begun, DEPARTURES};
 use crate::branches::error::OrbitError;
+use crate::branches::point::Event;
 use crate::branches::switch::Departure;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::jacobian::{Jacobian, Partition};
@@ -49,13 +49,13 @@ struct Directions {
 /// [`OrbitError::NoBranch`] if no other branch was found.
 pub(super) fn depart(
     setting: &Setting,
-    event: &CycleEvent,
+    event: &Event,
     side: f64,
     range: f64,
 ) -> Result<Begun, Error> {
     let nothing = || OrbitError::NoBranch {
         kind: event.kind,
-        value: event.cycle.value,
+        value: event.point.value,
     };
     let mut first = same(setting, event)?;
     let u = first.u.clone();
@@ -65,7 +65,7 @@ pub(super) fn depart(
         .map(|i| scale * equations.unit(i))
         .collect();
     units.push(range);
-    let directions = directions(&mut first.equations, &u, &event.direction, &units);
+    let directions = directions(&mut first.equations, &u, &event.tangent, &units);
     let Directions { across, other } = directions.ok_or_else(nothing)?;
     for departure in DEPARTURES {
         let step = side * departure;
@@ -79,18 +79,17 @@ pub(super) fn depart(
 }
 
 /// The equations of the event's own orbit, and the orbit as a solution of them.
-fn same(setting: &Setting, event: &CycleEvent) -> Result<First, Error> {
-    let cycle = &event.cycle;
-    let (equations, u) = start::known(setting, cycle)?;
+fn same(setting: &Setting, event: &Event) -> Result<First, Error> {
+    let point = &event.point;
+    let (equations, u) = start::known(setting, point)?;
     let mut first = First {
         u,
         equations,
-        iterations: 0,
-        size: cycle.size(),
+        size: point.size(),
     };
     // Half of an orbit with odd symmetry has no middle of its own.
-    if !cycle.symmetric {
-        let value = cycle.value;
+    if !point.orbit.symmetric {
+        let value = point.value;
         let motion = |reason| MotionError { value, reason };
         first.settle(setting).map_err(motion)?;
     }

@@ -6,12 +6,12 @@
 use std::cell::RefCell;
 
 use super::companion::{self, Companion, multipliers};
-use super::cycle::{Cycle, CycleEvent};
 use super::equations::Equations;
 use super::method::VANISHED;
-use super::run::{Run, add, observe};
+use super::run::{Run, observe, relative};
 use super::setting::Setting;
 use super::tested::{Test, Tests};
+use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Change, Zero};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::CurvePoint;
@@ -80,7 +80,7 @@ impl Run<'_> {
                 error: 0.0,
             })
         };
-        add(&mut self.work, other.borrow().flow.work());
+        self.work += other.borrow().flow.work();
         place
     }
 
@@ -90,7 +90,7 @@ impl Run<'_> {
         equations: &mut Equations,
         between: (&CurvePoint, &CurvePoint),
         zero: &Zero,
-    ) -> Option<CycleEvent> {
+    ) -> Option<Event> {
         let change = zero.change;
         let place = &Place {
             point: zero.located.point.clone(),
@@ -111,8 +111,8 @@ impl Run<'_> {
         self.statistics += newton.statistics;
         let (event, at) = match &moved {
             None => {
-                let (cycle, _) = observe(self.setting, equations, &place.point.u).ok()?;
-                ((cycle, f64::INFINITY), place)
+                let (read, _) = observe(self.setting, equations, &place.point.u).ok()?;
+                ((read, f64::INFINITY), place)
             }
             Some(moved) => {
                 let (here, there) = ((equations, place), (&mut others, moved));
@@ -125,15 +125,16 @@ impl Run<'_> {
                 )
             }
         };
-        add(&mut self.work, others.flow.work());
-        let (cycle, error) = event;
-        Some(CycleEvent {
+        self.work += others.flow.work();
+        let (read, error) = event;
+        Some(Event {
             kind: change.kind,
-            cycle,
+            point: read,
             error,
             test: at.test,
             after: zero.after,
-            direction: at.point.tangent.clone(),
+            contacts: 0,
+            tangent: at.point.tangent.clone(),
         })
     }
 }
@@ -145,13 +146,13 @@ fn compared(
     (equations, place): (&mut Equations, &Place),
     (others, moved): (&mut Equations, &Place),
     (part, noise): (f64, f64),
-) -> Option<(Cycle, f64)> {
+) -> Option<(Point, f64)> {
     let half = equations.span.half;
     let u = &place.point.u;
-    let (mut cycle, map) = observe(setting, equations, u).ok()?;
-    let by = (moved.point.parameter() - cycle.value).abs();
-    let error = part * by + place.error + moved.error + ROUNDING * cycle.value.abs();
-    cycle.error = Some(part * equations.apart(u, &moved.point.u));
+    let (mut read, map) = observe(setting, equations, u).ok()?;
+    let by = (moved.point.parameter() - read.value).abs();
+    let error = part * by + place.error + moved.error + ROUNDING * read.value.abs();
+    read.error = Some(relative(part * equations.apart(u, &moved.point.u), &read));
     if let Some(map) = map {
         let found = multipliers(&map, half);
         let there = others.map(&moved.point.u, &mut |_| {}).ok()?;
@@ -168,7 +169,7 @@ fn compared(
         let spread = part * distance(&found, &there)
             + nearest.fold(f64::INFINITY, f64::min)
             + companion::moved(&map, &found, half, noise * map.norm().max(1.0));
-        cycle.stability = Stability::of(found, spread);
+        read.stability = Stability::of(found, spread);
     }
-    Some((cycle, error))
+    Some((read, error))
 }

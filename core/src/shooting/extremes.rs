@@ -5,6 +5,7 @@
 //!
 //! Source: Dowell and Jarratt (1971), A modified regula falsi method for computing the root of an equation.
 
+use crate::branches::observed::Motion;
 use crate::time::Stretch;
 
 /// Relative accuracy of the foretold middle.
@@ -14,48 +15,6 @@ const DEEPEST: usize = 12;
 /// Part of its bracket to which a zero of the velocity is located: the position is then exact to its square.
 const LOCATED: f64 = 1e-8;
 const STEPS: usize = 60;
-
-/// Smallest and largest value of one coordinate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct Extremes {
-    /// The smallest.
-    pub minimum: f64,
-    /// The largest.
-    pub maximum: f64,
-}
-
-impl Extremes {
-    pub(super) const NONE: Self = Self {
-        minimum: f64::INFINITY,
-        maximum: f64::NEG_INFINITY,
-    };
-
-    /// Largest less smallest value.
-    pub fn peak_to_peak(&self) -> f64 {
-        self.maximum - self.minimum
-    }
-
-    /// In the middle between them.
-    pub(super) fn middle(&self) -> f64 {
-        0.5 * (self.maximum + self.minimum)
-    }
-
-    fn include(&mut self, x: f64) {
-        self.minimum = self.minimum.min(x);
-        self.maximum = self.maximum.max(x);
-    }
-
-    /// Of an orbit of which this is half, `q(tau + pi n) = -q(tau)`.
-    pub(super) fn mirrored(self) -> Self {
-        let largest = self.maximum.max(-self.minimum);
-        Self {
-            minimum: -largest,
-            maximum: largest,
-        }
-    }
-}
 
 /// State at a phase.
 #[derive(Debug, Clone)]
@@ -71,7 +30,7 @@ fn sample(stretch: &dyn Stretch, phase: f64, order: usize) -> Sample {
 }
 
 /// Includes a stretch of a motion whose phase moves by `rate` per unit of time.
-pub(super) fn include(stretch: &dyn Stretch, rate: f64, extremes: &mut [Extremes]) {
+pub(super) fn include(stretch: &dyn Stretch, rate: f64, extremes: &mut [Motion]) {
     let order = 2 * extremes.len();
     let (from, to) = stretch.phases();
     let ends = [from, to].map(|phase| sample(stretch, phase, order));
@@ -83,7 +42,7 @@ fn part(
     rate: f64,
     [a, b]: &[Sample; 2],
     depth: usize,
-    extremes: &mut [Extremes],
+    extremes: &mut [Motion],
 ) {
     let n = extremes.len();
     let middle = sample(stretch, 0.5 * (a.phase + b.phase), 2 * n);
@@ -166,7 +125,7 @@ mod tests {
 
     #[test]
     fn extremes_of_a_known_motion() {
-        let mut extremes = [Extremes::NONE; 2];
+        let mut extremes = [Motion::NONE; 2];
         include(&Known, 1.0, &mut extremes);
         let expected = [1.0, 3.0, -3.0, 1.0];
         let found = extremes.map(|e| [e.minimum, e.maximum]);

@@ -6,9 +6,9 @@
 
 use std::cell::RefCell;
 
-use super::cycle::CycleEvent;
 use super::equations::Equations;
-use super::run::{Run, add, observe};
+use super::run::{Run, observe};
+use crate::branches::point::Event;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::locate::locate;
 use crate::continuation::newton::Newton;
@@ -35,9 +35,10 @@ impl Run<'_> {
         newton: &mut Newton,
         (before, behind): (&CurvePoint, &CurvePoint),
     ) {
-        let after = self.cycles.len() - 1;
-        let last = self.cycles[after].switches;
-        let mut switches = self.cycles[after - 1].switches;
+        let after = self.points.len() - 1;
+        let [first, last] =
+            [after - 1, after].map(|index| self.points[index].observed.switches.unwrap_or(0));
+        let mut switches = first;
         let mut from = before.clone();
         for _ in 0..MOST {
             let Some(bracket) = self.bracket(equations, newton, (&from, behind), switches) else {
@@ -83,7 +84,7 @@ impl Run<'_> {
         };
         // Near the place Newton's method may fail: then what is known is the bracket.
         let _ = locate(equations, newton, between, self.options, 0.0, side);
-        add(&mut self.work, other.borrow().flow.work());
+        self.work += other.borrow().flow.work();
         Some(nearest.into_inner())
     }
 
@@ -94,8 +95,8 @@ impl Run<'_> {
         between: (&CurvePoint, &CurvePoint),
         Bracket { before, behind, .. }: &Bracket,
     ) {
-        let after = self.cycles.len() - 1;
-        let Ok((cycle, _)) = observe(self.setting, equations, &before.u) else {
+        let after = self.points.len() - 1;
+        let Ok((point, _)) = observe(self.setting, equations, &before.u) else {
             let (value, test) = (before.parameter(), f64::NAN);
             self.turns.push(Turn {
                 kind: EventKind::Grazing { turns: false },
@@ -109,17 +110,18 @@ impl Run<'_> {
         let change = (between.1.parameter() - between.0.parameter()).abs();
         let rate = change / equations.apart(&between.0.u, &between.1.u);
         let bracket = (behind.parameter() - before.parameter()).abs();
-        let of_orbit = self.cycles[after].error.unwrap_or(f64::NAN);
-        let error = bracket + of_orbit * rate + TOUCHED * cycle.value.abs();
-        self.events.push(CycleEvent {
+        let of_orbit = self.state_error;
+        let error = bracket + of_orbit * rate + TOUCHED * point.value.abs();
+        self.events.push(Event {
             kind: EventKind::Grazing {
                 turns: before.parameter_slope() * behind.parameter_slope() < 0.0,
             },
-            cycle,
+            point,
             error,
             test: 1.0,
             after,
-            direction: before.tangent.clone(),
+            contacts: 0,
+            tangent: before.tangent.clone(),
         });
     }
 }

@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use super::cycle::Cycle;
 use super::equations::Equations;
 use super::events;
 use super::recurrence::{Recurrence, step_on_other_branch};
-use super::run::{Run, add};
+use super::run::Run;
 use super::tested::{self, Tests};
 use crate::branches::engine::Search;
+use crate::branches::point::Point;
 use crate::branches::problem::{
     BranchProblem, Change, Kept, Read, Step, Test, TestValue, Watched, Zero,
 };
@@ -33,14 +33,14 @@ pub(super) struct ShootingBranch<'b, 'r> {
     watched: Vec<Watched>,
     /// The test functions computed last, and where.
     tested: Option<(Vec<f64>, Tests)>,
-    visit: &'b mut dyn FnMut(&Cycle) -> ControlFlow<()>,
+    visit: &'b mut dyn FnMut(&Point) -> ControlFlow<()>,
 }
 
 impl<'b, 'r> ShootingBranch<'b, 'r> {
     pub(super) fn new(
         run: &'b mut Run<'r>,
         equations: Equations,
-        visit: &'b mut dyn FnMut(&Cycle) -> ControlFlow<()>,
+        visit: &'b mut dyn FnMut(&Point) -> ControlFlow<()>,
     ) -> Self {
         let watched = if run.setting.stability {
             tested::watched(equations.span.half).to_vec()
@@ -59,9 +59,9 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
 
     /// Adds up the work of its flows.
     pub(super) fn count_flows(&mut self) {
-        add(&mut self.run.work, self.equations.flow.work());
+        self.run.work += self.equations.flow.work();
         if let Some(other) = &self.other {
-            add(&mut self.run.work, other.flow.work());
+            self.run.work += other.flow.work();
         }
     }
 
@@ -87,7 +87,7 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
 
     fn recurrence(&mut self, at: &CurvePoint) -> Result<Option<Recurrence>, FlowError> {
         let (span, odd) = (self.equations.span, self.run.setting.odd);
-        if self.run.cycles.is_empty() || (span.period == 1 && !odd) {
+        if self.run.points.is_empty() || (span.period == 1 && !odd) {
             return Ok(None);
         }
         let regular = self.run.regular(&self.equations);
@@ -143,7 +143,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     }
 
     fn points(&self) -> usize {
-        self.run.cycles.len()
+        self.run.points.len()
     }
 
     fn is_beyond(&mut self, at: &CurvePoint) -> bool {
@@ -177,7 +177,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
                 step: (next, &other),
                 change,
                 ends,
-                after: self.run.cycles.len(),
+                after: self.run.points.len(),
                 options,
             };
             search.record(self, newton);
@@ -189,7 +189,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         if self.run.failure.is_some() {
             return Read::Stop;
         }
-        let (cycle, map) = match self.run.read(&mut self.equations, &at.u) {
+        let (point, map) = match self.run.read(&mut self.equations, &at.u) {
             Ok(read) => read,
             Err(failure) => {
                 self.run.failure = Some(failure);
@@ -198,8 +198,8 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         };
         let tests = Tests::of(map.as_ref(), at.parameter_slope());
         self.tested = Some((at.u.clone(), tests));
-        let answer = (self.visit)(&cycle);
-        self.run.cycles.push(cycle);
+        let answer = (self.visit)(&point);
+        self.run.points.push(point);
         if answer.is_break() {
             Read::Stop
         } else {
@@ -229,8 +229,8 @@ impl BranchProblem for ShootingBranch<'_, '_> {
 
     fn graze(&mut self, newton: &mut Newton, step: Step<'_>, _: Option<Turn>) {
         if self.run.setting.stability
-            && let [.., a, b] = &self.run.cycles[..]
-            && a.switches != b.switches
+            && let [.., a, b] = &self.run.points[..]
+            && a.observed.switches != b.observed.switches
         {
             self.run.grazings(&mut self.equations, newton, step);
         }

@@ -4,38 +4,38 @@
 //! rounding. So shooting refines what a balance has found, and follows branches of orbits with their folds and period doublings
 //! by the same continuation.
 
-mod at;
+pub(crate) mod at;
 mod bend;
 mod beyond;
-mod checked;
+pub(crate) mod checked;
 mod companion;
-mod compute;
+pub(crate) mod complete;
+pub(crate) mod compute;
 mod crossed;
-mod cycle;
 mod equations;
 mod events;
 mod extremes;
 mod grazing;
 mod halved;
 mod method;
+mod options;
 mod recurrence;
-mod request;
 mod run;
-mod series;
-mod setting;
-mod solve;
+mod sampled_states;
+pub(crate) mod setting;
+
 mod start;
 mod switch;
 mod tested;
 #[cfg(test)]
 mod tests;
 mod touch;
-mod trace;
+pub(crate) mod trace;
 mod track;
 mod watch;
 
-pub use crate::event::Side;
-pub use cycle::{Cycle, CycleBranch, CycleEvent, End};
-pub use extremes::Extremes;
-pub use request::Shooting;
+pub(crate) use checked::Asked;
+pub use options::Shooting;
+pub(crate) use sampled_states::with_states;
+pub(crate) use trace::Plane;
 pub use trace::{Special, SpecialKind, Track, TrackEnd, TrackPoint};

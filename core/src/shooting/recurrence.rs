@@ -5,7 +5,7 @@
 //! points.
 
 use super::equations::Equations;
-use super::solve;
+use crate::branches::solve;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::time::FlowError;

@@ -5,14 +5,16 @@ use std::ops::ControlFlow;
 use nalgebra::DMatrix;
 
 use super::companion::{Companion, multipliers};
-use super::cycle::{Cycle, CycleEvent, End};
 use super::equations::Equations;
-use super::extremes::{self, Extremes};
+use super::extremes;
 use super::method::ShootingBranch;
 use super::recurrence::Recurrence;
 use super::setting::Setting;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
+use crate::branches::observed::{Motion, Observed};
+use crate::branches::orbit::Orbit;
+use crate::branches::point::{Event, Point};
 use crate::continuation::follow::{FollowOptions, Start, Stop};
 use crate::continuation::newton::{NewtonError, NewtonOptions};
 use crate::continuation::statistics::Statistics;
@@ -23,6 +25,9 @@ use crate::orbit::stability::Stability;
 use crate::time::MotionError;
 use crate::time::{FlowError, Stretch, Work};
 
+/// A first coordinate that moves by less than so many times the error of the states is at rest.
+const STILL: f64 = 10.0;
+
 /// What a run has gathered.
 pub(super) struct Run<'r> {
     pub(super) setting: &'r Setting,
@@ -31,8 +36,10 @@ pub(super) struct Run<'r> {
     size: f64,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
-    pub(super) cycles: Vec<Cycle>,
-    pub(super) events: Vec<CycleEvent>,
+    /// Error of the states of the orbit read last; not a number where it is not known.
+    pub(super) state_error: f64,
+    pub(super) points: Vec<Point>,
+    pub(super) events: Vec<Event>,
     pub(super) turns: Vec<Turn>,
     /// Why an orbit that was found could not be read.
     pub(super) failure: Option<FlowError>,
@@ -54,7 +61,8 @@ impl<'r> Run<'r> {
             companion,
             size,
             joined: None,
-            cycles: Vec::new(),
+            state_error: f64::NAN,
+            points: Vec::new(),
             events: Vec::new(),
             turns: Vec::new(),
             failure: None,
@@ -72,37 +80,31 @@ impl<'r> Run<'r> {
         equations: Equations,
         start: Start,
         options: FollowOptions,
-        visit: &mut dyn FnMut(&Cycle) -> ControlFlow<()>,
-    ) -> Result<End, Error> {
+        visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
+    ) -> Result<Stop, Error> {
         let mut branch = ShootingBranch::new(self, equations, visit);
         let outcome = engine::run(&mut branch, start, options);
         branch.count_flows();
         let failed = branch.equations.failure;
         let failure = self.failure.or(failed);
         self.statistics += self.companion.newton.statistics;
-        add(&mut self.work, self.companion.work());
+        self.work += self.companion.work();
+        let value = self.points.last().map_or(options.from, |point| point.value);
         if let Some(Recurrence { period, odd }) = self.joined {
-            return Ok(End::Joined {
+            let joint = self.events.last().map_or(value, |event| event.point.value);
+            return Ok(Stop::Joined {
                 period,
                 symmetric: odd,
+                value: joint,
             });
         }
-        let last = self.cycles.last().map_or(options.from, |cycle| cycle.value);
-        let end = match (outcome, failure) {
-            (Err(reason), failure) => return Err(no_orbit(options.from, reason, failure)),
-            (Ok(Stop::StepTooShort { .. }), Some(reason)) => {
-                let value = last;
-                End::Motion { value, reason }
+        match (outcome, self.failure, failure) {
+            (Err(reason), _, failure) => Err(no_orbit(options.from, reason, failure)),
+            (_, Some(reason), _) | (Ok(Stop::StepTooShort { .. }), _, Some(reason)) => {
+                Ok(Stop::Motion { value, reason })
             }
-            (Ok(stop), _) => End::Stopped(stop),
-        };
-        Ok(match self.failure {
-            Some(reason) => End::Motion {
-                value: last,
-                reason,
-            },
-            None => end,
-        })
+            (Ok(stop), ..) => Ok(stop),
+        }
     }
 
     /// The size of the orbits, and by what part of it two states differ that are one.
@@ -121,7 +123,7 @@ impl<'r> Run<'r> {
             return false;
         }
         let after = event.after;
-        let u = equations.unknowns_of(&event.cycle.states, event.cycle.value);
+        let u = equations.unknowns_of(&event.point.orbit.states, event.point.value);
         let Ok(recurrence) = Recurrence::at_point(equations, &u, self.regular(equations), odd)
         else {
             return false;
@@ -130,7 +132,7 @@ impl<'r> Run<'r> {
             recurrence.period < equations.span.period || recurrence.odd != equations.span.half;
         if regular {
             // The orbits behind the point are those before it.
-            self.cycles.truncate(after);
+            self.points.truncate(after);
             self.joined = Some(recurrence);
         }
         regular
@@ -142,7 +144,7 @@ impl<'r> Run<'r> {
         &mut self,
         equations: &mut Equations,
         u: &[f64],
-    ) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
+    ) -> Result<(Point, Option<DMatrix<f64>>), FlowError> {
         let Self {
             setting, companion, ..
         } = self;
@@ -156,13 +158,13 @@ impl<'r> Run<'r> {
             Some(finer) => (&mut companion.equations, &finer.u[..]),
             None => (equations, u),
         };
-        let (mut cycle, map) = observe(setting, at, known)?;
+        let (mut point, map) = observe(setting, at, known)?;
         let Some(map) = map else {
-            return Ok((cycle, None));
+            return Ok((point, None));
         };
         let found = multipliers(&map, companion.equations.span.half);
-        let (mut spread, relative) = companion.errors(&map, &found);
-        let mut error = relative * self.size;
+        let (mut spread, in_states) = companion.errors(&map, &found);
+        let mut error = in_states * self.size;
         if let Some(corrected) = &corrected {
             let other = companion.multipliers_beside(corrected);
             spread += companion.part * distance(&found, &other);
@@ -171,13 +173,14 @@ impl<'r> Run<'r> {
             spread = f64::INFINITY;
             error = f64::INFINITY;
         }
-        cycle.error = Some(error);
-        cycle.stability = if found.is_empty() {
+        self.state_error = error;
+        point.error = Some(relative(error, &point));
+        point.stability = if found.is_empty() {
             Stability::unknown()
         } else {
             Stability::of(found, spread)
         };
-        Ok((cycle, Some(map)))
+        Ok((point, Some(map)))
     }
 }
 
@@ -186,10 +189,10 @@ pub(super) fn observe(
     setting: &Setting,
     equations: &mut Equations,
     u: &[f64],
-) -> Result<(Cycle, Option<DMatrix<f64>>), FlowError> {
+) -> Result<(Point, Option<DMatrix<f64>>), FlowError> {
     let value = u[u.len() - 1];
     let rate = setting.rate_at(value);
-    let mut extremes = vec![Extremes::NONE; equations.order() / 2];
+    let mut extremes = vec![Motion::NONE; equations.order() / 2];
     let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
     let before = equations.flow.work().switches;
     let map = if setting.stability {
@@ -205,20 +208,23 @@ pub(super) fn observe(
             *extremes = extremes.mirrored();
         }
     }
-    let cycle = Cycle {
+    let point = Point {
         value,
         parameters: setting.parameters_at(value),
-        omega: setting.omega_at(value),
-        period: equations.span.period,
-        symmetric: half,
-        states: equations.states_of(u),
+        orbit: Orbit {
+            series: Vec::new(),
+            states: equations.states_of(u),
+            coordinates: extremes.len(),
+            omega: setting.omega_at(value),
+            base: rate / equations.span.period as f64,
+            period: equations.span.period,
+            symmetric: half,
+        },
         stability: Stability::unknown(),
-        extremes,
-        switches: switches * if half { 2 } else { 1 },
+        observed: Observed::extremes(extremes, switches * if half { 2 } else { 1 }),
         error: None,
-        iterations: 0,
     };
-    Ok((cycle, map))
+    Ok((point, map))
 }
 
 /// Why there is no orbit.
@@ -229,10 +235,13 @@ pub(super) fn no_orbit(value: f64, reason: NewtonError, failure: Option<FlowErro
     }
 }
 
-/// Adds up work.
-pub(super) fn add(sum: &mut Work, other: Work) {
-    sum.steps += other.steps;
-    sum.rejected += other.rejected;
-    sum.forces += other.forces;
-    sum.switches += other.switches;
+/// An error of states as a part of peak-to-peak: of the first coordinate's, unless it is at rest, else of the largest.
+pub(super) fn relative(error: f64, point: &Point) -> f64 {
+    let own = point.peak_to_peak();
+    error
+        / if own > STILL * error {
+            own
+        } else {
+            2.0 * point.size()
+        }
 }

@@ -1,11 +1,12 @@
 //! What a computation by shooting works with: checked, and the same for all orbits of a branch.
 
+use std::sync::Arc;
+
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
-use crate::model::labels::Labels;
-use crate::system::Variable;
+use crate::system::{System, Variable};
 use crate::time::Flow;
 
 type Make = dyn Fn(f64) -> Result<Box<dyn Flow>, Error>;
@@ -21,17 +22,16 @@ pub(super) struct Source {
 }
 
 /// The system, what is varied, and how.
-pub(super) struct Setting {
+pub(crate) struct Setting {
+    pub(super) system: Arc<dyn System>,
     pub(super) source: Source,
     /// Name of what is varied.
-    pub(super) varied: String,
-    /// What charts say.
-    pub(super) labels: Labels,
+    pub(crate) varied: String,
     /// Parameters; what is varied has any value.
     pub(super) parameters: Vec<f64>,
     /// Frequency, unless it is varied.
     pub(super) omega: f64,
-    pub(super) variable: Variable,
+    pub(crate) variable: Variable,
     pub(super) divisor: u32,
     /// Period of the orbits in periods of the system.
     pub(super) period: usize,

@@ -1,35 +1,26 @@
 //! The first orbit: from a guess to a solution, with what is known of it.
 
-use super::cycle::Cycle;
+use super::beyond;
 use super::equations::{Equations, Frame, Span};
-use super::extremes::{self, Extremes};
+use super::extremes;
 use super::recurrence::Recurrence;
 use super::run::no_orbit;
 use super::setting::Setting;
-use super::{beyond, solve};
 use crate::branches::error::Attempts;
 use crate::branches::error::OrbitError;
-use crate::branches::orbit::Orbit;
+use crate::branches::observed::Motion;
+use crate::branches::point::Point;
+use crate::branches::request::Guess;
+use crate::branches::solve;
 use crate::continuation::newton::Newton;
 use crate::error::Error;
 use crate::time::MotionError;
 use crate::time::{FlowError, Stretch};
 
-/// What is known of an orbit beforehand.
-#[derive(Debug, Clone)]
-pub(super) enum Guess {
-    /// Its state at phase zero.
-    State(Vec<f64>),
-    /// Its Fourier series.
-    Series(Orbit),
-}
-
 /// A solution.
 pub(super) struct First {
     pub(super) equations: Equations,
     pub(super) u: Vec<f64>,
-    /// Updates that it took.
-    pub(super) iterations: usize,
     /// Largest entry of its state, of velocities in units of the frequency, from the middle of the motion.
     pub(super) size: f64,
 }
@@ -55,18 +46,13 @@ pub(super) fn first(
     let mut newton = Newton::new(&equations);
     let options = setting.newton_at_start();
     let solved = solve::at_value(&mut equations, &mut newton, &mut u, options);
-    let iterations = match solved {
-        Ok(converged) => converged.iterations,
-        Err(reason) => {
-            let reason = no_orbit(value, reason, equations.failure);
-            u = beyond::search(setting, &mut equations, &u, value, reason)?;
-            options.iterations
-        }
-    };
+    if let Err(reason) = solved {
+        let reason = no_orbit(value, reason, equations.failure);
+        u = beyond::search(setting, &mut equations, &u, value, reason)?;
+    }
     let mut first = First {
         equations,
         u,
-        iterations,
         size: 1.0,
     };
     first.settle(setting).map_err(motion)?;
@@ -97,12 +83,12 @@ pub(super) fn first(
 ///
 /// # Errors
 /// If there is no flow.
-pub(super) fn known(setting: &Setting, cycle: &Cycle) -> Result<(Equations, Vec<f64>), Error> {
+pub(super) fn known(setting: &Setting, point: &Point) -> Result<(Equations, Vec<f64>), Error> {
     through(
         setting,
-        cycle,
-        (cycle.period, cycle.symmetric),
-        &cycle.states,
+        point,
+        (point.orbit.period, point.orbit.symmetric),
+        &point.orbit.states,
     )
 }
 
@@ -112,19 +98,19 @@ pub(super) fn known(setting: &Setting, cycle: &Cycle) -> Result<(Equations, Vec<
 /// If there is no flow.
 pub(super) fn through(
     setting: &Setting,
-    cycle: &Cycle,
+    point: &Point,
     (period, half): (usize, bool),
     states: &[f64],
 ) -> Result<(Equations, Vec<f64>), Error> {
-    let coordinates = cycle.extremes.len();
+    let coordinates = point.orbit.coordinates;
     let span = Span {
         period,
         half,
         segments: states.len() / (2 * coordinates),
     };
-    let frame = Frame::plain(setting.variable, coordinates, cycle.omega);
+    let frame = Frame::plain(setting.variable, coordinates, point.orbit.omega);
     let equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
-    let u = equations.unknowns_of(states, cycle.value);
+    let u = equations.unknowns_of(states, point.value);
     Ok((equations, u))
 }
 
@@ -137,18 +123,19 @@ fn states(
 ) -> Result<Vec<f64>, FlowError> {
     let span = equations.span;
     match guess {
-        Guess::Series(orbit) => {
+        Guess::Orbit(orbit) if orbit.has_series() => {
             let n = orbit.coordinates();
             let mut states = Vec::with_capacity(2 * n * span.segments);
             for segment in 0..span.segments {
                 let time = span.begins(segment) * f64::from(setting.divisor) / orbit.omega;
-                let motions = (0..n).map(|i| orbit.state(i, time));
+                let motions = (0..n).filter_map(|i| orbit.state_at(i, time));
                 let (positions, velocities): (Vec<f64>, Vec<f64>) = motions.unzip();
                 states.extend(positions);
                 states.extend(velocities);
             }
             Ok(states)
         }
+        Guess::Orbit(orbit) => equations.states_from(&orbit.state(), value),
         Guess::State(state) => equations.states_from(state, value),
     }
 }
@@ -159,13 +146,13 @@ impl First {
         let value = self.u[self.u.len() - 1];
         let n = self.equations.order() / 2;
         let rate = setting.rate_at(value);
-        let mut extremes = vec![Extremes::NONE; n];
+        let mut extremes = vec![Motion::NONE; n];
         let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
         self.equations.trace(&self.u, see)?;
         let states = self.equations.states_of(&self.u);
-        self.equations.frame.reference = extremes.iter().map(Extremes::middle).collect();
+        self.equations.frame.reference = extremes.iter().map(Motion::middle).collect();
         self.u = self.equations.unknowns_of(&states, value);
-        let largest = |m: f64, extremes: &Extremes| m.max(0.5 * extremes.peak_to_peak());
+        let largest = |m: f64, extremes: &Motion| m.max(0.5 * extremes.peak_to_peak());
         let size = extremes.iter().fold(0.0, largest);
         self.size = if size > 0.0 { size } else { 1.0 };
         let frame = &mut self.equations.frame;

@@ -19,12 +19,13 @@
 
 use nalgebra::DMatrix;
 
-use super::cycle::{Cycle, CycleEvent};
 use super::equations::Equations;
 use super::recurrence::Recurrence;
 use super::setting::Setting;
 use super::start::{self, First};
 use crate::branches::error::OrbitError;
+use crate::branches::point::{Event, Point};
+use crate::branches::solve::{Toward, along};
 use crate::branches::switch::Departure;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::Newton;
@@ -50,13 +51,13 @@ pub(super) struct Begun {
 /// [`OrbitError::NoBranch`] if no branch begins there, or its first orbit was not found.
 pub(super) fn depart(
     setting: &Setting,
-    event: &CycleEvent,
+    event: &Event,
     side: f64,
     range: f64,
 ) -> Result<Begun, Error> {
     let nothing = OrbitError::NoBranch {
         kind: event.kind,
-        value: event.cycle.value,
+        value: event.point.value,
     };
     if event.kind == EventKind::BranchPoint {
         return super::crossed::depart(setting, event, side, range);
@@ -67,18 +68,17 @@ pub(super) fn depart(
     ) {
         return Err(nothing.into());
     }
-    let (mut equations, u) = twice(setting, &event.cycle)?;
-    let Some(direction) = direction(&mut equations, &u, event.cycle.symmetric) else {
+    let (mut equations, u) = twice(setting, &event.point)?;
+    let Some(direction) = direction(&mut equations, &u, event.point.orbit.symmetric) else {
         return Err(nothing.into());
     };
     let mut first = First {
         equations,
         u,
-        iterations: 0,
         size: 1.0,
     };
     let motion = |reason| MotionError {
-        value: event.cycle.value,
+        value: event.point.value,
         reason,
     };
     first.settle(setting).map_err(motion)?;
@@ -110,30 +110,25 @@ pub(super) fn resume(
     let mut newton = Newton::new(&first.equations);
     let options = setting.newton(setting.source.tolerance, first.equations.frame.ratio);
     let value = first.u[first.u.len() - 1];
-    super::solve::at_value(&mut first.equations, &mut newton, &mut first.u, options)
-        .map_err(|reason| super::run::no_orbit(value, reason, first.equations.failure))?;
-    let scale = scale_of(&newton, &first.u, range);
-    let mut tangent = vec![0.0; first.u.len()];
-    newton.tangent(&mut first.equations, &first.u, &mut tangent, true);
-    let sign = side * tangent[tangent.len() - 1];
-    let length = newton.norm().length(scale, &tangent) * sign.signum();
-    for t in &mut tangent {
-        *t /= length;
-    }
-    let point = CurvePoint {
-        u: first.u.clone(),
-        tangent,
-        scale,
-    };
+    let toward = Toward { side, range };
+    let point = along(
+        &mut first.equations,
+        &mut newton,
+        first.u.clone(),
+        toward,
+        options,
+    )
+    .map_err(|reason| super::run::no_orbit(value, reason, first.equations.failure))?;
+    first.u.clone_from(&point.u);
     Ok(Begun { first, point })
 }
 
 /// The equations of the new branch, and the orbit as a solution of them.
-fn twice(setting: &Setting, cycle: &Cycle) -> Result<(Equations, Vec<f64>), Error> {
-    let sign = if cycle.symmetric { -1.0 } else { 1.0 };
-    let mut states = cycle.states.clone();
-    states.extend(cycle.states.iter().map(|x| sign * x));
-    start::through(setting, cycle, (setting.period, false), &states)
+fn twice(setting: &Setting, point: &Point) -> Result<(Equations, Vec<f64>), Error> {
+    let sign = if point.orbit.symmetric { -1.0 } else { 1.0 };
+    let mut states = point.orbit.states.clone();
+    states.extend(point.orbit.states.iter().map(|x| sign * x));
+    start::through(setting, point, (setting.period, false), &states)
 }
 
 /// The direction of the new branch in extended unknowns, from (1); its entry for the parameter is zero.

@@ -6,15 +6,15 @@ use std::ops::ControlFlow;
 
 use nalgebra::Complex;
 
-use super::cycle::CycleEvent;
 use super::run::no_orbit;
 use super::setting::Setting;
-use super::solve;
 use super::start;
 use super::touch::Touch;
 use super::track::{Condition, Curve};
 use super::watch::Watch;
 use crate::branches::error::OrbitError;
+use crate::branches::point::Event;
+use crate::branches::solve;
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, follow,
 };
@@ -147,11 +147,11 @@ impl std::fmt::Display for SpecialKind {
 }
 
 /// Ranges of the two parameters: the first is what the setting varies.
-pub(super) struct Plane<'a> {
-    pub(super) system: &'a dyn System,
-    pub(super) second: Variable,
-    pub(super) name: String,
-    pub(super) ranges: [[f64; 2]; 2],
+pub(crate) struct Plane<'a> {
+    pub(crate) system: &'a dyn System,
+    pub(crate) second: Variable,
+    pub(crate) name: String,
+    pub(crate) ranges: [[f64; 2]; 2],
 }
 
 /// No half of a curve has more points.
@@ -159,7 +159,7 @@ const POINTS: usize = 600;
 /// Shorter steps lead nowhere: where orbits graze, a determinant has the root of the distance in it, and no tangent.
 const SHORTEST: f64 = 1e-5;
 /// What is shown every bifurcation, and says whether to go on.
-pub(super) type See<'v> = &'v mut dyn FnMut(&TrackPoint) -> ControlFlow<()>;
+pub(crate) type See<'v> = &'v mut dyn FnMut(&TrackPoint) -> ControlFlow<()>;
 
 /// Half of a curve, as it is followed.
 struct Half {
@@ -172,13 +172,13 @@ struct Half {
 ///
 /// # Errors
 /// If events of that kind are on no such curve, or the event does not solve its equations.
-pub(super) fn track(
+pub(crate) fn track(
     setting: &Setting,
-    event: &CycleEvent,
+    event: &Event,
     plane: &Plane<'_>,
     visit: See<'_>,
 ) -> Result<Track, Error> {
-    let at = [event.cycle.value, second_of(event, plane.second)];
+    let at = [event.point.value, second_of(event, plane.second)];
     for ((value, range), name) in at.into_iter().zip(plane.ranges).zip(["from", "within"]) {
         if value < range[0].min(range[1]) || value > range[0].max(range[1]) {
             let must = "is the value at the event, and must be inside the range of the curve";
@@ -193,7 +193,7 @@ pub(super) fn track(
         return Ok(Track {
             kind: event.kind,
             names: [setting.varied.clone(), plane.name.clone()],
-            period: event.cycle.period,
+            period: event.point.orbit.period,
             points: back.points,
             special: back.special,
             ends: [TrackEnd::Closed; 2],
@@ -226,7 +226,7 @@ pub(super) fn track(
     Ok(Track {
         kind: event.kind,
         names: [setting.varied.clone(), plane.name.clone()],
-        period: event.cycle.period,
+        period: event.point.orbit.period,
         points,
         special,
         ends: [back.end, forth.end],
@@ -236,7 +236,7 @@ pub(super) fn track(
 /// From the event towards larger values of the second parameter, or smaller ones.
 fn half(
     setting: &Setting,
-    event: &CycleEvent,
+    event: &Event,
     plane: &Plane<'_>,
     side: f64,
     visit: See<'_>,
@@ -245,7 +245,7 @@ fn half(
     let mut newton = Newton::new(&curve);
     let options = setting.newton(setting.source.tolerance, 1.0);
     solve::at_value(&mut curve, &mut newton, &mut u, options)
-        .map_err(|reason| no_orbit(event.cycle.value, reason, curve.equations.failure))?;
+        .map_err(|reason| no_orbit(event.point.value, reason, curve.equations.failure))?;
     let [_, second] = plane.ranges;
     let range = (second[1] - second[0]).abs();
     let scale = newton.norm().scale_at(&u, range, &mut [0.0; 2]);
@@ -272,7 +272,7 @@ fn half(
         plane,
         options.newton,
         &curve,
-        event.cycle.symmetric,
+        event.point.orbit.symmetric,
     );
     let mut interrupted = false;
     let outcome = follow(
@@ -302,7 +302,7 @@ fn half(
         _ if interrupted => TrackEnd::Stopped(Stop::Interrupted),
         _ if watch.left => TrackEnd::Left,
         _ if watch.joined => TrackEnd::Joined,
-        (Err(reason), failure) => return Err(no_orbit(event.cycle.value, reason, failure)),
+        (Err(reason), failure) => return Err(no_orbit(event.point.value, reason, failure)),
         (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {
             TrackEnd::Motion(reason)
         }
@@ -320,24 +320,24 @@ fn half(
 }
 
 /// The value of the second parameter at an event.
-fn second_of(event: &CycleEvent, second: Variable) -> f64 {
+fn second_of(event: &Event, second: Variable) -> f64 {
     match second {
-        Variable::Omega => event.cycle.omega,
-        Variable::Parameter(index) => event.cycle.parameters[index],
+        Variable::Omega => event.point.orbit.omega,
+        Variable::Parameter(index) => event.point.parameters[index],
     }
 }
 
 /// The problem of the curve, and the event as its unknowns.
 fn curve<'a>(
     setting: &Setting,
-    event: &CycleEvent,
+    event: &Event,
     plane: &Plane<'a>,
 ) -> Result<(Curve<'a>, Vec<f64>), Error> {
-    let cycle = &event.cycle;
-    let (mut equations, mut u) = start::known(setting, cycle)?;
+    let point = &event.point;
+    let (mut equations, mut u) = start::known(setting, point)?;
     let nothing = OrbitError::NoBranch {
         kind: event.kind,
-        value: cycle.value,
+        value: point.value,
     };
     let condition = match event.kind {
         EventKind::Fold => Condition::Multiplier(-1.0),
@@ -349,7 +349,7 @@ fn curve<'a>(
         _ => return Err(nothing.into()),
     };
     u.push(second_of(event, plane.second));
-    let size = cycle.size();
+    let size = point.size();
     let [first, second] = plane.ranges.map(|range| (range[1] - range[0]).abs());
     let curve = Curve::new(equations, plane.second, condition, [size, first, second]);
     Ok((curve, u))

@@ -200,3 +200,12 @@ pub struct Work {
     /// Crossings of levels.
     pub switches: usize,
 }
+
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.rejected += other.rejected;
+        self.forces += other.forces;
+        self.switches += other.switches;
+    }
+}

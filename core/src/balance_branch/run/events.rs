@@ -163,7 +163,11 @@ impl Run<'_> {
             Some(located) => located.point.parameter(),
             None => vertex(newton.norm(), before, behind),
         };
-        self.ended = Some(Stop::Joined { period, value });
+        self.ended = Some(Stop::Joined {
+            period,
+            symmetric: joined.is_none(),
+            value,
+        });
         true
     }
 }

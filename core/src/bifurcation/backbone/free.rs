@@ -32,7 +32,6 @@ use crate::error::Error;
 use crate::model::error::ModelError;
 use crate::model::request::RequestError;
 use crate::model::validate;
-use crate::shooting::End;
 use crate::system::System;
 use crate::time;
 use crate::time::MotionError;
@@ -210,20 +209,20 @@ impl FreeOscillation {
         let value = points
             .last()
             .map_or(options.from, |last: &FreePoint| last.ends[0][0]);
-        let end = match (failure, outcome) {
+        let stopped = match (failure, outcome) {
             (Some(Ok(apart)), _) => return Err(BifurcationError::NotFree { apart }.into()),
             (Some(Err(reason)), _) if points.is_empty() => {
                 return Err(MotionError { value, reason }.into());
             }
-            (Some(Err(reason)), _) => End::Motion { value, reason },
+            (Some(Err(reason)), _) => Stop::Motion { value, reason },
             (None, Err(reason)) => return Err(OrbitError::NoStart { value, reason }.into()),
-            (None, Ok(Outcome::Stopped(stop))) => End::Stopped(stop),
+            (None, Ok(Outcome::Stopped(stop))) => stop,
             // A walk along free oscillations is never resized.
-            (None, Ok(Outcome::Halted(_))) => End::Stopped(Stop::Interrupted),
+            (None, Ok(Outcome::Halted(_))) => Stop::Interrupted,
         };
         Ok(Backbone {
             points,
-            end,
+            stopped,
             statistics: newton.statistics,
             work: equations.flow.work(),
             elapsed: started.elapsed(),

@@ -7,8 +7,8 @@ mod resonance;
 
 use std::time::Duration;
 
+use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
-use crate::shooting::End;
 use crate::time::Work;
 
 pub use free::{FreeOscillation, FreePoint};
@@ -22,7 +22,7 @@ pub struct Backbone<P> {
     /// Its points, in the order in which it was followed.
     pub points: Vec<P>,
     /// Why it ended.
-    pub end: End,
+    pub stopped: Stop,
     /// What the continuation cost.
     pub statistics: Statistics,
     /// What the motions cost; nothing in phase resonance, which computes none.

@@ -22,8 +22,8 @@ impl Motion {
         Self {
             maximum,
             minimum,
-            mean: series[0],
-            rms: series::mean_product(series, series).max(0.0).sqrt(),
+            mean: Some(series[0]),
+            rms: Some(series::mean_product(series, series).max(0.0).sqrt()),
         }
     }
 }
@@ -99,8 +99,9 @@ impl Observer {
             motions,
             contacts,
             on_pieces,
-            input_power,
-            dissipated_power,
+            input_power: Some(input_power),
+            dissipated_power: Some(dissipated_power),
+            switches: None,
         }
     }
 
@@ -182,8 +183,8 @@ mod tests {
         assert!((motion.maximum - 3.0).abs() < 1e-14);
         assert!((motion.minimum + 0.125).abs() < 1e-14);
         assert!((motion.peak_to_peak() - 3.125).abs() < 1e-14);
-        assert_eq!(motion.mean, 1.0);
-        assert!((motion.rms - 2.0_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(motion.mean, Some(1.0));
+        assert!((motion.rms.unwrap() - 2.0_f64.sqrt()).abs() < 1e-15);
     }
 
     #[test]

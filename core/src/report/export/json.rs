@@ -7,7 +7,7 @@ use crate::continuation::follow::Stop;
 use crate::event::EventKind;
 use crate::numeric::serialise::text;
 use crate::orbit::stability::{Method, Verdict};
-use crate::shooting::{End, SpecialKind, TrackEnd};
+use crate::shooting::{SpecialKind, TrackEnd};
 
 macro_rules! as_text {
     ($($name:ty),*) => {$(
@@ -22,7 +22,6 @@ macro_rules! as_text {
 as_text!(
     EventKind,
     Stop,
-    End,
     SpecialKind,
     TrackEnd,
     Ended,

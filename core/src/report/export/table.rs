@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::branches::branch::Model;
 use crate::branches::point::Point;
 
 /// Names of the columns that every table begins with; after them come the parameters of the system, by name, and then for each
@@ -24,7 +25,8 @@ use crate::branches::point::Point;
 /// | `period` | periods of the declaration in the period of the orbit |
 /// | `value` | of what varies along the branch |
 ///
-/// What is not known, or is not there, is empty; a number that is not finite is `inf` or `NaN`.
+/// What is not known, or is not there, is empty, as much is of an orbit by shooting until it is
+/// [completed](crate::Branch::complete); a number that is not finite is `inf` or `NaN`.
 pub const COLUMNS: [&str; 20] = [
     "omega",
     "peak_to_peak",
@@ -80,16 +82,16 @@ pub struct Table {
 impl Table {
     /// A table without rows. A parameter whose name is taken gets an underscore after it.
     pub fn of(system: &dyn crate::system::System) -> Self {
-        let facts = system.facts();
-        let pieces = facts
-            .contacts
-            .iter()
-            .map(|contact| system.law(contact.law).facts().pieces.len());
-        let pieces: Vec<usize> = pieces.collect();
+        Self::of_model(&Model::of(system))
+    }
+
+    /// The same where the system itself is not at hand.
+    pub(crate) fn of_model(model: &Model) -> Self {
+        let pieces = model.pieces.clone();
         let mut names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
         let of_contacts = of_contacts(&pieces);
-        for parameter in facts.parameters.iter() {
-            let mut name = parameter.name.to_string();
+        for parameter in &model.parameters {
+            let mut name = parameter.name.clone();
             while names.contains(&name) || of_contacts.contains(&name) {
                 name.push('_');
             }
@@ -98,7 +100,7 @@ impl Table {
         names.extend(of_contacts);
         let mut table = Self {
             text: String::new(),
-            parameters: facts.parameters.len(),
+            parameters: model.parameters.len(),
             pieces,
         };
         table.line(names.iter().map(String::as_str));
@@ -111,12 +113,21 @@ impl Table {
         let parameters: Vec<String> = parameters.map(|&value| number(value)).collect();
         let cells = cells(branch, point);
         let observed = &point.observed;
-        let contacts = observed.contacts.iter().zip(&observed.on_pieces);
         let mut of_contacts: Vec<String> = Vec::new();
-        for ((contact, on_pieces), &pieces) in contacts.zip(&self.pieces) {
-            let forces = [contact.minimum_force, contact.maximum_force];
-            let values = forces.iter().chain(on_pieces.iter().take(pieces));
-            of_contacts.extend(values.map(|&value| number(value)));
+        for (index, &pieces) in self.pieces.iter().enumerate() {
+            let contact = observed.contacts.get(index);
+            let on_pieces = observed.on_pieces.get(index);
+            let forces = contact.map(|contact| [contact.minimum_force, contact.maximum_force]);
+            let values = forces
+                .iter()
+                .flatten()
+                .chain(on_pieces.into_iter().flatten());
+            let cells = values.map(|&value| number(value));
+            of_contacts.extend(
+                cells
+                    .chain(std::iter::repeat(String::new()))
+                    .take(2 + pieces),
+            );
         }
         let all = cells.iter().chain(&parameters).chain(&of_contacts);
         self.line(all.map(String::as_str));
@@ -161,29 +172,41 @@ pub fn cells(branch: usize, point: &Point) -> [String; 20] {
         part.map_or_else(String::new, number)
     };
     let contact = point.observed.contacts.first();
-    let of_contact = |value: Option<f64>| value.map_or_else(String::new, number);
     [
         number(point.omega()),
         number(motion.peak_to_peak()),
         number(motion.maximum),
         number(motion.minimum),
-        number(motion.mean),
-        number(motion.rms),
+        maybe(motion.mean),
+        maybe(motion.rms),
         point.stability.verdict.to_string(),
         part(0, false),
         part(0, true),
         part(1, false),
         part(1, true),
-        of_contact(contact.map(|contact| contact.fraction)),
+        maybe(contact.map(|contact| contact.fraction)),
         contact.map_or_else(String::new, |contact| contact.count.to_string()),
-        of_contact(contact.map(|contact| contact.peak_force)),
-        number(point.observed.dissipated_power),
-        point.orbit.harmonics().to_string(),
-        point.error.map_or_else(String::new, number),
+        maybe(contact.map(|contact| contact.peak_force)),
+        maybe(point.observed.dissipated_power),
+        harmonics(point),
+        maybe(point.error),
         branch.to_string(),
         point.orbit.period.to_string(),
         number(point.value),
     ]
+}
+
+/// Empty where the series are not known.
+fn harmonics(point: &Point) -> String {
+    match point.orbit.harmonics() {
+        0 => String::new(),
+        harmonics => harmonics.to_string(),
+    }
+}
+
+/// Empty where it is not known.
+fn maybe(value: Option<f64>) -> String {
+    value.map_or_else(String::new, number)
 }
 
 /// As short as reads back to the same number.

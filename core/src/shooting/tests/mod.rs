@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use super::compute::{branch, cycle};
 use super::setting::{Setting, Source};
 use super::start::Guess;
-use super::{Cycle, CycleBranch, End};
+use super::{Branch, End, Point};
 use crate::branches::error::OrbitError;
 use crate::continuation::follow::Stop;
 use crate::continuation::jacobian::Jacobian;
@@ -68,9 +68,9 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting {
 }
 
 /// The branch along a range from an orbit near a state.
-fn followed(setting: &Setting, state: [f64; 2], from: f64, to: f64) -> CycleBranch {
+fn followed(setting: &Setting, state: [f64; 2], from: f64, to: f64) -> Branch {
     let guess = Guess::State(state.to_vec());
-    let go = &mut |_: &Cycle| ControlFlow::Continue(());
+    let go = &mut |_: &Point| ControlFlow::Continue(());
     branch(setting, &guess, [from, to], go).unwrap()
 }
 
@@ -154,8 +154,8 @@ fn folds_of_a_smooth_oscillator_are_those_of_the_balance() {
         );
         assert!((a - b).abs() < 1e-7, "{a} {b}");
     }
-    for cycle in &found.cycles {
-        let expected = (-TAU * 2.0 * 0.05 / cycle.omega).exp();
+    for cycle in &found.points {
+        let expected = (-TAU * 2.0 * 0.05 / cycle.orbit.omega).exp();
         let product = cycle
             .stability
             .multipliers
@@ -225,11 +225,11 @@ fn symmetry_breaks_where_the_balance_says() {
         assert!(found.turns.is_empty(), "{:?}", found.turns);
         assert_eq!(found.events.len(), 2, "{:?}", found.events);
         for (event, expected) in found.events.iter().zip(&by_balance.events) {
-            assert_eq!((event.kind, event.cycle.symmetric), (kind, odd));
-            let error = (event.cycle.value - expected.point.value).abs();
+            assert_eq!((event.kind, event.point.orbit.symmetric), (kind, odd));
+            let error = (event.point.value - expected.point.value).abs();
             assert!(error < event.error + expected.error, "{event} {expected}");
             assert!(event.error < 1e-6 && error < 1e-8, "{event} {error}");
-            let one = event.cycle.stability.multipliers[0];
+            let one = event.point.stability.multipliers[0];
             assert!((one - 1.0).norm() < 1e-9, "{one}");
         }
     }
@@ -249,7 +249,7 @@ fn a_period_doubles_where_the_branch_of_twice_the_period_ends() {
     // Beyond it the motion settles on twice the period.
     let mut flow = setting.flow(1e-6).unwrap();
     flow.set(Variable::Parameter(2), 7.3).unwrap();
-    let mut state = doubling.cycle.state().to_vec();
+    let mut state = doubling.cycle.orbit.state().to_vec();
     for _ in 0..1000 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();
     }

@@ -39,7 +39,6 @@ use crate::model::validate;
 use crate::numeric::fourier::series;
 use crate::orbit::observe::Motion;
 use crate::response::FrequencyResponse;
-use crate::shooting::End;
 use crate::system::{System, Variable};
 use crate::time::Work;
 
@@ -217,7 +216,7 @@ impl PhaseResonance {
         statistics += newton.statistics;
         Ok(Backbone {
             points,
-            end: End::Stopped(stop),
+            stopped: stop,
             statistics,
             work: Work::default(),
             elapsed: started.elapsed(),
@@ -361,6 +360,8 @@ impl<'a> Resonance<'a> {
             omega: u[n],
             base: self.balance.base(),
             period: 1,
+            states: Vec::new(),
+            symmetric: false,
         };
         ResonancePoint {
             value: u[n + 1],

@@ -1,10 +1,10 @@
 //! The work of one iteration, part by part: what the bench of this name times, and nobody else calls.
 
 use crate::balance::Balance;
+use crate::branches::branch::Branch;
 use crate::branches::point::Point;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
-use crate::response::branch::Branch;
 
 pub use crate::numeric::fourier::crossings::{Crossing, CrossingFinder, NearMiss};
 
@@ -21,11 +21,11 @@ pub struct Stages<'a> {
 }
 
 impl<'a> Stages<'a> {
-    /// At a point of a branch.
-    pub fn at(branch: &'a Branch, point: &Point) -> Self {
+    /// At a point of a branch; `None` if that is not one of the balance.
+    pub fn at(branch: &'a Branch, point: &Point) -> Option<Self> {
         let mut u = point.orbit.series.clone();
         u.push(point.value);
-        let follower = &branch.follower;
+        let follower = branch.by_balance()?;
         let core = follower.core_for(&u);
         let resolution = follower.with_harmonics(point.orbit.harmonics(), core);
         let balance = follower.balance(resolution);
@@ -39,7 +39,7 @@ impl<'a> Stages<'a> {
             border,
         };
         stages.jacobian();
-        stages
+        Some(stages)
     }
 
     /// Harmonics that are coupled densely.

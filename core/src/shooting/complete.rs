@@ -1,9 +1,8 @@
-//! A cycle as a Fourier series, with everything that is read off one.
+//! An orbit of shooting with its Fourier series, and everything that is read off one.
 //!
 //! Positions are sampled along the motion itself and transformed, so coefficients err by aliasing only: those of displacements
 //! fall at least as `k^-3`, and there are hundreds of samples for each harmonic that is kept.
 
-use super::cycle::Cycle;
 use super::setting::Setting;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
@@ -13,7 +12,6 @@ use crate::error::Error;
 use crate::numeric::fourier::sampled::SampledTransform;
 use crate::numeric::fourier::series;
 use crate::orbit::observe::Observer;
-use crate::system::System;
 use crate::time::MotionError;
 use crate::time::history;
 use crate::time::history::Span;
@@ -23,16 +21,16 @@ use crate::time::stroboscope::Stroboscope;
 const SAMPLES: usize = 1024;
 const HARMONICS: usize = 20;
 
-/// The point of a branch that a cycle is.
+/// An orbit with its series, and everything that is read off.
 ///
 /// # Errors
 /// If the motion cannot be computed.
-pub(super) fn point(system: &dyn System, setting: &Setting, cycle: &Cycle) -> Result<Point, Error> {
-    let coordinates = cycle.extremes.len();
+pub(crate) fn complete(setting: &Setting, point: &Point) -> Result<Point, Error> {
+    let coordinates = point.orbit.coordinates;
     let divisor = setting.divisor as usize;
-    let samples = sampled(setting, cycle, SAMPLES * divisor)?;
+    let samples = sampled(setting, point, SAMPLES * divisor)?;
     let count = samples.len() / coordinates;
-    let harmonics = HARMONICS * divisor * cycle.period;
+    let harmonics = HARMONICS * divisor * point.orbit.period;
     let mut transform = SampledTransform::new(count);
     let mut u = vec![0.0; coordinates * series::length(harmonics) + 1];
     let parts = u.chunks_exact_mut(series::length(harmonics));
@@ -40,7 +38,7 @@ pub(super) fn point(system: &dyn System, setting: &Setting, cycle: &Cycle) -> Re
         transform.analyse(samples, series);
     }
     let n = u.len() - 1;
-    u[n] = cycle.value;
+    u[n] = point.value;
     let resolution = Resolution {
         harmonics,
         core: harmonics,
@@ -48,52 +46,46 @@ pub(super) fn point(system: &dyn System, setting: &Setting, cycle: &Cycle) -> Re
         stride: 1,
         samples: count,
         aft: Aft::Switched,
-        period: cycle.period,
+        period: point.orbit.period,
     };
     let mut balance = Balance::new(
-        system,
-        &cycle.parameters,
-        cycle.omega,
+        setting.system.as_ref(),
+        &point.parameters,
+        point.orbit.omega,
         setting.variable,
         resolution,
     );
-    balance.set(cycle.value);
+    balance.set(point.value);
     let mut observed = Observer::default().observe(&mut balance, &u);
-    let parts = samples.chunks_exact(count).zip(&cycle.extremes);
+    let parts = samples.chunks_exact(count).zip(&point.observed.motions);
     for (motion, (samples, extremes)) in observed.motions.iter_mut().zip(parts) {
         let square: f64 = samples.iter().map(|x| x * x).sum();
         motion.maximum = extremes.maximum;
         motion.minimum = extremes.minimum;
-        motion.rms = (square / count as f64).sqrt();
+        motion.rms = Some((square / count as f64).sqrt());
     }
     u.truncate(n);
-    let size = cycle.peak_to_peak();
+    observed.switches = point.observed.switches;
     Ok(Point {
-        value: cycle.value,
-        parameters: cycle.parameters.clone(),
         orbit: Orbit {
             series: u,
-            coordinates,
-            omega: cycle.omega,
-            base: balance.base(),
-            period: cycle.period,
+            ..point.orbit.clone()
         },
-        stability: cycle.stability.clone(),
         observed,
-        error: cycle.error.filter(|_| size > 0.0).map(|error| error / size),
+        ..point.clone()
     })
 }
 
 /// Positions at equal distances over the period, so many in each period of the declaration, coordinate by coordinate.
-fn sampled(setting: &Setting, cycle: &Cycle, each: usize) -> Result<Vec<f64>, Error> {
-    let coordinates = cycle.extremes.len();
-    let count = each * cycle.period;
+fn sampled(setting: &Setting, point: &Point, each: usize) -> Result<Vec<f64>, Error> {
+    let coordinates = point.orbit.coordinates;
+    let count = each * point.orbit.period;
     let mut flow = setting.flow(setting.source.tolerance)?;
     let motion = |reason| MotionError {
-        value: cycle.value,
+        value: point.value,
         reason,
     };
-    flow.set(setting.variable, cycle.value).map_err(motion)?;
+    flow.set(setting.variable, point.value).map_err(motion)?;
     let mut samples = vec![0.0; coordinates * count];
     let mut index = 0;
     let mut keep = |_: f64, state: &[f64]| {
@@ -106,9 +98,9 @@ fn sampled(setting: &Setting, cycle: &Cycle, each: usize) -> Result<Vec<f64>, Er
         index += 1;
     };
     let mut map = Stroboscope::new(flow);
-    let mut state = cycle.state().to_vec();
+    let mut state = point.orbit.state();
     let span = Span {
-        periods: cycle.period,
+        periods: point.orbit.period,
         samples: each,
     };
     history::record(&mut map, &mut state, span, &mut keep).map_err(motion)?;

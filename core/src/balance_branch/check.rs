@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use super::FrequencyResponse;
 use crate::balance::aft::Aft;
 use crate::balance::resolution::Chooser;
 use crate::balance::symmetry::{Over, has_stride, is_broken};
 use crate::balance::{Parity, Resolution};
 use crate::balance_branch::follower::Follower;
+use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Event;
+use crate::branches::request::{Guess, Request};
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
 use crate::continuation::step;
@@ -37,45 +38,36 @@ const SAME: f64 = 1e-9;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
-impl FrequencyResponse {
+/// What was asked for.
+#[derive(Clone, Copy)]
+pub(crate) struct Asked<'r> {
+    pub(crate) request: &'r Request,
+    pub(crate) balance: &'r HarmonicBalance,
+}
+
+impl Asked<'_> {
     /// Checks everything that was asked for.
-    pub(super) fn check(&self) -> Result<(Follower, FollowOptions), Error> {
-        let facts = self.system.facts();
+    pub(crate) fn check(&self) -> Result<(Follower, FollowOptions), Error> {
+        let facts = self.request.system.facts();
         if facts.coordinates.is_empty() {
             return Err(ModelError::NoCoordinates.into());
         }
-        let mut parameters = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut parameters);
-        let variable = validate::variable(facts, self.vary.as_deref())?;
-        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
-        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
+        let mut parameters = self.request.parameters();
+        let variable = self.request.variable()?;
+        let [from, to] = self.request.range()?;
         validate::range(facts, variable, from, to)?;
-        let omega = match (variable, self.omega) {
-            (Variable::Omega, None) => from,
-            (Variable::Omega, Some(value)) => {
-                let must = "is what is varied: give it by from and to";
-                return Err(RequestError::Option {
-                    name: "omega",
-                    value,
-                    must,
-                }
-                .into());
-            }
-            (Variable::Parameter(index), Some(omega)) => {
-                parameters[index] = from;
-                validate::omega(omega)?
-            }
-            (Variable::Parameter(_), None) => {
-                return Err(RequestError::Missing { name: "omega" }.into());
-            }
-        };
+        let omega = self.request.held_omega(variable)?.unwrap_or(from);
+        validate::omega(omega)?;
+        if let Variable::Parameter(index) = variable {
+            parameters[index] = from;
+        }
         validate::parameters(facts, &parameters)?;
         self.check_options()?;
         self.check_near()?;
         let mut resolution = self.resolution()?;
-        let layout = Layout::of(self.system.as_ref());
+        let layout = Layout::of(self.request.system.as_ref());
         let over = Over {
-            system: self.system.as_ref(),
+            system: self.request.system.as_ref(),
             layout: &layout,
             parameters: &parameters,
             omega,
@@ -83,20 +75,20 @@ impl FrequencyResponse {
             range: [from, to],
         };
         let symmetric = over.is_odd();
-        let given = self.near.as_ref();
-        let kept = self.symmetric && !given.is_some_and(lacks_symmetry);
-        if symmetric && self.period == 1 && kept {
+        let given = self.near();
+        let kept = self.balance.symmetric && !given.is_some_and(lacks_symmetry);
+        if symmetric && self.request.period() == 1 && kept {
             resolution.parity = Parity::Odd;
-            if self.harmonics.is_none() {
+            if self.balance.harmonics.is_none() {
                 // An even number is as good as the one below it.
                 resolution.harmonics |= 1;
             }
         }
-        if self.period == 1 && self.symmetric {
+        if self.request.period() == 1 && self.balance.symmetric {
             self.take_stride(over.stride(), &mut resolution);
         }
         let place = Place {
-            system: self.system.as_ref(),
+            system: self.request.system.as_ref(),
             layout: &layout,
             parameters: &parameters,
             omega,
@@ -104,15 +96,15 @@ impl FrequencyResponse {
         };
         check_ends(place, [from, to])?;
         let newton = NewtonOptions {
-            tolerance: (1e-3 * self.tolerance).clamp(1e-11, 1e-6),
+            tolerance: (1e-3 * self.request.tolerance).clamp(1e-11, 1e-6),
             iterations: 12,
             damped: false,
         };
         let options = FollowOptions {
             from,
             to,
-            points: step::max_points(self.max_points)?,
-            steps: step::largest_step(self.largest_step)?,
+            points: step::max_points(self.request.max_points)?,
+            steps: step::largest_step(self.request.largest_step)?,
             newton,
         };
         let chooser = self.chooser(resolution);
@@ -121,15 +113,15 @@ impl FrequencyResponse {
         }
         Ok((
             Follower {
-                system: Arc::clone(&self.system),
+                system: Arc::clone(&self.request.system),
                 parameters,
                 omega,
                 variable,
                 resolution,
                 newton,
-                sought: self.sought,
-                asymmetric: symmetric && self.period == 1 && !kept,
-                stability: self.stability.then_some(self.method),
+                sought: self.balance.sought(),
+                asymmetric: symmetric && self.request.period() == 1 && !kept,
+                stability: self.request.stability.then_some(self.balance.multipliers),
                 chooser,
                 from,
                 to,
@@ -139,11 +131,11 @@ impl FrequencyResponse {
     }
 
     /// Another value that what is varied may have, next to one.
-    pub(super) fn aside(&self, value: f64) -> Result<f64, Error> {
-        let facts = self.system.facts();
+    pub(crate) fn aside(&self, value: f64) -> Result<f64, Error> {
+        let facts = self.request.system.facts();
         let unit = if value == 0.0 { 1.0 } else { value.abs() };
         let above = value + ASIDE * unit;
-        let Variable::Parameter(index) = validate::variable(facts, self.vary.as_deref())? else {
+        let Variable::Parameter(index) = self.request.variable()? else {
             return Ok(above);
         };
         let facts = &facts.parameters[index];
@@ -162,24 +154,22 @@ impl FrequencyResponse {
         Ok(neighbours.into_iter().find(admitted).unwrap_or(above))
     }
 
-    /// An orbit is one of a system with as many coordinates.
-    pub(super) fn fits(&self, orbit: &Orbit) -> Result<(), Error> {
-        let expected = self.system.facts().coordinates.len();
-        if orbit.coordinates == expected {
-            return Ok(());
+    /// The orbit that the first one is to be near. It has its series.
+    pub(crate) fn near(&self) -> Option<&Orbit> {
+        match &self.request.near {
+            Some(Guess::Orbit(orbit)) => Some(orbit),
+            _ => None,
         }
-        Err(RequestError::State {
-            entries: 2 * orbit.coordinates,
-            expected: 2 * expected,
-        }
-        .into())
     }
 
     /// An event is one of the system, within the range, and at the same excitation frequency if that does not vary.
-    pub(super) fn has(&self, event: &Event) -> Result<(), Error> {
-        self.fits(&event.point.orbit)?;
+    pub(crate) fn has(&self, event: &Event) -> Result<(), Error> {
+        self.request.fits(&event.point.orbit)?;
         let value = event.point.value;
-        let (from, to) = (self.from.unwrap_or(value), self.to.unwrap_or(value));
+        let (from, to) = (
+            self.request.from.unwrap_or(value),
+            self.request.to.unwrap_or(value),
+        );
         if !(from.min(to)..=from.max(to)).contains(&value) {
             return Err(RequestError::Option {
                 name: "event",
@@ -188,10 +178,10 @@ impl FrequencyResponse {
             }
             .into());
         }
-        let varies = validate::variable(self.system.facts(), self.vary.as_deref())?;
+        let varies = self.request.variable()?;
         let expected = match varies {
             Variable::Omega => Some(value),
-            Variable::Parameter(_) => self.omega,
+            Variable::Parameter(_) => self.request.omega,
         };
         let omega = event.point.orbit.omega;
         match expected {
@@ -209,16 +199,16 @@ impl FrequencyResponse {
 
     /// Checks what the first orbit is to be near.
     fn check_near(&self) -> Result<(), Error> {
-        let Some(orbit) = &self.near else {
+        let Some(orbit) = self.near() else {
             return Ok(());
         };
-        self.fits(orbit)?;
-        if orbit.period == self.period {
+        self.request.fits(orbit)?;
+        if orbit.period == self.request.period() {
             return Ok(());
         }
         Err(RequestError::Option {
             name: "period",
-            value: self.period as f64,
+            value: self.request.period() as f64,
             must: "must be that of the orbit given by `near_orbit`",
         }
         .into())
@@ -228,13 +218,13 @@ impl FrequencyResponse {
     fn check_options(&self) -> Result<(), Error> {
         validate::option(
             "tolerance",
-            self.tolerance,
+            self.request.tolerance,
             1e-12..=1e-1,
             "must be from 1e-12 to 0.1",
         )?;
         validate::option(
             "period",
-            self.period as f64,
+            self.request.period() as f64,
             1.0..=1000.0,
             "must be from 1 to 1000",
         )
@@ -242,14 +232,15 @@ impl FrequencyResponse {
 
     /// How harmonics follow the tolerance: unless they were given, or the contacts are sampled.
     fn chooser(&self, resolution: Resolution) -> Option<Chooser> {
-        let free = self.harmonics.is_none() && self.aft == Aft::Switched;
-        let layout = Layout::of(self.system.as_ref());
-        let least = (layout.highest_harmonic() + LEAST_BEYOND) * self.period;
+        let free = self.balance.harmonics.is_none() && self.balance.aft == Aft::Switched;
+        let layout = Layout::of(self.request.system.as_ref());
+        let least = (layout.highest_harmonic() + LEAST_BEYOND) * self.request.period();
         let unknowns_allow = most_harmonics(&layout);
-        let most = MOST_HARMONICS * self.period * self.system.facts().divisor as usize;
+        let most =
+            MOST_HARMONICS * self.request.period() * self.request.system.facts().divisor as usize;
         free.then(|| {
             Chooser::new(
-                self.tolerance,
+                self.request.tolerance,
                 least.min(resolution.harmonics),
                 most.min(unknowns_allow),
                 resolution.lattice(),
@@ -261,7 +252,7 @@ impl FrequencyResponse {
     fn take_stride(&self, stride: usize, resolution: &mut Resolution) {
         // What is odd of a sum of even harmonics is nothing.
         let odd = resolution.parity == Parity::Odd && stride.is_multiple_of(2);
-        let given = self.near.as_ref();
+        let given = self.near();
         let has = given.is_none_or(|orbit| has_stride(orbit, stride));
         let few = stride > resolution.harmonics;
         if stride == 1 || odd || few || !has {
@@ -269,7 +260,7 @@ impl FrequencyResponse {
         }
         resolution.stride = stride;
         resolution.core *= stride;
-        if self.harmonics.is_none() {
+        if self.balance.harmonics.is_none() {
             let (first, step) = resolution.lattice();
             let beyond = resolution.harmonics - first;
             resolution.harmonics = first + beyond.next_multiple_of(step);
@@ -277,15 +268,15 @@ impl FrequencyResponse {
     }
 
     fn resolution(&self) -> Result<Resolution, Error> {
-        let digits = -self.tolerance.log10();
+        let digits = -self.request.tolerance.log10();
         let by_tolerance = (20.0 * ((digits - 6.0) / 2.0).exp2())
             .round()
             .clamp(5.0, 100.0) as usize;
-        let divisor = self.system.facts().divisor as usize;
-        let layout = Layout::of(self.system.as_ref());
-        let per_period = self.harmonics.unwrap_or_else(|| {
+        let divisor = self.request.system.facts().divisor as usize;
+        let layout = Layout::of(self.request.system.as_ref());
+        let per_period = self.balance.harmonics.unwrap_or_else(|| {
             let least = layout.highest_harmonic() + LEAST_BEYOND;
-            let most = (most_harmonics(&layout) / self.period).max(1);
+            let most = (most_harmonics(&layout) / self.request.period()).max(1);
             (by_tolerance * divisor).max(least).min(most)
         });
         validate::option(
@@ -294,7 +285,7 @@ impl FrequencyResponse {
             1.0..=1e4,
             "must be from 1 to 10000",
         )?;
-        let harmonics = per_period * self.period;
+        let harmonics = per_period * self.request.period();
         let unknowns = layout.coordinates * series::length(harmonics);
         if unknowns > MOST_UNKNOWNS {
             return Err(RequestError::Unknowns {
@@ -303,11 +294,12 @@ impl FrequencyResponse {
             }
             .into());
         }
-        let highest = layout.highest_harmonic() * self.period;
+        let highest = layout.highest_harmonic() * self.request.period();
         if highest > harmonics {
             return Err(RequestError::Harmonics { harmonics, highest }.into());
         }
         let samples_per_period = self
+            .balance
             .samples
             .unwrap_or_else(|| (200 * per_period).next_power_of_two());
         validate::option(
@@ -316,7 +308,7 @@ impl FrequencyResponse {
             1.0..=1e7,
             "must be from 1 to 1e7",
         )?;
-        let samples = samples_per_period * self.period;
+        let samples = samples_per_period * self.request.period();
         if samples > MOST_SAMPLES {
             let must = "times the period must be at most 1e7";
             return Err(RequestError::Option {
@@ -331,7 +323,7 @@ impl FrequencyResponse {
         let wave = |contact: &ContactLayout| {
             contact.offset_harmonic() + contact.force_harmonic() + contact.gap_harmonic()
         };
-        let waves = contacts.map(wave).max().unwrap_or(0) * self.period;
+        let waves = contacts.map(wave).max().unwrap_or(0) * self.request.period();
         let least = 2 * (2 * harmonics + waves) + 2;
         if samples < least {
             return Err(RequestError::Samples {
@@ -343,12 +335,12 @@ impl FrequencyResponse {
         }
         Ok(Resolution {
             harmonics,
-            core: CORE_AT_START * self.period,
+            core: CORE_AT_START * self.request.period(),
             parity: Parity::All,
             stride: 1,
             samples,
-            aft: self.aft,
-            period: self.period,
+            aft: self.balance.aft,
+            period: self.request.period(),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! What charts say of a branch: the system with its parameters, and what is at the axes.
 
+use crate::branches::branch::{Branch, Model};
 use crate::numeric::decimal::Decimal;
-use crate::system::SystemFacts;
 
 /// Title and axes.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -15,19 +15,27 @@ pub(crate) struct Labels {
 }
 
 impl Labels {
-    /// At values of the parameters and of omega, of which one is varied.
-    pub(crate) fn of(facts: &SystemFacts, varied: &str, parameters: &[f64], omega: f64) -> Self {
-        let known = facts.parameters.iter().zip(parameters);
-        let held = known.filter(|(parameter, _)| parameter.name != varied);
+    /// Of a branch.
+    pub(crate) fn of(branch: &Branch) -> Self {
+        let (model, varied) = (&branch.model, &branch.varied);
+        let labels = Self {
+            title: model.name.clone(),
+            varied: name_of(model, varied),
+            size: model
+                .coordinates
+                .first()
+                .map_or_else(String::new, |name| format!("peak-to-peak of {name}")),
+        };
+        let Some(point) = branch.points.first() else {
+            return labels;
+        };
+        let known = model.parameters.iter().zip(&point.parameters);
+        let held = known.filter(|(parameter, _)| parameter.name != *varied);
         let values = held
             .map(|(parameter, value)| format!("{} = {}", parameter.name, Decimal::plain(*value)));
-        let omega = (varied != "omega").then(|| format!("omega = {}", Decimal::plain(omega)));
-        let omega = omega.filter(|_| !parameters.is_empty());
-        let labels = Self {
-            title: facts.name.to_string(),
-            varied: name_of(facts, varied),
-            size: format!("peak-to-peak of {}", facts.coordinates[0]),
-        };
+        let omega =
+            (varied != "omega").then(|| format!("omega = {}", Decimal::plain(point.omega())));
+        let omega = omega.filter(|_| !model.parameters.is_empty());
         values
             .chain(omega)
             .fold(labels, |labels, value| labels.with(&value))
@@ -42,7 +50,6 @@ impl Labels {
     }
 
     /// Of orbits of this period.
-    #[cfg(feature = "plot")]
     pub(crate) fn with_period(self, period: usize) -> Self {
         if period > 1 {
             self.with(&format!("period {period}"))
@@ -53,11 +60,11 @@ impl Labels {
 }
 
 /// A parameter by its name and the first line of its documentation.
-fn name_of(facts: &SystemFacts, varied: &str) -> String {
+fn name_of(model: &Model, varied: &str) -> String {
     if varied == "omega" {
         return "excitation frequency ω".to_owned();
     }
-    let parameter = facts.parameters.iter().find(|p| p.name == varied);
+    let parameter = model.parameters.iter().find(|p| p.name == varied);
     let documentation = parameter.and_then(|p| p.documentation.lines().next());
     match documentation.map(str::trim).filter(|line| !line.is_empty()) {
         Some(line) => format!("{varied} ({line})"),

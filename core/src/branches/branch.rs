@@ -1,0 +1,214 @@
+//! A branch of orbits as data.
+
+use std::any::Any;
+use std::fmt;
+use std::mem::discriminant;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::point::{Event, Point};
+use crate::continuation::follow::Stop;
+use crate::continuation::statistics::Statistics;
+use crate::event::{EventKind, Turn};
+use crate::system::{ParameterFacts, System, SystemFacts};
+use crate::time::Work;
+
+/// A branch of orbits in the order in which it was followed, by whatever method.
+///
+/// It owns a copy of the system, so that it can be returned, kept, and sent to another thread:
+///
+/// ```
+/// use hertzian::{Branch, Error, FrequencyResponse};
+///
+/// fn resonance(drive: f64) -> Result<Branch, Error> {
+///     hertzian::oscillator! {
+///         Duffing(x) {
+///             param drive;
+///             ddot(x) + 0.1*dot(x) + x + x^3 = drive*cos(omega*t);
+///         }
+///     }
+///
+///     let model = Duffing { drive };
+///     FrequencyResponse::of(&model).from(0.5).to(2.0).harmonics(7).samples(64).run()
+/// }
+///
+/// let branch = resonance(0.2)?;
+/// // Further orbits are computed when they are asked for.
+/// let at = std::thread::spawn(move || branch.at(1.3)).join().unwrap()?;
+/// assert_eq!(at.len(), 3);
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Branch {
+    /// The system that it belongs to.
+    pub model: Model,
+    /// Name of what it varies.
+    pub varied: String,
+    /// The orbits.
+    pub points: Vec<Point>,
+    /// Special orbits.
+    pub events: Vec<Event>,
+    /// Turns that are not folds, and other events that could not be located.
+    pub turns: Vec<Turn>,
+    /// Why it ended at its beginning, where it was followed both ways from an orbit.
+    pub begin: Option<Stop>,
+    /// Why it ended.
+    pub stopped: Stop,
+    /// What the continuation cost.
+    pub statistics: Statistics,
+    /// What motions in time cost, by shooting.
+    pub work: Work,
+    /// Time of the computation.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::numeric::serialise::seconds")
+    )]
+    pub elapsed: Duration,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) further: Further,
+}
+
+/// What a branch says of its system.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Model {
+    /// Name of the declared type.
+    pub name: String,
+    /// The equations of motion, as written.
+    pub equation: String,
+    /// Names of the coordinates.
+    pub coordinates: Vec<String>,
+    /// The parameters, in the order of [`Point::parameters`].
+    pub parameters: Vec<Parameter>,
+    /// Number of pieces of the law of each contact.
+    pub pieces: Vec<usize>,
+}
+
+/// A parameter of a model.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its documentation.
+    pub documentation: String,
+}
+
+impl Model {
+    /// Of a system.
+    pub fn of(system: &dyn System) -> Self {
+        let facts: &SystemFacts = system.facts();
+        let pieces = facts.contacts.iter();
+        Self {
+            name: facts.name.to_string(),
+            equation: facts.equation.to_string(),
+            coordinates: facts.coordinates.iter().map(ToString::to_string).collect(),
+            parameters: facts.parameters.iter().map(Parameter::of).collect(),
+            pieces: pieces
+                .map(|contact| system.law(contact.law).facts().pieces.len())
+                .collect(),
+        }
+    }
+}
+
+impl Parameter {
+    fn of(facts: &ParameterFacts) -> Self {
+        Self {
+            name: facts.name.to_string(),
+            documentation: facts.documentation.to_string(),
+        }
+    }
+}
+
+/// What it takes to compute further orbits of a branch: the system, and what was asked for by the method that followed it. A branch read
+/// from a file has none. Not a part of what is compared.
+#[derive(Clone, Default)]
+pub(crate) struct Further {
+    pub(crate) system: Option<Arc<dyn System>>,
+    pub(crate) request: Option<Arc<dyn Any + Send + Sync>>,
+}
+
+impl PartialEq for Further {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl fmt::Debug for Further {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let system = self
+            .system
+            .as_ref()
+            .map(|system| system.facts().name.clone());
+        f.debug_struct("Further")
+            .field("system", &system)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Branch {
+    /// The system that it belongs to; `None` of a branch that was read from a file.
+    pub fn system(&self) -> Option<&dyn System> {
+        self.further.system.as_deref()
+    }
+
+    /// Period of its orbits in periods of the declaration; zero without orbits.
+    pub fn period(&self) -> usize {
+        self.points.first().map_or(0, |point| point.orbit.period)
+    }
+
+    /// The events of one kind. Whether the branch turns back is not asked: `Grazing` of either kind gives all.
+    pub fn events(&self, kind: EventKind) -> impl DoubleEndedIterator<Item = &Event> {
+        let alike = move |event: &&Event| discriminant(&event.kind) == discriminant(&kind);
+        self.events.iter().filter(alike)
+    }
+
+    /// The folds.
+    pub fn folds(&self) -> impl DoubleEndedIterator<Item = &Event> {
+        self.events(EventKind::Fold)
+    }
+
+    /// Two parts of one branch from the same orbit on as one branch, the first backwards.
+    pub(crate) fn joined(back: Self, forth: Self) -> Self {
+        let count = back.points.len();
+        let mut branch = forth;
+        let mut points = back.points;
+        points.reverse();
+        // The first orbit of both is the same.
+        points.extend(branch.points.drain(..).skip(1));
+        let turned = |after: usize| count - after.min(count);
+        let mut events: Vec<Event> = back.events;
+        events.reverse();
+        for event in &mut events {
+            event.after = turned(event.after);
+        }
+        let mut turns: Vec<Turn> = back.turns;
+        turns.reverse();
+        for turn in &mut turns {
+            turn.after = turned(turn.after);
+        }
+        let shift = count.saturating_sub(1);
+        events.extend(branch.events.drain(..).map(|event| Event {
+            after: event.after + shift,
+            ..event
+        }));
+        turns.extend(branch.turns.drain(..).map(|turn| Turn {
+            after: turn.after + shift,
+            ..turn
+        }));
+        branch.statistics += back.statistics;
+        branch.elapsed += back.elapsed;
+        branch.work += back.work;
+        Self {
+            points,
+            events,
+            turns,
+            begin: Some(back.stopped),
+            ..branch
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! Requests by the harmonic balance.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::branch::Following;
+use super::sealed::Follow;
+use super::{See, by_shooting};
+use crate::balance::Parity;
+use crate::balance::start::{Moving, start, without_symmetry};
+use crate::balance::symmetry::has_stride;
+use crate::balance_branch::check::Asked;
+use crate::balance_branch::depart::depart;
+use crate::balance_branch::follower::Follower;
+use crate::balance_branch::motion;
+use crate::balance_branch::options::HarmonicBalance;
+use crate::balance_branch::run::{Followed, Run};
+use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::error::{Attempts, OrbitError};
+use crate::branches::point::{Event, Point};
+use crate::branches::request::{Guess, Request};
+use crate::continuation::follow::{FollowOptions, Start, Stop};
+use crate::continuation::statistics::Statistics;
+use crate::error::Error;
+use crate::event::{EventKind, Side};
+use crate::model::validate;
+use crate::shooting::Shooting;
+
+impl Follow for HarmonicBalance {
+    fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
+        let aside = Asked {
+            request,
+            balance: self,
+        }
+        .aside(value)?;
+        let request = Request {
+            from: Some(value),
+            to: Some(aside),
+            ..request.clone()
+        };
+        let branch = self.run(&request, &mut |_| ControlFlow::Break(()))?;
+        let none = OrbitError::NoSuchPeriod {
+            period: request.period(),
+            value,
+            attempts: Attempts::default(),
+        };
+        let first = branch.points.into_iter().next();
+        first.ok_or_else(|| none.into())
+    }
+
+    fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
+        let started = Instant::now();
+        let request = &with_series(request, request.from)?;
+        let asked = Asked {
+            request,
+            balance: self,
+        };
+        let (follower, options) = asked.check()?;
+        let mut statistics = Statistics::default();
+        let first = first(asked, &follower, options, &mut statistics)?;
+        let run = Run::new(&follower, options, &first);
+        let followed = run.follow(Start::Near(first), visit)?;
+        let mut branch = as_branch(asked, follower.clone(), followed);
+        branch.statistics += statistics;
+        branch.elapsed = started.elapsed();
+        Ok(branch)
+    }
+
+    fn switch(
+        &self,
+        request: &Request,
+        event: &Event,
+        side: Side,
+        visit: See<'_>,
+    ) -> Result<Branch, Error> {
+        let started = Instant::now();
+        let event = &in_series(request, event)?;
+        Asked {
+            request,
+            balance: self,
+        }
+        .has(event)?;
+        let doubles = event.kind == EventKind::PeriodDoubling;
+        let request = &Request {
+            period: Some(event.point.orbit.period * if doubles { 2 } else { 1 }),
+            near: None,
+            ..request.clone()
+        };
+        let asked = Asked {
+            request,
+            balance: self,
+        };
+        let (mut follower, options) = asked.check()?;
+        let stride = with_resolution_of(&mut follower, event, request.period());
+        let point = depart(&follower, event, stride, side.sign())?;
+        let run = Run::new(&follower, options, &point.u);
+        let followed = run.follow(Start::Along(Box::new(point)), visit)?;
+        let mut branch = as_branch(asked, follower.clone(), followed);
+        branch.elapsed = started.elapsed();
+        Ok(branch)
+    }
+
+    fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
+        let [from, to] = request.range()?;
+        validate::option(
+            "through",
+            value,
+            from.min(to)..=from.max(to),
+            "must be between from and to",
+        )?;
+        let started = Instant::now();
+        let request = &with_series(request, Some(value))?;
+        let asked = Asked {
+            request,
+            balance: self,
+        };
+        let (follower, mut options) = asked.check()?;
+        let mut statistics = Statistics::default();
+        options.from = value;
+        let first = first(asked, &follower, options, &mut statistics)?;
+        options.from = from;
+        let mut part = |side: f64| {
+            let point = follower.along(&first, side, value)?;
+            let run = Run::new(&follower, options, &first);
+            let followed = run.follow(Start::Along(Box::new(point)), &mut *visit)?;
+            Ok::<_, Error>(as_branch(asked, follower.clone(), followed))
+        };
+        let forwards = (to - from).signum();
+        let forth = part(forwards)?;
+        // Once around, or interrupted: there is no other side.
+        let whole = matches!(forth.stopped, Stop::Closed | Stop::Interrupted);
+        let mut branch = if whole {
+            forth
+        } else {
+            Branch::joined(part(-forwards)?, forth)
+        };
+        branch.statistics += statistics;
+        branch.elapsed = started.elapsed();
+        Ok(branch)
+    }
+}
+
+/// Unknowns of the first orbit.
+fn first(
+    asked: Asked<'_>,
+    follower: &Follower,
+    options: FollowOptions,
+    statistics: &mut Statistics,
+) -> Result<Vec<f64>, Error> {
+    if let Some(orbit) = asked.near() {
+        return Ok(follower.unknowns_of(orbit, options.from));
+    }
+    let motion = |moving: Moving<'_>| motion::moved(follower, moving);
+    let request = follower.start_request(options, &motion);
+    let found = start(request, statistics)?;
+    let broken = follower.asymmetric;
+    let broken = broken.then(|| without_symmetry(request, &found, statistics));
+    Ok(broken.flatten().unwrap_or(found))
+}
+
+/// Takes symmetry and harmonics from the orbit at an event, of which a branch of this period begins; the stride of the event's own orbit.
+fn with_resolution_of(follower: &mut Follower, event: &Event, period: usize) -> usize {
+    let doubles = event.kind == EventKind::PeriodDoubling;
+    // Of the system, where orbits of period one may have it.
+    let odd = follower.asymmetric || follower.resolution.parity == Parity::Odd;
+    follower.resolution.parity = Parity::All;
+    follower.asymmetric = odd && !doubles;
+    let orbit = &event.point.orbit;
+    let mut stride = follower.resolution.stride;
+    if !has_stride(orbit, stride) {
+        stride = 1;
+    }
+    let halves = event.kind == EventKind::BranchPoint && event.tangent.is_empty();
+    follower.resolution.stride = if halves && stride.is_multiple_of(2) {
+        stride / 2
+    } else {
+        stride
+    };
+    if let Some(chooser) = &follower.chooser {
+        let times = period / orbit.period;
+        follower.resolution.harmonics = chooser.admitted(times * orbit.harmonics());
+    }
+    stride
+}
+
+/// The branch that a run gives.
+fn as_branch(asked: Asked<'_>, follower: Follower, followed: Followed) -> Branch {
+    let Followed {
+        stopped,
+        points,
+        mut events,
+        mut turns,
+        statistics,
+    } = followed;
+    // What a step hid is found one step later.
+    events.sort_by_key(|event| event.after);
+    turns.sort_by_key(|turn| turn.after);
+    let system = Arc::clone(&asked.request.system);
+    let request = Following::Balance(Box::new(follower), asked.request.clone(), *asked.balance);
+    Branch {
+        model: Model::of(system.as_ref()),
+        varied: asked.request.varied(),
+        points,
+        events,
+        turns,
+        begin: None,
+        stopped,
+        statistics,
+        work: crate::time::Work::default(),
+        elapsed: std::time::Duration::default(),
+        further: Further {
+            system: Some(system),
+            request: Some(Arc::new(request)),
+        },
+    }
+}
+
+/// The same request with the series of the orbit that it begins near.
+///
+/// # Errors
+/// If a motion is given by a state, and cannot be computed.
+fn with_series(request: &Request, value: Option<f64>) -> Result<Request, Error> {
+    let (Some(guess), Some(value)) = (&request.near, value) else {
+        return Ok(request.clone());
+    };
+    let orbit = match guess {
+        Guess::Orbit(orbit) if orbit.has_series() => return Ok(request.clone()),
+        Guess::Orbit(orbit) => by_shooting::in_series(request, orbit, value)?,
+        Guess::State(_) => Shooting::new()
+            .orbit(request, value)
+            .and_then(|point| by_shooting::in_series(request, &point.orbit, value))?,
+    };
+    Ok(Request {
+        near: Some(Guess::Orbit(orbit)),
+        ..request.clone()
+    })
+}
+
+/// An event with the series of its orbit.
+///
+/// # Errors
+/// If its motion cannot be computed, or branches cross there and the direction is known in states only.
+fn in_series(request: &Request, event: &Event) -> Result<Event, Error> {
+    if event.point.orbit.has_series() && event.point.orbit.states.is_empty() {
+        return Ok(event.clone());
+    }
+    let orbit = by_shooting::in_series(request, &event.point.orbit, event.point.value)?;
+    Ok(Event {
+        point: Point {
+            orbit,
+            ..event.point.clone()
+        },
+        tangent: Vec::new(),
+        ..event.clone()
+    })
+}
