@@ -48,7 +48,7 @@ pub fn main() -> Result<(), Error> {
     println!(
         "free oscillation: {} points, {}",
         free.points.len(),
-        free.end
+        free.stopped
     );
 
     let driven = Hertz {
@@ -60,7 +60,7 @@ pub fn main() -> Result<(), Error> {
     println!(
         "phase resonance: {} points, {}",
         resonance.points.len(),
-        resonance.end
+        resonance.stopped
     );
 
     let free = free.points.iter().map(|p| [p.omega, p.peak_to_peak()]);

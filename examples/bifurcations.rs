@@ -34,11 +34,11 @@ pub fn main() -> Result<(), Error> {
     let request = Bifurcations::of(&model).vary("drive").omega(1.0);
     let diagram = request.from(0.1).to(2.0).depth(2).run()?;
     for (number, limb) in diagram.branches.iter().enumerate() {
-        let cycles = limb.branch.cycles.len();
+        let cycles = limb.branch.points.len();
         println!(
             "branch {number}: period {}, {cycles} orbits, {}",
             limb.period(),
-            limb.branch.end
+            limb.branch.stopped
         );
         for event in &limb.branch.events {
             println!("  {event}");

@@ -28,7 +28,7 @@
 //! | What is wanted | Where it is |
 //! |---|---|
 //! | curves of periodic orbits, by harmonic balance | [`FrequencyResponse`], which gives a [`Branch`]: module [`branch`] |
-//! | the same in the time domain, without truncation | [`Shooting`], which gives a [`CycleBranch`]: module [`shooting`] |
+//! | the same in the time domain, without truncation | [`Shooting`], which gives a [`Branch`]: module [`shooting`] |
 //! | what an orbit is like: amplitudes, phases, contact, power | [`observe`] |
 //! | multipliers by other methods, and what they cost | [`stability`] |
 //! | all branches connected by bifurcations | [`Bifurcations`], which gives a [`Diagram`](bifurcation::Diagram) |

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use hertzian::shooting::Cycle;
+use hertzian::shooting::Point;
 use hertzian::stability::{Method, Projection, Sorting};
 use hertzian::{Branch, Complex, Error, FrequencyResponse, Shooting, System};
 
@@ -112,10 +112,10 @@ impl Oscillator {
             .run_with(|_| ControlFlow::Break(()))
     }
 
-    fn exact(&self, near: &Branch) -> Result<Cycle, Error> {
-        Shooting::of(self.system.as_ref())
+    fn exact(&self, near: &Branch) -> Result<Point, Error> {
+        FrequencyResponse::of(self.system.as_ref())
+            .by(Shooting::new().tolerance(EXACT))
             .near_orbit(&near.points[0].orbit)
-            .tolerance(EXACT)
             .orbit(self.omega)
     }
 }

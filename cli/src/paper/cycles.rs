@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering;
 use hertzian::bifurcation::Bifurcations;
 use hertzian::chart::{Chart, Curve, Markers, Scale};
 use hertzian::error::chain;
-use hertzian::shooting::{Cycle, CycleBranch, CycleEvent};
+use hertzian::shooting::{Branch, Event, Point};
 use hertzian::{EventKind, OrbitError, Shooting};
 
 use super::exact;
@@ -38,7 +38,7 @@ struct Cycles<'t> {
     task: &'t Task<'t>,
     curves: Vec<Curve>,
     marks: Vec<(EventKind, [f64; 2])>,
-    events: Vec<CycleEvent>,
+    events: Vec<Event>,
     scale: Scale,
     drawing: Drawing,
 }
@@ -63,7 +63,7 @@ impl<'t> Cycles<'t> {
     }
 
     /// Follows a branch and adds it.
-    fn follow(&mut self, shooting: &Shooting) -> Result<CycleBranch, String> {
+    fn follow(&mut self, shooting: &Shooting) -> Result<Branch, String> {
         let branch = shooting
             .run_with(|_| {
                 if self.task.interrupted.load(Ordering::Relaxed) {
@@ -80,19 +80,20 @@ impl<'t> Cycles<'t> {
     /// Goes on where a branch has come back to through a fold.
     fn continue_from(
         &mut self,
-        branch: &CycleBranch,
+        branch: &Branch,
         orbits: &Shooting,
         [from, to]: [f64; 2],
     ) -> Result<(), String> {
-        let last = branch.cycles.last().filter(|last| last.value == from);
-        let last = last.ok_or_else(|| format!("the branch did not come back: {}", branch.end))?;
+        let last = branch.points.last().filter(|last| last.value == from);
+        let last =
+            last.ok_or_else(|| format!("the branch did not come back: {}", branch.stopped))?;
         self.follow(&orbits.clone().near(last.state()).from(from).to(to))?;
         Ok(())
     }
 
     /// Adds a branch: its curve, its data and its special orbits. Branches of one period have one place in the legend.
-    fn add(&mut self, branch: &CycleBranch) {
-        let Some(first) = branch.cycles.first() else {
+    fn add(&mut self, branch: &Branch) {
+        let Some(first) = branch.points.first() else {
             return;
         };
         let label = format!("period {}", first.period);
@@ -102,11 +103,11 @@ impl<'t> Cycles<'t> {
             None => self.curves.push(Curve { label, runs }),
         }
         for event in &branch.events {
-            let place = place(&event.cycle);
+            let place = place(&event.point);
             self.marks.push((event.kind, place));
         }
         self.events.extend(branch.events.iter().cloned());
-        let rows = branch.cycles.iter().map(row);
+        let rows = branch.points.iter().map(row);
         self.drawing.data.rows.extend(rows);
     }
 
@@ -131,11 +132,11 @@ impl<'t> Cycles<'t> {
     }
 }
 
-fn place(cycle: &Cycle) -> [f64; 2] {
+fn place(cycle: &Point) -> [f64; 2] {
     [cycle.value, cycle.peak_to_peak()]
 }
 
-fn row(cycle: &Cycle) -> Vec<String> {
+fn row(cycle: &Point) -> Vec<String> {
     let largest = cycle.stability.multipliers.iter().map(|m| m.norm());
     let largest = largest.fold(0.0, f64::max);
     vec![
@@ -168,12 +169,12 @@ pub fn figure_8a(task: &Task<'_>) -> Result<Drawing, String> {
     for (period, kind, drive, what) in exact::AMPLITUDES {
         let alike = events
             .iter()
-            .filter(|e| e.kind == kind && e.cycle.period == period);
-        let distance = |event: &CycleEvent| (event.cycle.value - drive).abs();
+            .filter(|e| e.kind == kind && e.point.period == period);
+        let distance = |event: &Event| (event.point.value - drive).abs();
         let nearest = alike.min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let found = nearest.filter(|event| distance(event) < 1e-3);
         let value = match found {
-            Some(event) => Value::of(format!("{what}, A"), event.cycle.value)
+            Some(event) => Value::of(format!("{what}, A"), event.point.value)
                 .stated(event.error)
                 .exact(Some(drive)),
             None => Value::missing(format!("{what}, A"), drive),
@@ -190,7 +191,7 @@ pub fn figure_8a(task: &Task<'_>) -> Result<Drawing, String> {
 pub fn figure_9a(task: &Task<'_>) -> Result<Drawing, String> {
     let model = model(1.0);
     let mut figure = Cycles::new(task, "omega");
-    let shooting = Shooting::of(&model);
+    let shooting = FrequencyResponse::of(&model).by(Shooting::new());
     figure.follow(&shooting.clone().from(2.2).to(0.4))?;
     for (period, state) in COEXISTING {
         let orbits = shooting.clone().period(period);
@@ -218,7 +219,11 @@ pub fn figure_9a(task: &Task<'_>) -> Result<Drawing, String> {
 /// If an orbit is not found where there is one.
 pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
     let model = model(1.7798);
-    let shooting = Shooting::of(&model).vary("drive").omega(1.0).period(8);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0)
+        .period(8);
     let mut figure = Cycles::new(task, "drive");
     let branch = shooting.clone().near(&PERIOD_8).from(1.7798).to(1.7799);
     let branch = figure.follow(&branch)?;
@@ -279,7 +284,7 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
 }
 
 /// Amplitude and leading multiplier.
-fn leading(cycle: &Cycle) -> [f64; 2] {
+fn leading(cycle: &Point) -> [f64; 2] {
     let multipliers = cycle.stability.multipliers.iter().map(|m| m.re);
     [cycle.value, multipliers.fold(f64::NEG_INFINITY, f64::max)]
 }

@@ -8,7 +8,7 @@ use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
 use hertzian::error::chain;
 use hertzian::export::{Decimal, Table};
-use hertzian::shooting::{Cycle, CycleEvent, Track};
+use hertzian::shooting::{Event, Point, Track};
 use hertzian::{Error, EventKind, RequestError, Shooting, System};
 
 use super::options::{Options, Tracked};
@@ -59,7 +59,7 @@ pub fn find(
         request = request.search(value, basin(options, model, value));
     }
     let mut interrupted = false;
-    let visit = |cycle: &Cycle| {
+    let visit = |cycle: &Point| {
         let answer = go(cycle.value);
         interrupted |= answer.is_break();
         answer
@@ -140,7 +140,7 @@ impl Found {
         let second = second(options, model)?;
         let value = value_of(options, model, second);
         let range = within(options, value);
-        let events: Vec<CycleEvent> = self
+        let events: Vec<Event> = self
             .diagram
             .branches
             .iter()
@@ -150,7 +150,7 @@ impl Found {
             .cloned()
             .collect();
         for event in events {
-            if go(event.cycle.value).is_break() {
+            if go(event.point.value).is_break() {
                 break;
             }
             let on_it = |track: &&Track| passes(track, &event, value);
@@ -190,7 +190,7 @@ impl Found {
             if number == 0 {
                 continue;
             }
-            for cycle in &limb.branch.cycles {
+            for cycle in &limb.branch.points {
                 let point = shooting.point(cycle)?;
                 table.add(number, &point);
                 let point = PointRecord::of(&point, facts);
@@ -248,8 +248,8 @@ impl Found {
             .diagram
             .branches
             .iter()
-            .flat_map(|limb| &limb.branch.cycles);
-        let sizes = cycles.map(hertzian::shooting::Cycle::peak_to_peak);
+            .flat_map(|limb| &limb.branch.points);
+        let sizes = cycles.map(hertzian::shooting::Point::peak_to_peak);
         let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
             (low.min(size), high.max(size))
         });
@@ -324,11 +324,11 @@ fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
         Origin::Attractor { value } => format!(", found at {value}"),
         _ => String::new(),
     };
-    let (period, count) = (limb.period(), limb.branch.cycles.len());
+    let (period, count) = (limb.period(), limb.branch.points.len());
     writeln!(
         text,
         "branch {number:<3} period {period}{from}: {count} orbits, {}",
-        limb.branch.end
+        limb.branch.stopped
     )?;
     for event in &limb.branch.events {
         writeln!(text, "  {event}")?;
@@ -350,7 +350,8 @@ fn shooting(options: &Options, model: &dyn System) -> Shooting {
     let parameter = parameters.find(|parameter| parameter.name == options.varied());
     let admitted = |value: f64| parameter.map_or(value > 0.0, |p| p.admits(value));
     let widened = |end: f64, by: f64| if admitted(end + by) { end + by } else { end };
-    let request = Shooting::of(model)
+    let request = FrequencyResponse::of(model)
+        .by(Shooting::new())
         .from(widened(options.from, -margin))
         .to(widened(options.to, margin));
     if options.over_frequency() {
@@ -391,16 +392,16 @@ fn value_of(options: &Options, model: &dyn System, name: &str) -> f64 {
 }
 
 /// Whether a curve passes an event, which has this value of the second parameter.
-fn passes(track: &Track, event: &CycleEvent, value: f64) -> bool {
+fn passes(track: &Track, event: &Event, value: f64) -> bool {
     let size = track
         .points
         .iter()
         .fold(0.0, |m: f64, p| m.max(p.values[0].abs()));
-    track.period == event.cycle.period
+    track.period == event.point.period
         && track.points.windows(2).any(|pair| {
             let [a, b] = [pair[0].values, pair[1].values];
             let part = (value - a[1]) / (b[1] - a[1]);
             let at = a[0] + part * (b[0] - a[0]);
-            (0.0..=1.0).contains(&part) && (at - event.cycle.value).abs() < 1e-3 * size
+            (0.0..=1.0).contains(&part) && (at - event.point.value).abs() < 1e-3 * size
         })
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use hertzian::observe::{amplitudes, phases};
-use hertzian::shooting::{CycleEvent, Track};
+use hertzian::shooting::{Event, Track};
 use hertzian::system::SystemFacts;
 use hertzian::{Branch, Event, Point, Statistics};
 use serde::Serialize;
@@ -246,8 +246,8 @@ impl Record {
 
 impl EventRecord {
     /// Of an event of a branch of a diagram.
-    pub fn of_cycle(branch: usize, event: &CycleEvent, facts: &SystemFacts) -> Self {
-        let cycle = &event.cycle;
+    pub fn of_cycle(branch: usize, event: &Event, facts: &SystemFacts) -> Self {
+        let cycle = &event.point;
         Self {
             branch,
             period: cycle.period,

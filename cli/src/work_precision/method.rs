@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use cpu_time::ThreadTime;
-use hertzian::shooting::CycleBranch;
+use hertzian::shooting::Branch;
 use hertzian::system::System;
 use hertzian::{Aft, Branch, Complex, EventKind, FrequencyResponse, Shooting};
 
@@ -186,24 +186,26 @@ fn shoot(
         Setting::Samples { .. } | Setting::Harmonics(_) => 1e-10,
     };
     let [from, to] = problem.range;
-    let shooting = Shooting::of(system).tolerance(tolerance).stability(false);
+    let shooting = FrequencyResponse::of(system)
+        .by(Shooting::new().tolerance(tolerance))
+        .stability(false);
     let (clock, started) = (ThreadTime::now(), Instant::now());
     let request = shooting.clone().from(from).to(to);
     let branch = request.run_with(|_| within(started, patience))?;
     let seconds = clock.elapsed().as_secs_f64();
-    let folds = branch.folds().map(|fold| fold.cycle.value);
+    let folds = branch.folds().map(|fold| fold.point.value);
     let turns = branch.turns.iter();
     let others = turns.filter(|turn| turn.kind == EventKind::Fold);
     let others = others.map(|turn| turn.value);
     let reached = branch
-        .cycles
+        .points
         .last()
         .is_some_and(|last| last.value == to || last.value == from);
     Ok(Run {
         seconds,
         folds: folds.chain(others).collect(),
         peak_to_peak: largest_cycle(&shooting, &branch, problem.at),
-        fault: (!reached).then(|| ended(&branch.end, started, patience)),
+        fault: (!reached).then(|| ended(&branch.stopped, started, patience)),
     })
 }
 
@@ -247,9 +249,9 @@ fn largest(branch: &Branch, at: f64) -> Option<f64> {
 }
 
 /// The largest orbit of a branch at a frequency, from the nearest one of those that are larger than the others beside it.
-fn largest_cycle(shooting: &Shooting, branch: &CycleBranch, at: f64) -> Option<f64> {
+fn largest_cycle(shooting: &Shooting, branch: &Branch, at: f64) -> Option<f64> {
     let passes = branch
-        .cycles
+        .points
         .windows(2)
         .filter(|pair| (pair[0].value - at) * (pair[1].value - at) <= 0.0);
     let largest = passes.max_by(|a, b| a[0].peak_to_peak().total_cmp(&b[0].peak_to_peak()))?;
@@ -288,7 +290,7 @@ pub fn reference(problem: &Problem) -> Result<Option<Reference>, hertzian::Error
     let Some(largest) = largest else {
         return Ok(None);
     };
-    let shooting = Shooting::of(&*problem.compiled).tolerance(1e-13);
+    let shooting = FrequencyResponse::of(&*problem.compiled).by(Shooting::new().tolerance(1e-13));
     let folds = match problem.folds {
         Some(folds) => folds.to_vec(),
         None => folds(&shooting.clone().stability(false).from(from).to(to).run()?),
@@ -303,8 +305,8 @@ pub fn reference(problem: &Problem) -> Result<Option<Reference>, hertzian::Error
 }
 
 /// The folds of a branch, those of large amplitude first.
-fn folds(branch: &CycleBranch) -> Vec<f64> {
-    let mut folds: Vec<_> = branch.folds().map(|fold| &fold.cycle).collect();
+fn folds(branch: &Branch) -> Vec<f64> {
+    let mut folds: Vec<_> = branch.folds().map(|fold| &fold.point).collect();
     folds.sort_by(|a, b| b.peak_to_peak().total_cmp(&a.peak_to_peak()));
     folds.iter().map(|cycle| cycle.value).collect()
 }

@@ -96,7 +96,8 @@ fn larger(a: &Point, b: &Point) -> std::cmp::Ordering {
 fn shoot(problem: &Problem, reference: &Reference, tolerance: f64) -> Answer {
     let method = METHODS.len();
     let setting = format!("tolerance {tolerance:.0e}");
-    let shooting = Shooting::of(&*problem.compiled).tolerance(tolerance);
+    let shooting =
+        FrequencyResponse::of(&*problem.compiled).by(Shooting::new().tolerance(tolerance));
     let orbit = || shooting.clone().near(&reference.state).orbit(problem.at);
     match orbit() {
         Ok(cycle) => Answer {

@@ -146,8 +146,9 @@ fn other_exponents_are_integrated() {
         let mut found: Vec<f64> = Vec::new();
         for row in &table {
             assert_eq!(row[2], 1.0, "{row:?}");
-            let cycle = Shooting::of(&*model)
-                .near(&row[4..])
+            let cycle = FrequencyResponse::of(&*model)
+                .by(Shooting::new())
+                .near_state(&row[4..])
                 .orbit(omega)
                 .expect("an orbit");
             assert_eq!(cycle.stability.verdict, Verdict::Stable);

@@ -137,6 +137,8 @@ mod tests {
             omega: 1.0,
             base: 1.0 / period as f64,
             period,
+            states: Vec::new(),
+            symmetric: false,
         }
     }
 

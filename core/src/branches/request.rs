@@ -36,6 +36,17 @@ pub(crate) enum Guess {
     Orbit(Orbit),
 }
 
+impl std::fmt::Debug for Request {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Request")
+            .field("system", &self.system.facts().name)
+            .field("vary", &self.vary)
+            .field("from", &self.from)
+            .field("to", &self.to)
+            .finish_non_exhaustive()
+    }
+}
+
 impl Request {
     /// Of this system, at the values that its parameters have now.
     pub(crate) fn of(system: &dyn System) -> Self {

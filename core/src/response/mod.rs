@@ -86,10 +86,7 @@ pub struct FrequencyResponse<M = HarmonicBalance> {
 impl<M: std::fmt::Debug> std::fmt::Debug for FrequencyResponse<M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("FrequencyResponse")
-            .field("system", &self.request.system.facts().name)
-            .field("vary", &self.request.vary)
-            .field("from", &self.request.from)
-            .field("to", &self.request.to)
+            .field("request", &self.request)
             .field("method", &self.method)
             .finish_non_exhaustive()
     }
@@ -367,6 +364,23 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         self.method.through(&self.request, value, &mut visit)
     }
 
+    /// An orbit with its Fourier series and everything that is read off; see [`Branch::complete`].
+    ///
+    /// # Errors
+    /// If a parameter or an option is not usable, or the motion cannot be computed.
+    pub fn complete(&self, point: &Point) -> Result<Point, Error> {
+        if point.orbit.has_series() {
+            return Ok(point.clone());
+        }
+        by_shooting::completed(&self.request, self.shooting(), point)
+    }
+
+    /// The options of shooting, where that is the method, or those by default.
+    fn shooting(&self) -> Shooting {
+        let method: &dyn std::any::Any = &self.method;
+        method.downcast_ref().copied().unwrap_or_default()
+    }
+
     /// The curve of bifurcations through an event of a branch, as a second parameter (or `"omega"`) varies between two values: of
     /// folds, period doublings, points where an odd symmetry breaks, or grazing. What is varied here stays in the range from
     /// [`from`](Self::from) to [`to`](Self::to). It is followed by shooting, whatever method found the event.
@@ -389,11 +403,9 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         range: [f64; 2],
         mut visit: impl FnMut(&TrackPoint) -> ControlFlow<()>,
     ) -> Result<Track, Error> {
-        let method: &dyn std::any::Any = &self.method;
-        let shooting = method.downcast_ref::<Shooting>().copied();
         by_shooting::track(
             &self.request,
-            shooting.unwrap_or_default(),
+            self.shooting(),
             event,
             by_shooting::Second {
                 name: second,

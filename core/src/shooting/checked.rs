@@ -163,6 +163,12 @@ impl Asked<'_> {
             ),
             (
                 "tolerance",
+                self.request.tolerance,
+                1e-12..=1e-1,
+                "must be from 1e-12 to 0.1",
+            ),
+            (
+                "tolerance",
                 self.tolerance(),
                 1e-14..=1e-3,
                 "must be from 1e-14 to 1e-3",

@@ -13,10 +13,7 @@ use hertzian::time::affine::Affine;
 use hertzian::time::divergence::Divergence;
 use hertzian::time::stroboscope::Stroboscope;
 use hertzian::time::{Flow, FlowError, Integrated};
-use hertzian::{
-    Bifurcations, Branch, Cycle, CycleBranch, CycleEvent, Error, Event, FrequencyResponse, Point,
-    Shooting, System,
-};
+use hertzian::{Bifurcations, Branch, Error, Event, FrequencyResponse, Point, Shooting, System};
 
 hertzian::oscillator! {
     Linear(x) {
@@ -54,10 +51,7 @@ fn everything_computed_can_be_kept_and_sent() {
     is::<Branch>();
     is::<Point>();
     is::<Event>();
-    is::<Shooting>();
-    is::<Cycle>();
-    is::<CycleBranch>();
-    is::<CycleEvent>();
+    is::<FrequencyResponse<Shooting>>();
     is::<Track>();
     is::<Bifurcations>();
     is::<Diagram>();
@@ -101,7 +95,8 @@ fn motions_can_be_kept_and_sent() {
 #[test]
 fn a_branch_outlives_its_model_and_is_asked_in_another_thread() {
     let branch = branch(0.3).expect("it runs");
-    assert_eq!(branch.system().facts().name, "Linear");
+    let system = branch.system().expect("it was computed");
+    assert_eq!(system.facts().name, "Linear");
     let at = thread::spawn(move || branch.at(OMEGA)).join();
     let points = at.expect("no panic").expect("it was passed");
     assert!(matches!(&points[..], [point] if is_near(point, 0.3)));
@@ -113,12 +108,15 @@ fn values_are_those_of_the_moment() {
         zeta: ZETA,
         drive: 0.3,
     };
-    let (response, shooting) = (FrequencyResponse::of(&model), Shooting::of(&model));
+    let (response, shooting) = (
+        FrequencyResponse::of(&model),
+        FrequencyResponse::of(&model).by(Shooting::new()),
+    );
     let interpreted = model.generic();
     model.drive = 0.5;
     assert!(is_near(&response.orbit(OMEGA).expect("it runs"), 0.3));
-    let cycle = shooting.orbit(OMEGA).expect("it runs");
-    assert_eq!(cycle.parameters, [ZETA, 0.3]);
+    let point = shooting.orbit(OMEGA).expect("it runs");
+    assert_eq!(point.parameters, [ZETA, 0.3]);
     let interpreted = FrequencyResponse::of(&interpreted).orbit(OMEGA);
     assert!(is_near(&interpreted.expect("it runs"), 0.3));
     let later = FrequencyResponse::of(&model).orbit(OMEGA);

@@ -26,8 +26,13 @@ hertzian::oscillator! {
 #[test]
 fn without_damping_there_is_no_neimark_sacker_bifurcation() {
     let model = Undamped { drive: 0.1 };
-    let branch = Shooting::of(&model).from(0.3).to(0.9).run().unwrap();
-    assert!(branch.cycles.len() > 10);
+    let branch = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(0.3)
+        .to(0.9)
+        .run()
+        .unwrap();
+    assert!(branch.points.len() > 10);
     let tori = branch.events(EventKind::NeimarkSacker).count();
     let omitted = branch.turns.iter();
     assert_eq!(tori, 0);
@@ -43,7 +48,7 @@ fn without_damping_there_is_no_neimark_sacker_bifurcation() {
 fn a_shorter_period_is_recognised_at_any_tolerance() {
     let model = Contact { drive: 0.1 };
     for tolerance in [1e-3, 1e-4, 1e-8] {
-        let request = Shooting::of(&model).tolerance(tolerance);
+        let request = FrequencyResponse::of(&model).by(Shooting::new().tolerance(tolerance));
         let orbit = request.orbit(1.5).unwrap();
         let twice = request.near(orbit.state()).period(2).orbit(1.5);
         let error = twice.expect_err("an orbit of period one");
@@ -60,13 +65,19 @@ fn a_shorter_period_is_recognised_at_any_tolerance() {
 /// The doubling at a drive of 1.28, given where the frequency varies, and to other systems.
 #[test]
 fn an_event_belongs_to_what_is_varied() {
-    let request = Shooting::of(&MODEL).vary("drive").omega(1.0);
+    let request = FrequencyResponse::of(&MODEL)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let branch = request.from(1.0).to(1.4).run().unwrap();
     let event = branch.events(EventKind::PeriodDoubling).next().unwrap();
-    let over_omega = Shooting::of(&MODEL).from(0.4).to(2.0);
+    let over_omega = FrequencyResponse::of(&MODEL)
+        .by(Shooting::new())
+        .from(0.4)
+        .to(2.0);
     let varied = |error: Error| matches!(error.downcast_ref(), Some(RequestError::Varied { .. }));
     assert!(varied(over_omega.switch(event, Side::One).unwrap_err()));
-    assert!(varied(over_omega.point(&event.cycle).unwrap_err()));
+    assert!(varied(over_omega.point(&event.point).unwrap_err()));
     assert!(varied(
         over_omega.track(event, "drive", [1.0, 2.0]).unwrap_err()
     ));
@@ -74,7 +85,10 @@ fn an_event_belongs_to_what_is_varied() {
         stop: 1.0,
         drive: 0.1,
     };
-    let another = Shooting::of(&masses).from(0.4).to(2.0);
+    let another = FrequencyResponse::of(&masses)
+        .by(Shooting::new())
+        .from(0.4)
+        .to(2.0);
     let state = |error: Error| {
         matches!(
             error.downcast_ref(),
@@ -86,7 +100,10 @@ fn an_event_belongs_to_what_is_varied() {
     };
     assert!(state(another.switch(event, Side::One).unwrap_err()));
     assert!(state(another.at(&branch, 1.2).unwrap_err()));
-    let faster = Shooting::of(&MODEL).vary("drive").omega(1.1);
+    let faster = FrequencyResponse::of(&MODEL)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.1);
     let faster = faster.from(1.0).to(1.4);
     let omega = |error: Error| {
         matches!(
@@ -96,11 +113,17 @@ fn an_event_belongs_to_what_is_varied() {
     };
     assert!(omega(faster.at(&branch, 1.2).unwrap_err()));
     let heavier = hertzian_tests::OneSidedLinear { load: 1.1, ..MODEL };
-    let heavier = Shooting::of(&heavier).vary("drive").omega(1.0);
+    let heavier = FrequencyResponse::of(&heavier)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let load = |error: Error| matches!(error.downcast_ref(), Some(RequestError::Parameter { name, .. }) if name == "load");
     assert!(load(heavier.at(&branch, 1.2).unwrap_err()));
     let contact = Contact { drive: 1.0 };
-    let another = Shooting::of(&contact).vary("drive").omega(1.0);
+    let another = FrequencyResponse::of(&contact)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let another = another.from(1.0).to(1.4);
     let values = |error: Error| {
         matches!(
@@ -118,7 +141,10 @@ fn an_event_belongs_to_what_is_varied() {
 #[test]
 fn a_branch_goes_through_values_of_its_range() {
     let model = Contact { drive: 0.1 };
-    let request = Shooting::of(&model).from(1.4).to(1.6);
+    let request = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(1.4)
+        .to(1.6);
     for value in [1.3, f64::NAN] {
         let error = request.through(value).unwrap_err();
         assert!(

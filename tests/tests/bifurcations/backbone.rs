@@ -99,7 +99,7 @@ const WITH_LOAD: [(bool, f64, [[f64; 3]; 3]); 6] = [
 
 fn curve(system: &dyn System, from: f64, to: f64) -> Vec<FreePoint> {
     let curve = FreeOscillation::of(system).from(from).to(to).run().unwrap();
-    assert_eq!(curve.end, End::Stopped(Stop::ReachedEnd));
+    assert_eq!(curve.stopped, Stop::ReachedEnd);
     let points = curve.points;
     let ends = [&points[0], &points[points.len() - 1]].map(|point| point.ends[0][0]);
     assert_eq!(ends, [from, to]);
@@ -278,7 +278,7 @@ fn phase_resonance_is_near_free_oscillation() {
         let to = 2.0 * model.drive;
         let request = PhaseResonance::of(&model).vary("drive").to(to);
         let curve = request.between(0.45, 1.4).run().unwrap();
-        assert_eq!(curve.end, End::Stopped(Stop::ReachedEnd));
+        assert_eq!(curve.stopped, Stop::ReachedEnd);
         let curve = curve.points;
         assert!((curve[curve.len() - 1].value - to).abs() < 1e-12);
         for point in &curve {
@@ -343,5 +343,5 @@ fn what_cannot_be_followed_is_said() {
     });
     let stopped = stopped.unwrap();
     assert_eq!(stopped.points.len(), 3);
-    assert_eq!(stopped.end, End::Stopped(Stop::Interrupted));
+    assert_eq!(stopped.stopped, Stop::Interrupted);
 }

@@ -132,9 +132,14 @@ fn levels_are_touched_where_the_linear_motion_reaches_them() {
     let amplitude = 0.1 / (1.0 - omega * omega).hypot(2.0 * 0.032 * omega);
     assert!((amplitude - 1.0).abs() < 1e-10, "{event}");
     assert_eq!(event.kind, EventKind::Grazing { turns: false });
-    let shooting = Shooting::of(&contact).from(0.8).to(1.3).run().unwrap();
+    let shooting = FrequencyResponse::of(&contact)
+        .by(Shooting::new())
+        .from(0.8)
+        .to(1.3)
+        .run()
+        .unwrap();
     let mut touches = shooting.events(EventKind::Grazing { turns: false });
-    assert!((touches.next().unwrap().cycle.value - omega).abs() < 1e-10);
+    assert!((touches.next().unwrap().point.value - omega).abs() < 1e-10);
 }
 
 /// A spring with a stop meets it where its linear motion has an amplitude of one, `1 = A / | 1 - w^2 + 0.1 i w |`. Above the resonance the

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Reason};
 use hertzian::time;
 use hertzian::time::stroboscope::Stroboscope;
-use hertzian::{CycleEvent, End, EventKind, Stop};
+use hertzian::{End, Event, EventKind, Stop};
 use hertzian_tests::{OneSidedLinear, nearest};
 
 pub const MODEL: OneSidedLinear = OneSidedLinear {
@@ -55,17 +55,17 @@ fn diagram(depth: usize) -> Diagram {
 
 /// One of the events is the exact one, as close as the doubled precision of the flow allows.
 fn assert_found<'e>(
-    events: impl Iterator<Item = &'e CycleEvent>,
+    events: impl Iterator<Item = &'e Event>,
     kind: EventKind,
     exact: &Exact,
-) -> &'e CycleEvent {
+) -> &'e Event {
     let of_kind = events.filter(|event| event.kind == kind);
-    let nearest = nearest(of_kind, exact.drive, |event| event.cycle.value).unwrap();
-    let error = (nearest.cycle.value - exact.drive).abs();
+    let nearest = nearest(of_kind, exact.drive, |event| event.point.value).unwrap();
+    let error = (nearest.point.value - exact.drive).abs();
     assert!(error < 1e-11, "{nearest}: {error:.1e}");
     assert!(error <= nearest.error, "{nearest}: {error:.1e}");
     let critical = if kind == EventKind::Fold { 1.0 } else { -1.0 };
-    let multipliers = &nearest.cycle.stability.multipliers;
+    let multipliers = &nearest.point.stability.multipliers;
     for (found, expected) in multipliers.iter().zip([critical, exact.multiplier]) {
         assert!(
             (found - expected).norm() < 1e-9,
@@ -88,19 +88,19 @@ fn the_cascade_is_followed_by_itself() {
     assert_found(events(2), EventKind::PeriodDoubling, &A4);
     assert_found(events(2), EventKind::PeriodDoubling, &A6);
     let fold = assert_found(events(2), EventKind::Fold, &PERIOD_2_UPPER_FOLD);
-    assert!(fold.cycle.value > 2.0);
+    assert!(fold.point.value > 2.0);
     assert_found(events(2), EventKind::Fold, &PERIOD_2_LOWER_FOLD);
     assert_found(events(8), EventKind::Fold, &PERIOD_8_FOLD);
     for limb in &diagram.branches {
         let expected = 1 << limb.depth;
         assert_eq!(limb.period(), expected);
-        assert!(limb.branch.cycles.iter().all(|c| c.period == expected));
+        assert!(limb.branch.points.iter().all(|c| c.period == expected));
         if let Origin::Event { branch, event, .. } = limb.origin {
             let parent = &diagram.branches[branch].branch.events[event];
             assert_eq!(parent.kind, EventKind::PeriodDoubling);
-            let first = limb.branch.cycles[0].value;
+            let first = limb.branch.points[0].value;
             assert!(
-                (first - parent.cycle.value).abs() < 1e-2,
+                (first - parent.point.value).abs() < 1e-2,
                 "{first} {parent}"
             );
         }
@@ -114,18 +114,18 @@ fn what_is_known_is_not_followed_again() {
     let [_, two, four, ..] = &diagram.branches[..] else {
         panic!("{} branches", diagram.branches.len());
     };
-    let End::Joined { period: 2, .. } = four.branch.end else {
-        panic!("{}", four.branch.end);
+    let Stop::Joined { period: 2, .. } = four.branch.stopped else {
+        panic!("{}", four.branch.stopped);
     };
     let joint = four.branch.events.last().unwrap();
     assert_eq!(joint.kind, EventKind::BranchPoint);
-    let error = (joint.cycle.value - A6.drive).abs();
+    let error = (joint.point.value - A6.drive).abs();
     assert!(error < 1e-11 && error <= joint.error, "{joint} {error:.1e}");
     let at_a6 = two
         .branch
         .events
         .iter()
-        .position(|event| (event.cycle.value - A6.drive).abs() < 1e-9);
+        .position(|event| (event.point.value - A6.drive).abs() < 1e-9);
     let known = diagram.omitted.iter().find(|omitted| omitted.branch == 1);
     let known = known.unwrap();
     assert_eq!(Some(known.event), at_a6);
@@ -150,12 +150,12 @@ fn as_far_as_period_16() {
     };
     for period in [2, 4, 8, 16] {
         let doubles = first(period / 2).branch.events(EventKind::PeriodDoubling);
-        let begins = first(period).branch.cycles[0].value;
-        let apart = doubles.map(|event| (event.cycle.value - begins).abs());
+        let begins = first(period).branch.points[0].value;
+        let apart = doubles.map(|event| (event.point.value - begins).abs());
         let nearest = apart.fold(f64::INFINITY, f64::min);
         assert!(nearest < 1e-2, "{period} {nearest:.1e}");
     }
-    let cycles = &first(16).branch.cycles;
+    let cycles = &first(16).branch.points;
     let cycle = &cycles[cycles.len() / 2];
     let model = OneSidedLinear {
         drive: cycle.value,
@@ -191,14 +191,14 @@ fn a_budget_is_kept_and_said() {
     assert!(few.omitted.iter().all(|o| o.reason == Reason::Budget));
     assert_eq!(few.omitted.len(), 3);
     let short = request.max_points(100).run().unwrap();
-    let points = short.branches.iter().map(|limb| limb.branch.cycles.len());
+    let points = short.branches.iter().map(|limb| limb.branch.points.len());
     assert!(points.sum::<usize>() <= 100);
     let said = short.omitted.iter().any(|o| o.reason == Reason::Budget);
     let cut = short.branches.iter().any(|limb| {
-        limb.branch.end
-            == End::Stopped(Stop::PointLimit {
-                points: limb.branch.cycles.len(),
-            })
+        limb.branch.stopped
+            == Stop::PointLimit {
+                points: limb.branch.points.len(),
+            }
     });
     assert!(said || cut);
 }
@@ -219,9 +219,9 @@ fn an_interrupted_search_keeps_what_it_has() {
     let [one, two] = &diagram.branches[..] else {
         panic!("{} branches", diagram.branches.len());
     };
-    assert_eq!(one.branch.end, End::Stopped(Stop::ReachedEnd));
-    assert_eq!(two.branch.end, End::Stopped(Stop::Interrupted));
-    assert!(two.branch.cycles.last().unwrap().value > 1.4);
+    assert_eq!(one.branch.stopped, Stop::ReachedEnd);
+    assert_eq!(two.branch.stopped, Stop::Interrupted);
+    assert!(two.branch.points.last().unwrap().value > 1.4);
     let interrupted = |reason: &Reason| *reason == Reason::Interrupted;
     assert!(diagram.omitted.iter().all(|left| interrupted(&left.reason)));
 }

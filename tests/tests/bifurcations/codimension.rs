@@ -1,6 +1,6 @@
 //! Curves of grazing in two parameters, and points of codimension two on curves of doublings.
 
-use hertzian::shooting::{CycleEvent, Side, SpecialKind};
+use hertzian::shooting::{Event, Side, SpecialKind};
 use hertzian::{EventKind, Shooting};
 use hertzian_tests::OneSidedLinear;
 
@@ -14,7 +14,10 @@ fn a_linear_contact_is_lost_on_a_known_curve() {
         load,
         drive: 0.2,
     };
-    let shooting = Shooting::of(&model).from(1.2).to(0.95);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(1.2)
+        .to(0.95);
     let branch = shooting.clone().run().unwrap();
     let grazing = branch
         .events(EventKind::Grazing { turns: false })
@@ -44,7 +47,12 @@ hertzian::oscillator! {
 #[test]
 fn a_doubling_is_degenerate_where_its_cubic_term_vanishes() {
     let model = Bending { k: 0.2, bend: -0.7 };
-    let shooting = Shooting::of(&model).vary("k").omega(1.0).from(0.2).to(0.3);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("k")
+        .omega(1.0)
+        .from(0.2)
+        .to(0.3);
     let branch = shooting.run().unwrap();
     let doubling = branch.events(EventKind::PeriodDoubling).next().unwrap();
     let track = shooting.track(doubling, "bend", [-1.0, 1.0]).unwrap();
@@ -52,7 +60,7 @@ fn a_doubling_is_degenerate_where_its_cubic_term_vanishes() {
         panic!("{:?}", track.special);
     };
     assert_eq!(special.kind, SpecialKind::Degenerate);
-    let error = (special.values[0] - doubling.cycle.value)
+    let error = (special.values[0] - doubling.point.value)
         .abs()
         .max(special.values[1].abs());
     assert!(
@@ -76,7 +84,12 @@ hertzian::oscillator! {
 #[test]
 fn two_multipliers_are_minus_one_at_once() {
     let model = Tongues { k: 0.2, p: 0.2 };
-    let shooting = Shooting::of(&model).vary("k").omega(1.0).from(0.2).to(0.3);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("k")
+        .omega(1.0)
+        .from(0.2)
+        .to(0.3);
     let branch = shooting.run().unwrap();
     let edges: Vec<_> = branch.events(EventKind::PeriodDoubling).collect();
     let [low, high] = edges[..] else {
@@ -90,7 +103,7 @@ fn two_multipliers_are_minus_one_at_once() {
     let found: Vec<_> = doubles.collect();
     assert_eq!(found.len(), 2, "{:?}", track.special);
     for (special, edge) in found.into_iter().zip([low, high]) {
-        let values = [low.cycle.value, edge.cycle.value];
+        let values = [low.point.value, edge.point.value];
         for (found, expected) in special.values.into_iter().zip(values) {
             let error = (found - expected).abs();
             assert!(error < 1e-6, "{special:?} {error:.1e}");
@@ -99,13 +112,16 @@ fn two_multipliers_are_minus_one_at_once() {
 }
 
 /// The doublings of period two at a frequency, near a drive.
-fn doubling_of_period_2(omega: f64, drive: f64) -> Option<(OneSidedLinear, CycleEvent)> {
+fn doubling_of_period_2(omega: f64, drive: f64) -> Option<(OneSidedLinear, Event)> {
     let model = OneSidedLinear {
         zeta: 0.032,
         load: 1.0,
         drive: 1.0,
     };
-    let shooting = Shooting::of(&model).vary("drive").omega(omega);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(omega);
     let first = shooting.clone().from(1.0).to(2.2).run().ok()?;
     let doubling = first.events(EventKind::PeriodDoubling).next()?;
     let branch = shooting
@@ -114,7 +130,7 @@ fn doubling_of_period_2(omega: f64, drive: f64) -> Option<(OneSidedLinear, Cycle
         .switch(doubling, Side::One)
         .ok()?;
     let doublings = branch.events(EventKind::PeriodDoubling).cloned();
-    let near = |event: &CycleEvent| (event.cycle.value - drive).abs();
+    let near = |event: &Event| (event.point.value - drive).abs();
     let event = doublings.min_by(|a, b| near(a).total_cmp(&near(b)))?;
     Some((model, event))
 }
@@ -122,14 +138,17 @@ fn doubling_of_period_2(omega: f64, drive: f64) -> Option<(OneSidedLinear, Cycle
 /// Which way the branch of period four begins: towards larger drives or smaller ones, from orbits close by.
 fn begins_upwards(omega: f64, drive: f64) -> bool {
     let (model, event) = doubling_of_period_2(omega, drive).unwrap();
-    let shooting = Shooting::of(&model).vary("drive").omega(omega);
-    let value = event.cycle.value;
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(omega);
+    let value = event.point.value;
     let request = shooting
         .from(value - 0.01)
         .to(value + 0.01)
         .largest_step(1e-4);
     let branch = request.max_points(3).switch(&event, Side::One).unwrap();
-    branch.cycles[0].value > value
+    branch.points[0].value > value
 }
 
 /// On the curve of doublings of period two beside figure 8, with `A4`: a point where period four begins upwards on one side, as far as
@@ -137,7 +156,10 @@ fn begins_upwards(omega: f64, drive: f64) -> bool {
 #[test]
 fn a_doubling_of_period_two_is_degenerate() {
     let (model, event) = doubling_of_period_2(1.0, 1.531).unwrap();
-    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let request = shooting.from(1.0).to(2.4);
     let track = request.track(&event, "omega", [0.8, 1.2]).unwrap();
     let degenerate = track

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use hertzian::attractors::basin::{Axis, Basin, Grid};
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin};
-use hertzian::shooting::Cycle;
+use hertzian::shooting::Point;
 use hertzian::{Complex, Shooting, Verdict};
 use hertzian_tests::OneSidedLinear;
 
@@ -54,18 +54,21 @@ fn basin() -> Basin {
 }
 
 /// The orbits of a period at frequency one, on all branches.
-fn at_frequency_1(diagram: &Diagram, model: &OneSidedLinear, period: usize) -> Vec<Cycle> {
+fn at_frequency_1(diagram: &Diagram, model: &OneSidedLinear, period: usize) -> Vec<Point> {
     let mut found = Vec::new();
     for limb in diagram
         .branches
         .iter()
         .filter(|limb| limb.period() == period)
     {
-        for pair in limb.branch.cycles.windows(2) {
+        for pair in limb.branch.points.windows(2) {
             if (pair[0].value - 1.0) * (pair[1].value - 1.0) > 0.0 {
                 continue;
             }
-            let near = Shooting::of(model).period(period).near(pair[0].state());
+            let near = FrequencyResponse::of(model)
+                .by(Shooting::new())
+                .period(period)
+                .near_state(pair[0].state());
             if let Ok(cycle) = near.orbit(1.0) {
                 assert_ne!(cycle.stability.verdict, Verdict::Undecided);
                 found.push(cycle);
@@ -102,7 +105,7 @@ fn periods_one_to_five_of_figure_9() {
     for (period, [re, im], peak_to_peak, points) in AT_FREQUENCY_1 {
         let exact = Complex::new(re, im);
         let passes = at_frequency_1(&diagram, &model, period);
-        let is_it = |cycle: &&Cycle| {
+        let is_it = |cycle: &&Point| {
             let m = cycle.stability.multipliers[0];
             let m = Complex::new(m.re, m.im.abs());
             (cycle.peak_to_peak() - peak_to_peak).abs() < 1e-9 * peak_to_peak
@@ -121,7 +124,7 @@ fn periods_one_to_five_of_figure_9() {
     }
     for period in 1..=5 {
         let passes = at_frequency_1(&diagram, &model, period);
-        let stable = |cycle: &&Cycle| cycle.stability.verdict == Verdict::Stable;
+        let stable = |cycle: &&Point| cycle.stability.verdict == Verdict::Stable;
         let mut count = 0;
         for cycle in passes.iter().filter(stable) {
             assert_settles(cycle);
@@ -191,7 +194,7 @@ fn simulated(mut state: [f64; 2], periods: usize) -> [f64; 2] {
 
 /// A motion that begins beside an orbit settles to it, and neighbours return as the multipliers say: by a simulation that has nothing
 /// but its equations in common with the rest.
-fn assert_settles(cycle: &Cycle) {
+fn assert_settles(cycle: &Point) {
     let (period, size) = (cycle.period, cycle.peak_to_peak());
     let state = [cycle.state()[0], cycle.state()[1]];
     let beside = [state[0] + 1e-5 * size, state[1]];
@@ -250,7 +253,7 @@ fn the_detached_branch_of_a_hertzian_contact() {
         matches!(limb.origin, Origin::Attractor { .. })
             && limb
                 .branch
-                .cycles
+                .points
                 .iter()
                 .any(|cycle| cycle.peak_to_peak() > 0.5 * height(at))
     };
@@ -268,12 +271,12 @@ fn the_detached_branch_of_a_hertzian_contact() {
     let [fold] = folds[..] else {
         panic!("{:?}", limb.branch.events);
     };
-    assert!((fold.cycle.value / limit - 1.0).abs() < 0.05, "{fold}");
-    for cycle in &limb.branch.cycles {
+    assert!((fold.point.value / limit - 1.0).abs() < 0.05, "{fold}");
+    for cycle in &limb.branch.points {
         let ratio = cycle.peak_to_peak() / height(cycle.value);
         assert!((ratio - 1.0).abs() < 0.15, "{} {ratio}", cycle.value);
     }
-    let first = &diagram.branches[0].branch.cycles;
+    let first = &diagram.branches[0].branch.points;
     assert!(
         first
             .iter()

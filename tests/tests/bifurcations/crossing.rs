@@ -1,7 +1,7 @@
 //! Crossings of branches without a symmetry: beside a driven oscillator, another one has equilibria that are known.
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
-use hertzian::shooting::{Cycle, Side};
+use hertzian::shooting::{Point, Side};
 use hertzian::{EventKind, OrbitError, Shooting, System};
 
 hertzian::oscillator! {
@@ -43,7 +43,7 @@ fn of_crossing(diagram: &Diagram) -> [&Limb; 2] {
             diagram.branches[0].branch.events, diagram.branches[0].branch.turns
         );
     };
-    let error = (crossing.cycle.value - AT).abs();
+    let error = (crossing.point.value - AT).abs();
     assert!(
         error < 1e-9 && error <= crossing.error,
         "{crossing} {error:.1e}"
@@ -64,7 +64,7 @@ fn of_crossing(diagram: &Diagram) -> [&Limb; 2] {
     [one, other]
 }
 
-fn assert_near(cycle: &Cycle, expected: f64) {
+fn assert_near(cycle: &Point, expected: f64) {
     let y = cycle.extremes[1];
     for found in [y.minimum, y.maximum] {
         assert!(
@@ -79,10 +79,10 @@ fn assert_near(cycle: &Cycle, expected: f64) {
 fn both_directions_of_a_pitchfork() {
     let diagram = diagram(&Pitchfork { at: AT });
     let limbs = of_crossing(&diagram);
-    let signs = limbs.map(|limb| limb.branch.cycles[0].extremes[1].maximum.signum());
+    let signs = limbs.map(|limb| limb.branch.points[0].extremes[1].maximum.signum());
     assert_eq!(signs[0], -signs[1]);
     for (limb, sign) in limbs.into_iter().zip(signs) {
-        let cycles = &limb.branch.cycles;
+        let cycles = &limb.branch.points;
         assert!(cycles.len() > 3 && (cycles[cycles.len() - 1].value - 2.66).abs() < 1e-12);
         for cycle in cycles {
             assert_near(cycle, sign * (cycle.value - AT).sqrt());
@@ -94,10 +94,10 @@ fn both_directions_of_a_pitchfork() {
 fn both_directions_of_a_transcritical_crossing() {
     let diagram = diagram(&Transcritical { at: AT });
     let limbs = of_crossing(&diagram);
-    let ends = limbs.map(|limb| limb.branch.cycles.last().unwrap().value);
+    let ends = limbs.map(|limb| limb.branch.points.last().unwrap().value);
     assert!((ends[0] - ends[1]).abs() > 0.6, "{ends:?}");
     for limb in limbs {
-        for cycle in &limb.branch.cycles {
+        for cycle in &limb.branch.points {
             assert_near(cycle, AT - cycle.value);
         }
     }
@@ -119,7 +119,10 @@ fn at_a_fold_nothing_begins() {
         zeta: 0.01,
         drive: 0.1,
     };
-    let shooting = Shooting::of(&model).from(0.7).to(1.7);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(0.7)
+        .to(1.7);
     let branch = shooting.run().unwrap();
     let fold = branch.folds().next().unwrap();
     let error = shooting.switch(fold, Side::One).unwrap_err();

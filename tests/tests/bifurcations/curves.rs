@@ -36,11 +36,12 @@ fn assert_confirmed(track: &Track, hertz: bool) {
         let starts = [2e-4, 2e-5, 2e-3].iter().flat_map(|part| [-part, *part]);
         let found = starts.into_iter().find_map(|part| {
             let aside = |part: f64| omega * (1.0 + part);
-            let near = Shooting::of(&*model)
+            let near = FrequencyResponse::of(&*model)
+                .by(Shooting::new())
                 .period(track.period)
-                .near(&point.state);
+                .near_state(&point.state);
             let branch = near.from(aside(part)).to(aside(-part)).run().ok()?;
-            let values = branch.events(track.kind).map(|event| event.cycle.value);
+            let values = branch.events(track.kind).map(|event| event.point.value);
             nearest(values, omega, |value| *value)
         });
         let error = found.map(|value| (value - omega).abs());
@@ -53,7 +54,10 @@ fn assert_confirmed(track: &Track, hertz: bool) {
 
 pub fn folds(hertz: bool, omega: [f64; 2]) -> Track {
     let model = model(hertz, 0.1);
-    let shooting = Shooting::of(&*model).from(omega[0]).to(omega[1]);
+    let shooting = FrequencyResponse::of(&*model)
+        .by(Shooting::new())
+        .from(omega[0])
+        .to(omega[1]);
     let branch = shooting.run().unwrap();
     let fold = branch.folds().next().unwrap();
     shooting.track(fold, "drive", [0.03, 0.5]).unwrap()
@@ -68,7 +72,9 @@ fn assert_cusp(track: &Track, hertz: bool) {
     let [omega, drive] = cusp.values;
     for (drive, expected) in [(0.99 * drive, 0), (1.01 * drive, 2)] {
         let model = model(hertz, drive);
-        let shooting = Shooting::of(&*model).largest_step(0.02);
+        let shooting = FrequencyResponse::of(&*model)
+            .by(Shooting::new())
+            .largest_step(0.02);
         let branch = shooting.from(1.05 * omega).to(0.95 * omega).run().unwrap();
         assert_eq!(branch.folds().count(), expected, "{drive}");
     }
@@ -104,10 +110,15 @@ fn folds_of_a_hertzian_contact() {
         // A branch at that drive touches the level there.
         let [omega, drive] = special.values;
         let model = model(true, drive);
-        let branch = Shooting::of(&*model).from(0.6).to(1.6).run().unwrap();
+        let branch = FrequencyResponse::of(&*model)
+            .by(Shooting::new())
+            .from(0.6)
+            .to(1.6)
+            .run()
+            .unwrap();
         let touches = |kind| matches!(kind, EventKind::Grazing { .. });
         let events = branch.events.iter().filter(|event| touches(event.kind));
-        let nearest = events.map(|event| (event.cycle.value - omega).abs());
+        let nearest = events.map(|event| (event.point.value - omega).abs());
         let error = nearest.fold(f64::INFINITY, f64::min);
         assert!(special.error < 1e-4, "{special:?}");
         assert!(error <= special.error, "{special:?} {error:e}");
@@ -118,13 +129,19 @@ fn folds_of_a_hertzian_contact() {
 #[test]
 fn a_curve_begins_inside_its_ranges() {
     let model = model(false, 0.1);
-    let shooting = Shooting::of(&*model).from(0.6).to(1.6);
+    let shooting = FrequencyResponse::of(&*model)
+        .by(Shooting::new())
+        .from(0.6)
+        .to(1.6);
     let branch = shooting.run().unwrap();
     let fold = branch.folds().next().unwrap();
     let outside = shooting.track(fold, "drive", [0.2, 0.5]).unwrap_err();
     let is_named = |error: &Error, expected: &str| matches!(error.downcast_ref(), Some(RequestError::Option { name, .. }) if *name == expected);
     assert!(is_named(&outside, "within"), "{outside}");
-    let narrow = Shooting::of(&*model).from(1.2).to(1.6);
+    let narrow = FrequencyResponse::of(&*model)
+        .by(Shooting::new())
+        .from(1.2)
+        .to(1.6);
     let outside = narrow.track(fold, "drive", [0.03, 0.5]).unwrap_err();
     assert!(is_named(&outside, "from"), "{outside}");
 }
@@ -133,7 +150,10 @@ fn a_curve_begins_inside_its_ranges() {
 fn period_doublings_of_both_contacts() {
     for (hertz, drive, range) in [(false, 1.35, [1.2, 1.0]), (true, 1.0, [2.7, 2.2])] {
         let model = model(hertz, drive);
-        let shooting = Shooting::of(&*model).from(range[0]).to(range[1]);
+        let shooting = FrequencyResponse::of(&*model)
+            .by(Shooting::new())
+            .from(range[0])
+            .to(range[1]);
         let branch = shooting.run().unwrap();
         let doubling = branch.events(EventKind::PeriodDoubling).next().unwrap();
         let track = shooting

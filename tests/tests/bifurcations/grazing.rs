@@ -1,13 +1,13 @@
 //! Where a gap touches a level.
 
-use hertzian::shooting::{CycleEvent, Track, TrackEnd};
+use hertzian::shooting::{Event, Track, TrackEnd};
 use hertzian::{EventKind, Shooting, System};
 
 use crate::cascade::MODEL;
 use crate::curves::Hertz;
 
-fn grazings(events: &[CycleEvent]) -> Vec<&CycleEvent> {
-    let grazing = |event: &&CycleEvent| matches!(event.kind, EventKind::Grazing { .. });
+fn grazings(events: &[Event]) -> Vec<&Event> {
+    let grazing = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
     events.iter().filter(grazing).collect()
 }
 
@@ -15,20 +15,23 @@ fn grazings(events: &[CycleEvent]) -> Vec<&CycleEvent> {
 /// at `A = 2 zeta W`.
 #[test]
 fn contact_is_lost_where_the_linear_motion_reaches_zero() {
-    let shooting = Shooting::of(&MODEL).vary("drive").omega(1.0);
+    let shooting = FrequencyResponse::of(&MODEL)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let branch = shooting.from(0.02).to(0.2).run().unwrap();
     let [grazing] = grazings(&branch.events)[..] else {
         panic!("{:?}", branch.events);
     };
-    let error = (grazing.cycle.value - 2.0 * 0.032).abs();
+    let error = (grazing.point.value - 2.0 * 0.032).abs();
     assert!(
         error < 1e-10 && error <= grazing.error,
         "{grazing} {error:.1e}"
     );
     assert_eq!(grazing.kind, EventKind::Grazing { turns: false });
-    assert!(grazing.cycle.extremes[0].minimum.abs() < 1e-9);
+    assert!(grazing.point.extremes[0].minimum.abs() < 1e-9);
     // Before it nothing switches, behind it twice a period.
-    let (before, behind) = branch.cycles.split_at(grazing.after);
+    let (before, behind) = branch.points.split_at(grazing.after);
     assert!(before.iter().all(|cycle| cycle.switches == 0));
     assert!(behind.iter().all(|cycle| cycle.switches == 2));
 }
@@ -55,7 +58,10 @@ hertzian::oscillator! {
 
 /// The curves through all grazing of a branch in the frequency.
 fn curves(model: &dyn System, [from, to]: [f64; 2], second: &str, within: [f64; 2]) -> Vec<Track> {
-    let shooting = Shooting::of(model).from(from).to(to);
+    let shooting = FrequencyResponse::of(model)
+        .by(Shooting::new())
+        .from(from)
+        .to(to);
     let branch = shooting.run().unwrap();
     let events = grazings(&branch.events).into_iter();
     let curves = events.map(|event| shooting.track(event, second, within).unwrap());
@@ -69,13 +75,15 @@ fn assert_touches(track: &Track, model: impl Fn(f64) -> Box<dyn System>) {
         let point = &track.points[(part * track.points.len() as f64) as usize];
         let [omega, second] = point.values;
         let model = model(second);
-        let near = Shooting::of(&*model).near(&point.state);
+        let near = FrequencyResponse::of(&*model)
+            .by(Shooting::new())
+            .near_state(&point.state);
         // Beside a fold a branch is short.
         let mut parts = [1e-4, -1e-4, 1e-5, -1e-5, 1e-6, -1e-6].into_iter();
         let found = parts.any(|part| {
             let ends = [-part, part].map(|part| omega * (1.0 + part));
             let branch = near.clone().from(ends[0]).to(ends[1]).run();
-            let is_there = |event: &&CycleEvent| (event.cycle.value - omega).abs() < 1e-8;
+            let is_there = |event: &&Event| (event.point.value - omega).abs() < 1e-8;
             branch.is_ok_and(|branch| grazings(&branch.events).iter().any(is_there))
         });
         assert!(found, "{omega} {second}");

@@ -23,14 +23,19 @@ fn apart(a: &Special, b: [f64; 2]) -> f64 {
 #[test]
 fn folds_of_twice_the_period_end_at_a_degenerate_doubling() {
     let model = Bending { k: 0.2, bend: -0.7 };
-    let shooting = Shooting::of(&model).vary("k").omega(1.0).from(0.1).to(0.4);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("k")
+        .omega(1.0)
+        .from(0.1)
+        .to(0.4);
     let branch = shooting.run().unwrap();
     let found = branch
         .events(EventKind::PeriodDoubling)
         .find_map(|doubling| {
             let branch = shooting.switch(doubling, Side::One).unwrap();
             let fold = branch.events(EventKind::Fold).next().cloned();
-            fold.map(|fold| (doubling.cycle.value, fold))
+            fold.map(|fold| (doubling.point.value, fold))
         });
     let (edge, fold) = found.unwrap();
     let track = shooting.track(&fold, "bend", [-1.0, 1.0]).unwrap();
@@ -53,7 +58,10 @@ fn folds_of_twice_the_period_end_at_a_degenerate_doubling() {
 #[test]
 fn a_closed_curve_is_followed_once_and_folds_end_on_it() {
     let model = CubicWithStop { drive: 1.0 };
-    let shooting = Shooting::of(&model).from(1.0).to(1.4);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(1.0)
+        .to(1.4);
     let branch = shooting.run().unwrap();
     let doubling = branch.events(EventKind::PeriodDoubling).next().unwrap();
     let doublings = shooting.track(doubling, "drive", [0.5, 2.0]).unwrap();
@@ -88,9 +96,9 @@ fn a_closed_branch_is_followed_once() {
     let model = CubicWithStop { drive: 1.0 };
     let request = Bifurcations::of(&model).from(0.6).to(0.8);
     let diagram = request.run().unwrap();
-    let closed = |end: End| end == End::Stopped(Stop::Closed);
+    let closed = |end: End| end == Stop::Closed;
     let loops = diagram.branches.iter();
-    let loops = loops.filter(|limb| closed(limb.branch.end));
+    let loops = loops.filter(|limb| closed(limb.branch.stopped));
     assert_eq!(loops.count(), 1);
     let known = diagram.omitted.iter();
     let mut known = known.filter(|omitted| matches!(omitted.reason, Reason::Known { .. }));

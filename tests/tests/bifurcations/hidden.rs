@@ -1,7 +1,7 @@
 //! Bifurcations that the signs of test functions at the ends of a step do not show, or show as something else.
 
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::shooting::{CycleBranch, CycleEvent};
+use hertzian::shooting::{Branch, Event};
 use hertzian::{End, EventKind, Shooting};
 
 use crate::cascade::A1;
@@ -20,13 +20,16 @@ hertzian::oscillator! {
 #[test]
 fn a_large_multiplier_hides_no_doubling() {
     let model = BesideHilltop { drive: 1.0 };
-    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let branch = shooting.from(1.0).to(1.4).run().unwrap();
     let doublings: Vec<_> = branch.events(EventKind::PeriodDoubling).collect();
     let [doubling] = doublings[..] else {
         panic!("{:?} {:?}", branch.events, branch.turns);
     };
-    let error = (doubling.cycle.value - A1.drive).abs();
+    let error = (doubling.point.value - A1.drive).abs();
     assert!(
         error < 1e-7 && error <= doubling.error,
         "{doubling} {error:.1e}"
@@ -42,15 +45,20 @@ hertzian::oscillator! {
     }
 }
 
-fn values(branch: &CycleBranch, kind: EventKind) -> Vec<f64> {
-    branch.events(kind).map(|event| event.cycle.value).collect()
+fn values(branch: &Branch, kind: EventKind) -> Vec<f64> {
+    branch.events(kind).map(|event| event.point.value).collect()
 }
 
 /// The tongue is much shorter than a step. To first order its ends are `k = 1/4 +- (p^2/4 - c^2/4)^(1/2)` with `p = 0.05`, `c = 0.02`.
 #[test]
 fn two_doublings_within_a_step() {
     let model = Tongue { k: 0.2 };
-    let shooting = Shooting::of(&model).vary("k").omega(1.0).from(0.12).to(0.9);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("k")
+        .omega(1.0)
+        .from(0.12)
+        .to(0.9);
     let long = values(&shooting.run().unwrap(), EventKind::PeriodDoubling);
     let short = shooting.largest_step(1e-3).run().unwrap();
     let short = values(&short, EventKind::PeriodDoubling);
@@ -80,10 +88,13 @@ fn a_fold_beside_crossings() {
     for beside in [1e-2, 1e-3, 1e-4, 1e-5] {
         let at = fold + beside;
         let model = BesidePitchfork { at };
-        let shooting = Shooting::of(&model).from(1.2).to(0.5);
+        let shooting = FrequencyResponse::of(&model)
+            .by(Shooting::new())
+            .from(1.2)
+            .to(0.5);
         let branch = shooting.run().unwrap();
-        let crossings: Vec<&CycleEvent> = branch.events(EventKind::BranchPoint).collect();
-        let near = |event: &&CycleEvent| (event.cycle.value - fold).abs() < 1e-9;
+        let crossings: Vec<&Event> = branch.events(EventKind::BranchPoint).collect();
+        let near = |event: &&Event| (event.point.value - fold).abs() < 1e-9;
         assert_eq!(
             branch.folds().filter(near).count(),
             1,
@@ -91,7 +102,7 @@ fn a_fold_beside_crossings() {
             branch.events
         );
         for event in &crossings {
-            let error = (event.cycle.value - at).abs();
+            let error = (event.point.value - at).abs();
             assert!(
                 error < 1e-9 && error <= event.error + 1e-15,
                 "{event} {error:.1e}"
@@ -119,12 +130,15 @@ hertzian::oscillator! {
 #[test]
 fn two_levels_touched_within_a_step() {
     let model = Two { drive: 0.1 };
-    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let branch = shooting.from(0.05).to(0.2).run().unwrap();
-    let touched: Vec<&CycleEvent> = branch.events(EventKind::Grazing { turns: false }).collect();
+    let touched: Vec<&Event> = branch.events(EventKind::Grazing { turns: false }).collect();
     assert_eq!(touched.len(), 2, "{:?}", branch.events);
     for (event, load) in touched.into_iter().zip([1.0, 1.02]) {
-        let error = (event.cycle.value - 0.064 * load).abs();
+        let error = (event.point.value - 0.064 * load).abs();
         assert!(error < 1e-9 && error <= event.error, "{event} {error:.1e}");
     }
 }
@@ -143,7 +157,12 @@ hertzian::oscillator! {
 fn doublings_do_not_depend_on_where_a_branch_begins() {
     let model = Stopped { drive: 1.0 };
     for from in [0.3, 0.5, 0.8] {
-        let branch = Shooting::of(&model).from(from).to(1.3).run().unwrap();
+        let branch = FrequencyResponse::of(&model)
+            .by(Shooting::new())
+            .from(from)
+            .to(1.3)
+            .run()
+            .unwrap();
         let found: Vec<f64> = values(&branch, EventKind::PeriodDoubling)
             .into_iter()
             .filter(|value| (1.0..1.12).contains(value))
@@ -151,7 +170,7 @@ fn doublings_do_not_depend_on_where_a_branch_begins() {
         let [low, high] = found[..] else {
             panic!(
                 "{from} {found:?} {:?} {:?} {}",
-                branch.events, branch.turns, branch.end
+                branch.events, branch.turns, branch.stopped
             );
         };
         assert!(
@@ -172,11 +191,11 @@ fn no_branch_is_followed_twice() {
             panic!("{step}: {} branches", diagram.branches.len());
         };
         assert_eq!([first.period(), second.period()], [1, 2]);
-        let end = End::Joined {
+        let end = Stop::Joined {
             period: 1,
             symmetric: false,
         };
-        assert_eq!(second.branch.end, end, "{step}");
+        assert_eq!(second.branch.stopped, end, "{step}");
         let reasons: Vec<_> = diagram.omitted.iter().map(|o| &o.reason).collect();
         assert_eq!(reasons, [&Reason::Known { branch: 1 }], "{step}");
         let joint = second.branch.events.last().unwrap();
@@ -185,7 +204,7 @@ fn no_branch_is_followed_twice() {
             .events(EventKind::PeriodDoubling)
             .nth(1)
             .unwrap();
-        let apart = (joint.cycle.value - doubling.cycle.value).abs();
+        let apart = (joint.point.value - doubling.point.value).abs();
         assert!(apart <= joint.error + doubling.error, "{joint} {doubling}");
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hertzian::attractors::basin::{Axis, Basin, Grid, Progress};
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::shooting::{Cycle, TrackEnd};
+use hertzian::shooting::{Point, TrackEnd};
 use hertzian::{Shooting, Stop};
 
 use crate::cascade::MODEL;
@@ -21,7 +21,7 @@ fn a_search_for_coexisting_motions() {
     };
     let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
     let request = request.from(1.0).to(1.2).depth(0).search(1.0, basin);
-    let visit = |_: &Cycle| ControlFlow::Continue(());
+    let visit = |_: &Point| ControlFlow::Continue(());
     let diagram = request.run_watched(visit, &watch).unwrap();
     assert_eq!(asked.load(Ordering::Relaxed), 1);
     assert_eq!(diagram.branches.len(), 1);
@@ -30,7 +30,10 @@ fn a_search_for_coexisting_motions() {
 
 #[test]
 fn a_curve_in_two_parameters() {
-    let shooting = Shooting::of(&MODEL).from(0.6).to(1.1);
+    let shooting = FrequencyResponse::of(&MODEL)
+        .by(Shooting::new())
+        .from(0.6)
+        .to(1.1);
     let branch = shooting.run().unwrap();
     let fold = branch.folds().next().unwrap();
     let mut seen = 0;

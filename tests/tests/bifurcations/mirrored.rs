@@ -127,8 +127,13 @@ fn mirrored_contacts_are_as_good_as_one_odd_law() {
                 );
             }
         }
-        let shooting = Shooting::of(system).from(0.8).to(0.9).run().unwrap();
-        assert!(shooting.cycles.iter().all(|cycle| cycle.symmetric));
+        let shooting = FrequencyResponse::of(system)
+            .by(Shooting::new())
+            .from(0.8)
+            .to(0.9)
+            .run()
+            .unwrap();
+        assert!(shooting.points.iter().all(|cycle| cycle.symmetric));
     }
 }
 
@@ -163,9 +168,14 @@ fn unequal_contacts_have_no_symmetry() {
     ];
     for (index, system) in unequal.into_iter().enumerate() {
         assert!(!is_symmetric(&branch(system)), "{index}");
-        let shooting = Shooting::of(system).from(0.8).to(0.81).run().unwrap();
+        let shooting = FrequencyResponse::of(system)
+            .by(Shooting::new())
+            .from(0.8)
+            .to(0.81)
+            .run()
+            .unwrap();
         assert!(
-            shooting.cycles.iter().all(|cycle| !cycle.symmetric),
+            shooting.points.iter().all(|cycle| !cycle.symmetric),
             "{index}"
         );
     }
@@ -215,11 +225,16 @@ fn the_symmetry_of_two_contacts_breaks_where_it_should() {
         let apart = (event.point.value - same.point.value).abs();
         assert!(apart < 1e-11, "{event} {same}");
     }
-    let shooting = Shooting::of(&pair).from(0.45).to(0.3).run().unwrap();
+    let shooting = FrequencyResponse::of(&pair)
+        .by(Shooting::new())
+        .from(0.45)
+        .to(0.3)
+        .run()
+        .unwrap();
     let breaks: Vec<_> = shooting.events(EventKind::SymmetryBreaking).collect();
     assert_eq!(breaks.len(), 2);
     for (event, exact) in breaks.iter().zip(HARDENING) {
-        let error = (event.cycle.value - exact).abs();
+        let error = (event.point.value - exact).abs();
         assert!(error < 1e-9 && error <= event.error, "{event} {error:.1e}");
     }
 }

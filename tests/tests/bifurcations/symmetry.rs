@@ -5,7 +5,7 @@
 //! (`frequency_response` of the reference values).
 
 use hertzian::bifurcation::Bifurcations;
-use hertzian::shooting::{CycleEvent, End};
+use hertzian::shooting::{End, Event};
 use hertzian::{EventKind, System};
 use hertzian_tests::nearest;
 
@@ -62,7 +62,7 @@ fn assert_symmetry_breaks(
         .collect();
     assert_eq!(breaks.len(), 2);
     for (event, exact) in breaks.iter().zip(exact) {
-        let error = (event.cycle.value - exact).abs();
+        let error = (event.point.value - exact).abs();
         assert!(error < 1e-9, "{event} {error:.1e}");
         assert!(error <= event.error + 1e-12, "{event} {error:.1e}");
     }
@@ -70,40 +70,40 @@ fn assert_symmetry_breaks(
     let asymmetric = &diagram.branches[1..];
     assert_eq!(asymmetric.len(), 2);
     for limb in asymmetric {
-        assert!(limb.branch.cycles.iter().all(|cycle| !cycle.symmetric));
-        let End::Joined {
+        assert!(limb.branch.points.iter().all(|cycle| !cycle.symmetric));
+        let Stop::Joined {
             period: 1,
             symmetric: true,
-        } = limb.branch.end
+        } = limb.branch.stopped
         else {
-            panic!("{}", limb.branch.end);
+            panic!("{}", limb.branch.stopped);
         };
         let (joint, found) = limb.branch.events.split_last().unwrap();
         // Where the displacement touches zero, between the pieces of the spring, is of no interest here.
-        let grazing = |event: &&CycleEvent| matches!(event.kind, EventKind::Grazing { .. });
+        let grazing = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
         let found: Vec<_> = found.iter().filter(|event| !grazing(event)).collect();
         for (kind, omega, peak_to_peak) in events {
-            let event = nearest(limb.branch.events(*kind), *omega, |event| event.cycle.value);
+            let event = nearest(limb.branch.events(*kind), *omega, |event| event.point.value);
             let event = event.unwrap();
-            let error = (event.cycle.value - omega).abs();
+            let error = (event.point.value - omega).abs();
             assert!(error < 1e-11, "{event} {error:.1e}");
-            let error = (event.cycle.peak_to_peak() - peak_to_peak).abs();
+            let error = (event.point.peak_to_peak() - peak_to_peak).abs();
             assert!(error < 1e-9, "{event} {error:.1e}");
         }
         // The list of the softening spring lacks two folds that are 1.3e-4 apart.
         assert_eq!(found.len(), events.len() + unlisted);
-        let critical = |event: &CycleEvent| event.cycle.stability.multipliers[0].norm();
+        let critical = |event: &Event| event.point.stability.multipliers[0].norm();
         assert!(
             found
                 .iter()
                 .all(|event| (critical(event) - 1.0).abs() < 1e-9)
         );
-        let error = (joint.cycle.value - exact[1]).abs();
+        let error = (joint.point.value - exact[1]).abs();
         assert!(error < 1e-9, "{joint} {error:.1e}");
     }
     // They are mirror images: what is the largest displacement of one is the smallest of the other.
-    let extremes = |limb: usize, index: usize| asymmetric[limb].branch.cycles[index].extremes[0];
-    for index in 0..asymmetric[0].branch.cycles.len() {
+    let extremes = |limb: usize, index: usize| asymmetric[limb].branch.points[index].extremes[0];
+    for index in 0..asymmetric[0].branch.points.len() {
         let (one, other) = (extremes(0, index), extremes(1, index));
         assert!(
             (one.maximum + other.minimum).abs() < 1e-8,

@@ -36,9 +36,14 @@ fn multipliers_of_period_8() {
     println!("drive       exact               paper            10 harmonics        refined");
     let mut by_balance = 0;
     for (drive, state, exact, paper) in TABLE {
-        let shooting = Shooting::of(&MODEL).vary("drive").omega(1.0).period(8);
+        let shooting = FrequencyResponse::of(&MODEL)
+            .by(Shooting::new())
+            .vary("drive")
+            .omega(1.0)
+            .period(8);
         let known = shooting.near(&state).orbit(drive).unwrap();
-        let point = Shooting::of(&MODEL)
+        let point = FrequencyResponse::of(&MODEL)
+            .by(Shooting::new())
             .vary("drive")
             .omega(1.0)
             .point(&known)
@@ -49,7 +54,10 @@ fn multipliers_of_period_8() {
         // The balance's own fold may lie before this drive.
         let coarse = branch.map(|branch| branch.points[0].clone());
         let refined = coarse.as_ref().ok().map(|coarse| {
-            let request = Shooting::of(&MODEL).vary("drive").omega(1.0);
+            let request = FrequencyResponse::of(&MODEL)
+                .by(Shooting::new())
+                .vary("drive")
+                .omega(1.0);
             request.near_orbit(&coarse.orbit).orbit(drive).unwrap()
         });
         by_balance += usize::from(refined.is_some());
@@ -74,7 +82,10 @@ fn multipliers_of_period_8() {
 #[test]
 fn the_fold_of_period_8_by_balance_and_refined() {
     let (drive, state, ..) = TABLE[0];
-    let shooting = Shooting::of(&MODEL).vary("drive").omega(1.0);
+    let shooting = FrequencyResponse::of(&MODEL)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let cycle = shooting
         .clone()
         .period(8)
@@ -99,6 +110,6 @@ fn the_fold_of_period_8_by_balance_and_refined() {
         .run()
         .unwrap();
     let fold = refined.events(EventKind::Fold).next().unwrap();
-    let error = (fold.cycle.value - PERIOD_8_FOLD.drive).abs();
+    let error = (fold.point.value - PERIOD_8_FOLD.drive).abs();
     assert!(error < 1e-11, "{fold} {error:.1e}");
 }

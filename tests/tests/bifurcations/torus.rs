@@ -27,20 +27,23 @@ fn flutter_begins_where_the_characteristic_equation_says() {
         p: 0.05,
         drive: 0.3,
     };
-    let shooting = Shooting::of(&model).vary("p").omega(0.7);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("p")
+        .omega(0.7);
     let branch = shooting.from(0.05).to(0.2).run().unwrap();
     let [event] = &branch.events[..] else {
         panic!("{:?}", branch.events);
     };
     assert_eq!(event.kind, EventKind::NeimarkSacker);
-    let error = (event.cycle.value - c * k.sqrt()).abs();
+    let error = (event.point.value - c * k.sqrt()).abs();
     // Four multipliers are rounded.
     assert!(
         error < 1e-10 && error <= event.error + 1e-15,
         "{event} {error:.1e}"
     );
     let angle = (k.sqrt() * TAU / 0.7).rem_euclid(TAU);
-    let multiplier = event.cycle.stability.multipliers[0];
+    let multiplier = event.point.stability.multipliers[0];
     let expected = [angle, TAU - angle];
     let found = multiplier.arg().rem_euclid(TAU);
     assert!(
@@ -56,13 +59,18 @@ fn two_masses_with_a_stop() {
         stop: 100.0,
         drive: 0.1,
     };
-    let branch = Shooting::of(&model).from(0.55).to(0.8).run().unwrap();
+    let branch = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(0.55)
+        .to(0.8)
+        .run()
+        .unwrap();
     for (kind, omega) in [
         (EventKind::NeimarkSacker, 0.61861),
         (EventKind::PeriodDoubling, 0.73878),
     ] {
         let near = |value: f64| (value - omega).abs() < 1e-5;
-        let found = branch.events(kind).any(|event| near(event.cycle.value));
+        let found = branch.events(kind).any(|event| near(event.point.value));
         assert!(found, "{kind} {omega}: {:?}", branch.events);
     }
 }

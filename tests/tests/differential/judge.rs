@@ -221,7 +221,11 @@ impl Case {
         if self.clock.flow().is_break() {
             return None;
         }
-        let request = Shooting::of(system).from(from).to(to).max_points(POINTS[1]);
+        let request = FrequencyResponse::of(system)
+            .by(Shooting::new())
+            .from(from)
+            .to(to)
+            .max_points(POINTS[1]);
         let branch = match request.run_with(|_| self.clock.flow()) {
             Ok(branch) => branch,
             Err(error) => {
@@ -232,7 +236,7 @@ impl Case {
         self.report.count("branches by shooting");
         let passage = Passage::of_shooting(name, &branch);
         if judge {
-            self.cycles(&branch);
+            self.points(&branch);
         }
         self.passed(&passage).then_some(passage)
     }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use hertzian::{Branch, CycleBranch, Stability, Verdict};
+use hertzian::{Branch, Stability, Verdict};
 
 use crate::integrate::Lost;
 use crate::judge::Case;
@@ -74,11 +74,11 @@ impl Case {
     }
 
     /// Orbits by shooting.
-    pub fn cycles(&mut self, branch: &CycleBranch) {
-        let verdicts: Vec<_> = branch.cycles.iter().map(|c| c.stability.verdict).collect();
+    pub fn cycles(&mut self, branch: &Branch) {
+        let verdicts: Vec<_> = branch.points.iter().map(|c| c.stability.verdict).collect();
         let model = Rc::clone(&self.model);
         for index in self.chosen(&verdicts, ORBITS[1]) {
-            let cycle = &branch.cycles[index];
+            let cycle = &branch.points[index];
             let mut state = State::default();
             let (positions, velocities) = cycle.state().split_at(model.coordinates);
             state[..positions.len()].copy_from_slice(positions);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hertzian::{Branch, CycleBranch, End, EventKind, Stability, Stop, Turn, Verdict};
+use hertzian::{Branch, End, EventKind, Stability, Stop, Turn, Verdict};
 
 /// An event of a branch.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,14 +71,14 @@ impl Passage {
         }
     }
 
-    pub fn of_shooting(name: &'static str, branch: &CycleBranch) -> Self {
-        let cycles = branch.cycles.iter();
+    pub fn of_shooting(name: &'static str, branch: &Branch) -> Self {
+        let cycles = branch.points.iter();
         let places = cycles.map(|c| Place::of(c.value, c.peak_to_peak(), &c.stability));
         let events = branch.events.iter().map(|event| Seen {
             kind: event.kind,
-            value: event.cycle.value,
+            value: event.point.value,
             error: event.error,
-            peak_to_peak: event.cycle.peak_to_peak(),
+            peak_to_peak: event.point.peak_to_peak(),
             after: event.after,
         });
         Self {
@@ -86,8 +86,8 @@ impl Passage {
             places: places.collect(),
             events: events.collect(),
             turns: branch.turns.clone(),
-            whole: branch.end == End::Stopped(Stop::ReachedEnd),
-            ended: branch.end.to_string(),
+            whole: branch.stopped == Stop::ReachedEnd,
+            ended: branch.stopped.to_string(),
         }
     }
 

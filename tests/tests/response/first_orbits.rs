@@ -38,7 +38,10 @@ fn a_gear_pair_finds_its_flank() {
         let point = FrequencyResponse::of(&model).orbit(omega).unwrap();
         let error = (point.peak_to_peak() / exact - 1.0).abs();
         assert!(error <= point.error.unwrap(), "{omega}: {error:e}");
-        let cycle = Shooting::of(&model).orbit(omega).unwrap();
+        let cycle = FrequencyResponse::of(&model)
+            .by(Shooting::new())
+            .orbit(omega)
+            .unwrap();
         assert!((cycle.peak_to_peak() / exact - 1.0).abs() < 1e-8);
     }
 }
@@ -381,7 +384,8 @@ fn a_residual_that_is_all_rounding_is_no_start() {
         for step in 0..20 {
             let omega = 0.5 + 0.13 * f64::from(step);
             let point = FrequencyResponse::of(&model).orbit(omega).unwrap();
-            let cycle = Shooting::of(&model)
+            let cycle = FrequencyResponse::of(&model)
+                .by(Shooting::new())
                 .near_orbit(&point.orbit)
                 .orbit(omega)
                 .unwrap();

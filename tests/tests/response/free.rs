@@ -185,7 +185,10 @@ fn unbalanced_gears_are_carried_away() {
 /// The equations of shooting are singular along the direction: it is refused by its name.
 #[test]
 fn shooting_refuses_what_is_free() {
-    let error = Shooting::of(&FREE).orbit(0.7).unwrap_err();
+    let error = FrequencyResponse::of(&FREE)
+        .by(Shooting::new())
+        .orbit(0.7)
+        .unwrap_err();
     assert!(
         matches!(error.downcast_ref(), Some(ModelError::Free { direction }) if direction == "a + b"),
         "{error}"

@@ -43,7 +43,10 @@ fn pair([re, im]: [f64; 2]) -> [Complex<f64>; 2] {
 fn orbits_by_shooting_have_the_exact_multipliers() {
     let model = OneSided { drive: 1.0 };
     for (index, (state, multiplier)) in EXACT.into_iter().enumerate() {
-        let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+        let shooting = FrequencyResponse::of(&model)
+            .by(Shooting::new())
+            .vary("drive")
+            .omega(1.0);
         let cycle = shooting.period(index + 1).near(&state).orbit(1.0).unwrap();
         let error = distance(&cycle.stability.multipliers, &pair(multiplier));
         println!("period {}: {error:.1e}", index + 1);
@@ -71,7 +74,9 @@ fn orbits_of_few_harmonics_have_multipliers_as_good_as_they_can_be() {
             let request = request.clone().harmonics(harmonics).stability(false);
             let branch = request.run_with(|_| ControlFlow::Break(())).unwrap();
             let point = &branch.points[0];
-            let shooting = Shooting::of(&model).near_orbit(&point.orbit);
+            let shooting = FrequencyResponse::of(&model)
+                .by(Shooting::new())
+                .near_orbit(&point.orbit);
             let exact = shooting.orbit(1.0).unwrap().stability.multipliers;
             if (drive, period) == (1.0, 1) {
                 assert!(distance(&exact, &pair(EXACT[0].1)) < 1e-9);

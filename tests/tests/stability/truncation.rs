@@ -73,7 +73,9 @@ fn zeros(system: &dyn System, harmonics: usize) -> Vec<[f64; 3]> {
         let there = at(system, near, low);
         let answer = of(&there, 0);
         // Where the corrected orbit is, for beside a fold that matters.
-        let shooting = Shooting::of(system).near_orbit(&there.points[0].orbit);
+        let shooting = FrequencyResponse::of(system)
+            .by(Shooting::new())
+            .near_orbit(&there.points[0].orbit);
         let exact = shooting.tolerance(1e-11).orbit(answer.value).unwrap();
         let given = &answer.stability.multipliers;
         let error = distance(given, &exact.stability.multipliers);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::shooting::Cycle;
+use hertzian::shooting::Point;
 use hertzian::time;
 use hertzian::time::{FlowError, Options};
 use hertzian::{Complex, Event, Point, Shooting, System};
@@ -18,10 +18,10 @@ const FACTOR: f64 = 1e2;
 const SMALL: f64 = 1e-7;
 
 /// The orbit refined by shooting at the same frequency, if it is found there.
-pub fn refined(system: &dyn System, point: &Point) -> Option<Cycle> {
-    let shooting = Shooting::of(system)
-        .near_orbit(&point.orbit)
-        .tolerance(TOLERANCE);
+pub fn refined(system: &dyn System, point: &Point) -> Option<Point> {
+    let shooting = FrequencyResponse::of(system)
+        .by(Shooting::new().tolerance(TOLERANCE))
+        .near_orbit(&point.orbit);
     let cycle = shooting.orbit(point.value).ok()?;
     let size = point.peak_to_peak();
     let apart = (cycle.peak_to_peak() - size).abs() / size;
@@ -31,16 +31,16 @@ pub fn refined(system: &dyn System, point: &Point) -> Option<Cycle> {
 
 /// The orbit beside a fold of the branch, where the true fold may lie on the other side of its frequency: at a frequency that is
 /// farther from the fold by twice the error stated for it.
-pub fn refined_beside(system: &dyn System, point: &Point, fold: &Event) -> Option<Cycle> {
+pub fn refined_beside(system: &dyn System, point: &Point, fold: &Event) -> Option<Point> {
     let away = (point.value - fold.point.value).signum();
     refined_at(system, point, point.value + away * 2.0 * fold.error)
 }
 
 /// The orbit refined by shooting at another frequency close by.
-pub fn refined_at(system: &dyn System, point: &Point, omega: f64) -> Option<Cycle> {
-    let shooting = Shooting::of(system)
-        .near_orbit(&point.orbit)
-        .tolerance(TOLERANCE);
+pub fn refined_at(system: &dyn System, point: &Point, omega: f64) -> Option<Point> {
+    let shooting = FrequencyResponse::of(system)
+        .by(Shooting::new().tolerance(TOLERANCE))
+        .near_orbit(&point.orbit);
     let cycle = shooting.orbit(omega).ok()?;
     let apart = cycle.peak_to_peak() / point.peak_to_peak() - 1.0;
     (apart.abs() < NEAR).then_some(cycle)
@@ -57,7 +57,7 @@ pub fn distance(a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
 ///
 /// # Errors
 /// If the motion cannot be followed that far.
-pub fn growth(system: &dyn System, cycle: &Cycle, random: &mut Random) -> Result<f64, FlowError> {
+pub fn growth(system: &dyn System, cycle: &Point, random: &mut Random) -> Result<f64, FlowError> {
     let largest = cycle.stability.multipliers[0].norm();
     let periods = (FACTOR.ln() / largest.ln().abs()).ceil() as usize;
     let options = Options::default().tolerance(TOLERANCE);

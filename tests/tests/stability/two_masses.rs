@@ -80,7 +80,9 @@ fn every_method_beside_the_bifurcations() {
     {
         let orbits = branch.at(omega).unwrap().into_iter();
         for point in orbits.filter(|point| point.observed.contacts[0].fraction > 0.0) {
-            let shooting = Shooting::of(&MODEL).near_orbit(&point.orbit);
+            let shooting = FrequencyResponse::of(&MODEL)
+                .by(Shooting::new())
+                .near_orbit(&point.orbit);
             let Ok(cycle) = shooting.orbit(omega) else {
                 continue;
             };

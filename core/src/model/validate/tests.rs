@@ -57,7 +57,7 @@ fn ends_of_ranges() {
     ];
     let response = || FrequencyResponse::of(&model);
     refused(|&[a, b]| response().from(a).to(b).run().map(drop), &rows);
-    let shooting = || Shooting::of(&model);
+    let shooting = || FrequencyResponse::of(&model).by(Shooting::new());
     refused(|&[a, b]| shooting().from(a).to(b).run().map(drop), &rows);
     let all = || Bifurcations::of(&model);
     refused(|&[a, b]| all().from(a).to(b).run().map(drop), &rows);
@@ -69,7 +69,12 @@ fn ends_of_ranges() {
     ];
     let response = || FrequencyResponse::of(&model).vary("bend").omega(0.8);
     refused(|&[a, b]| response().from(a).to(b).run().map(drop), &rows);
-    let shooting = || Shooting::of(&model).vary("bend").omega(0.8);
+    let shooting = || {
+        FrequencyResponse::of(&model)
+            .by(Shooting::new())
+            .vary("bend")
+            .omega(0.8)
+    };
     refused(|&[a, b]| shooting().from(a).to(b).run().map(drop), &rows);
     let rows = [
         ([NAN, 1.0], "from = NaN"),
@@ -92,16 +97,25 @@ fn values_within_a_range() {
     let model = MODEL;
     let branch = FrequencyResponse::of(&model).from(0.5).to(0.6).run();
     let branch = branch.expect("a branch");
-    let shooting = Shooting::of(&model).from(0.5).to(0.6);
-    let cycles = shooting.run().expect("a branch");
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(0.5)
+        .to(0.6);
+    let by_shooting = shooting.run().expect("a branch");
     let single = [(NAN, "NaN"), (INFINITY, "inf")];
     refused(|&value| branch.at(value).map(drop), &single);
-    refused(|&value| shooting.at(&cycles, value).map(drop), &single);
+    refused(|&value| by_shooting.at(value).map(drop), &single);
     refused(|&value| shooting.orbit(value).map(drop), &single);
     let response = FrequencyResponse::of(&model);
     refused(|&value| response.orbit(value).map(drop), &single);
     refused(|&value| shooting.through(value).map(drop), &single);
-    let near = |&value: &f64| shooting.clone().near(&[value, 0.0]).orbit(0.5).map(drop);
+    let near = |&value: &f64| {
+        shooting
+            .clone()
+            .near_state(&[value, 0.0])
+            .orbit(0.5)
+            .map(drop)
+    };
     refused(near, &single);
     let basin = |escape| Basin {
         escape,
@@ -118,7 +132,12 @@ fn values_within_a_range() {
 fn numbers_of_a_request() {
     let model = MODEL;
     let response = || FrequencyResponse::of(&model).from(0.5).to(0.6);
-    let shooting = || Shooting::of(&model).from(0.5).to(0.6);
+    let shooting = || {
+        FrequencyResponse::of(&model)
+            .by(Shooting::new())
+            .from(0.5)
+            .to(0.6)
+    };
     let tolerances = [
         (NAN, "tolerance = NaN"),
         (0.0, "tolerance = 0"),
@@ -137,7 +156,10 @@ fn numbers_of_a_request() {
     refused(|&n| response().max_points(n).run().map(drop), &counts);
     refused(|&n| response().harmonics(n).run().map(drop), &counts);
     let counts = [(0, "must be at least 1"), (usize::MAX, "3000 at most")];
-    refused(|&n| shooting().segments(n).run().map(drop), &counts);
+    let parted = |&n: &usize| shooting().by(Shooting::new().segments(n)).run().map(drop);
+    refused(parted, &counts);
+    let flows = |&v: &f64| shooting().by(Shooting::new().tolerance(v)).run().map(drop);
+    refused(flows, &tolerances);
     let names = [("omego", "no parameter omego; there are bend, drive")];
     let vary = |&name: &&str| response().vary(name).run().map(drop);
     refused(vary, &names);

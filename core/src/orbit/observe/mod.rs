@@ -281,7 +281,7 @@ mod tests {
             let motion = Motion::of(series);
             assert_eq!(
                 (motion.minimum, motion.maximum, motion.rms),
-                (0.5, 0.5, 0.5)
+                (0.5, 0.5, Some(0.5))
             );
         }
     }

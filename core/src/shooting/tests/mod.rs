@@ -4,12 +4,14 @@ mod runge_kutta;
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
-use super::compute::{branch, cycle};
+use super::compute::{branch, orbit};
 use super::setting::{Setting, Source};
-use super::start::Guess;
-use super::{Branch, End, Point};
+use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
+use crate::branches::point::Point;
+use crate::branches::request::Guess;
 use crate::continuation::follow::Stop;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
@@ -52,7 +54,12 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting {
             exact: false,
             tolerance: 1e-8,
         },
-        labels: crate::model::labels::Labels::default(),
+        system: Arc::new(Duffing {
+            zeta: parameters[0],
+            cubic: parameters[1],
+            drive: parameters[2],
+            load: parameters[3],
+        }),
         varied: "something".to_owned(),
         parameters: parameters.to_vec(),
         omega,
@@ -128,7 +135,7 @@ fn jacobian_agrees_with_differences() {
 fn folds_of_a_smooth_oscillator_are_those_of_the_balance() {
     let setting = setting([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
     let found = followed(&setting, [0.2, 0.0], 0.7, 1.8);
-    assert_eq!(found.end, End::Stopped(Stop::ReachedEnd));
+    assert_eq!(found.stopped, Stop::ReachedEnd);
     assert!(found.turns.is_empty(), "{:?}", found.turns);
     assert_eq!(found.events.len(), 2, "{:?}", found.events);
     let model = Duffing {
@@ -142,21 +149,21 @@ fn folds_of_a_smooth_oscillator_are_those_of_the_balance() {
     let folds: Vec<_> = branch.folds().collect();
     for (by_shooting, by_balance) in found.events.iter().zip(folds) {
         assert_eq!(by_shooting.kind, EventKind::Fold);
-        let error = (by_shooting.cycle.value - by_balance.point.value).abs();
+        let error = (by_shooting.point.value - by_balance.point.value).abs();
         assert!(
             error < by_shooting.error + by_balance.error,
             "{by_shooting} {by_balance}"
         );
         assert!(by_shooting.error < 1e-10, "{by_shooting}");
         let (a, b) = (
-            by_shooting.cycle.peak_to_peak(),
+            by_shooting.point.peak_to_peak(),
             by_balance.point.peak_to_peak(),
         );
         assert!((a - b).abs() < 1e-7, "{a} {b}");
     }
-    for cycle in &found.points {
-        let expected = (-TAU * 2.0 * 0.05 / cycle.orbit.omega).exp();
-        let product = cycle
+    for point in &found.points {
+        let expected = (-TAU * 2.0 * 0.05 / point.omega()).exp();
+        let product = point
             .stability
             .multipliers
             .iter()
@@ -176,20 +183,19 @@ fn an_orbit_of_the_balance_is_refined() {
     };
     let request = FrequencyResponse::of(&model).from(0.8).to(0.9);
     let by_balance = request.harmonics(3).max_points(2).run().unwrap();
-    let orbit = &by_balance.points[0].orbit;
+    let known = &by_balance.points[0].orbit;
     for segments in [1, 3] {
         let mut setting = setting([0.05, 1.0, 0.2, 0.1], Variable::Omega, 0.8);
         setting.segments = segments;
-        let refined = cycle(&setting, &Guess::Series(orbit.clone()), 0.8).unwrap();
-        assert!((1..8).contains(&refined.iterations), "{refined:?}");
+        let refined = orbit(&setting, &Guess::Orbit(known.clone()), 0.8).unwrap();
         setting.source.tolerance = 1e-12;
-        let guess = Guess::State(refined.state().to_vec());
-        let again = cycle(&setting, &guess, 0.8).unwrap();
-        let pairs = refined.state().iter().zip(again.state());
+        let guess = Guess::State(refined.orbit.state());
+        let again = orbit(&setting, &guess, 0.8).unwrap();
+        let pairs = refined.orbit.state().into_iter().zip(again.orbit.state());
         let change = pairs.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()));
-        let stated = refined.error.expect("with its stability");
+        let stated = refined.peak_to_peak() * refined.error.expect("with its stability");
         assert!(change < stated && stated < 1e-7, "{change} {refined:?}");
-        let [a, b] = [&refined, &again].map(|cycle| &cycle.stability.multipliers);
+        let [a, b] = [&refined, &again].map(|point| &point.stability.multipliers);
         let change = crate::numeric::spectrum::distance(a, b);
         assert!(
             change < refined.stability.error && change < 1e-8,
@@ -221,7 +227,7 @@ fn symmetry_breaks_where_the_balance_says() {
     ] {
         setting.odd = odd;
         let found = followed(&setting, [0.1, 0.0], 0.1, 12.0);
-        assert_eq!(found.end, End::Stopped(Stop::ReachedEnd));
+        assert_eq!(found.stopped, Stop::ReachedEnd);
         assert!(found.turns.is_empty(), "{:?}", found.turns);
         assert_eq!(found.events.len(), 2, "{:?}", found.events);
         for (event, expected) in found.events.iter().zip(&by_balance.events) {
@@ -244,26 +250,27 @@ fn a_period_doubles_where_the_branch_of_twice_the_period_ends() {
         panic!("{:?}", found.events);
     };
     assert_eq!(doubling.kind, EventKind::PeriodDoubling);
-    let one = doubling.cycle.stability.multipliers[0];
+    let one = doubling.point.stability.multipliers[0];
     assert!((one + 1.0).norm() < 1e-10, "{one}");
     // Beyond it the motion settles on twice the period.
     let mut flow = setting.flow(1e-6).unwrap();
     flow.set(Variable::Parameter(2), 7.3).unwrap();
-    let mut state = doubling.cycle.orbit.state().to_vec();
+    let mut state = doubling.point.orbit.state();
     for _ in 0..1000 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();
     }
     setting.period = 2;
     setting.segments = 2;
     let found = followed(&setting, [state[0], state[1]], 7.3, 7.0);
-    let joined = End::Joined {
+    let end = found.events.last().unwrap();
+    let joined = Stop::Joined {
         period: 1,
         symmetric: false,
+        value: end.point.value,
     };
-    assert_eq!(found.end, joined);
-    let end = found.events.last().unwrap();
+    assert_eq!(found.stopped, joined);
     assert_eq!(end.kind, EventKind::BranchPoint);
-    let error = (end.cycle.value - doubling.cycle.value).abs();
+    let error = (end.point.value - doubling.point.value).abs();
     assert!(error < end.error + doubling.error, "{end} {doubling}");
     assert!(error < 1e-9, "{end} {doubling}");
 }
@@ -272,10 +279,10 @@ fn a_period_doubles_where_the_branch_of_twice_the_period_ends() {
 fn beyond_a_fold_there_is_no_orbit_and_the_fold_is_named() {
     let setting = setting([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
     let found = followed(&setting, [0.2, 0.0], 0.7, 1.8);
-    let fold = &found.events[0].cycle;
-    let guess = Guess::State(fold.state().to_vec());
+    let fold = &found.events[0].point;
+    let guess = Guess::State(fold.orbit.state());
     let beyond = fold.value + 1e-7;
-    let error = cycle(&setting, &guess, beyond).unwrap_err();
+    let error = orbit(&setting, &guess, beyond).unwrap_err();
     let Some(&OrbitError::Beyond { value, fold: named }) = error.downcast_ref() else {
         panic!("{error}");
     };
@@ -283,14 +290,14 @@ fn beyond_a_fold_there_is_no_orbit_and_the_fold_is_named() {
     assert!((named - fold.value).abs() < 1e-10, "{named} {}", fold.value);
     let text = error.to_string();
     assert!(text.contains("turns back at 1.52244802"), "{text}");
-    let before = cycle(&setting, &guess, fold.value - 1e-7).unwrap();
-    assert!((before.state()[0] - fold.state()[0]).abs() < 1e-2);
+    let before = orbit(&setting, &guess, fold.value - 1e-7).unwrap();
+    assert!((before.orbit.state()[0] - fold.orbit.state()[0]).abs() < 1e-2);
 }
 
 #[test]
 fn a_motion_without_end_is_an_error_and_not_a_panic() {
     let setting = setting([0.05, -1.0, 0.2, 0.0], Variable::Omega, 0.5);
-    let error = cycle(&setting, &Guess::State(vec![3.0, 3.0]), 0.7).unwrap_err();
+    let error = orbit(&setting, &Guess::State(vec![3.0, 3.0]), 0.7).unwrap_err();
     assert!(error.downcast_ref::<MotionError>().is_some(), "{error}");
 }
 
@@ -298,7 +305,7 @@ fn a_motion_without_end_is_an_error_and_not_a_panic() {
 fn an_orbit_of_a_shorter_period_is_not_the_one_asked_for() {
     let mut setting = setting([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
     setting.period = 3;
-    let error = cycle(&setting, &Guess::State(vec![0.2, 0.0]), 0.7).unwrap_err();
+    let error = orbit(&setting, &Guess::State(vec![0.2, 0.0]), 0.7).unwrap_err();
     assert!(
         matches!(
             error.downcast_ref(),

@@ -69,7 +69,10 @@ fn a_fold_born_of_a_touch() {
     let request = FrequencyResponse::of(&model).vary("drive").omega(1.0);
     let request = request.period(4).from(1.5325).to(1.54).stability(false);
     let start = first(&request).points.remove(0).orbit;
-    let shooting = Shooting::of(&model).vary("drive").omega(1.0);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0);
     let shooting = shooting.near_orbit(&start).from(1.5325).to(1.54);
     // Whether a usual step ends between both turns is chance.
     println!(
@@ -78,7 +81,7 @@ fn a_fold_born_of_a_touch() {
         shooting.clone().run().unwrap().folds().count()
     );
     let exact = shooting.largest_step(0.003).max_points(250).run().unwrap();
-    let folds: Vec<_> = exact.folds().map(|fold| fold.cycle.value).collect();
+    let folds: Vec<_> = exact.folds().map(|fold| fold.point.value).collect();
     println!("by shooting, step 0.003: {folds:.12?}");
     let [touch, fold] = folds[..] else {
         panic!("{:?}", exact.events);

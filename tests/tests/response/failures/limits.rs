@@ -14,9 +14,9 @@ fn at(system: &dyn System, omega: f64) -> (Point, Stability) {
 fn found(system: &dyn System, omega: f64) -> Result<(Point, Stability), Error> {
     let request = FrequencyResponse::of(system).from(omega).to(1.001 * omega);
     let point = start(&request)?.points.remove(0);
-    let shooting = Shooting::of(system)
-        .near_orbit(&point.orbit)
-        .tolerance(1e-11);
+    let shooting = FrequencyResponse::of(system)
+        .by(Shooting::new().tolerance(1e-11))
+        .near_orbit(&point.orbit);
     let cycle = shooting.orbit(omega)?;
     Ok((point, cycle.stability))
 }

@@ -58,7 +58,9 @@ fn a_moving_contact_has_a_second_part() {
     println!("first harmonic {exact:.6}, by the first part {misused:.6}, by both {both:.6}");
     assert!((both - exact).norm() < 1e-4 * exact.norm());
     assert!((misused - exact).norm() > 0.3 * exact.norm());
-    let shooting = Shooting::of(&model).near_orbit(orbit).tolerance(1e-11);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new().tolerance(1e-11))
+        .near_orbit(orbit);
     let cycle = shooting.orbit(omega).unwrap();
     let stability = &branch.points[0].stability;
     let error = distance(&stability.multipliers, &cycle.stability.multipliers);

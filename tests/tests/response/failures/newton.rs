@@ -124,7 +124,11 @@ fn newton_wanders_where_sampled_damping_jumps() {
     assert!(primitive[5..].iter().all(|&norm| norm < 1e-13));
     // By shooting, which is what is offered close to a fold.
     let model = linear(drive);
-    let shooting = Shooting::of(&model).vary("drive").omega(1.0).period(8);
+    let shooting = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0)
+        .period(8);
     let cycle = shooting.near(&[-0.33, 0.333]).orbit(drive).unwrap();
     println!(
         "by shooting: {} updates, error {:.0e}",

@@ -44,7 +44,9 @@ fn samples_of_an_unbounded_stiffness_are_erratic() {
     let request = request.from(drive).to(1.01 * drive);
     let branch = first(&request);
     let orbit = &branch.points[0].orbit;
-    let exact = Shooting::of(&model).near_orbit(orbit).tolerance(1e-11);
+    let exact = FrequencyResponse::of(&model)
+        .by(Shooting::new().tolerance(1e-11))
+        .near_orbit(orbit);
     let exact = exact.orbit(omega).unwrap().stability;
     let method = Method::Hill(Sorting::Symmetry);
     let request = request.harmonics(20);

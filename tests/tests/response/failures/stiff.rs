@@ -21,7 +21,9 @@ fn projection_at_a_stiff_stop() {
     let mut worst = 0.0_f64;
     for omega in [0.63, 0.65, 0.67, 0.7] {
         for point in default.at(omega).unwrap() {
-            let shooting = Shooting::of(&model).near_orbit(&point.orbit);
+            let shooting = FrequencyResponse::of(&model)
+                .by(Shooting::new())
+                .near_orbit(&point.orbit);
             let exact = shooting.orbit(omega).unwrap().stability;
             let error = distance(&point.stability.multipliers, &exact.multipliers);
             let estimate = point.stability.error;

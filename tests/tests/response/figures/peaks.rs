@@ -90,7 +90,9 @@ fn model(random: &mut Random) -> String {
 
 /// The true error of an orbit, of all its coordinates the largest and relative to the largest; `None` where shooting does not find it.
 fn error(model: &Declaration, orbit: &Point) -> Option<f64> {
-    let request = Shooting::of(model).tolerance(1e-11).stability(false);
+    let request = FrequencyResponse::of(model)
+        .by(Shooting::new().tolerance(1e-11))
+        .stability(false);
     let exact = request.near_orbit(&orbit.orbit).orbit(orbit.value).ok()?;
     let motions = &orbit.observed.motions;
     let size = motions.iter().map(Motion::peak_to_peak).fold(0.0, f64::max);

@@ -69,7 +69,11 @@ fn the_balance_finds_them_too() {
 
 fn run([from, to]: [f64; 2], known: &[(EventKind, f64)], digits: f64) {
     let model = Bearing { load: 1.0 };
-    let request = Shooting::of(&model).from(from).to(to).max_points(120);
+    let request = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(from)
+        .to(to)
+        .max_points(120);
     let found = of_shooting(&request.run().unwrap());
     all_found(&found, known, digits);
 }

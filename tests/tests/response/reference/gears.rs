@@ -53,7 +53,10 @@ fn every_event_is_found_from_either_end() {
         let model = Gears { error: known.error };
         let [from, to] = known.range;
         for [from, to] in [[from, to], [to, from]] {
-            let request = Shooting::of(&model).from(from).to(to);
+            let request = FrequencyResponse::of(&model)
+                .by(Shooting::new())
+                .from(from)
+                .to(to);
             let found = of_shooting(&request.run().unwrap());
             all_found(&found, known.events, DIGITS);
         }

@@ -8,7 +8,7 @@ mod bearing;
 mod gears;
 mod two_masses;
 
-use hertzian::{CycleBranch, EventKind};
+use hertzian::{Branch, EventKind};
 
 /// An event of a branch, by either method.
 #[derive(Debug, Clone)]
@@ -18,10 +18,10 @@ struct Found {
     error: f64,
 }
 
-fn of_shooting(branch: &CycleBranch) -> Vec<Found> {
+fn of_shooting(branch: &Branch) -> Vec<Found> {
     let events = branch.events.iter().map(|event| Found {
         kind: event.kind,
-        value: event.cycle.value,
+        value: event.point.value,
         error: event.error,
     });
     events.collect()

@@ -30,8 +30,13 @@ const TOUCHES: [f64; 2] = [0.581_899_639_039_3, 0.653_440_140_416_3];
 #[test]
 fn every_event_is_found_from_either_end() {
     for [from, to] in [RANGE, [RANGE[1], RANGE[0]]] {
-        let branch = Shooting::of(&MODEL).from(from).to(to).run().unwrap();
-        assert_eq!(branch.end, End::Stopped(Stop::ReachedEnd));
+        let branch = FrequencyResponse::of(&MODEL)
+            .by(Shooting::new())
+            .from(from)
+            .to(to)
+            .run()
+            .unwrap();
+        assert_eq!(branch.stopped, Stop::ReachedEnd);
         let found = of_shooting(&branch);
         all_found(&found, &EVENTS, 1e-15);
         let touches = TOUCHES.map(|value| (EventKind::Grazing { turns: false }, value));

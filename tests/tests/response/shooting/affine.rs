@@ -9,7 +9,7 @@
     reason = "numbers as they were published, to be searched for"
 )]
 
-use hertzian::shooting::{Cycle, CycleBranch, CycleEvent};
+use hertzian::shooting::{Branch, Event, Point};
 use hertzian::{Complex, EventKind, FrequencyResponse, OrbitError, Shooting, Verdict};
 use hertzian_tests::OneSidedLinear;
 
@@ -95,33 +95,36 @@ const TABLE_1: [(f64, [f64; 2], [f64; 2]); 3] = [
 ];
 
 fn shooting() -> Shooting {
-    Shooting::of(&MODEL).vary("drive").omega(1.0)
+    FrequencyResponse::of(&MODEL)
+        .by(Shooting::new())
+        .vary("drive")
+        .omega(1.0)
 }
 
 /// The event is the exact one to 1e-11, and to the error that it states.
-fn assert_exact(event: &CycleEvent, kind: EventKind, exact: &Exact) {
+fn assert_exact(event: &Event, kind: EventKind, exact: &Exact) {
     assert_eq!(event.kind, kind, "{event}");
-    let error = (event.cycle.value - exact.drive).abs();
+    let error = (event.point.value - exact.drive).abs();
     assert!(error < 1e-11, "{event}: {error:.1e}");
     assert!(
         error <= event.error && event.error < 1e-11,
         "{event}: {error:.1e}"
     );
     let critical = if kind == EventKind::Fold { 1.0 } else { -1.0 };
-    let multipliers = &event.cycle.stability.multipliers;
+    let multipliers = &event.point.stability.multipliers;
     for (found, expected) in multipliers.iter().zip([critical, exact.multiplier]) {
         assert!((found - expected).norm() < 1e-9, "{event}: {multipliers:?}");
     }
     // Orbits of longer periods may be found from another phase on.
-    if event.cycle.period == 1 {
-        for (found, expected) in event.cycle.state().iter().zip(exact.state) {
+    if event.point.period == 1 {
+        for (found, expected) in event.point.state().iter().zip(exact.state) {
             assert!((found - expected).abs() < 1e-9, "{event}");
         }
     }
 }
 
 /// Not one turn that is no fold.
-fn assert_smooth(branch: &CycleBranch) {
+fn assert_smooth(branch: &Branch) {
     assert!(branch.turns.is_empty(), "{:?}", branch.turns);
 }
 
@@ -136,7 +139,7 @@ fn period_1_doubles_at_a1() {
             panic!("{:?}", branch.events);
         };
         assert_exact(doubling, EventKind::PeriodDoubling, &A1);
-        for cycle in &branch.cycles {
+        for cycle in &branch.points {
             let stable = cycle.value < A1.drive;
             let expected = if stable {
                 Verdict::Stable
@@ -154,7 +157,7 @@ fn period_2_doubles_at_a4_and_a6_and_folds() {
     let request = shooting().period(2).near(&[-0.097, 0.283]);
     let branch = request.from(1.52).to(2.2).run().unwrap();
     assert_smooth(&branch);
-    let grazing = |event: &&CycleEvent| matches!(event.kind, EventKind::Grazing { .. });
+    let grazing = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
     let events: Vec<_> = branch.events.iter().filter(|e| !grazing(e)).collect();
     let [a4, a6, fold, ..] = events[..] else {
         panic!("{events:?}");
@@ -182,16 +185,16 @@ fn period_2_joins_period_1_at_a1() {
     let branch = request.from(1.52).to(1.1).run().unwrap();
     let joint = branch.events.last().unwrap();
     assert_eq!(joint.kind, EventKind::BranchPoint);
-    let error = (joint.cycle.value - A1.drive).abs();
+    let error = (joint.point.value - A1.drive).abs();
     assert!(error < 1e-11, "{joint} {error:.1e}");
     assert!(
         error <= joint.error && joint.error < 1e-11,
         "{joint} {error:.1e}"
     );
     // It lies behind the last orbit of the branch.
-    assert_eq!(joint.after, branch.cycles.len());
-    let last = branch.cycles.last().unwrap();
-    assert!(last.value > joint.cycle.value);
+    assert_eq!(joint.after, branch.points.len());
+    let last = branch.points.last().unwrap();
+    assert!(last.value > joint.point.value);
 }
 
 /// From a state near it to three digits.
@@ -261,7 +264,7 @@ const AT_DRIVE_1: [(usize, [f64; 2], f64); 3] = [
     ),
 ];
 
-fn assert_known(cycle: &Cycle, [re, im]: [f64; 2], peak_to_peak: f64) {
+fn assert_known(cycle: &Point, [re, im]: [f64; 2], peak_to_peak: f64) {
     assert!((1..10).contains(&cycle.iterations), "{cycle:?}");
     let found = cycle.stability.multipliers[0];
     let error = (found - Complex::new(re, im)).norm();

@@ -17,12 +17,17 @@ fn two_masses_lose_stability_where_they_should() {
         stop: 100.0,
         drive: 0.1,
     };
-    let branch = Shooting::of(&model).from(0.5).to(1.0).run().unwrap();
-    assert_eq!(branch.end, End::Stopped(Stop::ReachedEnd));
+    let branch = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .from(0.5)
+        .to(1.0)
+        .run()
+        .unwrap();
+    assert_eq!(branch.stopped, Stop::ReachedEnd);
     assert!(branch.turns.is_empty(), "{:?}", branch.turns);
     let doubles = branch
         .events(EventKind::PeriodDoubling)
-        .map(|event| event.cycle.value);
+        .map(|event| event.point.value);
     assert!(
         doubles
             .into_iter()
@@ -30,7 +35,7 @@ fn two_masses_lose_stability_where_they_should() {
     );
     // The Neimark-Sacker bifurcation is between verdicts.
     let omega = 0.61861;
-    let passes = branch.cycles.windows(2).any(|pair| {
+    let passes = branch.points.windows(2).any(|pair| {
         let [before, behind] = [&pair[0], &pair[1]].map(|cycle| cycle.stability.verdict);
         let between = pair[0].value < omega && omega < pair[1].value;
         between && before == Verdict::Unstable && behind == Verdict::Stable
@@ -49,11 +54,11 @@ fn folds_of_two_masses_are_those_of_the_balance() {
     let by_balance = by_balance.stability(false).run().unwrap();
     let folds: Vec<_> = by_balance.folds().collect();
     for segments in [1, 4] {
-        let request = Shooting::of(&model).segments(segments);
+        let request = FrequencyResponse::of(&model).by(Shooting::new().segments(segments));
         let branch = request.from(0.5).to(1.0).run().unwrap();
         assert_eq!(branch.folds().count(), folds.len());
         for (fold, expected) in branch.folds().zip(&folds) {
-            let error = (fold.cycle.value - expected.point.value).abs();
+            let error = (fold.point.value - expected.point.value).abs();
             assert!(error <= fold.error + expected.error, "{fold} {expected}");
             assert!(fold.error < 1e-11, "{fold}");
         }
@@ -75,7 +80,10 @@ fn a_period_is_that_of_the_declaration() {
         zeta: 0.1,
         drive: 0.1,
     };
-    let cycle = Shooting::of(&model).orbit(0.9).unwrap();
+    let cycle = FrequencyResponse::of(&model)
+        .by(Shooting::new())
+        .orbit(0.9)
+        .unwrap();
     assert_eq!(cycle.period, 1);
     // The phase of the flow is that of the declaration too.
     let mut flow = time::of(&model, 0.9, Options::default()).unwrap();
@@ -99,9 +107,9 @@ fn rounding_is_stated() {
         stop: 100.0,
         drive: 0.1,
     };
-    let request = Shooting::of(&model);
+    let request = FrequencyResponse::of(&model).by(Shooting::new());
     let branch = request.clone().from(0.5).to(0.7).run().unwrap();
-    for cycle in &branch.cycles {
+    for cycle in &branch.points {
         let again = request.clone().segments(3).near(cycle.state());
         assert_stated(cycle, &again.orbit(cycle.value).unwrap());
     }

@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::shooting::{CycleBranch, CycleEvent, End};
+use hertzian::shooting::{Branch, End, Event};
 use hertzian::time;
 use hertzian::time::Options;
 use hertzian::{EventKind, Shooting, Stop, System, Verdict};
@@ -39,21 +39,21 @@ pub fn one_sided(alpha: f64) -> Box<dyn System> {
 }
 
 /// The event is the exact one to 1e-9, and to the error that it states.
-fn assert_exact(event: &CycleEvent, omega: f64, peak_to_peak: f64) {
-    let error = (event.cycle.value - omega).abs();
+fn assert_exact(event: &Event, omega: f64, peak_to_peak: f64) {
+    let error = (event.point.value - omega).abs();
     assert!(error < 1e-9, "{event}: {error:.1e}");
     assert!(error <= event.error + EXACT, "{event}: {error:.1e}");
     assert!(event.error < 1e-8, "{event}");
-    let error = (event.cycle.peak_to_peak() - peak_to_peak).abs();
+    let error = (event.point.peak_to_peak() - peak_to_peak).abs();
     assert!(error < 1e-6 * peak_to_peak, "{event}: {error:.1e}");
 }
 
 /// The events of one kind of a sweep that reaches its end are these, in order of the frequency.
-fn assert_events(branch: &CycleBranch, kind: EventKind, exact: &[(f64, f64)]) {
-    assert_eq!(branch.end, End::Stopped(Stop::ReachedEnd));
+fn assert_events(branch: &Branch, kind: EventKind, exact: &[(f64, f64)]) {
+    assert_eq!(branch.stopped, Stop::ReachedEnd);
     assert!(branch.turns.is_empty(), "{:?}", branch.turns);
     let mut found: Vec<_> = branch.events(kind).collect();
-    found.sort_by(|a, b| a.cycle.value.total_cmp(&b.cycle.value));
+    found.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
     assert_eq!(found.len(), exact.len(), "{found:?}");
     for (event, &(omega, peak_to_peak)) in found.iter().zip(exact) {
         assert_exact(event, omega, peak_to_peak);
@@ -61,8 +61,13 @@ fn assert_events(branch: &CycleBranch, kind: EventKind, exact: &[(f64, f64)]) {
 }
 
 /// A sweep that starts at the orbit of the balance; all of it with the defaults.
-fn sweep(system: &dyn System, from: f64, to: f64) -> CycleBranch {
-    Shooting::of(system).from(from).to(to).run().unwrap()
+fn sweep(system: &dyn System, from: f64, to: f64) -> Branch {
+    FrequencyResponse::of(system)
+        .by(Shooting::new())
+        .from(from)
+        .to(to)
+        .run()
+        .unwrap()
 }
 
 fn assert_folds(system: &dyn System, (from, to): (f64, f64), exact: &[(f64, f64)]) {
@@ -121,16 +126,16 @@ fn superharmonic_resonances_of_figure_2b() {
         (0.655311078341127, 0.08855353862405),
     ];
     let branch = sweep(&*continuous(0.6, 0.0), 0.37, 0.7);
-    assert_eq!(branch.end, End::Stopped(Stop::ReachedEnd));
-    let is_listed = |event: &&CycleEvent| !(0.639..0.641).contains(&event.cycle.value);
+    assert_eq!(branch.stopped, Stop::ReachedEnd);
+    let is_listed = |event: &&Event| !(0.639..0.641).contains(&event.point.value);
     let (listed, others): (Vec<_>, Vec<_>) = branch.folds().partition(is_listed);
     assert_eq!(others.len(), 2, "{others:?}");
     for (event, by_balance) in others.iter().rev().zip([0.6394528, 0.6401352]) {
-        assert!((event.cycle.value - by_balance).abs() < 1e-7, "{event}");
+        assert!((event.point.value - by_balance).abs() < 1e-7, "{event}");
     }
     assert_eq!(listed.len(), folds.len(), "{listed:?}");
     for (omega, peak_to_peak) in folds {
-        let near = |event: &&&CycleEvent| (event.cycle.value - omega).abs() < 1e-5;
+        let near = |event: &&&Event| (event.point.value - omega).abs() < 1e-5;
         assert_exact(listed.iter().find(near).unwrap(), omega, peak_to_peak);
     }
 }
@@ -186,24 +191,29 @@ fn settled(system: &dyn System, omega: f64, state: [f64; 2]) -> [f64; 2] {
 
 /// The branch of asymmetric orbits from one on which the motion settles to the point where it meets the symmetric branch. The
 /// branch goes on from there to the orbits that are its mirror images.
-fn asymmetric(system: &dyn System, start: f64, end: f64) -> Vec<CycleEvent> {
-    let symmetric = Shooting::of(system).orbit(start).unwrap();
+fn asymmetric(system: &dyn System, start: f64, end: f64) -> Vec<Event> {
+    let symmetric = FrequencyResponse::of(system)
+        .by(Shooting::new())
+        .orbit(start)
+        .unwrap();
     assert!(symmetric.symmetric);
     assert_eq!(symmetric.stability.verdict, Verdict::Unstable);
     let state = symmetric.state();
     let state = settled(system, start, [1.1 * state[0], state[1]]);
-    let request = Shooting::of(system).near(&state);
+    let request = FrequencyResponse::of(system)
+        .by(Shooting::new())
+        .near_state(&state);
     let branch = request.from(start).to(end).run().unwrap();
     assert!(branch.turns.is_empty(), "{:?}", branch.turns);
-    let is_end = |event: &CycleEvent| event.kind == EventKind::BranchPoint;
+    let is_end = |event: &Event| event.kind == EventKind::BranchPoint;
     let end = branch.events.iter().position(is_end).unwrap();
     branch.events[..=end].to_vec()
 }
 
 /// Each of these is among the events.
-fn assert_among(events: &[CycleEvent], exact: &[(EventKind, f64, f64)]) {
+fn assert_among(events: &[Event], exact: &[(EventKind, f64, f64)]) {
     for &(kind, omega, peak_to_peak) in exact {
-        let near = |event: &&CycleEvent| (event.cycle.value - omega).abs() < 1e-5;
+        let near = |event: &&Event| (event.point.value - omega).abs() < 1e-5;
         let found = events.iter().find(near).unwrap();
         assert_eq!(found.kind, kind, "{found}");
         assert_exact(found, omega, peak_to_peak);

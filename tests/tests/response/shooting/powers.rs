@@ -98,16 +98,29 @@ fn a_free_mass_leaves_a_stop_when_it_should() {
 #[test]
 fn a_branch_over_a_square_stop_is_followed_both_ways() {
     let [up, down] = [(0.5, 1.5), (1.5, 0.5)].map(|(from, to)| {
-        let branch = Shooting::of(&Square {}).from(from).to(to).run().unwrap();
-        assert_eq!(branch.cycles.last().unwrap().value, to, "{:?}", branch.end);
-        let request = Shooting::of(&Square {});
+        let branch = FrequencyResponse::of(&Square {})
+            .by(Shooting::new())
+            .from(from)
+            .to(to)
+            .run()
+            .unwrap();
+        assert_eq!(
+            branch.points.last().unwrap().value,
+            to,
+            "{:?}",
+            branch.stopped
+        );
+        let request = FrequencyResponse::of(&Square {}).by(Shooting::new());
         [0.7, 1.0, 1.3].map(|omega| request.at(&branch, omega).unwrap()[0].peak_to_peak())
     });
     for (up, down) in up.iter().zip(down) {
         assert!((up - down).abs() < 1e-8, "{up} {down}");
     }
     // The same orbits by the independent integration below, of their states.
-    let orbit = Shooting::of(&Square {}).orbit(1.2).unwrap();
+    let orbit = FrequencyResponse::of(&Square {})
+        .by(Shooting::new())
+        .orbit(1.2)
+        .unwrap();
     let force = |x: f64| {
         if x > 0.5 {
             10.0 * (x - 0.5).powi(2)

@@ -1,13 +1,13 @@
 //! What is stated of errors: orbits at a coarse tolerance against the same orbits at a fine one.
 
-use hertzian::shooting::Cycle;
+use hertzian::shooting::Point;
 use hertzian::{Shooting, System, Verdict};
 use hertzian_tests::distance;
 
 use super::integrated::{continuous, one_sided};
 
 /// Errors of states and multipliers are within what is stated, and no verdict is false.
-pub fn assert_stated(cycle: &Cycle, finer: &Cycle) {
+pub fn assert_stated(cycle: &Point, finer: &Point) {
     let pairs = cycle.state().iter().zip(finer.state());
     let state = pairs.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()));
     let omega = cycle.omega.max(1.0);
@@ -24,16 +24,16 @@ pub fn assert_stated(cycle: &Cycle, finer: &Cycle) {
 }
 
 fn compare(system: &dyn System, (from, to): (f64, f64)) {
-    let coarse = Shooting::of(system).tolerance(1e-7);
-    let fine = Shooting::of(system).tolerance(1e-13);
+    let coarse = FrequencyResponse::of(system).by(Shooting::new().tolerance(1e-7));
+    let fine = FrequencyResponse::of(system).by(Shooting::new().tolerance(1e-13));
     let branch = coarse.from(from).to(to).run().unwrap();
     let mut undecided = 0;
-    for cycle in branch.cycles.iter().step_by(3) {
+    for cycle in branch.points.iter().step_by(3) {
         let finer = fine.clone().near(cycle.state()).orbit(cycle.value).unwrap();
         assert_stated(cycle, &finer);
         undecided += usize::from(cycle.stability.verdict == Verdict::Undecided);
     }
-    assert!(undecided <= branch.cycles.len() / 50, "{undecided}");
+    assert!(undecided <= branch.points.len() / 50, "{undecided}");
 }
 
 #[test]
@@ -78,7 +78,10 @@ fn seconds_and_milliseconds_tell_the_same() {
             } else {
                 Box::new(Faster { rate })
             };
-            Shooting::of(&*model).orbit(0.9 * rate).unwrap()
+            FrequencyResponse::of(&*model)
+                .by(Shooting::new())
+                .orbit(0.9 * rate)
+                .unwrap()
         });
         assert_eq!(slow.stability.verdict, Verdict::Stable);
         assert_eq!(fast.stability.verdict, Verdict::Stable);
@@ -96,17 +99,17 @@ fn seconds_and_milliseconds_tell_the_same() {
 fn the_finest_tolerance_has_an_error() {
     let system = continuous(1.5, 0.0);
     let events = [1e-12, 1e-14].map(|tolerance| {
-        let shooting = Shooting::of(&*system).tolerance(tolerance);
+        let shooting = FrequencyResponse::of(&*system).by(Shooting::new().tolerance(tolerance));
         let branch = shooting.from(0.6).to(1.7).run().unwrap();
         branch.folds().next().unwrap().clone()
     });
     for event in &events {
         // By event-located integration in 80-bit arithmetic (`frequency_response` of the reference values), to 3e-15.
-        let error = (event.cycle.value - 1.332_696_002_393_464).abs();
+        let error = (event.point.value - 1.332_696_002_393_464).abs();
         assert!(error <= event.error + 3e-15, "{event} {error:.1e}");
         // More than the rounding of the value alone.
         assert!(event.error > 3e-15, "{event}");
-        assert!(event.cycle.error.unwrap() > 1e-14, "{event}");
+        assert!(event.point.error.unwrap() > 1e-14, "{event}");
         assert!(event.error < 1e-10, "{event}");
     }
 }
