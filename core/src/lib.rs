@@ -74,6 +74,7 @@ pub mod attractors;
 mod balance;
 pub mod bifurcation;
 mod branches;
+mod cancel;
 #[cfg(feature = "plot")]
 pub mod chart;
 mod continuation;
@@ -102,6 +103,8 @@ pub use bifurcation::error::BifurcationError;
 pub use branches::error::{Attempts, OrbitError};
 pub use branches::orbit::Orbit;
 pub use branches::point::{Event, Point};
+pub use branches::progress::{Progress, Stage};
+pub use cancel::Cancel;
 pub use continuation::follow::Stop;
 pub use continuation::newton::NewtonError;
 pub use continuation::statistics::Statistics;

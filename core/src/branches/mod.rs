@@ -6,6 +6,7 @@ pub(crate) mod observed;
 pub(crate) mod orbit;
 pub(crate) mod point;
 pub(crate) mod problem;
+pub(crate) mod progress;
 pub(crate) mod stability;
 pub(crate) mod switch;
 pub(crate) mod value;
