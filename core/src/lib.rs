@@ -75,12 +75,9 @@ mod balance;
 pub mod bifurcation;
 mod branches;
 mod cancel;
-#[cfg(feature = "plot")]
-pub mod chart;
 mod continuation;
 pub mod error;
 mod event;
-mod file;
 #[cfg(doctest)]
 mod guide;
 pub mod law;
@@ -128,6 +125,13 @@ pub use response::branch::Branch;
 pub use response::stages;
 pub use shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
 pub use system::System;
+
+/// Charts as SVG, and what a branch draws on them.
+#[cfg(feature = "plot")]
+pub mod chart {
+    pub use crate::report::picture::event_markers;
+    pub use hertzian_chart::*;
+}
 
 /// Computed branches of periodic orbits.
 pub mod branch {

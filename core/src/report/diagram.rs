@@ -1,10 +1,11 @@
 //! The charts of a branch by shooting, and of a diagram.
 
+use hertzian_chart::{Chart, Curve, Run};
+
 use crate::bifurcation::diagram::{Diagram, Limb};
-use crate::chart::{Chart, Curve, Run};
 use crate::error::Error;
 use crate::event::EventKind;
-use crate::report::picture::runs;
+use crate::report::picture::{empty_chart, event_markers, runs, unlocated};
 use crate::shooting::{Cycle, CycleBranch};
 
 impl Diagram {
@@ -27,11 +28,12 @@ impl Diagram {
                 .flat_map(|limb| limb.branch.runs(place))
                 .collect(),
         });
-        let chart = curves.fold(first.branch.labels.chart(), Chart::curve);
+        let chart = curves.fold(empty_chart(&first.branch.labels), Chart::curve);
         let branches = || self.branches.iter().map(|limb| &limb.branch);
-        chart
-            .events(branches().flat_map(CycleBranch::marked))
-            .unlocated(branches().flat_map(CycleBranch::unlocated).collect())
+        let turns = branches().flat_map(CycleBranch::unlocated).collect();
+        event_markers(branches().flat_map(CycleBranch::marked))
+            .chain([unlocated(turns)])
+            .fold(chart, Chart::markers)
     }
 
     /// Draws the [`chart`](Self::chart) as an SVG file.
@@ -57,10 +59,9 @@ impl CycleBranch {
         };
         let period = self.cycles.first().map_or(1, |cycle| cycle.period);
         let labels = self.labels.clone().with_period(period);
-        let chart = labels.chart().curve(curve);
-        chart
-            .events(self.marked())
-            .unlocated(self.unlocated().collect())
+        event_markers(self.marked())
+            .chain([unlocated(self.unlocated().collect())])
+            .fold(empty_chart(&labels).curve(curve), Chart::markers)
     }
 
     /// Draws the [`chart`](Self::chart) as an SVG file.
