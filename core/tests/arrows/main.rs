@@ -11,14 +11,17 @@ use std::path::{Path, PathBuf};
 
 use reader::{Reader, arrows};
 
-/// What generated code gives the runtime; it stands before everything.
+/// The contract under the names that users have for it; it stands before everything.
 const CONTRACT: &[&str] = &["law", "system"];
+
+/// The modules of the package of the contract.
+const IN_CONTRACT: &[&str] = &["data", "law", "system", "declared", "constants"];
 
 /// Single files that stand before all rooms, at most four.
 const SHARED: &[&str] = &["event", "cancel"];
 
 /// Packages that the runtime is built on, and which of them each is built on itself.
-const LEAVES: &[(&str, &[&str])] = &[("file", &[]), ("chart", &["file"])];
+const LEAVES: &[(&str, &[&str])] = &[("contract", &[]), ("file", &[]), ("chart", &["file"])];
 
 /// The rooms, the lowest first. Shooting stands after the responses since it takes its first orbit from the balance.
 const ROOMS: &[&str] = &[
@@ -90,6 +93,11 @@ fn every_module_of_the_root_has_its_place() {
         let may_be_file = [CONTRACT, SHARED, TESTS].concat().contains(&name);
         assert!(!is_file || may_be_file, "{name} is no room");
     }
+}
+
+#[test]
+fn modules_of_the_contract_name_only_modules_before_them() {
+    assert_no_arrow_runs_up("contract", IN_CONTRACT, 10);
 }
 
 /// Packages below the runtime know nothing of it: they depend on nothing of this workspace but what is listed.
