@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes core/src/chart/glyphs.txt: outlines of the letters in charts, from DejaVu Sans. Needs fonttools.
+"""Writes core/chart/src/glyphs.txt: outlines of the letters in charts, from DejaVu Sans. Needs fonttools.
 
     docs/glyphs.py DejaVuSans.ttf
 
@@ -61,7 +61,7 @@ def main():
         name = names[ord(character)]
         advance = round(glyphs[name].width * scale)
         lines.append(f"{ord(character):x} {advance} {outline(glyphs, name, scale)}".rstrip())
-    target = Path(__file__).parent.parent / "core/src/chart/glyphs.txt"
+    target = Path(__file__).parent.parent / "core/chart/src/glyphs.txt"
     target.write_text("\n".join(lines) + "\n")
 
 

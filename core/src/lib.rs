@@ -75,12 +75,10 @@ mod balance;
 mod balance_branch;
 pub mod bifurcation;
 mod branches;
-#[cfg(feature = "plot")]
-pub mod chart;
+mod cancel;
 mod continuation;
 pub mod error;
 mod event;
-mod file;
 #[cfg(doctest)]
 mod guide;
 pub mod law;
@@ -105,6 +103,8 @@ pub use branches::branch::{Branch, Model};
 pub use branches::error::{Attempts, OrbitError};
 pub use branches::orbit::Orbit;
 pub use branches::point::{Event, Point};
+pub use branches::progress::{Progress, Stage};
+pub use cancel::Cancel;
 pub use continuation::follow::Stop;
 pub use continuation::newton::NewtonError;
 pub use continuation::statistics::Statistics;
@@ -127,6 +127,13 @@ pub use response::stages;
 pub use response::{FrequencyResponse, OrbitMethod};
 pub use shooting::Shooting;
 pub use system::System;
+
+/// Charts as SVG, and what a branch draws on them.
+#[cfg(feature = "plot")]
+pub mod chart {
+    pub use crate::report::picture::event_markers;
+    pub use hertzian_chart::*;
+}
 
 /// Computed branches of periodic orbits.
 pub mod branch {

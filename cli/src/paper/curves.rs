@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
-use hertzian::chart::{Chart, Curve, Reference, Scale};
+use hertzian::chart::{Chart, Curve, Reference, Scale, event_markers};
 use hertzian::error::chain;
 use hertzian::export;
 use hertzian::shooting::Side;
@@ -304,7 +304,7 @@ impl<'t> Curves<'t> {
             ..
         } = self;
         let drawn = lines.into_iter().fold(chart, Chart::curve);
-        drawing.svg = drawn.events(marks).to_svg();
+        drawing.svg = event_markers(marks).fold(drawn, Chart::markers).to_svg();
         drawing.note = notes.join(" ");
         drawing
     }

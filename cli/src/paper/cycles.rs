@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use hertzian::bifurcation::Bifurcations;
-use hertzian::chart::{Chart, Curve, Markers, Scale};
+use hertzian::chart::{Chart, Curve, Markers, Scale, event_markers};
 use hertzian::error::chain;
 use hertzian::shooting::{Branch, Event, Point};
 use hertzian::{EventKind, OrbitError, Shooting};
@@ -127,7 +127,9 @@ impl<'t> Cycles<'t> {
         for curve in self.curves {
             chart = chart.curve(curve);
         }
-        self.drawing.svg = chart.events(self.marks).to_svg();
+        self.drawing.svg = event_markers(self.marks)
+            .fold(chart, Chart::markers)
+            .to_svg();
         self.drawing
     }
 }

@@ -7,6 +7,7 @@ pub(crate) mod observed;
 pub(crate) mod orbit;
 pub(crate) mod point;
 pub(crate) mod problem;
+pub(crate) mod progress;
 pub(crate) mod request;
 pub(crate) mod solve;
 pub(crate) mod stability;

@@ -12,6 +12,7 @@
 use super::follow::CurvePoint;
 use super::problem::{AsProblem, Problem};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::numeric::roots::{self, Place};
 
 /// Orbits on each side.
 const SIDE: usize = 4;
@@ -19,7 +20,6 @@ const SIDE: usize = 4;
 const WIDTHS: [f64; 2] = [0.1, 0.02];
 /// Fewer orbits than this are not enough.
 const FEWEST: usize = 5;
-const BISECTIONS: usize = 60;
 /// Errors of all orbits together, in units of what the worst of them does to the result when it is left out.
 const LEFT_OUT: f64 = 4.0;
 
@@ -215,23 +215,13 @@ fn root(nodes: &[Node]) -> Option<f64> {
     let pair = order
         .windows(2)
         .find(|pair| pair[0].test * pair[1].test <= 0.0)?;
-    let value = |s: f64| {
+    let [low, high] = [pair[0], pair[1]].map(|node| Place {
+        x: node.s,
+        value: node.test,
+    });
+    roots::root(low, high, 0.0, |s| {
         let (weights, sum) = weights(nodes, s);
         let pairs = nodes.iter().zip(&weights);
         pairs.map(|(node, weight)| weight * node.test).sum::<f64>() / sum
-    };
-    let (mut low, mut high) = (pair[0].s, pair[1].s);
-    let sign = pair[0].test.signum();
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if value(middle) * sign > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(0.5 * (low + high))
+    })
 }

@@ -1,15 +1,12 @@
 //! Locating where a test function vanishes between two points of a curve.
 //!
 //! The curve between them is parametrised by the arc length `s` of the chord's first tangent; every value of the test
-//! function is taken at a corrected solution. The root is bracketed and found by inverse quadratic interpolation where the
-//! function is monotone enough for it, and by bisection elsewhere.
-//!
-//! Source: Chandrupatla (1997), A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without
-//! using derivatives.
+//! function is taken at a corrected solution. Where to look next is what [`Bracket`] says.
 
 use super::follow::CurvePoint;
 use super::problem::{AsProblem, Problem, Scale};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::numeric::roots::{Bracket, Place, STEPS};
 
 /// A point where the test function vanishes.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,19 +37,18 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
     let mut border = vec![0.0; a.u.len()];
     newton.norm().linear_form(a.scale, &a.tangent, &mut border);
     let origin = crate::numeric::linear::dot(&border, &a.u);
-    let mut side = |s, point: &CurvePoint| Side {
-        s,
-        value: test(problem, point),
+    let mut side = |x, point: &CurvePoint| Side {
+        place: Place {
+            x,
+            value: test(problem, point),
+        },
         point: point.clone(),
     };
     let (mut far, mut near) = (side(0.0, a), side(length, b));
-    let mut part = near.value / (near.value - far.value);
-    if !(part > 0.0 && part < 1.0) {
-        part = 0.5;
-    }
-    for _ in 0..100 {
+    let mut bracket = Bracket::new(far.place, near.place, CLOSEST * length.abs());
+    for _ in 0..STEPS {
         let mut at = |part: f64| {
-            let s = near.s + part * (far.s - near.s);
+            let s = bracket.at(part);
             let trial = between((&near, &far), s, &border);
             let row = Border {
                 row: &border,
@@ -62,9 +58,9 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
             Some((s, point))
         };
         // Where a correction fails, another place may do.
-        let (s, point) = match at(part) {
+        let (x, point) = match at(bracket.part()) {
             Some(found) => found,
-            None => at(0.5 * part + 0.2)?,
+            None => at(0.5 * bracket.part() + 0.2)?,
         };
         let value = test(problem, &point);
         if value.abs() <= tolerance {
@@ -74,31 +70,19 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
                 vanishes: true,
             });
         }
-        let new = Side { s, value, point };
-        // The zero is between the new side and the one of opposite sign; the third is what was left.
-        let mut third = std::mem::replace(&mut near, new);
-        if value * third.value <= 0.0 {
-            third = std::mem::replace(&mut far, third);
+        let place = Place { x, value };
+        let last = std::mem::replace(&mut near, Side { place, point });
+        if bracket.take(place) {
+            far = last;
         }
-        let closest = CLOSEST * (length / (far.s - near.s)).abs();
-        if closest >= 0.5 {
+        if bracket.is_closed() {
             break;
         }
-        part = interpolated(
-            (near.s, near.value),
-            (far.s, far.value),
-            (third.s, third.value),
-        )
-        .clamp(closest, 1.0 - closest);
     }
-    let last = if near.value.abs() < far.value.abs() {
-        near
-    } else {
-        far
-    };
+    let last = if bracket.near_is_best() { near } else { far };
     Some(Located {
         vanishes: false,
-        test: last.value,
+        test: last.place.value,
         point: last.point,
     })
 }
@@ -117,9 +101,9 @@ pub(crate) fn inside(
     let length = newton.norm().product(a.scale, &a.tangent, &difference);
     let mut border = vec![0.0; a.u.len()];
     newton.norm().linear_form(a.scale, &a.tangent, &mut border);
-    let [from, to] = [(0.0, a), (length, b)].map(|(s, point)| Side {
-        s,
-        value: f64::NAN,
+    let value = f64::NAN;
+    let [from, to] = [(0.0, a), (length, b)].map(|(x, point)| Side {
+        place: Place { x, value },
         point: point.clone(),
     });
     let trial = between((&from, &to), part * length, &border);
@@ -132,22 +116,9 @@ pub(crate) fn inside(
 
 /// A point at one side of the zero.
 struct Side {
-    s: f64,
-    value: f64,
+    /// Arc length and test function.
+    place: Place,
     point: CurvePoint,
-}
-
-/// Where to look next, as a part of the way from `a` to `b`, given a third point: by inverse quadratic interpolation if all
-/// three lie on a function that is monotone with that, and the middle otherwise.
-fn interpolated(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> f64 {
-    let place = (a.0 - b.0) / (c.0 - b.0);
-    let level = (a.1 - b.1) / (c.1 - b.1);
-    if !(level * level < place && (1.0 - level) * (1.0 - level) < 1.0 - place) {
-        return 0.5;
-    }
-    let part = a.1 / (b.1 - a.1) * c.1 / (b.1 - c.1)
-        + (c.0 - a.0) / (b.0 - a.0) * a.1 / (c.1 - a.1) * b.1 / (c.1 - b.1);
-    if part.is_finite() { part } else { 0.5 }
 }
 
 /// The solution near `u`, with the tangent of the whole system.
@@ -175,8 +146,8 @@ fn corrected(
 
 /// The cubic through two points with their tangents; a straight line where a tangent hardly follows the arc length.
 fn between((a, b): (&Side, &Side), s: f64, border: &[f64]) -> Vec<f64> {
-    let width = b.s - a.s;
-    let x = (s - a.s) / width;
+    let width = b.place.x - a.place.x;
+    let x = (s - a.place.x) / width;
     let ahead = |side: &Side| crate::numeric::linear::dot(border, &side.point.tangent);
     let (first, last) = (ahead(a), ahead(b));
     let (share, start, end) = if first.min(last) > 0.5 * first.max(last) {

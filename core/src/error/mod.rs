@@ -56,6 +56,8 @@ pub enum ErrorKind {
     Limit,
     /// The motion: from its state it cannot be continued.
     Motion,
+    /// Nothing: the computation was [cancelled](crate::Cancel) before there was a result.
+    Cancelled,
     /// The file: it cannot be read, written or used.
     File,
     /// What the operating system gives.

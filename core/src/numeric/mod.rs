@@ -5,6 +5,7 @@ pub(crate) mod exponential;
 pub mod fourier;
 pub(crate) mod linear;
 pub mod power;
+pub(crate) mod roots;
 #[cfg(feature = "serde")]
 pub(crate) mod serialise;
 pub(crate) mod spectrum;

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use crate::branches::branch::Branch;
 use crate::error::Error;
-use crate::file;
 use crate::report::error::FileError;
 
 use super::export::Table;
@@ -25,7 +24,7 @@ impl Branch {
     /// If the file cannot be written.
     pub fn write_csv(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        file::write(path, self.to_csv()).map_err(|source| {
+        hertzian_file::write(path, self.to_csv()).map_err(|source| {
             let (path, kind) = (path.to_path_buf(), source.kind());
             FileError::Write { path, kind }.into()
         })

@@ -1,10 +1,12 @@
 //! The chart of a diagram.
 
+use hertzian_chart::{Chart, Curve};
+
 use crate::bifurcation::diagram::{Diagram, Limb};
 use crate::branches::branch::Branch;
-use crate::chart::{Chart, Curve};
 use crate::error::Error;
 use crate::report::labels::Labels;
+use crate::report::picture::{empty_chart, event_markers, unlocated};
 
 impl Diagram {
     /// Peak-to-peak of the first coordinate over what is varied, one curve for each period: stable solid, unstable dashed,
@@ -26,11 +28,12 @@ impl Diagram {
                 .flat_map(|limb| limb.branch.runs())
                 .collect(),
         });
-        let chart = curves.fold(Labels::of(&first.branch).chart(), Chart::curve);
+        let chart = curves.fold(empty_chart(&Labels::of(&first.branch)), Chart::curve);
         let branches = || self.branches.iter().map(|limb| &limb.branch);
-        chart
-            .events(branches().flat_map(Branch::marked))
-            .unlocated(branches().flat_map(Branch::unlocated).collect())
+        let turns = branches().flat_map(Branch::unlocated).collect();
+        event_markers(branches().flat_map(Branch::marked))
+            .chain([unlocated(turns)])
+            .fold(chart, Chart::markers)
     }
 
     /// Draws the [`chart`](Self::chart) as an SVG file.

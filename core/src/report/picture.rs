@@ -3,9 +3,10 @@
 use std::mem::discriminant;
 use std::path::Path;
 
+use hertzian_chart::{Chart, ChartError, Curve, Line, Markers, Run};
+
 use crate::branches::branch::Branch;
 use crate::branches::point::Point;
-use crate::chart::{Chart, ChartError, Curve, Line, Markers, Run};
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::orbit::stability::Verdict;
@@ -30,10 +31,9 @@ impl Branch {
             runs: self.runs(),
         };
         let labels = Labels::of(self).with_period(self.period());
-        let chart = labels.chart().curve(curve);
-        chart
-            .events(self.marked())
-            .unlocated(self.unlocated().collect())
+        event_markers(self.marked())
+            .chain([unlocated(self.unlocated().collect())])
+            .fold(empty_chart(&labels).curve(curve), Chart::markers)
     }
 
     /// Its events at their places.
@@ -80,7 +80,7 @@ fn runs(
     let mut count = 0;
     for (index, (here, verdict)) in points.enumerate() {
         count = index + 1;
-        let line = Line::of(verdict);
+        let line = line_of(verdict);
         let between = events.iter().filter(|(after, _)| *after == index);
         let joints: Vec<_> = between.map(|(_, place)| *place).collect();
         match runs.last_mut() {
@@ -111,77 +111,75 @@ fn place(point: &Point) -> [f64; 2] {
     [point.value, point.peak_to_peak()]
 }
 
-impl Line {
-    pub(crate) fn of(verdict: Verdict) -> Self {
-        match verdict {
-            Verdict::Stable => Self::Stable,
-            Verdict::Unstable => Self::Unstable,
-            Verdict::Undecided => Self::Undecided,
-        }
+fn line_of(verdict: Verdict) -> Line {
+    match verdict {
+        Verdict::Stable => Line::Stable,
+        Verdict::Unstable => Line::Unstable,
+        Verdict::Undecided => Line::Undecided,
     }
 }
 
 impl From<ChartError> for Error {
-    fn from(ChartError::Write { path, source }: ChartError) -> Self {
+    fn from(ChartError { path, source, .. }: ChartError) -> Self {
         let kind = source.kind();
         FileError::Write { path, kind }.into()
     }
 }
 
-impl Labels {
-    /// A chart with nothing on it yet.
-    pub(crate) fn chart(&self) -> Chart {
-        Chart::new(&self.title).x(&self.varied).y(&self.size)
-    }
+/// A chart with nothing on it yet.
+pub(crate) fn empty_chart(labels: &Labels) -> Chart {
+    Chart::new(&labels.title).x(&labels.varied).y(&labels.size)
 }
 
-impl Chart {
-    /// Marks bifurcations, each kind by the same shape in every chart to which no other markers were added before.
-    ///
-    /// ```
-    /// use hertzian::EventKind;
-    /// use hertzian::chart::Chart;
-    ///
-    /// let chart = Chart::new("Two of them").events([
-    ///     (EventKind::Fold, [1.0, 2.0]),
-    ///     (EventKind::PeriodDoubling, [1.5, 2.5]),
-    /// ]);
-    /// assert!(chart.to_svg().contains("</svg>"));
-    /// ```
-    #[must_use]
-    pub fn events(self, events: impl IntoIterator<Item = (EventKind, [f64; 2])>) -> Self {
-        let events: Vec<_> = events.into_iter().collect();
-        let kinds = [
-            EventKind::Fold,
-            EventKind::PeriodDoubling,
-            EventKind::SymmetryBreaking,
-            EventKind::BranchPoint,
-            EventKind::NeimarkSacker,
-            EventKind::Grazing { turns: false },
-        ];
-        kinds.into_iter().fold(self, |chart, kind| {
-            let of_kind = events
-                .iter()
-                .filter(|(other, _)| discriminant(other) == discriminant(&kind));
-            chart.markers(Markers {
-                label: kind.to_string(),
-                points: of_kind.map(|(_, place)| *place).collect(),
-            })
-        })
-    }
+/// Markers of bifurcations, one entry for each kind, so that a kind has the same shape in every chart to which no other markers were
+/// added before.
+///
+/// ```
+/// use hertzian::EventKind;
+/// use hertzian::chart::{Chart, event_markers};
+///
+/// let markers = event_markers([
+///     (EventKind::Fold, [1.0, 2.0]),
+///     (EventKind::PeriodDoubling, [1.5, 2.5]),
+/// ]);
+/// let chart = markers.fold(Chart::new("Two of them"), Chart::markers);
+/// assert!(chart.to_svg().contains("</svg>"));
+/// ```
+pub fn event_markers(
+    events: impl IntoIterator<Item = (EventKind, [f64; 2])>,
+) -> impl Iterator<Item = Markers> {
+    let events: Vec<_> = events.into_iter().collect();
+    let kinds = [
+        EventKind::Fold,
+        EventKind::PeriodDoubling,
+        EventKind::SymmetryBreaking,
+        EventKind::BranchPoint,
+        EventKind::NeimarkSacker,
+        EventKind::Grazing { turns: false },
+    ];
+    kinds.into_iter().map(move |kind| {
+        let of_kind = events
+            .iter()
+            .filter(|(other, _)| discriminant(other) == discriminant(&kind));
+        Markers {
+            label: kind.to_string(),
+            points: of_kind.map(|(_, place)| *place).collect(),
+        }
+    })
+}
 
-    /// Marks places where something was not located.
-    pub(crate) fn unlocated(self, points: Vec<[f64; 2]>) -> Self {
-        self.markers(Markers {
-            label: "unlocated".to_owned(),
-            points,
-        })
+/// Markers of places where something was not located.
+pub(crate) fn unlocated(points: Vec<[f64; 2]>) -> Markers {
+    Markers {
+        label: "unlocated".to_owned(),
+        points,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::chart::Line;
+    use hertzian_chart::Line;
+
     use crate::response::FrequencyResponse;
 
     hertzian::oscillator! {

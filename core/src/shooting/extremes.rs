@@ -1,11 +1,10 @@
 //! Smallest and largest value of every coordinate along a motion.
 //!
 //! A smooth stretch is halved until the cubic through positions and velocities at the ends of a part (Hermite's) foretells its
-//! middle; then the velocity vanishes at most once in a half, and its zero is found by the Illinois rule.
-//!
-//! Source: Dowell and Jarratt (1971), A modified regula falsi method for computing the root of an equation.
+//! middle; then the velocity vanishes at most once in a half.
 
 use crate::branches::observed::Motion;
+use crate::numeric::roots::{self, Place};
 use crate::time::Stretch;
 
 /// Relative accuracy of the foretold middle.
@@ -14,7 +13,6 @@ const FORETOLD: f64 = 1e-3;
 const DEEPEST: usize = 12;
 /// Part of its bracket to which a zero of the velocity is located: the position is then exact to its square.
 const LOCATED: f64 = 1e-8;
-const STEPS: usize = 60;
 
 /// State at a phase.
 #[derive(Debug, Clone)]
@@ -65,41 +63,24 @@ fn part(
             extremes.include(from.state[i]);
             extremes.include(to.state[i]);
             if from.state[n + i] * to.state[n + i] < 0.0 {
-                extremes.include(turning(stretch, (from, to), i));
+                extremes.include(turning(stretch, [from, to], i));
             }
         }
     }
 }
 
 /// The position where the velocity of a coordinate vanishes.
-fn turning(stretch: &dyn Stretch, (a, b): (&Sample, &Sample), coordinate: usize) -> f64 {
+fn turning(stretch: &dyn Stretch, [a, b]: [&Sample; 2], coordinate: usize) -> f64 {
     let velocity = a.state.len() / 2 + coordinate;
-    let mut low = (a.phase, a.state[velocity]);
-    let mut high = (b.phase, b.state[velocity]);
-    let wanted = LOCATED * (b.phase - a.phase);
+    let [from, to] = [a, b].map(|sample| Place {
+        x: sample.phase,
+        value: sample.state[velocity],
+    });
     let mut state = a.state.clone();
-    let mut before = 0.0;
-    for _ in 0..STEPS {
-        let phase = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
+    roots::root(from, to, LOCATED * (to.x - from.x), |phase| {
         stretch.state(phase, &mut state);
-        let value = state[velocity];
-        let same = value * before > 0.0;
-        let moved = if value * low.1 > 0.0 {
-            high.1 *= if same { 0.5 } else { 1.0 };
-            let moved = phase - low.0;
-            low = (phase, value);
-            moved
-        } else {
-            low.1 *= if same { 0.5 } else { 1.0 };
-            let moved = high.0 - phase;
-            high = (phase, value);
-            moved
-        };
-        before = value;
-        if value == 0.0 || moved <= wanted || high.0 - low.0 <= wanted {
-            break;
-        }
-    }
+        state[velocity]
+    });
     state[coordinate]
 }
 

@@ -16,15 +16,15 @@ use std::f64::consts::TAU;
 use super::equations::Equations;
 use super::setting::Setting;
 use crate::model::layout::Layout;
+use crate::numeric::roots::{self, Place};
 use crate::system::{System, Variable};
 use crate::time::Stretch;
 use crate::time::gap::Gap;
 
 /// Samples of the rate in one period of the system.
 const SAMPLES: f64 = 64.0;
-/// An extreme is closed in to this part of a sample, and in no more steps.
+/// Accuracy of the phase of an extreme, in parts of the distance of two samples.
 const LOCATED: f64 = 1e-9;
-const STEPS: usize = 60;
 
 /// An extreme of a gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -194,29 +194,35 @@ impl<'a> Touch<'a> {
                 gap.at(phase, state)
             };
             let parts = (SAMPLES * (to - from) / TAU).ceil().max(2.0);
-            let mut before = (from, last.unwrap_or_else(|| at(from).1));
+            let mut before = Place {
+                x: from,
+                value: last.unwrap_or_else(|| at(from).1),
+            };
             let mut part = 1.0;
             while part <= parts {
-                let phase = from + (to - from) * (part / parts);
-                let behind = (phase, at(phase).1);
-                if before.1 * behind.1 < 0.0 {
-                    let phase = turning(before, behind, &mut |phase| at(phase).1);
+                let x = from + (to - from) * (part / parts);
+                let value = at(x).1;
+                let next = Place { x, value };
+                let turns = before.value * value < 0.0;
+                let within = LOCATED * (next.x - before.x);
+                let zero = turns.then(|| roots::root(before, next, within, |phase| at(phase).1));
+                if let Some(phase) = zero.flatten() {
                     see(Extreme {
                         passed: passed + phase - from,
                         gap: at(phase).0,
-                        largest: before.1 > 0.0,
+                        largest: before.value > 0.0,
                     });
                 }
                 // Between two switches at one phase there is no rate.
-                if behind.1.abs() > 0.0 {
-                    before = behind;
+                if value.abs() > 0.0 {
+                    before = next;
                 }
                 part += 1.0;
             }
             if first.is_none() && last.is_none() {
                 first = Some(at(from));
             }
-            last = Some(before.1);
+            last = Some(before.value);
             end = at(to).0;
             passed += to - from;
         };
@@ -244,27 +250,4 @@ impl<'a> Touch<'a> {
         }
         Some(())
     }
-}
-
-/// Where a rate vanishes between two phases, by the Illinois rule.
-fn turning(mut low: (f64, f64), mut high: (f64, f64), rate: &mut dyn FnMut(f64) -> f64) -> f64 {
-    let wanted = LOCATED * (high.0 - low.0);
-    let (mut phase, mut before) = (low.0, 0.0);
-    for _ in 0..STEPS {
-        phase = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
-        let value = rate(phase);
-        let same = value * before > 0.0;
-        let moved = if value * low.1 > 0.0 {
-            high.1 *= if same { 0.5 } else { 1.0 };
-            std::mem::replace(&mut low, (phase, value)).0 - phase
-        } else {
-            low.1 *= if same { 0.5 } else { 1.0 };
-            std::mem::replace(&mut high, (phase, value)).0 - phase
-        };
-        before = value;
-        if value == 0.0 || moved.abs() <= wanted {
-            break;
-        }
-    }
-    phase
 }

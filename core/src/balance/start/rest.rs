@@ -11,11 +11,12 @@ use super::effort::Effort;
 use super::fixed::{Fixed, geometric};
 use crate::continuation::newton::NewtonError;
 use crate::numeric::linear::dot;
+use crate::numeric::roots::{self, Place};
 
 /// So many of the amplitudes are tried.
 const TRIALS: usize = 6;
-/// Bisections of an interval in which the residual changes its sign.
-const BISECTIONS: usize = 40;
+/// Accuracy of the amplitude at which the residual changes its sign, in parts of the distance of those tried.
+const CLOSE: f64 = 1e-12;
 
 /// The static equilibrium, a balance of no harmonics; or what the last attempt to find it said.
 pub(super) fn at_rest(
@@ -52,7 +53,7 @@ pub(super) fn at_rest(
         .windows(2)
         .filter(|pair| pair[0].against < 0.0 && pair[1].against >= 0.0);
     for pair in changes {
-        let from = line.bisected([pair[0].s, pair[1].s], effort);
+        let from = line.between([&pair[0], &pair[1]], effort);
         found = line.solved(from, request, effort);
         if found.is_ok() || effort.is_spent() {
             break;
@@ -108,16 +109,15 @@ impl<'a> Line<'a> {
     }
 
     /// Where the residual changes its sign between two amplitudes.
-    fn bisected(&mut self, [mut low, mut high]: [f64; 2], effort: &mut Effort) -> Vec<f64> {
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if self.at(middle, effort).against < 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        self.at(high, effort).u
+    fn between(&mut self, ends: [&Along; 2], effort: &mut Effort) -> Vec<f64> {
+        let [low, high] = ends.map(|end| Place {
+            x: end.s,
+            value: end.against,
+        });
+        let within = CLOSE * (high.x - low.x);
+        let bracket = roots::closed(low, high, within, |s| self.at(s, effort).against);
+        let s = bracket.map_or(high.x, |bracket| bracket.end(true));
+        self.at(s, effort).u
     }
 
     fn solved(

@@ -141,63 +141,6 @@ impl<K: Kernels<A, L, V>, const A: usize, const L: usize, const V: usize> Law
     }
 }
 
-/// A type that stands for a generated law: what `law!` declares.
-pub trait Declared: Send + Sync {
-    /// The law.
-    fn declared(&self) -> &'static dyn Law;
-}
-
-impl<T: Declared> Law for T {
-    fn facts(&self) -> &LawFacts {
-        self.declared().facts()
-    }
-
-    fn data(&self) -> Option<&LawData> {
-        self.declared().data()
-    }
-
-    fn levels(&self, arguments: &[f64], levels: &mut [f64]) {
-        self.declared().levels(arguments, levels);
-    }
-
-    fn levels_by(&self, arguments: &[f64], argument: usize, by_argument: &mut [f64]) {
-        self.declared().levels_by(arguments, argument, by_argument);
-    }
-
-    fn force(&self, on: On, arguments: &[f64], gap: &[f64], rate: &[f64], force: &mut [f64]) {
-        self.declared().force(on, arguments, gap, rate, force);
-    }
-
-    fn derivatives(
-        &self,
-        on: On,
-        arguments: &[f64],
-        gap: &[f64],
-        rate: &[f64],
-        out: Derivatives<'_>,
-    ) {
-        self.declared().derivatives(on, arguments, gap, rate, out);
-    }
-
-    fn derivatives_and_by(
-        &self,
-        argument: usize,
-        on: On,
-        arguments: &[f64],
-        gap: &[f64],
-        rate: &[f64],
-        out: Derivatives<'_>,
-        by_argument: &mut [f64],
-    ) {
-        self.declared()
-            .derivatives_and_by(argument, on, arguments, gap, rate, out, by_argument);
-    }
-
-    fn parts(&self) -> Option<Parts<'_>> {
-        self.declared().parts()
-    }
-}
-
 /// A call that is made once it is known where the derivative by an argument is.
 struct CallBy<'a, K, const A: usize, const L: usize, const V: usize> {
     kernels: PhantomData<K>,

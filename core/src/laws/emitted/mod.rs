@@ -18,16 +18,17 @@
 #![allow(clippy::inline_always)]
 
 mod batch;
-pub mod constants;
 mod law;
 mod outputs;
 mod parts;
 mod room;
 
+pub use hertzian_contract::constants;
+pub use hertzian_contract::declared::Declared;
 pub use hertzian_macros::{law, oscillator};
 
 pub use batch::{Batch, Group, Kernel, Nothing, Raising, Uses, cube_root_group, group, uses};
-pub use law::{ByArgument, Declared, Generated, Kernels};
+pub use law::{ByArgument, Generated, Kernels};
 pub use parts::{Primitive, Spring};
 
 use crate::numeric::power::{Baseline, cube_root as cube_root_of};

@@ -1,10 +1,9 @@
 //! Whether facts and data describe one law.
 
-use super::Node;
 use super::program::varying;
+use super::{LawData, Node};
 use crate::error::{Error, ErrorKind};
 use crate::law::LawFacts;
-use crate::law::data::LawData;
 
 /// Why facts and data do not describe one law.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -131,7 +130,7 @@ fn check_nodes(nodes: &[Node], arguments: usize) -> Result<(), DataError> {
                 arguments,
             });
         }
-        let late = named(of).into_iter().flatten().find(|&at| at >= node);
+        let late = of.operands().into_iter().flatten().find(|&at| at >= node);
         if let Some(operand) = late {
             return Err(DataError::Operand { node, operand });
         }
@@ -157,26 +156,5 @@ fn check_outputs(
     match own.iter().chain(by_argument).find(|&&node| node >= nodes) {
         Some(&node) => Err(DataError::NoNode { node, nodes }),
         None => Ok(()),
-    }
-}
-
-/// The nodes that a node names as its operands.
-pub(super) fn named(node: Node) -> [Option<usize>; 2] {
-    match node {
-        Node::Number(_) | Node::Gap | Node::Rate | Node::Argument(_) => [None, None],
-        Node::Add(a, b)
-        | Node::Subtract(a, b)
-        | Node::Multiply(a, b)
-        | Node::Divide(a, b)
-        | Node::Power(a, b)
-        | Node::PowerLog(a, b) => [Some(a), Some(b)],
-        Node::Negate(a)
-        | Node::Absolute(a)
-        | Node::Sign(a)
-        | Node::Integer(a, _)
-        | Node::Sine(a)
-        | Node::Cosine(a)
-        | Node::Exponential(a)
-        | Node::Tanh(a) => [Some(a), None],
     }
 }

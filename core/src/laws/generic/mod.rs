@@ -17,8 +17,8 @@ use std::sync::Arc;
 use crate::law::Law;
 use crate::system::{System, SystemFacts, Variable};
 
-pub use crate::law::data::{LawData, LevelData, Node, PieceData};
 pub use consistent::DataError;
+pub use hertzian_contract::data::{LawData, LevelData, Node, PieceData};
 pub use law::InterpretedLaw;
 #[cfg(feature = "text")]
 pub use text::{Declaration, DeclarationError, Fault};

@@ -10,7 +10,6 @@
 use std::ops::Range;
 
 use super::Node;
-use super::consistent::named;
 use crate::laws::emitted::{exponential, power, reciprocal, sign};
 
 /// Samples per block. A slot takes 512 bytes, so programs of some sixty operations stay in the first level of the
@@ -276,6 +275,8 @@ impl Builder<'_> {
             Node::Cosine(a) => one(Operation::Cosine, a),
             Node::Exponential(a) => one(Operation::Exponential, a),
             Node::Tanh(a) => one(Operation::Tanh, a),
+            // Of a later version of the contract, which this one is not built with.
+            _ => none(Operation::Number(f64::NAN)),
         };
         self.operands[position] = self.push(operation, left, right, place);
     }
@@ -325,7 +326,7 @@ fn operands(nodes: &[Node], position: usize) -> [Option<usize>; 2] {
         Node::Power(a, b) | Node::PowerLog(a, b) => {
             [Some(a), Some(b).filter(|&b| by_root(nodes[b]).is_none())]
         }
-        node => named(node),
+        node => node.operands(),
     }
 }
 

@@ -2,8 +2,7 @@
 //! every other that might be exceeded by more.
 //!
 //! The slope by phase is `phi_g dg/dtau + phi_r dr/dtau`. The first step goes to the vertex of the parabola through the best
-//! sample and its neighbours, the further ones are secants of the slope, kept inside a bracket by bisection (Press et al.
-//! (2007), Numerical Recipes, sections 9.2 and 10.3).
+//! sample and its neighbours, the further ones are secants of the slope, [guarded](Guarded) by the bracket.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -14,6 +13,7 @@ use crate::balance::rate_series;
 use crate::law::{Derivatives, Law, On};
 use crate::numeric::fourier::kernels::{LANES, evaluate};
 use crate::numeric::fourier::series;
+use crate::numeric::roots::{Guarded, Place, STEPS};
 
 /// A panel with fewer samples is sampled by itself.
 const FEWEST: usize = 8;
@@ -23,7 +23,6 @@ const OWN: usize = 2 * LANES;
 const INSIDE: f64 = 1e-6;
 /// The search ends when the next step would gain no more than this part of the force.
 const GAIN: f64 = 1e-14;
-const STEPS: usize = 60;
 
 /// The samples of one panel.
 #[derive(Debug, Default)]
@@ -230,7 +229,7 @@ impl Batch {
             0 => self.beside_end(motion, 0, 1),
             _ if index == last => self.beside_end(motion, last, last - 1),
             _ => {
-                let bracket = (self.phases[index - 1], self.phases[index + 1]);
+                let bracket = [self.phases[index - 1], self.phases[index + 1]];
                 search(motion, bracket, self.parabola(index))
             }
         }
@@ -242,52 +241,66 @@ impl Batch {
         let near = end + INSIDE * (next - end);
         let Slope { size, slope } = motion.at(near);
         if slope * (next - end) > 0.0 {
-            let bracket = (near.min(next), near.max(next));
-            search(motion, bracket, (0.5 * (near + next), f64::NAN))
+            let bracket = [near.min(next), near.max(next)];
+            let from = Guess {
+                tau: 0.5 * (near + next),
+                curvature: f64::NAN,
+            };
+            search(motion, bracket, from)
         } else {
             size
         }
     }
 
     /// Where the parabola through three samples has its peak, and its second derivative.
-    fn parabola(&self, best: usize) -> (f64, f64) {
+    fn parabola(&self, best: usize) -> Guess {
         let at = |index: usize| (self.phases[index], self.force[index]);
         let ((a, fa), (b, fb), (c, fc)) = (at(best - 1), at(best), at(best + 1));
         let (left, right) = ((fb - fa) / (b - a), (fc - fb) / (c - b));
         // Both are slopes at the middle of an interval.
-        let bend = (right - left) / (0.5 * (c - a));
-        let vertex = 0.5 * (a + b) - left / bend;
+        let curvature = (right - left) / (0.5 * (c - a));
+        let vertex = 0.5 * (a + b) - left / curvature;
         let inside = vertex > a && vertex < c;
-        (if inside { vertex } else { b }, bend)
+        let tau = if inside { vertex } else { b };
+        Guess { tau, curvature }
     }
 }
 
-/// Largest value where the slope falls through zero inside a bracket, from a phase and a guess of the second derivative.
-fn search(motion: Motion<'_>, (mut a, mut b): (f64, f64), from: (f64, f64)) -> f64 {
-    let (mut tau, mut bend) = from;
-    let mut before: Option<(f64, f64)> = None;
+/// Where a search begins, and a guess of the second derivative there.
+#[derive(Debug, Clone, Copy)]
+struct Guess {
+    tau: f64,
+    curvature: f64,
+}
+
+/// Largest value where the slope falls through zero between two phases.
+fn search(motion: Motion<'_>, [a, b]: [f64; 2], from: Guess) -> f64 {
+    let Guess {
+        mut tau,
+        mut curvature,
+    } = from;
+    let mut bracket = Guarded::new(a, b);
+    let mut before: Option<Place> = None;
     let mut peak = f64::NEG_INFINITY;
     for _ in 0..STEPS {
         let Slope { size, slope } = motion.at(tau);
         peak = largest(peak, size);
-        if slope > 0.0 {
-            a = tau;
-        } else {
-            b = tau;
+        bracket.cut(tau, slope > 0.0);
+        if let Some(before) = before {
+            curvature = (slope - before.value) / (tau - before.x);
         }
-        if let Some((old, slope_there)) = before {
-            bend = (slope - slope_there) / (tau - old);
-        }
-        before = Some((tau, slope));
-        let step = -slope / bend;
-        // A parabola of this slope and bend gains so much on the way to its peak.
+        before = Some(Place {
+            x: tau,
+            value: slope,
+        });
+        let step = -slope / curvature;
+        // A parabola of this slope and curvature gains so much on the way to its peak.
         let gain = 0.5 * (slope * step).abs();
-        if gain <= GAIN * size.abs() || b - a <= 4.0 * f64::EPSILON * b.abs() {
+        if gain <= GAIN * size.abs() || bracket.is_closed() {
             break;
         }
-        let next = tau + step;
-        let good = bend < 0.0 && next > a && next < b;
-        tau = if good { next } else { 0.5 * (a + b) };
+        let falls = curvature < 0.0;
+        (tau, _) = bracket.next(tau, if falls { step } else { f64::NAN });
     }
     peak
 }

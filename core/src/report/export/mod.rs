@@ -5,8 +5,8 @@ mod json;
 mod npy;
 mod table;
 
-pub use crate::file::{can_write, write};
 pub use crate::numeric::decimal::Decimal;
+pub use hertzian_file::{can_write, write};
 
 pub use npy::{Npy, Number};
 pub use table::{COLUMNS, Table, cells};

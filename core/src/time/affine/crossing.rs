@@ -10,15 +10,11 @@
 //! ```
 //!
 //! and is divided otherwise, the left half first. Here `b2 = |d''(m)| + b3 w` bounds the second derivative and `b3` the third.
-//! Where a zero is known to be single it is found by Newton's method, kept within a bracket. A touch, whose depth is below the
-//! rounding error of the distance, is no crossing.
-//!
-//! Source: Press et al. (2007), Numerical Recipes, section 9.4 (Newton's method in a bracket).
+//! Where a zero is known to be single it is found by Newton's method, [guarded](Guarded) by the bracket. A touch, whose depth is below
+//! the rounding error of the distance, is no crossing.
 
 use super::table::{COEFFICIENTS, Polynomial};
-
-/// Bisection alone needs 53; where rounding errors hide the zero, any of the last iterates is as good.
-const ITERATIONS: usize = 100;
+use crate::numeric::roots::{Guarded, STEPS};
 
 /// Where a distance falls below zero first in `[from, to]`, both within half a cell of its middle. `begins`: it begins at zero,
 /// and that zero does not count. `noise` is its rounding error.
@@ -154,25 +150,17 @@ pub(super) fn derivatives(p: &Polynomial, s: f64) -> [f64; 3] {
 
 /// The zero between two ends of which the right one is negative; the left one is not, or the zero at it does not count.
 fn newton(p: &Polynomial, left: f64, right: f64) -> f64 {
-    let (mut left, mut right) = (left, right);
+    let mut bracket = Guarded::new(left, right);
     // From the right end: if the distance is concave, the zero that counts is the nearest.
     let mut s = right;
-    for _ in 0..ITERATIONS {
+    for _ in 0..STEPS {
         let (d, slope) = value_and_slope(p, s);
-        if d < 0.0 {
-            right = s;
-        } else {
-            left = s;
+        bracket.cut(s, d >= 0.0);
+        let step = -d / slope;
+        if step.abs() <= f64::EPSILON || bracket.width() <= f64::EPSILON {
+            break;
         }
-        let step = d / slope;
-        if step.abs() <= f64::EPSILON || right - left <= f64::EPSILON {
-            return (s - step).clamp(left, right);
-        }
-        s -= step;
-        // Neither is a step that is not a number within the bracket.
-        if !(s > left && s < right) {
-            s = 0.5 * (left + right);
-        }
+        (s, _) = bracket.next(s, step);
     }
     s
 }

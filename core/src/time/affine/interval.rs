@@ -323,6 +323,9 @@ fn value(p: &Polynomial, s: f64) -> f64 {
 }
 
 /// The zero of a polynomial that is monotone over the cell, and the slope there; `None` if the iteration has not converged.
+///
+/// Three steps without a bracket, unlike the root finders of [`numeric`](crate::numeric): the proof is that there is one zero, the last
+/// step shows that it was found, and all of a motion's time is spent here.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "as above")]
 fn halley(p: &Polynomial, guess: f64) -> Option<(f64, f64)> {

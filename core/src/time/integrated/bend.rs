@@ -52,7 +52,6 @@ impl<const S: usize> Engine<S> {
                 self.rule
                     .in_bernstein_form(&self.values, noise, &mut self.coefficients);
                 if let Some(u) = roots::first(&self.coefficients) {
-                    let u = roots::exactly(&self.coefficients, u);
                     first = Some(first.map_or(u, |first| first.min(u)));
                 }
             }

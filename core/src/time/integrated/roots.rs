@@ -6,14 +6,13 @@
 //!
 //! Source: Lane and Riesenfeld (1981), Bounds on a polynomial, BIT 21, 112-117.
 
+use crate::numeric::roots::{self, Place};
+
 /// More coefficients than any rule has.
 pub(super) const MOST: usize = 32;
 
-/// A zero is known well enough within this part of the interval: what follows makes it exact.
-const CLOSE: f64 = 1e-4;
-
-/// Secants that make it exact.
-const SECANTS: usize = 8;
+/// Accuracy of a zero, in parts of the interval.
+const LOCATED: f64 = 1e-13;
 
 /// Halvings after which two zeros are taken as one.
 const DEEPEST: usize = 40;
@@ -23,27 +22,11 @@ pub(super) fn first(coefficients: &[f64]) -> Option<f64> {
     let mut room = [0.0; MOST];
     let c = &mut room[..coefficients.len()];
     c.copy_from_slice(coefficients);
-    search(c, 0.0, 1.0, 0)
-}
-
-/// A zero near one that is known well enough, by secants.
-pub(super) fn exactly(c: &[f64], near: f64) -> f64 {
-    let beside = if near < 0.5 { CLOSE } else { -CLOSE };
-    let (mut before, mut u) = (near + beside, near);
-    let (mut at_before, mut at) = (value(c, before), value(c, u));
-    for _ in 0..SECANTS {
-        let next = u - at * (u - before) / (at - at_before);
-        if next.is_nan() || (next - near).abs() > CLOSE {
-            break;
-        }
-        (before, at_before) = (u, at);
-        (u, at) = (next, value(c, next));
-    }
-    u.clamp(0.0, 1.0)
+    search(c, [0.0, 1.0], 0)
 }
 
 /// The same on the part from `start` to `end`, where the coefficients are `c`.
-fn search(c: &[f64], start: f64, end: f64, depth: usize) -> Option<f64> {
+fn search(c: &[f64], [start, end]: [f64; 2], depth: usize) -> Option<f64> {
     if c[0] <= 0.0 {
         return Some(start);
     }
@@ -64,35 +47,13 @@ fn search(c: &[f64], start: f64, end: f64, depth: usize) -> Option<f64> {
     let (mut left, mut right) = ([0.0; MOST], [0.0; MOST]);
     let (left, right) = (&mut left[..c.len()], &mut right[..c.len()]);
     halve(c, left, right);
-    search(left, start, middle, depth + 1).or_else(|| search(right, middle, end, depth + 1))
+    search(left, [start, middle], depth + 1).or_else(|| search(right, [middle, end], depth + 1))
 }
 
-/// The only zero, by regula falsi in the Illinois variant (Dowell and Jarratt 1971).
+/// The only zero, from the side where the polynomial is not positive.
 fn only(c: &[f64]) -> f64 {
-    let (mut a, mut b) = (0.0, 1.0);
-    let (mut at_a, mut at_b) = (c[0], c[c.len() - 1]);
-    let mut side = 0;
-    for _ in 0..100 {
-        if b - a < CLOSE {
-            break;
-        }
-        let u = (a * at_b - b * at_a) / (at_b - at_a);
-        let x = value(c, u);
-        if x > 0.0 {
-            (a, at_a) = (u, x);
-            if side == 1 {
-                at_b *= 0.5;
-            }
-            side = 1;
-        } else {
-            (b, at_b) = (u, x);
-            if side == -1 {
-                at_a *= 0.5;
-            }
-            side = -1;
-        }
-    }
-    b
+    let [a, b] = [(0.0, c[0]), (1.0, c[c.len() - 1])].map(|(x, value)| Place { x, value });
+    roots::closed(a, b, LOCATED, |u| value(c, u)).map_or(1.0, |bracket| bracket.end(false))
 }
 
 /// The polynomial's value, by de Casteljau's scheme.
@@ -145,7 +106,7 @@ mod tests {
     #[test]
     fn single_zeros_are_found() {
         let root = first(&parabola(-1.0, -0.5, 1.0)).unwrap();
-        assert!((root - 0.5).abs() < 1e-4);
+        assert!((root - 0.5).abs() < 1e-13);
         assert_eq!(first(&[-1.0, 2.0, 3.0]), Some(0.0));
         assert_eq!(first(&[1.0, 2.0, 3.0]), None);
     }

@@ -9,7 +9,10 @@
 //! Systems of Equations; here the enclosure is that of the interpolating cubic, not of interval arithmetic.
 
 #[cfg(test)]
-use super::series;
+use crate::numeric::{
+    fourier::series,
+    roots::{Place, root},
+};
 
 mod finder;
 mod grid;
@@ -52,29 +55,10 @@ pub fn crossings(series: &[f64], level: f64, found: &mut Vec<Crossing>) {
     finder.crossings(level, found);
 }
 
-/// The phase in `[a, b]` where the slope of a series changes its sign; `rising` is its sign at `a`.
-///
-/// Newton's method kept inside a bracket by bisection: Press et al. (2007), Numerical Recipes, section 9.4.
+/// The phase in `[a, b]` where the slope of a series changes its sign.
 #[cfg(test)]
-pub(crate) fn extremum(of: &[f64], mut a: f64, mut b: f64, rising: bool) -> f64 {
-    let mut t = 0.5 * (a + b);
-    for _ in 0..100 {
-        let (_, slope, bend) = series::value_and_derivatives(of, t);
-        if (slope > 0.0) == rising {
-            a = t;
-        } else {
-            b = t;
-        }
-        let newton = t - slope / bend;
-        let next = if newton > a && newton < b {
-            newton
-        } else {
-            0.5 * (a + b)
-        };
-        if (next - t).abs() <= 2.0 * f64::EPSILON * t.abs().max(1e-3) {
-            return next;
-        }
-        t = next;
-    }
-    t
+pub(crate) fn extremum(of: &[f64], a: f64, b: f64) -> f64 {
+    let slope = |tau: f64| series::value_and_derivatives(of, tau).1;
+    let [from, to] = [a, b].map(|x| Place { x, value: slope(x) });
+    root(from, to, 0.0, slope).expect("a change of sign")
 }

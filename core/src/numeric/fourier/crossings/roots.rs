@@ -1,7 +1,6 @@
 //! One root in a bracket: of the distance from a level, and of the slope.
 //!
-//! Each iterate cuts the bracket; where the next one would leave it, or the steps do not shrink by half, the bracket is
-//! halved instead (Press et al. (2007), Numerical Recipes, section 9.4). The steps are Halley's and Newton's:
+//! The steps are Halley's and Newton's, [guarded](Guarded) by the bracket:
 //!
 //! ```text
 //! n = -f / f',   halley = n / (1 + n f'' / (2 f')),   |error after| ~ ( (f''/f')^2 / 4 + |f'''/(6 f')| ) |halley|^3   (1)
@@ -12,53 +11,17 @@
 
 use super::pieces::{Cubic, Point};
 use super::waves::{Jet, Waves};
-
-const ITERATIONS: usize = 200;
+use crate::numeric::roots::{Guarded, STEPS};
 
 /// Error of a phase below which it is accepted: the spacing of numbers near the end of the period.
 const ENOUGH: f64 = 4.0 * f64::EPSILON;
 
-/// Steps inside a bracket.
-struct Bracket {
-    a: f64,
-    b: f64,
-    last: f64,
-}
-
-impl Bracket {
-    /// The next iterate from `t`, and whether it is a step and not a halving.
-    fn next(&mut self, t: f64, step: f64) -> (f64, bool) {
-        let next = t + step;
-        // A step that is not a number fails all of these.
-        let good = next >= self.a && next <= self.b && step.abs() <= 0.5 * self.last;
-        let next = if good { next } else { 0.5 * (self.a + self.b) };
-        self.last = (next - t).abs();
-        (next, good)
-    }
-
-    fn cut(&mut self, t: f64, left: bool) {
-        if left {
-            self.a = t;
-        } else {
-            self.b = t;
-        }
-    }
-
-    fn is_closed(&self) -> bool {
-        self.b - self.a <= 2.0 * f64::EPSILON * self.b.abs()
-    }
-}
-
 /// The phase between `a` and `b` where the waves pass `target`. The two lie on different sides of it.
 pub(super) fn crossing(waves: &Waves, target: f64, a: &Point, b: &Point) -> f64 {
     let above = a.x > target;
-    let mut bracket = Bracket {
-        a: a.tau,
-        b: b.tau,
-        last: f64::INFINITY,
-    };
+    let mut bracket = Guarded::new(a.tau, b.tau);
     let mut t = guess(target, a, b);
-    for _ in 0..ITERATIONS {
+    for _ in 0..STEPS {
         let Jet { x, slope, bend } = waves.at(t);
         let x = x - target;
         bracket.cut(t, (x > 0.0) == above);
@@ -101,15 +64,11 @@ fn guess(target: f64, a: &Point, b: &Point) -> f64 {
 /// The extremum between `a` and `b`, whose slopes differ in sign, and the curvature there.
 pub(super) fn extremum(waves: &Waves, a: &Point, b: &Point) -> (Point, f64) {
     let rising = a.slope > 0.0;
-    let mut bracket = Bracket {
-        a: a.tau,
-        b: b.tau,
-        last: f64::INFINITY,
-    };
+    let mut bracket = Guarded::new(a.tau, b.tau);
     let length = b.tau - a.tau;
     let mut t = a.tau + length * (a.slope / (a.slope - b.slope));
     let mut found = (*a, 0.0);
-    for _ in 0..ITERATIONS {
+    for _ in 0..STEPS {
         let Jet { x, slope, bend } = waves.at(t);
         bracket.cut(t, (slope > 0.0) == rising);
         found = (Point { tau: t, x, slope }, bend);

@@ -140,8 +140,7 @@ fn draw(random: &mut Congruential) -> (Vec<f64>, f64) {
     let rises = |n: usize| value(&slope, phase(n)) > 0.0;
     let turn = (start..start + 16 * k).find(|&n| rises(n) != rises(n + 1));
     let turn = turn.expect("a slope has no mean");
-    let rising = rises(turn);
-    let extremum = super::super::extremum(&series, phase(turn), phase(turn + 1), rising);
+    let extremum = super::super::extremum(&series, phase(turn), phase(turn + 1));
     let epsilon = 10.0_f64.powf(random.between(-14.0, -2.0));
     let side = if random.next() < 0.5 {
         epsilon

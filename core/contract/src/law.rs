@@ -6,11 +6,9 @@
 //!
 //! All evaluation is batched, structure of arrays: one dynamic call for a whole batch.
 
-pub(crate) mod data;
-
 use std::borrow::Cow;
 
-use data::LawData;
+use crate::data::LawData;
 
 /// A law as the runtime sees it. Generated types, the interpreter and laws written by hand implement it alike.
 ///
@@ -138,6 +136,7 @@ pub struct ArgumentFacts {
 
 impl ArgumentFacts {
     /// An argument that may have any value.
+    #[inline]
     pub const fn named(name: Cow<'static, str>) -> Self {
         Self {
             name,
@@ -147,6 +146,7 @@ impl ArgumentFacts {
     }
 
     /// Whether a value is finite and within the range.
+    #[inline]
     pub fn admits(&self, value: f64) -> bool {
         is_within(self.minimum, self.maximum, value)
     }
@@ -164,6 +164,7 @@ pub enum Bound {
 }
 
 /// Whether a value is finite and between two bounds.
+#[inline]
 pub(crate) fn is_within(minimum: Bound, maximum: Bound, value: f64) -> bool {
     let above = match minimum {
         Bound::Unbounded => true,
@@ -279,6 +280,7 @@ impl Exponent {
     };
 
     /// Its value for given arguments.
+    #[inline]
     pub fn value(self, arguments: &[f64]) -> f64 {
         self.number + self.argument.map_or(0.0, |index| arguments[index])
     }

@@ -2,16 +2,16 @@
 
 use std::borrow::Cow;
 
+use crate::data::LawData;
 use crate::law::{Exponent, LawFacts, RateDependence, TermFacts, Variation};
-use crate::laws::generic::LawData;
 use crate::system::{ContactFacts, ParameterFacts, Part, Place, Wave};
 
+pub use crate::data::Node;
+pub use crate::data::Node::*;
+pub use crate::data::{LevelData, PieceData};
 pub use crate::law::Quantity::{self, *};
 pub use crate::law::Variation::*;
 pub use crate::law::{ArgumentFacts, LevelFacts, PieceFacts};
-pub use crate::laws::generic::Node;
-pub use crate::laws::generic::Node::*;
-pub use crate::laws::generic::{LevelData, PieceData};
 pub use crate::system::Bound::{self, *};
 
 /// The force does not depend on the rate.

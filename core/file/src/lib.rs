@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// # let folder = std::env::temp_dir().join(format!("hertzian-write-{}", std::process::id()));
 /// # std::fs::create_dir_all(&folder)?;
 /// let path = folder.join("orbit.txt");
-/// hertzian::export::write(&path, "0.5 1.25\n")?;
+/// hertzian_file::write(&path, "0.5 1.25\n")?;
 /// assert_eq!(std::fs::read_to_string(&path)?, "0.5 1.25\n");
 /// # std::fs::remove_dir_all(&folder)?;
 /// # Ok::<(), std::io::Error>(())

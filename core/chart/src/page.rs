@@ -9,7 +9,7 @@ use super::{Chart, ChartError};
 /// Charts side by side and below each other.
 ///
 /// ```
-/// use hertzian::chart::{Chart, Page};
+/// use hertzian_chart::{Chart, Page};
 ///
 /// let page = Page::new(2).chart(Chart::new("left")).chart(Chart::new("right"));
 /// assert!(page.to_svg().contains("width=\"1800\" height=\"600\""));
@@ -63,7 +63,7 @@ impl Page {
     /// If the file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ChartError> {
         let path = path.as_ref();
-        crate::file::write(path, self.to_svg()).map_err(|source| ChartError::Write {
+        hertzian_file::write(path, self.to_svg()).map_err(|source| ChartError {
             path: path.to_path_buf(),
             source,
         })

@@ -1,8 +1,4 @@
-//! Rooms of the runtime depend one way: each names only rooms that stand before it in [`ROOMS`].
-//!
-//! Every path of every file is resolved from its tokens: in `use`, in place, in macros, and in attributes that hold a path as text, as
-//! serde's do. Links of documentation are not looked at, and code for tests may look anywhere: a test of a room compares it with others.
-//! What is not allowed at all is a name that the root re-exports, since it hides which room is meant.
+//! Reads the paths of a crate from its tokens.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,79 +6,45 @@ use std::path::Path;
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// Single files that stand before all rooms, at most four.
-const SHARED: &[&str] = &["law", "system", "event", "file"];
-
-/// The rooms, the lowest first. Shooting stands after the responses since it takes its first orbit from the balance.
-const ROOMS: &[&str] = &[
-    "numeric",
-    "error",
-    "chart",
-    "model",
-    "laws",
-    "time",
-    "continuation",
-    "branches",
-    "balance",
-    "orbit",
-    "balance_branch",
-    "shooting",
-    "response",
-    "attractors",
-    "bifurcation",
-    "report",
-];
-
-/// Modules that only tests see.
-const TESTS: &[&str] = &["guide", "testing"];
-
-/// Arrows that run up all the same: the module, and what it names. There are none.
-const EXCEPTIONS: &[(&str, &str)] = &[];
-
 /// A module that takes something from another one.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct Arrow {
+pub struct Arrow {
     /// The module, from the root.
-    module: String,
+    pub module: String,
     /// The room that it is in.
-    from: String,
+    pub from: String,
     /// The room that it names, or the name of the root.
-    to: String,
+    pub to: String,
     /// The path as resolved.
-    path: String,
+    pub path: String,
 }
 
 impl Arrow {
     /// Whether it names a room that stands before its own.
-    fn runs_down(&self) -> bool {
-        let order = || SHARED.iter().chain(ROOMS);
-        let place = |room: &str| order().position(|known| *known == room);
+    pub fn runs_down(&self, order: &[&str]) -> bool {
+        let place = |room: &str| order.iter().position(|known| *known == room);
         match (place(&self.from), place(&self.to)) {
             (Some(from), Some(to)) => to < from,
             _ => false,
         }
     }
-
-    fn is_excepted(&self) -> bool {
-        EXCEPTIONS.contains(&(&self.module, &self.path))
-    }
 }
 
 /// What is known while the tokens of a module are read.
 #[derive(Debug, Default)]
-struct Reader {
+pub struct Reader {
     /// The room of the file; nothing for the root, which names all rooms.
     room: String,
     /// The module that the tokens are in, from the root.
     module: Vec<String>,
-    arrows: BTreeSet<Arrow>,
+    pub arrows: BTreeSet<Arrow>,
     /// Modules in files of their own that are declared here.
-    declared: Vec<String>,
+    pub declared: Vec<String>,
 }
 
 impl Reader {
     /// The arrows of a text, as a module.
-    fn of(module: &[String], text: &str) -> Self {
+    pub fn of(module: &[String], text: &str) -> Self {
         let mut reader = Self {
             room: module.first().cloned().unwrap_or_default(),
             module: module.to_vec(),
@@ -261,7 +223,7 @@ fn end_of_item(tokens: &[TokenTree], i: usize) -> usize {
 }
 
 /// All arrows from a file on, through the modules that it declares.
-fn arrows(file: &Path, module: &[String]) -> BTreeSet<Arrow> {
+pub fn arrows(file: &Path, module: &[String]) -> BTreeSet<Arrow> {
     let text = fs::read_to_string(file).expect("a file of the crate");
     let mut reader = Reader::of(module, &text);
     let folder = match file.file_stem().and_then(|stem| stem.to_str()) {
@@ -279,121 +241,4 @@ fn arrows(file: &Path, module: &[String]) -> BTreeSet<Arrow> {
         reader.arrows.append(&mut arrows(&file, &inner));
     }
     reader.arrows
-}
-
-/// The arrows of a text that run up.
-fn up(room: &str, text: &str) -> Vec<String> {
-    let arrows = Reader::of(&[room.to_owned(), "file".to_owned()], text).arrows;
-    let up = arrows.into_iter().filter(|arrow| !arrow.runs_down());
-    up.map(|arrow| arrow.path).collect()
-}
-
-fn root() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src/lib.rs"))
-}
-
-#[test]
-fn rooms_name_only_rooms_before_them() {
-    let found = arrows(root(), &[]);
-    assert!(found.len() > 500, "{} paths are read", found.len());
-    let up = found.iter().filter(|arrow| !arrow.runs_down());
-    let new: Vec<String> = up
-        .filter(|arrow| !arrow.is_excepted())
-        .map(|arrow| format!("{} names {}", arrow.module, arrow.path))
-        .collect();
-    assert!(new.is_empty(), "run up:\n{}", new.join("\n"));
-}
-
-/// What has been mended stays so.
-#[test]
-fn every_exception_is_still_needed() {
-    let found = arrows(root(), &[]);
-    for exception in EXCEPTIONS {
-        let needed = |arrow: &Arrow| (arrow.module.as_str(), arrow.path.as_str()) == *exception;
-        assert!(found.iter().any(needed), "{exception:?} is mended");
-    }
-}
-
-#[test]
-fn every_module_of_the_root_has_its_place() {
-    assert!(SHARED.len() <= 4);
-    let text = fs::read_to_string(root()).expect("the root");
-    for name in Reader::of(&[], &text).declared {
-        let name = name.as_str();
-        let known = [SHARED, ROOMS, TESTS].concat().contains(&name);
-        assert!(known, "{name} has no place among the rooms");
-        let is_file = root().with_file_name(format!("{name}.rs")).exists();
-        let may_be_file = SHARED.contains(&name) || TESTS.contains(&name);
-        assert!(!is_file || may_be_file, "{name} is no room");
-    }
-}
-
-#[test]
-fn planted_arrows_are_found() {
-    for (text, path) in [
-        ("use crate::report::Table;", "report::Table"),
-        ("use crate::{numeric::fourier, report};", "report"),
-        (
-            "use super::super::{numeric, response::{run::{self, Run as R}}};",
-            "response::run",
-        ),
-        ("fn f() -> f64 { crate::response::f(0.5) }", "response::f"),
-        ("fn f(x: &dyn A<crate::response::B>) {}", "response::B"),
-        ("type A = <crate::response::B as C>::D;", "response::B"),
-        (
-            "mod inner { use super::super::super::report::A; }",
-            "report::A",
-        ),
-        ("use crate::report::*;", "report"),
-        ("use hertzian::report::A;", "report::A"),
-        ("fn f() { ::hertzian::report::f() }", "report::f"),
-        (
-            "macro_rules! m { () => { $crate::report::A }; }",
-            "report::A",
-        ),
-        (
-            "impl A { #[serde(with = \"crate::report::f\")] x: u8 }",
-            "report::f",
-        ),
-        (
-            "struct A { #[cfg_attr(feature = \"serde\", serde(with = \"crate::report::f\"))] x: u8 }",
-            "report::f",
-        ),
-        (
-            "#[cfg(test)] mod tests { } use crate::report::A;",
-            "report::A",
-        ),
-        (
-            "#[cfg(test)] pub(crate) fn f() {} use crate::report::A;",
-            "report::A",
-        ),
-        // Names of the root, whatever they are in truth.
-        ("use crate::Branch;", "Branch"),
-        ("use crate::*;", ""),
-        ("use crate as root;", ""),
-    ] {
-        assert_eq!(
-            up("balance", text).first().map(String::as_str),
-            Some(path),
-            "{text}"
-        );
-    }
-}
-
-#[test]
-fn what_is_allowed_is_not_reported() {
-    for text in [
-        "use crate::numeric::{fourier::{self, series}, linear::*};",
-        "use super::terms::{block, block_mut}; use self::inner::A;",
-        "pub(crate) mod a { pub(in crate::balance) fn f(&self) { self.g() } }",
-        "/// See [`crate::report`]\nfn f() {}",
-        "#[doc = \"crate::report\"] fn f() {}",
-        "#[cfg(test)] mod tests { use crate::report::Table; }",
-        "#[cfg(test)] use crate::report::Table;",
-        "#[cfg(test)] #[allow(dead_code)] pub(crate) fn f() { crate::report::f() }",
-        "#[cfg(all(test, feature = \"plot\"))] fn f() { crate::report::f() }",
-        "fn f() { a::crate_report::b(); let report = 1; }",
-    ] {
-        assert_eq!(up("balance", text), Vec::<String>::new(), "{text}");
-    }
 }

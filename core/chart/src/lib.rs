@@ -10,7 +10,7 @@
 //! with a Greek letter is misplaced.
 //!
 //! ```
-//! use hertzian::chart::{Chart, Curve, Line, Run};
+//! use hertzian_chart::{Chart, Curve, Line, Run};
 //!
 //! let stable = Run { line: Line::Stable, points: vec![[0.6, 0.2], [0.9, 1.0]] };
 //! let unstable = Run { line: Line::Unstable, points: vec![[0.9, 1.0], [0.8, 1.4]] };
@@ -36,6 +36,7 @@ mod svg;
 #[cfg(test)]
 mod tests;
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use axis::Scale;
@@ -140,22 +141,25 @@ pub struct Note {
 
 /// Why a chart was not written.
 #[derive(thiserror::Error)]
+#[error("cannot write the chart {}", .path.display())]
 #[non_exhaustive]
-pub enum ChartError {
-    /// The file could not be written.
-    #[error("cannot write the chart {}", .path.display())]
-    Write {
-        /// Its path.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+pub struct ChartError {
+    /// The path of its file.
+    pub path: PathBuf,
+    /// What the system said.
+    pub source: std::io::Error,
 }
 
-crate::error::sentence_as_debug! {
-    ChartError:
-    Write { path, source }
-    ;
+/// The sentence with its source, as of every error, and with `{:#?}` what it consists of.
+impl fmt::Debug for ChartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, source } = self;
+        if !f.alternate() {
+            return write!(f, "{self}: {source}");
+        }
+        let mut parts = f.debug_struct("ChartError");
+        parts.field("path", path).field("source", source).finish()
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -264,7 +268,7 @@ impl Chart {
     /// If the file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ChartError> {
         let path = path.as_ref();
-        crate::file::write(path, self.to_svg()).map_err(|source| ChartError::Write {
+        hertzian_file::write(path, self.to_svg()).map_err(|source| ChartError {
             path: path.to_path_buf(),
             source,
         })

@@ -61,11 +61,11 @@ pub enum Node {
     Absolute(usize),
     /// `-1`, `0` or `1`.
     Sign(usize),
-    /// Integer power. One of zero to a negative exponent is zero, see [`crate::laws::emitted`].
+    /// Integer power. One of zero to a negative exponent is zero.
     Integer(usize, i32),
-    /// Guarded power `base^exponent` of a base that is not negative where it is used, see [`crate::laws::emitted::power`].
+    /// Guarded power `base^exponent` of a base that is not negative where it is used.
     Power(usize, usize),
-    /// Guarded `base^exponent * ln base`, see [`crate::laws::emitted::power_log`].
+    /// Guarded `base^exponent * ln base`.
     PowerLog(usize, usize),
     /// Sine.
     Sine(usize),
@@ -75,4 +75,28 @@ pub enum Node {
     Exponential(usize),
     /// Hyperbolic tangent.
     Tanh(usize),
+}
+
+impl Node {
+    /// The positions of its operands.
+    #[inline]
+    pub fn operands(self) -> [Option<usize>; 2] {
+        match self {
+            Self::Number(_) | Self::Gap | Self::Rate | Self::Argument(_) => [None, None],
+            Self::Add(a, b)
+            | Self::Subtract(a, b)
+            | Self::Multiply(a, b)
+            | Self::Divide(a, b)
+            | Self::Power(a, b)
+            | Self::PowerLog(a, b) => [Some(a), Some(b)],
+            Self::Negate(a)
+            | Self::Absolute(a)
+            | Self::Sign(a)
+            | Self::Integer(a, _)
+            | Self::Sine(a)
+            | Self::Cosine(a)
+            | Self::Exponential(a)
+            | Self::Tanh(a) => [Some(a), None],
+        }
+    }
 }

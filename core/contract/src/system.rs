@@ -1,0 +1,262 @@
+//! The contract of a system: its equations of motion.
+//!
+//! For coordinates `q`, the phase `tau = omega t / divisor` and parameters `p`:
+//!
+//! ```text
+//! M q'' + C q' + K(tau) q + sum_c e_c(tau) phi_c(g_c, g_c'; a_c) = sum_h ( a_h cos h tau + b_h sin h tau )      (1)
+//! g_c  = d_c(tau) . q - delta_c(tau)                                                                          (2)
+//! g_c' = the total derivative of g_c with respect to time                                                      (3)
+//! ```
+//!
+//! A prime is a derivative with respect to *time*, not phase. Everything but the laws is a list of scalar
+//! *coefficients*: functions of the parameters and of `omega`, each with a [`Place`] in the equations. Two methods
+//! evaluate the whole list and its derivative; nothing else of a system needs code.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+pub use crate::law::Bound;
+use crate::law::{Law, is_within};
+
+/// A system of oscillators as the runtime sees it; object safe, so that the engine is compiled once.
+///
+/// Slices have the lengths that [`SystemFacts`] says; implementations may panic otherwise (the runtime upholds it).
+pub trait System: Send + Sync {
+    /// What is known of the system without evaluating it.
+    fn facts(&self) -> &SystemFacts;
+
+    /// Writes the present value of every parameter.
+    fn values(&self, values: &mut [f64]);
+
+    /// Writes every coefficient of [`SystemFacts::places`].
+    fn coefficients(&self, parameters: &[f64], omega: f64, coefficients: &mut [f64]);
+
+    /// Writes the derivative of every coefficient with respect to one variable.
+    fn coefficients_by(
+        &self,
+        variable: Variable,
+        parameters: &[f64],
+        omega: f64,
+        derivatives: &mut [f64],
+    );
+
+    /// The law of the contacts whose [`ContactFacts::law`] is `index`.
+    fn law(&self, index: usize) -> &dyn Law;
+
+    /// A copy with the present values, for whoever keeps the system: requests and results own one, so that they can be returned and
+    /// sent to other threads. Of a type that is `Clone` it is `Arc::new(self.clone())`.
+    fn shared(&self) -> Arc<dyn System>;
+}
+
+/// What is shared already is not copied again.
+impl System for Arc<dyn System> {
+    #[inline]
+    fn facts(&self) -> &SystemFacts {
+        self.as_ref().facts()
+    }
+
+    #[inline]
+    fn values(&self, values: &mut [f64]) {
+        self.as_ref().values(values);
+    }
+
+    #[inline]
+    fn coefficients(&self, parameters: &[f64], omega: f64, coefficients: &mut [f64]) {
+        self.as_ref().coefficients(parameters, omega, coefficients);
+    }
+
+    #[inline]
+    fn coefficients_by(
+        &self,
+        variable: Variable,
+        parameters: &[f64],
+        omega: f64,
+        derivatives: &mut [f64],
+    ) {
+        self.as_ref()
+            .coefficients_by(variable, parameters, omega, derivatives);
+    }
+
+    #[inline]
+    fn law(&self, index: usize) -> &dyn Law {
+        self.as_ref().law(index)
+    }
+
+    #[inline]
+    fn shared(&self) -> Self {
+        Self::clone(self)
+    }
+}
+
+/// What a derivative is taken by, and what a continuation varies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Variable {
+    /// The excitation frequency `omega`, in radians per unit of time.
+    Omega,
+    /// A parameter, by position in [`SystemFacts::parameters`].
+    Parameter(usize),
+}
+
+/// What is known of a system without evaluating it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SystemFacts {
+    /// Name of the declared type.
+    pub name: Cow<'static, str>,
+    /// The equations of motion, as written.
+    pub equation: Cow<'static, str>,
+    /// Names of the coordinates.
+    pub coordinates: Cow<'static, [Cow<'static, str>]>,
+    /// Parameters, in the order of the value slice.
+    pub parameters: Cow<'static, [ParameterFacts]>,
+    /// The base frequency is `omega / divisor`, so that every harmonic in the declaration is a whole one.
+    pub divisor: u32,
+    /// Number of laws.
+    pub laws: usize,
+    /// The contacts: the terms `e_c phi_c` of (1).
+    pub contacts: Cow<'static, [ContactFacts]>,
+    /// Where each coefficient stands. Several coefficients at one place add up.
+    pub places: Cow<'static, [Place]>,
+}
+
+/// What is known of a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParameterFacts {
+    /// Name of the field.
+    pub name: Cow<'static, str>,
+    /// Its documentation.
+    pub documentation: Cow<'static, str>,
+    /// Lower end of the range.
+    pub minimum: Bound,
+    /// Upper end of the range.
+    pub maximum: Bound,
+}
+
+impl ParameterFacts {
+    /// Whether a value is finite and within the range.
+    #[inline]
+    pub fn admits(&self, value: f64) -> bool {
+        is_within(self.minimum, self.maximum, value)
+    }
+}
+
+/// A term `e_c phi_c(g_c, g_c')` of (1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ContactFacts {
+    /// Index of its law.
+    pub law: usize,
+}
+
+/// A function of the phase: one of `1`, `cos h tau`, `sin h tau`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wave {
+    /// `h`; zero for the constant.
+    pub harmonic: u32,
+    /// Cosine or sine. A harmonic of zero is a cosine.
+    pub part: Part,
+}
+
+impl Wave {
+    /// The constant function.
+    pub const CONSTANT: Self = Self {
+        harmonic: 0,
+        part: Part::Cosine,
+    };
+
+    /// The wave that the phase derivative is `harmonic` times, and its sign: `-sin` for a cosine, `cos` for a sine.
+    #[inline]
+    pub const fn derivative(self) -> (Self, f64) {
+        let Self { harmonic, part } = self;
+        match part {
+            Part::Cosine => (
+                Self {
+                    harmonic,
+                    part: Part::Sine,
+                },
+                -1.0,
+            ),
+            Part::Sine => (
+                Self {
+                    harmonic,
+                    part: Part::Cosine,
+                },
+                1.0,
+            ),
+        }
+    }
+}
+
+/// Cosine or sine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// `cos h tau`
+    Cosine,
+    /// `sin h tau`
+    Sine,
+}
+
+/// Where a coefficient stands in equations (1) and (2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// An entry of `M`.
+    Mass {
+        /// Equation.
+        row: usize,
+        /// Coordinate.
+        column: usize,
+    },
+    /// An entry of `C`.
+    Damping {
+        /// Equation.
+        row: usize,
+        /// Coordinate.
+        column: usize,
+    },
+    /// An entry of `K`, times a wave.
+    Stiffness {
+        /// Equation.
+        row: usize,
+        /// Coordinate.
+        column: usize,
+        /// Its dependence on the phase.
+        wave: Wave,
+    },
+    /// A term of the right-hand side of (1).
+    Load {
+        /// Equation.
+        row: usize,
+        /// Its dependence on the phase.
+        wave: Wave,
+    },
+    /// An entry of the force direction `e_c`.
+    ForceDirection {
+        /// Contact.
+        contact: usize,
+        /// Equation.
+        row: usize,
+        /// Its dependence on the phase.
+        wave: Wave,
+    },
+    /// An entry of the gap direction `d_c`.
+    GapDirection {
+        /// Contact.
+        contact: usize,
+        /// Coordinate.
+        column: usize,
+        /// Its dependence on the phase.
+        wave: Wave,
+    },
+    /// A term of the offset `delta_c`, subtracted in (2).
+    Offset {
+        /// Contact.
+        contact: usize,
+        /// Its dependence on the phase.
+        wave: Wave,
+    },
+    /// An argument of the law of a contact.
+    Argument {
+        /// Contact.
+        contact: usize,
+        /// Position in [`LawFacts::arguments`](crate::law::LawFacts::arguments).
+        index: usize,
+    },
+}

@@ -1,0 +1,67 @@
+//! How far a computation is: what all callbacks are told.
+
+use crate::branches::point::Point;
+
+/// How far a computation is.
+///
+/// Every callback has the form `FnMut(Progress<'_>) -> ControlFlow<()>`: to show progress, or to stop by
+/// [`ControlFlow::Break`](std::ops::ControlFlow::Break) with what is computed by then. It is called where something is done; between two
+/// calls a [`Cancel`](crate::Cancel) stops a computation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Progress<'p> {
+    /// What is computed.
+    pub stage: Stage,
+    /// How much of it is done, in what the stage counts.
+    pub done: usize,
+    /// How much there is of it, where that is known beforehand.
+    pub total: Option<usize>,
+    /// Value of what is varied.
+    pub value: Option<f64>,
+    /// The orbit that was found last.
+    pub point: Option<&'p Point>,
+}
+
+impl Progress<'_> {
+    /// So much is done of a stage, and nothing else is known.
+    pub const fn new(stage: Stage, done: usize) -> Self {
+        Self {
+            stage,
+            done,
+            total: None,
+            value: None,
+            point: None,
+        }
+    }
+}
+
+/// What a computation is doing, and what it counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Stage {
+    /// It looks for the first orbit: attempts.
+    FirstOrbit,
+    /// It follows a branch of orbits: points.
+    Branch,
+    /// It follows a curve of bifurcations in two parameters, or a backbone: points.
+    Curve,
+    /// It lets motions settle, value by value: values.
+    Sweep,
+    /// It averages rates along a motion: periods.
+    Exponents,
+    /// It lets motions settle, cell by cell: cells.
+    Basin,
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::FirstOrbit => "first orbit",
+            Self::Branch => "branch",
+            Self::Curve => "curve",
+            Self::Sweep => "sweep",
+            Self::Exponents => "exponents",
+            Self::Basin => "basin",
+        })
+    }
+}
