@@ -47,7 +47,7 @@ pub fn main() -> Result<(), Error> {
 /// What a person wants to know first: how far the branch goes, where it turns, and where it is stable.
 fn describe(branch: &Branch) {
     let points = &branch.points;
-    println!("{}\n", branch.system().facts().equation);
+    println!("{}\n", branch.model.equation);
     if let (Some(first), Some(last)) = (points.first(), points.last()) {
         let (count, from, to) = (points.len(), first.value, last.value);
         let harmonics = points.iter().map(|point| point.orbit.harmonics()).max();

@@ -3,9 +3,8 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use hertzian::shooting::Point;
 use hertzian::stability::{Method, Projection, Sorting};
-use hertzian::{Branch, Complex, Error, FrequencyResponse, Shooting, System};
+use hertzian::{Branch, Complex, Error, FrequencyResponse, Point, Shooting, System};
 
 hertzian::oscillator! {
     /// Contact on one side with a linear spring.

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
+use hertzian::Side;
 use hertzian::chart::{Chart, Curve, Reference, Scale, event_markers};
 use hertzian::error::chain;
 use hertzian::export;
-use hertzian::shooting::Side;
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop, System};
 
 use super::exact;

@@ -8,8 +8,7 @@ use std::sync::atomic::Ordering;
 use hertzian::bifurcation::Bifurcations;
 use hertzian::chart::{Chart, Curve, Markers, Scale, event_markers};
 use hertzian::error::chain;
-use hertzian::shooting::{Branch, Event, Point};
-use hertzian::{EventKind, OrbitError, Shooting};
+use hertzian::{Branch, Event, EventKind, FrequencyResponse, OrbitError, Point, Shooting};
 
 use super::exact;
 use super::figure::{Drawing, Table, Task, Value};
@@ -63,7 +62,7 @@ impl<'t> Cycles<'t> {
     }
 
     /// Follows a branch and adds it.
-    fn follow(&mut self, shooting: &Shooting) -> Result<Branch, String> {
+    fn follow(&mut self, shooting: &FrequencyResponse<Shooting>) -> Result<Branch, String> {
         let branch = shooting
             .run_with(|_| {
                 if self.task.interrupted.load(Ordering::Relaxed) {
@@ -81,13 +80,13 @@ impl<'t> Cycles<'t> {
     fn continue_from(
         &mut self,
         branch: &Branch,
-        orbits: &Shooting,
+        orbits: &FrequencyResponse<Shooting>,
         [from, to]: [f64; 2],
     ) -> Result<(), String> {
         let last = branch.points.last().filter(|last| last.value == from);
         let last =
             last.ok_or_else(|| format!("the branch did not come back: {}", branch.stopped))?;
-        self.follow(&orbits.clone().near(last.state()).from(from).to(to))?;
+        self.follow(&orbits.clone().near_orbit(&last.orbit).from(from).to(to))?;
         Ok(())
     }
 
@@ -96,8 +95,8 @@ impl<'t> Cycles<'t> {
         let Some(first) = branch.points.first() else {
             return;
         };
-        let label = format!("period {}", first.period);
-        let runs = branch.runs(place);
+        let label = format!("period {}", first.orbit.period);
+        let runs = branch.runs();
         match self.curves.iter_mut().find(|curve| curve.label == label) {
             Some(curve) => curve.runs.extend(runs),
             None => self.curves.push(Curve { label, runs }),
@@ -134,18 +133,18 @@ impl<'t> Cycles<'t> {
     }
 }
 
-fn place(cycle: &Point) -> [f64; 2] {
-    [cycle.value, cycle.peak_to_peak()]
+fn place(point: &Point) -> [f64; 2] {
+    [point.value, point.peak_to_peak()]
 }
 
-fn row(cycle: &Point) -> Vec<String> {
-    let largest = cycle.stability.multipliers.iter().map(|m| m.norm());
+fn row(point: &Point) -> Vec<String> {
+    let largest = point.stability.multipliers.iter().map(|m| m.norm());
     let largest = largest.fold(0.0, f64::max);
     vec![
-        cycle.period.to_string(),
-        format!("{:?}", cycle.value),
-        format!("{:?}", cycle.peak_to_peak()),
-        cycle.stability.verdict.to_string(),
+        point.orbit.period.to_string(),
+        format!("{:?}", point.value),
+        format!("{:?}", point.peak_to_peak()),
+        point.stability.verdict.to_string(),
         format!("{largest:?}"),
     ]
 }
@@ -171,7 +170,7 @@ pub fn figure_8a(task: &Task<'_>) -> Result<Drawing, String> {
     for (period, kind, drive, what) in exact::AMPLITUDES {
         let alike = events
             .iter()
-            .filter(|e| e.kind == kind && e.point.period == period);
+            .filter(|e| e.kind == kind && e.point.orbit.period == period);
         let distance = |event: &Event| (event.point.value - drive).abs();
         let nearest = alike.min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let found = nearest.filter(|event| distance(event) < 1e-3);
@@ -197,7 +196,7 @@ pub fn figure_9a(task: &Task<'_>) -> Result<Drawing, String> {
     figure.follow(&shooting.clone().from(2.2).to(0.4))?;
     for (period, state) in COEXISTING {
         let orbits = shooting.clone().period(period);
-        let near = orbits.clone().near(&state);
+        let near = orbits.clone().near_state(&state);
         figure.follow(&near.clone().from(1.0).to(0.4))?;
         let fold = figure.follow(&near.from(1.0).to(2.2))?;
         figure.continue_from(&fold, &orbits, [1.0, 0.4])?;
@@ -205,10 +204,10 @@ pub fn figure_9a(task: &Task<'_>) -> Result<Drawing, String> {
     for (period, _, exact) in exact::COEXISTING {
         let state = COEXISTING.iter().find(|known| known.0 == period);
         let orbits = shooting.clone().period(period);
-        let near = state.map_or(orbits.clone(), |known| orbits.near(&known.1));
-        let cycle = near.orbit(1.0).map_err(|error| chain(&error).to_string())?;
+        let near = state.map_or(orbits.clone(), |known| orbits.near_state(&known.1));
+        let point = near.orbit(1.0).map_err(|error| chain(&error).to_string())?;
         let what = format!("period {period} at ω = 1: peak-to-peak");
-        let value = Value::of(what, cycle.peak_to_peak()).exact(Some(exact));
+        let value = Value::of(what, point.peak_to_peak()).exact(Some(exact));
         figure.drawing.values.push(value);
     }
     figure.scale = Scale::Logarithmic;
@@ -227,7 +226,11 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
         .omega(1.0)
         .period(8);
     let mut figure = Cycles::new(task, "drive");
-    let branch = shooting.clone().near(&PERIOD_8).from(1.7798).to(1.7799);
+    let branch = shooting
+        .clone()
+        .near_state(&PERIOD_8)
+        .from(1.7798)
+        .to(1.7799);
     let branch = figure.follow(&branch)?;
     let mut values = Vec::new();
     let mut near = PERIOD_8.to_vec();
@@ -238,16 +241,16 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
             printed,
         } = column;
         let names = [format!("λ₁ at A = {drive}"), format!("λ₂ at A = {drive}")];
-        match shooting.clone().near(&near).orbit(drive) {
-            Ok(cycle) => {
-                near = cycle.state().to_vec();
+        match shooting.clone().near_state(&near).orbit(drive) {
+            Ok(point) => {
+                near = point.orbit.state();
                 for (index, name) in names.into_iter().enumerate() {
-                    let found = cycle
+                    let found = point
                         .stability
                         .multipliers
                         .get(index)
                         .map_or(f64::NAN, |m| m.re);
-                    let value = Value::of(name, found).stated(cycle.stability.error);
+                    let value = Value::of(name, found).stated(point.stability.error);
                     let exact = multipliers.map(|exact| exact[index]);
                     values.push(value.exact(exact).printed(printed[index]));
                 }
@@ -271,7 +274,7 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
         .y("leading multiplier of period 8")
         .curve(Curve {
             label: String::new(),
-            runs: branch.runs(leading),
+            runs: branch.runs_of(leading),
         })
         .markers(Markers {
             label: "printed in the paper".to_owned(),
@@ -286,7 +289,7 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
 }
 
 /// Amplitude and leading multiplier.
-fn leading(cycle: &Point) -> [f64; 2] {
-    let multipliers = cycle.stability.multipliers.iter().map(|m| m.re);
-    [cycle.value, multipliers.fold(f64::NEG_INFINITY, f64::max)]
+fn leading(point: &Point) -> [f64; 2] {
+    let multipliers = point.stability.multipliers.iter().map(|m| m.re);
+    [point.value, multipliers.fold(f64::NEG_INFINITY, f64::max)]
 }

@@ -8,8 +8,8 @@ use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
 use hertzian::error::chain;
 use hertzian::export::{Decimal, Table};
-use hertzian::shooting::{Event, Point, Track};
-use hertzian::{Error, EventKind, RequestError, Shooting, System};
+use hertzian::shooting::Track;
+use hertzian::{Error, Event, EventKind, FrequencyResponse, Point, RequestError, Shooting, System};
 
 use super::options::{Options, Tracked};
 use super::records::{EventRecord, PointRecord, Record, TrackRecord};
@@ -59,8 +59,8 @@ pub fn find(
         request = request.search(value, basin(options, model, value));
     }
     let mut interrupted = false;
-    let visit = |cycle: &Point| {
-        let answer = go(cycle.value);
+    let visit = |progress: hertzian::Progress<'_>| {
+        let answer = go(progress.value.unwrap_or(options.from));
         interrupted |= answer.is_break();
         answer
     };
@@ -157,7 +157,9 @@ impl Found {
             if self.tracks.iter().any(|track| on_it(&track)) {
                 continue;
             }
-            let tracked = shooting.track_with(&event, second, range, |point| go(point.values[0]));
+            let tracked = shooting.track_with(&event, second, range, |progress| {
+                go(progress.value.unwrap_or(event.point.value))
+            });
             match tracked {
                 Ok(track) => self.tracks.push(track),
                 Err(error) => self
@@ -176,22 +178,20 @@ impl Found {
         &self,
         record: &mut Record,
         table: &mut Table,
-        options: &Options,
         model: &dyn System,
     ) -> Result<(), Error> {
-        let shooting = shooting(options, model);
         let facts = model.facts();
         record.events.clear();
         for (number, limb) in self.diagram.branches.iter().enumerate() {
             let events = limb.branch.events.iter();
             record
                 .events
-                .extend(events.map(|event| EventRecord::of_cycle(number, event, facts)));
+                .extend(events.map(|event| EventRecord::of(number, event, facts)));
             if number == 0 {
                 continue;
             }
-            for cycle in &limb.branch.points {
-                let point = shooting.point(cycle)?;
+            for point in &limb.branch.points {
+                let point = limb.branch.complete(point)?;
                 table.add(number, &point);
                 let point = PointRecord::of(&point, facts);
                 record.points.push(PointRecord {
@@ -244,12 +244,12 @@ impl Found {
 
     /// Orbits of very different sizes are drawn over decades.
     fn scale(&self) -> Scale {
-        let cycles = self
+        let points = self
             .diagram
             .branches
             .iter()
             .flat_map(|limb| &limb.branch.points);
-        let sizes = cycles.map(hertzian::shooting::Point::peak_to_peak);
+        let sizes = points.map(Point::peak_to_peak);
         let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
             (low.min(size), high.max(size))
         });
@@ -344,7 +344,7 @@ fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
 }
 
 /// Shooting over the range of the branch, and a part of it beyond.
-fn shooting(options: &Options, model: &dyn System) -> Shooting {
+fn shooting(options: &Options, model: &dyn System) -> FrequencyResponse<Shooting> {
     let margin = 0.1 * (options.to - options.from);
     let mut parameters = model.facts().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == options.varied());
@@ -397,7 +397,7 @@ fn passes(track: &Track, event: &Event, value: f64) -> bool {
         .points
         .iter()
         .fold(0.0, |m: f64, p| m.max(p.values[0].abs()));
-    track.period == event.point.period
+    track.period == event.point.orbit.period
         && track.points.windows(2).any(|pair| {
             let [a, b] = [pair[0].values, pair[1].values];
             let part = (value - a[1]) / (b[1] - a[1]);

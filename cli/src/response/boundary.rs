@@ -80,8 +80,11 @@ fn at_frequency(options: &ModelOptions, omega: f64) -> Option<f64> {
         .samples(SAMPLES)
         .tolerance(1e-3)
         .max_points(POINTS)
-        .run_with(|point| {
-            if point.motion().minimum > 0.0 {
+        .run_with(|progress| {
+            if progress
+                .point
+                .is_some_and(|point| point.motion().minimum > 0.0)
+            {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())

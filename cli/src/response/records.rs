@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use hertzian::observe::{amplitudes, phases};
-use hertzian::shooting::{Event, Track};
+use hertzian::shooting::Track;
 use hertzian::system::SystemFacts;
-use hertzian::{Branch, Event, Point, Statistics};
+use hertzian::{Branch, Event, Point, Statistics, System};
 use serde::Serialize;
 
 use super::backbone::Backbone;
@@ -62,9 +62,9 @@ pub struct PointRecord {
     /// Smallest displacement.
     pub min: f64,
     /// Mean displacement.
-    pub mean: f64,
+    pub mean: Option<f64>,
     /// Root of the mean square of the displacement, mean included.
-    pub rms: f64,
+    pub rms: Option<f64>,
     /// `stable`, `unstable` or `undecided`.
     pub stability: String,
     /// Floquet multipliers, real and imaginary part.
@@ -88,7 +88,7 @@ pub struct PointRecord {
     /// Part of the period on each piece of the law of each contact, from the lowest gaps to the highest.
     pub contact_pieces: Vec<Vec<f64>>,
     /// Mean power that is dissipated.
-    pub dissipated_power: f64,
+    pub dissipated_power: Option<f64>,
 }
 
 /// A special orbit.
@@ -195,8 +195,8 @@ pub struct StatisticsRecord {
 
 impl Record {
     /// Of a branch, and of solutions at values that were asked for.
-    pub fn of(branch: &Branch, options: &Options, at: &[Point]) -> Self {
-        let facts = branch.system().facts();
+    pub fn of(branch: &Branch, system: &dyn System, options: &Options, at: &[Point]) -> Self {
+        let facts = system.facts();
         let point = |point: &Point| PointRecord::of(point, facts);
         // A turn has no orbit of its own; what the branch does not vary is the same at every point.
         let fixed = branch.points.first().map(point);
@@ -218,7 +218,7 @@ impl Record {
             }
         };
         let mut values = vec![0.0; facts.parameters.len()];
-        branch.system().values(&mut values);
+        system.values(&mut values);
         let first = branch.points.first();
         let values = first.map_or(values, |point| point.parameters.clone());
         let names = facts.parameters.iter().map(|p| p.name.to_string());
@@ -231,7 +231,7 @@ impl Record {
             events: branch
                 .events
                 .iter()
-                .map(|event| EventRecord::of(event, facts))
+                .map(|event| EventRecord::of(0, event, facts))
                 .collect(),
             turns: branch.turns.iter().map(turn).collect(),
             at: at.iter().map(point).collect(),
@@ -240,23 +240,6 @@ impl Record {
             stopped: branch.stopped.to_string(),
             statistics: branch.statistics.into(),
             elapsed_seconds: branch.elapsed.as_secs_f64(),
-        }
-    }
-}
-
-impl EventRecord {
-    /// Of an event of a branch of a diagram.
-    pub fn of_cycle(branch: usize, event: &Event, facts: &SystemFacts) -> Self {
-        let cycle = &event.point;
-        Self {
-            branch,
-            period: cycle.period,
-            kind: event.kind.to_string(),
-            value: cycle.value,
-            omega: cycle.omega,
-            drive: drive(&cycle.parameters, facts),
-            peak_to_peak: cycle.peak_to_peak(),
-            error: event.error,
         }
     }
 }
@@ -301,9 +284,10 @@ impl PointRecord {
 }
 
 impl EventRecord {
-    fn of(event: &Event, facts: &SystemFacts) -> Self {
+    /// Of an event of a branch with a number.
+    pub fn of(branch: usize, event: &Event, facts: &SystemFacts) -> Self {
         Self {
-            branch: 0,
+            branch,
             period: event.point.orbit.period,
             kind: event.kind.to_string(),
             value: event.point.value,

@@ -124,13 +124,14 @@ pub fn run(
         progress.update(|| format!("{count} points, {} = {value:.6}", options.varied()));
         go()
     };
-    let branch = request(options, &*model).run_with(|point| see(point.value))?;
+    let branch = request(options, &*model)
+        .run_with(|progress| see(progress.value.unwrap_or(options.from)))?;
 
     let omega = branch.points.first().map_or(1.0, |point| point.orbit.omega);
     let remarks = remarks::of(&*model, omega).into_iter();
     let mut warnings: Vec<String> = remarks.map(|remark| remark.to_string()).collect();
     let at = solutions_at(options, &branch, &mut warnings);
-    let mut record = Record::of(&branch, options, &at);
+    let mut record = Record::of(&branch, &*model, options, &at);
     let mut table = Table::of(&*model);
     branch.points.iter().for_each(|point| table.add(0, point));
     let found = match branch.stopped {
@@ -139,7 +140,7 @@ pub fn run(
     };
     let mut chart = match &found {
         Some(found) => found.chart(options, &*model),
-        None => picture(options, &branch, stop),
+        None => picture(options, &branch, &*model, stop),
     };
     if options.backbone && !stop() {
         let (backbone, missing) = backbone::of(options, &*model, &branch, &go);
@@ -148,7 +149,7 @@ pub fn run(
         warnings.extend(missing);
     }
     if let Some(found) = &found {
-        found.add_to(&mut record, &mut table, options, &*model)?;
+        found.add_to(&mut record, &mut table, &*model)?;
         warnings.extend(found.warnings.iter().cloned());
     }
     let written = write(options, &record, &table, &chart)?;
@@ -254,13 +255,16 @@ fn solutions_at(options: &Options, branch: &Branch, warnings: &mut Vec<String>) 
 }
 
 /// The library's picture of the branch, with the boundary of lost contact.
-fn picture(options: &Options, branch: &Branch, stop: impl Fn() -> bool) -> Chart {
+fn picture(
+    options: &Options,
+    branch: &Branch,
+    model: &dyn System,
+    stop: impl Fn() -> bool,
+) -> Chart {
     if options.model.file.is_some() {
         return branch.chart();
     }
-    let chart = branch
-        .chart()
-        .title(summary::title(options, branch.system(), &[]));
+    let chart = branch.chart().title(summary::title(options, model, &[]));
     if !options.over_frequency() {
         return chart;
     }

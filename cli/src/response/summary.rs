@@ -99,18 +99,18 @@ fn write_all(
 
 /// The equations of a file, and the parameters that do not vary.
 fn from_file(text: &mut String, path: &Path, options: &Options, branch: &Branch) -> fmt::Result {
-    let facts = branch.system().facts();
+    let model = &branch.model;
     writeln!(
         text,
         "{} from {}: {}",
-        facts.name,
+        model.name,
         path.display(),
-        facts.equation
+        model.equation
     )?;
     let Some(point) = branch.points.first() else {
         return Ok(());
     };
-    let parameters = facts.parameters.iter().zip(&point.parameters);
+    let parameters = model.parameters.iter().zip(&point.parameters);
     let fixed = parameters
         .filter(|(parameter, _)| parameter.name != branch.varied)
         .map(|(parameter, value)| format!("{} = {value}", parameter.name));

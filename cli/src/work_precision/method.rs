@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use cpu_time::ThreadTime;
-use hertzian::shooting::Branch;
 use hertzian::system::System;
 use hertzian::{Aft, Branch, Complex, EventKind, FrequencyResponse, Shooting};
 
@@ -249,14 +248,14 @@ fn largest(branch: &Branch, at: f64) -> Option<f64> {
 }
 
 /// The largest orbit of a branch at a frequency, from the nearest one of those that are larger than the others beside it.
-fn largest_cycle(shooting: &Shooting, branch: &Branch, at: f64) -> Option<f64> {
+fn largest_cycle(shooting: &FrequencyResponse<Shooting>, branch: &Branch, at: f64) -> Option<f64> {
     let passes = branch
         .points
         .windows(2)
         .filter(|pair| (pair[0].value - at) * (pair[1].value - at) <= 0.0);
     let largest = passes.max_by(|a, b| a[0].peak_to_peak().total_cmp(&b[0].peak_to_peak()))?;
-    let cycle = shooting.clone().near(largest[0].state()).orbit(at).ok()?;
-    Some(cycle.peak_to_peak())
+    let request = shooting.clone().near_orbit(&largest[0].orbit);
+    Some(request.orbit(at).ok()?.peak_to_peak())
 }
 
 /// What runs are compared with.
@@ -295,12 +294,12 @@ pub fn reference(problem: &Problem) -> Result<Option<Reference>, hertzian::Error
         Some(folds) => folds.to_vec(),
         None => folds(&shooting.clone().stability(false).from(from).to(to).run()?),
     };
-    let cycle = shooting.near_orbit(&largest.orbit).orbit(problem.at)?;
+    let point = shooting.near_orbit(&largest.orbit).orbit(problem.at)?;
     Ok(Some(Reference {
         folds,
-        peak_to_peak: cycle.peak_to_peak(),
-        state: cycle.state().to_vec(),
-        multipliers: cycle.stability.multipliers,
+        peak_to_peak: point.peak_to_peak(),
+        state: point.orbit.state(),
+        multipliers: point.stability.multipliers,
     }))
 }
 
@@ -308,5 +307,5 @@ pub fn reference(problem: &Problem) -> Result<Option<Reference>, hertzian::Error
 fn folds(branch: &Branch) -> Vec<f64> {
     let mut folds: Vec<_> = branch.folds().map(|fold| &fold.point).collect();
     folds.sort_by(|a, b| b.peak_to_peak().total_cmp(&a.peak_to_peak()));
-    folds.iter().map(|cycle| cycle.value).collect()
+    folds.iter().map(|point| point.value).collect()
 }

@@ -98,7 +98,12 @@ fn shoot(problem: &Problem, reference: &Reference, tolerance: f64) -> Answer {
     let setting = format!("tolerance {tolerance:.0e}");
     let shooting =
         FrequencyResponse::of(&*problem.compiled).by(Shooting::new().tolerance(tolerance));
-    let orbit = || shooting.clone().near(&reference.state).orbit(problem.at);
+    let orbit = || {
+        shooting
+            .clone()
+            .near_state(&reference.state)
+            .orbit(problem.at)
+    };
     match orbit() {
         Ok(cycle) => Answer {
             method,

@@ -160,23 +160,45 @@ impl<'a> Block<'a> {
 /// values, which is below a part in a million at a located event.
 const INVERSE: usize = 3;
 
+/// Parts of the value by which the matrix is taken beside the event, where it is singular to the last bit at the event itself.
+const NUDGES: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
+
 impl Block<'_> {
-    /// The orbit as one of the larger balance, and the null vector of the block there, at an event whose branch has this tangent. Its
-    /// last entry, for the parameter, is zero but where all harmonics are in the block.
-    pub(crate) fn null_vector(&mut self, u: &[f64], tangent: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        self.orbit.clear();
-        self.determinant_along(u, tangent);
-        let n = self.residual.len();
-        let mut v: Vec<f64> = (0..=n).map(|i| (1.0 + i as f64).sin()).collect();
+    /// The vector that the factorised matrix takes closest to zero.
+    fn inverse_iteration(&mut self, v: &mut [f64]) {
+        let n = v.len() - 1;
+        for (i, x) in v.iter_mut().enumerate() {
+            *x = (1.0 + i as f64).sin();
+        }
         for _ in 0..INVERSE {
             // What the border says is across the tangent.
             v[n] = 0.0;
-            self.jacobian.solve(&mut v);
+            self.jacobian.solve(v);
             let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-            for x in &mut v {
+            for x in v.iter_mut() {
                 *x /= largest;
             }
         }
+    }
+
+    /// The orbit as one of the larger balance, and the null vector of the block there, at an event whose branch has this tangent. Its
+    /// last entry, for the parameter, is zero but where all harmonics are in the block.
+    pub(crate) fn null_vector(&mut self, u: &[f64], tangent: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let n = self.residual.len();
+        let mut v = vec![0.0; n + 1];
+        let mut at = u.to_vec();
+        let value = at.len() - 1;
+        for nudge in NUDGES {
+            at[value] = u[value] + nudge * u[value].abs().max(f64::MIN_POSITIVE);
+            self.orbit.clear();
+            if self.determinant_along(&at, tangent).0 != 0.0 {
+                break;
+            }
+        }
+        self.inverse_iteration(&mut v);
+        // Where it was nudged, the orbit is still the one given.
+        let last = self.stretched.len() - 1;
+        self.stretched[last] = u[value];
         if self.part != Part::Own {
             v[n] = 0.0;
         }

@@ -10,7 +10,8 @@ use std::time::Duration;
 
 use super::known;
 use crate::branches::branch::Branch;
-use crate::branches::point::{Event, Point};
+use crate::branches::point::Event;
+use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::Stop;
 use crate::error::{Error, chain};
 use crate::event::{EventKind, Side};
@@ -158,12 +159,12 @@ impl Diagram {
 
 /// Who looks at every orbit, and may ask to stop.
 pub(super) struct Watch<'v> {
-    visit: &'v mut dyn FnMut(&Point) -> ControlFlow<()>,
+    visit: See<'v>,
     pub(super) interrupted: bool,
 }
 
 impl<'v> Watch<'v> {
-    pub(super) fn new(visit: &'v mut dyn FnMut(&Point) -> ControlFlow<()>) -> Self {
+    pub(super) fn new(visit: See<'v>) -> Self {
         Self {
             visit,
             interrupted: false,
@@ -171,8 +172,8 @@ impl<'v> Watch<'v> {
     }
 
     /// Shows an orbit.
-    pub(super) fn see(&mut self, point: &Point) -> ControlFlow<()> {
-        let answer = (self.visit)(point);
+    pub(super) fn see(&mut self, progress: Progress<'_>) -> ControlFlow<()> {
+        let answer = (self.visit)(progress);
         self.interrupted |= answer.is_break();
         answer
     }
@@ -284,7 +285,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         let request = request
             .near_orbit(&orbit.orbit)
             .max_points(self.points_left / 2);
-        let branch = request.through_with(value, |point| self.watch.see(point));
+        let branch = request.through_with(value, |progress| self.watch.see(progress));
         let branch = branch.map_err(Reason::Failed)?;
         self.add(Origin::Attractor { value }, 0, branch);
         Ok(())
@@ -320,14 +321,15 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
                 return Err(Reason::Budget);
             }
             let request = self.response.clone().max_points(self.points_left);
-            let branch = match request.switch_with(&event, side, |point| self.watch.see(point)) {
-                Ok(branch) => branch,
-                Err(error) => {
-                    // The other side may begin all the same.
-                    failed = Some(error);
-                    continue;
-                }
-            };
+            let branch =
+                match request.switch_with(&event, side, |progress| self.watch.see(progress)) {
+                    Ok(branch) => branch,
+                    Err(error) => {
+                        // The other side may begin all the same.
+                        failed = Some(error);
+                        continue;
+                    }
+                };
             let origin = Origin::Event {
                 branch: number,
                 event: index,

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
 use crate::attractors::basin::{Basin, Basins, Progress};
 use crate::bifurcation::error::BifurcationError;
-use crate::branches::point::Point;
+use crate::branches::progress;
 use crate::continuation::step;
 use crate::error::Error;
 use crate::model::request::RequestError;
@@ -203,7 +203,10 @@ impl<M: OrbitMethod> Bifurcations<M> {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn run_with(&self, visit: impl FnMut(&Point) -> ControlFlow<()>) -> Result<Diagram, Error> {
+    pub fn run_with(
+        &self,
+        visit: impl FnMut(progress::Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Diagram, Error> {
         self.run_watched(visit, &|_| true)
     }
 
@@ -214,7 +217,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
     /// As [`run`](Self::run).
     pub fn run_watched(
         &self,
-        mut visit: impl FnMut(&Point) -> ControlFlow<()>,
+        mut visit: impl FnMut(progress::Progress<'_>) -> ControlFlow<()>,
         watch: &(dyn Fn(Progress) -> bool + Sync),
     ) -> Result<Diagram, Error> {
         let started = Instant::now();
@@ -233,7 +236,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
         }
         let mut seen = Watch::new(&mut visit);
         let first = self.response.clone().max_points(self.points.max(2));
-        let branch = first.run_with(|point| seen.see(point))?;
+        let branch = first.run_with(|progress| seen.see(progress))?;
         let [low, high] = self.wider(from, to)?;
         let mut search = Search::new(
             self.response.clone().from(low).to(high),

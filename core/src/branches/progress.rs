@@ -1,6 +1,11 @@
 //! How far a computation is: what all callbacks are told.
 
+use std::ops::ControlFlow;
+
 use crate::branches::point::Point;
+
+/// A callback.
+pub(crate) type See<'v> = &'v mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
 
 /// How far a computation is.
 ///
@@ -31,6 +36,24 @@ impl Progress<'_> {
             total: None,
             value: None,
             point: None,
+        }
+    }
+
+    /// So much is done of a stage, and the last is at this value.
+    pub(crate) const fn at(stage: Stage, done: usize, value: f64) -> Self {
+        Self {
+            value: Some(value),
+            ..Self::new(stage, done)
+        }
+    }
+}
+
+impl<'p> Progress<'p> {
+    /// So many points of a branch, and the last of them.
+    pub(crate) const fn orbit(done: usize, point: &'p Point) -> Self {
+        Self {
+            point: Some(point),
+            ..Self::at(Stage::Branch, done, point.value)
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a branch computes when it is asked: it knows what followed it.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::by_shooting::{self, Second};
@@ -9,6 +10,7 @@ use crate::balance_branch::follower::Follower;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::point::{Event, Point};
+use crate::branches::progress::Progress;
 use crate::branches::request::Request;
 use crate::error::Error;
 use crate::event::Side;
@@ -64,7 +66,7 @@ impl Branch {
     /// If no branch begins there, its first orbit was not found, or the branch was read from a file and has no
     /// [model](Self::attach).
     pub fn switch(&self, event: &Event, side: Side) -> Result<Self, Error> {
-        let visit = &mut |_: &Point| std::ops::ControlFlow::Continue(());
+        let visit = &mut |_: Progress<'_>| ControlFlow::Continue(());
         match self.following()? {
             Following::Balance(_, request, balance) => balance.switch(request, event, side, visit),
             Following::Shooting(request, shooting) => shooting.switch(request, event, side, visit),
@@ -86,7 +88,7 @@ impl Branch {
             name: second,
             range,
         };
-        let visit = &mut |_: &shooting::TrackPoint| std::ops::ControlFlow::Continue(());
+        let visit = &mut |_: Progress<'_>| ControlFlow::Continue(());
         by_shooting::track(following.request(), shooting, event, second, visit)
     }
 

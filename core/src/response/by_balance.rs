@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::branch::Following;
+use super::by_shooting;
 use super::sealed::Follow;
-use super::{See, by_shooting};
 use crate::balance::Parity;
 use crate::balance::start::{Moving, start, without_symmetry};
 use crate::balance::symmetry::has_stride;
@@ -19,6 +19,7 @@ use crate::balance_branch::run::{Followed, Run};
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::error::{Attempts, OrbitError};
 use crate::branches::point::{Event, Point};
+use crate::branches::progress::See;
 use crate::branches::request::{Guess, Request};
 use crate::continuation::follow::{FollowOptions, Start, Stop};
 use crate::continuation::statistics::Statistics;

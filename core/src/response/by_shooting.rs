@@ -1,9 +1,7 @@
 //! Requests by shooting, and curves in two parameters, which are always followed by it.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::See;
 use super::branch::Following;
 use super::sealed::Follow;
 use crate::balance_branch::options::HarmonicBalance;
@@ -11,15 +9,14 @@ use crate::branches::branch::{Branch, Further};
 use crate::branches::observed::Observed;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
+use crate::branches::progress::See;
 use crate::branches::request::{Guess, Request};
 use crate::branches::stability::Stability;
 use crate::error::Error;
 use crate::event::{EventKind, Side};
 use crate::model::request::RequestError;
 use crate::model::validate;
-use crate::shooting::{
-    Asked, Plane, Shooting, Track, TrackPoint, complete, compute, trace, with_states,
-};
+use crate::shooting::{Asked, Plane, Shooting, Track, complete, compute, trace, with_states};
 use crate::system::Variable;
 
 impl Follow for Shooting {
@@ -102,7 +99,7 @@ pub(super) fn track(
     shooting: Shooting,
     event: &Event,
     second: Second<'_>,
-    visit: &mut dyn FnMut(&TrackPoint) -> ControlFlow<()>,
+    visit: See<'_>,
 ) -> Result<Track, Error> {
     Asked {
         request,

@@ -14,15 +14,13 @@ use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::Branch;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
+use crate::branches::progress::{Progress, See};
 use crate::branches::request::{Guess, Request};
 use crate::error::Error;
 use crate::event::Side;
 use crate::orbit::stability::Method;
-use crate::shooting::{Shooting, Track, TrackPoint};
+use crate::shooting::{Shooting, Track};
 use crate::system::System;
-
-/// Called at every orbit as it is found.
-type See<'v> = &'v mut dyn FnMut(&Point) -> ControlFlow<()>;
 
 mod sealed {
     use super::{Branch, Error, Event, Point, Request, See, Side};
@@ -288,7 +286,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     /// As [`run`](Self::run).
     pub fn run_with(
         &self,
-        mut visit: impl FnMut(&Point) -> ControlFlow<()>,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
         self.method.run(&self.request, &mut visit)
     }
@@ -336,7 +334,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         &self,
         event: &Event,
         side: Side,
-        mut visit: impl FnMut(&Point) -> ControlFlow<()>,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
         self.method.switch(&self.request, event, side, &mut visit)
     }
@@ -359,7 +357,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     pub fn through_with(
         &self,
         value: f64,
-        mut visit: impl FnMut(&Point) -> ControlFlow<()>,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
         self.method.through(&self.request, value, &mut visit)
     }
@@ -401,7 +399,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         event: &Event,
         second: &str,
         range: [f64; 2],
-        mut visit: impl FnMut(&TrackPoint) -> ControlFlow<()>,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Track, Error> {
         by_shooting::track(
             &self.request,

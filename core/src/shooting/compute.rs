@@ -1,6 +1,5 @@
 //! One orbit, or a branch of them, from a guess.
 
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::companion::Companion;
@@ -10,6 +9,7 @@ use super::start::{First, first};
 use super::switch::{self, Begun};
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::point::{Event, Point};
+use crate::branches::progress::See;
 use crate::branches::request::Guess;
 use crate::continuation::follow::{Start, Stop};
 use crate::error::Error;
@@ -95,9 +95,6 @@ pub(crate) fn branch_through(
     }
     Ok(Branch::joined(part(-forwards)?, forth))
 }
-
-/// Called at every orbit.
-type See<'s> = &'s mut dyn FnMut(&Point) -> ControlFlow<()>;
 
 /// A frequency that velocities count by.
 fn omega_between(setting: &Setting, [from, to]: [f64; 2]) -> f64 {

@@ -1,17 +1,15 @@
 //! Shooting as the engine of branches sees it.
 
-use std::ops::ControlFlow;
-
 use super::equations::Equations;
 use super::events;
 use super::recurrence::{Recurrence, step_on_other_branch};
 use super::run::Run;
 use super::tested::{self, Tests};
 use crate::branches::engine::Search;
-use crate::branches::point::Point;
 use crate::branches::problem::{
     BranchProblem, Change, Kept, Read, Step, Test, TestValue, Watched, Zero,
 };
+use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::{CurvePoint, Stop};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -33,15 +31,11 @@ pub(super) struct ShootingBranch<'b, 'r> {
     watched: Vec<Watched>,
     /// The test functions computed last, and where.
     tested: Option<(Vec<f64>, Tests)>,
-    visit: &'b mut dyn FnMut(&Point) -> ControlFlow<()>,
+    visit: See<'b>,
 }
 
 impl<'b, 'r> ShootingBranch<'b, 'r> {
-    pub(super) fn new(
-        run: &'b mut Run<'r>,
-        equations: Equations,
-        visit: &'b mut dyn FnMut(&Point) -> ControlFlow<()>,
-    ) -> Self {
+    pub(super) fn new(run: &'b mut Run<'r>, equations: Equations, visit: See<'b>) -> Self {
         let watched = if run.setting.stability {
             tested::watched(equations.span.half).to_vec()
         } else {
@@ -198,7 +192,8 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         };
         let tests = Tests::of(map.as_ref(), at.parameter_slope());
         self.tested = Some((at.u.clone(), tests));
-        let answer = (self.visit)(&point);
+        let done = self.run.points.len() + 1;
+        let answer = (self.visit)(Progress::orbit(done, &point));
         self.run.points.push(point);
         if answer.is_break() {
             Read::Stop

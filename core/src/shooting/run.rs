@@ -1,7 +1,5 @@
 //! What is done with the curve of orbits that is followed: multipliers and extremes of every orbit, events, and where it ends.
 
-use std::ops::ControlFlow;
-
 use nalgebra::DMatrix;
 
 use super::companion::{Companion, multipliers};
@@ -15,6 +13,7 @@ use crate::branches::error::OrbitError;
 use crate::branches::observed::{Motion, Observed};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
+use crate::branches::progress::See;
 use crate::continuation::follow::{FollowOptions, Start, Stop};
 use crate::continuation::newton::{NewtonError, NewtonOptions};
 use crate::continuation::statistics::Statistics;
@@ -80,7 +79,7 @@ impl<'r> Run<'r> {
         equations: Equations,
         start: Start,
         options: FollowOptions,
-        visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
+        visit: See<'_>,
     ) -> Result<Stop, Error> {
         let mut branch = ShootingBranch::new(self, equations, visit);
         let outcome = engine::run(&mut branch, start, options);

@@ -14,6 +14,7 @@ use super::track::{Condition, Curve};
 use super::watch::Watch;
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
+use crate::branches::progress::{Progress, See, Stage};
 use crate::branches::solve;
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, follow,
@@ -158,8 +159,6 @@ pub(crate) struct Plane<'a> {
 const POINTS: usize = 600;
 /// Shorter steps lead nowhere: where orbits graze, a determinant has the root of the distance in it, and no tangent.
 const SHORTEST: f64 = 1e-5;
-/// What is shown every bifurcation, and says whether to go on.
-pub(crate) type See<'v> = &'v mut dyn FnMut(&TrackPoint) -> ControlFlow<()>;
 
 /// Half of a curve, as it is followed.
 struct Half {
@@ -283,9 +282,9 @@ fn half(
         &mut |curve, newton, seen| {
             let known = watch.points.len();
             watch.visit(curve, newton, &seen)?;
-            if watch.points[known..]
-                .iter()
-                .any(|point| visit(point).is_break())
+            let shown = watch.points[known..].iter().zip(known + 1..);
+            let mut shown = shown.map(|(point, done)| (point.values[0], done));
+            if shown.any(|(value, done)| visit(Progress::at(Stage::Curve, done, value)).is_break())
             {
                 interrupted = true;
                 return Continue::Break(Halt::Stop);

@@ -1,6 +1,6 @@
 //! What is asked of shooting, and cannot be; and what is no bifurcation.
 
-use hertzian::{Error, EventKind, OrbitError, RequestError, Shooting, Side};
+use hertzian::{Error, EventKind, FrequencyResponse, OrbitError, RequestError, Shooting, Side};
 use hertzian_tests::TwoMasses;
 
 use crate::cascade::MODEL;
@@ -50,7 +50,7 @@ fn a_shorter_period_is_recognised_at_any_tolerance() {
     for tolerance in [1e-3, 1e-4, 1e-8] {
         let request = FrequencyResponse::of(&model).by(Shooting::new().tolerance(tolerance));
         let orbit = request.orbit(1.5).unwrap();
-        let twice = request.near(orbit.state()).period(2).orbit(1.5);
+        let twice = request.near_orbit(&orbit.orbit).period(2).orbit(1.5);
         let error = twice.expect_err("an orbit of period one");
         assert!(
             matches!(
@@ -77,7 +77,7 @@ fn an_event_belongs_to_what_is_varied() {
         .to(2.0);
     let varied = |error: Error| matches!(error.downcast_ref(), Some(RequestError::Varied { .. }));
     assert!(varied(over_omega.switch(event, Side::One).unwrap_err()));
-    assert!(varied(over_omega.point(&event.point).unwrap_err()));
+    assert!(varied(over_omega.complete(&event.point).unwrap_err()));
     assert!(varied(
         over_omega.track(event, "drive", [1.0, 2.0]).unwrap_err()
     ));
@@ -99,7 +99,7 @@ fn an_event_belongs_to_what_is_varied() {
         )
     };
     assert!(state(another.switch(event, Side::One).unwrap_err()));
-    assert!(state(another.at(&branch, 1.2).unwrap_err()));
+    assert!(state(another.complete(&event.point).unwrap_err()));
     let faster = FrequencyResponse::of(&MODEL)
         .by(Shooting::new())
         .vary("drive")
@@ -111,14 +111,14 @@ fn an_event_belongs_to_what_is_varied() {
             Some(RequestError::Option { name: "omega", .. })
         )
     };
-    assert!(omega(faster.at(&branch, 1.2).unwrap_err()));
+    assert!(omega(faster.complete(&event.point).unwrap_err()));
     let heavier = hertzian_tests::OneSidedLinear { load: 1.1, ..MODEL };
     let heavier = FrequencyResponse::of(&heavier)
         .by(Shooting::new())
         .vary("drive")
         .omega(1.0);
     let load = |error: Error| matches!(error.downcast_ref(), Some(RequestError::Parameter { name, .. }) if name == "load");
-    assert!(load(heavier.at(&branch, 1.2).unwrap_err()));
+    assert!(load(heavier.complete(&event.point).unwrap_err()));
     let contact = Contact { drive: 1.0 };
     let another = FrequencyResponse::of(&contact)
         .by(Shooting::new())
@@ -132,7 +132,7 @@ fn an_event_belongs_to_what_is_varied() {
         )
     };
     assert!(values(another.switch(event, Side::One).unwrap_err()));
-    assert!(values(another.at(&branch, 1.2).unwrap_err()));
+    assert!(values(another.complete(&event.point).unwrap_err()));
     assert!(values(
         another.track(event, "omega", [0.9, 1.1]).unwrap_err()
     ));

@@ -6,7 +6,7 @@
 use std::ops::ControlFlow;
 
 use hertzian::backbone::{FreeOscillation, FreePoint, PhaseResonance};
-use hertzian::{BifurcationError, End, RequestError, Stop, System};
+use hertzian::{BifurcationError, RequestError, Stop, System};
 
 hertzian::oscillator! {
     Continuous(x) {

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use hertzian::bifurcation::{Bifurcations, Diagram, Origin, Reason};
 use hertzian::time;
 use hertzian::time::stroboscope::Stroboscope;
-use hertzian::{End, Event, EventKind, Stop};
+use hertzian::{Event, EventKind, Stop};
 use hertzian_tests::{OneSidedLinear, nearest};
 
 pub const MODEL: OneSidedLinear = OneSidedLinear {
@@ -94,7 +94,12 @@ fn the_cascade_is_followed_by_itself() {
     for limb in &diagram.branches {
         let expected = 1 << limb.depth;
         assert_eq!(limb.period(), expected);
-        assert!(limb.branch.points.iter().all(|c| c.period == expected));
+        assert!(
+            limb.branch
+                .points
+                .iter()
+                .all(|c| c.orbit.period == expected)
+        );
         if let Origin::Event { branch, event, .. } = limb.origin {
             let parent = &diagram.branches[branch].branch.events[event];
             assert_eq!(parent.kind, EventKind::PeriodDoubling);
@@ -162,8 +167,10 @@ fn as_far_as_period_16() {
         ..MODEL
     };
     let mut map = Stroboscope::new(time::of(&model, 1.0, time::Options::default()).unwrap());
-    let mut state = cycle.state().to_vec();
-    let apart = |state: &[f64]| (state[0] - cycle.state()[0]).hypot(state[1] - cycle.state()[1]);
+    let mut state = cycle.orbit.state().to_vec();
+    let apart = |state: &[f64]| {
+        (state[0] - cycle.orbit.state()[0]).hypot(state[1] - cycle.orbit.state()[1])
+    };
     for passed in 1..=16 {
         map.map(&mut state).unwrap();
         let returned = apart(&state) < 1e-9;
@@ -208,8 +215,9 @@ fn a_budget_is_kept_and_said() {
 fn an_interrupted_search_keeps_what_it_has() {
     let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
     let request = request.from(1.0).to(1.6).depth(2);
-    let diagram = request.run_with(|cycle| {
-        if cycle.period == 2 && cycle.value > 1.4 {
+    let diagram = request.run_with(|progress| {
+        let beyond = |point: &hertzian::Point| point.orbit.period == 2 && point.value > 1.4;
+        if progress.point.is_some_and(beyond) {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())

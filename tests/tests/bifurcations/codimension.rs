@@ -1,7 +1,7 @@
 //! Curves of grazing in two parameters, and points of codimension two on curves of doublings.
 
-use hertzian::shooting::{Event, Side, SpecialKind};
-use hertzian::{EventKind, Shooting};
+use hertzian::shooting::SpecialKind;
+use hertzian::{Event, EventKind, FrequencyResponse, Shooting, Side};
 use hertzian_tests::OneSidedLinear;
 
 /// Drive and frequency stay in contact as long as the linear motion does not reach zero: `A^2 = W^2 ((1 - omega^2)^2 +

@@ -6,8 +6,7 @@ use std::f64::consts::PI;
 
 use hertzian::attractors::basin::{Axis, Basin, Grid};
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin};
-use hertzian::shooting::Point;
-use hertzian::{Complex, Shooting, Verdict};
+use hertzian::{Complex, FrequencyResponse, Point, Shooting, Verdict};
 use hertzian_tests::OneSidedLinear;
 
 use crate::curves::Hertz;
@@ -68,7 +67,7 @@ fn at_frequency_1(diagram: &Diagram, model: &OneSidedLinear, period: usize) -> V
             let near = FrequencyResponse::of(model)
                 .by(Shooting::new())
                 .period(period)
-                .near_state(pair[0].state());
+                .near_state(&pair[0].orbit.state());
             if let Ok(cycle) = near.orbit(1.0) {
                 assert_ne!(cycle.stability.verdict, Verdict::Undecided);
                 found.push(cycle);
@@ -115,11 +114,11 @@ fn periods_one_to_five_of_figure_9() {
         let cycle = cycle.unwrap_or_else(|| panic!("period {period}: {passes:?}"));
         assert_eq!(cycle.stability.verdict, Verdict::Stable);
         // Figure 9b: the points of its Poincare section.
-        assert_eq!(cycle.states().count(), period);
+        assert_eq!(cycle.orbit.states().count(), period);
         for point in points {
             let is_at =
                 |state: &[f64]| (0..2).all(|i| (state[i] - point[i]).abs() < 1e-9 * peak_to_peak);
-            assert!(cycle.states().any(is_at), "{period} {point:?}");
+            assert!(cycle.orbit.states().any(is_at), "{period} {point:?}");
         }
     }
     for period in 1..=5 {
@@ -195,8 +194,8 @@ fn simulated(mut state: [f64; 2], periods: usize) -> [f64; 2] {
 /// A motion that begins beside an orbit settles to it, and neighbours return as the multipliers say: by a simulation that has nothing
 /// but its equations in common with the rest.
 fn assert_settles(cycle: &Point) {
-    let (period, size) = (cycle.period, cycle.peak_to_peak());
-    let state = [cycle.state()[0], cycle.state()[1]];
+    let (period, size) = (cycle.orbit.period, cycle.peak_to_peak());
+    let state = [cycle.orbit.state()[0], cycle.orbit.state()[1]];
     let beside = [state[0] + 1e-5 * size, state[1]];
     let settled = simulated(beside, 400 * period);
     for i in 0..2 {

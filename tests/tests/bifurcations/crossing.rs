@@ -1,8 +1,7 @@
 //! Crossings of branches without a symmetry: beside a driven oscillator, another one has equilibria that are known.
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
-use hertzian::shooting::{Point, Side};
-use hertzian::{EventKind, OrbitError, Shooting, System};
+use hertzian::{EventKind, FrequencyResponse, OrbitError, Point, Shooting, Side, System};
 
 hertzian::oscillator! {
     /// `y = 0`, or `y^2 = omega - at`.
@@ -65,7 +64,7 @@ fn of_crossing(diagram: &Diagram) -> [&Limb; 2] {
 }
 
 fn assert_near(cycle: &Point, expected: f64) {
-    let y = cycle.extremes[1];
+    let y = cycle.observed.motions[1];
     for found in [y.minimum, y.maximum] {
         assert!(
             (found - expected).abs() < 1e-8,
@@ -79,7 +78,7 @@ fn assert_near(cycle: &Point, expected: f64) {
 fn both_directions_of_a_pitchfork() {
     let diagram = diagram(&Pitchfork { at: AT });
     let limbs = of_crossing(&diagram);
-    let signs = limbs.map(|limb| limb.branch.points[0].extremes[1].maximum.signum());
+    let signs = limbs.map(|limb| limb.branch.points[0].observed.motions[1].maximum.signum());
     assert_eq!(signs[0], -signs[1]);
     for (limb, sign) in limbs.into_iter().zip(signs) {
         let cycles = &limb.branch.points;

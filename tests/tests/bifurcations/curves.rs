@@ -2,7 +2,7 @@
 //! decides.
 
 use hertzian::shooting::{SpecialKind, Track};
-use hertzian::{Error, EventKind, RequestError, Shooting, System};
+use hertzian::{Error, EventKind, FrequencyResponse, RequestError, Shooting, System};
 use hertzian_tests::{OneSidedLinear, nearest};
 
 hertzian::oscillator! {

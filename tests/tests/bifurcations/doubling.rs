@@ -1,7 +1,6 @@
 //! Doublings of the period and crossings located by the harmonic balance itself, and the branches that begin there.
 
-use hertzian::shooting::Side;
-use hertzian::{Event, EventKind, FrequencyResponse, OrbitError, Stop, System};
+use hertzian::{Event, EventKind, FrequencyResponse, OrbitError, Side, Stop, System};
 use hertzian_tests::{TwoMasses, nearest};
 
 use crate::cascade::{A1, A4, A6, MODEL};
@@ -60,7 +59,10 @@ fn the_balance_switches_to_longer_periods() {
     let four = request.clone().stability(false).doublings(false);
     let four = four.switch(doublings[0], Side::One).unwrap();
     assert!(four.points.iter().all(|point| point.orbit.period == 4));
-    let Stop::Joined { period: 2, value } = four.stopped else {
+    let Stop::Joined {
+        period: 2, value, ..
+    } = four.stopped
+    else {
         panic!("{}", four.stopped);
     };
     assert!((value - A6.drive).abs() < 1e-3, "{value}");
@@ -76,7 +78,10 @@ fn assert_asymmetric_branches(
 ) {
     let sides = [Side::One, Side::Other].map(|side| request.switch(event, side).unwrap());
     for side in &sides {
-        let Stop::Joined { period: 1, value } = side.stopped else {
+        let Stop::Joined {
+            period: 1, value, ..
+        } = side.stopped
+        else {
             panic!("{}", side.stopped);
         };
         let joined = exact
@@ -103,7 +108,7 @@ fn assert_asymmetric_branches(
         );
     }
     // They are mirror images.
-    let means = [&sides[0], &sides[1]].map(|side| side.points[5].motion().mean);
+    let means = [&sides[0], &sides[1]].map(|side| side.points[5].motion().mean.unwrap());
     assert!(
         (means[0] + means[1]).abs() < 1e-6 * means[0].abs().max(1e-3),
         "{means:?}"

@@ -1,8 +1,8 @@
 //! Where curves of folds of twice the period end, and closed ones, which are followed once.
 
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::shooting::{Side, Special, SpecialKind, TrackEnd};
-use hertzian::{End, EventKind, FrequencyResponse, Shooting, Stop};
+use hertzian::shooting::{Special, SpecialKind, TrackEnd};
+use hertzian::{EventKind, FrequencyResponse, Shooting, Side, Stop};
 
 use crate::codimension::Bending;
 
@@ -96,7 +96,7 @@ fn a_closed_branch_is_followed_once() {
     let model = CubicWithStop { drive: 1.0 };
     let request = Bifurcations::of(&model).from(0.6).to(0.8);
     let diagram = request.run().unwrap();
-    let closed = |end: End| end == Stop::Closed;
+    let closed = |end: Stop| end == Stop::Closed;
     let loops = diagram.branches.iter();
     let loops = loops.filter(|limb| closed(limb.branch.stopped));
     assert_eq!(loops.count(), 1);

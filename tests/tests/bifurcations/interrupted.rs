@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hertzian::attractors::basin::{Axis, Basin, Grid, Progress};
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::shooting::{Point, TrackEnd};
-use hertzian::{Shooting, Stop};
+use hertzian::shooting::TrackEnd;
+use hertzian::{FrequencyResponse, Point, Shooting, Stop};
 
 use crate::cascade::MODEL;
 
@@ -21,7 +21,7 @@ fn a_search_for_coexisting_motions() {
     };
     let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
     let request = request.from(1.0).to(1.2).depth(0).search(1.0, basin);
-    let visit = |_: &Point| ControlFlow::Continue(());
+    let visit = |_: hertzian::Progress<'_>| ControlFlow::Continue(());
     let diagram = request.run_watched(visit, &watch).unwrap();
     assert_eq!(asked.load(Ordering::Relaxed), 1);
     assert_eq!(diagram.branches.len(), 1);

@@ -133,7 +133,7 @@ fn mirrored_contacts_are_as_good_as_one_odd_law() {
             .to(0.9)
             .run()
             .unwrap();
-        assert!(shooting.points.iter().all(|cycle| cycle.symmetric));
+        assert!(shooting.points.iter().all(|cycle| cycle.orbit.symmetric));
     }
 }
 
@@ -175,7 +175,7 @@ fn unequal_contacts_have_no_symmetry() {
             .run()
             .unwrap();
         assert!(
-            shooting.points.iter().all(|cycle| !cycle.symmetric),
+            shooting.points.iter().all(|cycle| !cycle.orbit.symmetric),
             "{index}"
         );
     }

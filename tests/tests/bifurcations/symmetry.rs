@@ -5,8 +5,7 @@
 //! (`frequency_response` of the reference values).
 
 use hertzian::bifurcation::Bifurcations;
-use hertzian::shooting::{End, Event};
-use hertzian::{EventKind, System};
+use hertzian::{Event, EventKind, Stop, System};
 use hertzian_tests::nearest;
 
 hertzian::oscillator! {
@@ -70,10 +69,16 @@ fn assert_symmetry_breaks(
     let asymmetric = &diagram.branches[1..];
     assert_eq!(asymmetric.len(), 2);
     for limb in asymmetric {
-        assert!(limb.branch.points.iter().all(|cycle| !cycle.symmetric));
+        assert!(
+            limb.branch
+                .points
+                .iter()
+                .all(|cycle| !cycle.orbit.symmetric)
+        );
         let Stop::Joined {
             period: 1,
             symmetric: true,
+            ..
         } = limb.branch.stopped
         else {
             panic!("{}", limb.branch.stopped);
@@ -102,7 +107,8 @@ fn assert_symmetry_breaks(
         assert!(error < 1e-9, "{joint} {error:.1e}");
     }
     // They are mirror images: what is the largest displacement of one is the smallest of the other.
-    let extremes = |limb: usize, index: usize| asymmetric[limb].branch.points[index].extremes[0];
+    let extremes =
+        |limb: usize, index: usize| asymmetric[limb].branch.points[index].observed.motions[0];
     for index in 0..asymmetric[0].branch.points.len() {
         let (one, other) = (extremes(0, index), extremes(1, index));
         assert!(

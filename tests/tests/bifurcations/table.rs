@@ -41,12 +41,12 @@ fn multipliers_of_period_8() {
             .vary("drive")
             .omega(1.0)
             .period(8);
-        let known = shooting.near(&state).orbit(drive).unwrap();
+        let known = shooting.near_state(&state).orbit(drive).unwrap();
         let point = FrequencyResponse::of(&MODEL)
             .by(Shooting::new())
             .vary("drive")
             .omega(1.0)
-            .point(&known)
+            .complete(&known)
             .unwrap();
         let balance = FrequencyResponse::of(&MODEL).vary("drive").omega(1.0);
         let balance = balance.near_orbit(&point.orbit).harmonics(10).max_points(2);
@@ -89,10 +89,10 @@ fn the_fold_of_period_8_by_balance_and_refined() {
     let cycle = shooting
         .clone()
         .period(8)
-        .near(&state)
+        .near_state(&state)
         .orbit(drive)
         .unwrap();
-    let point = shooting.point(&cycle).unwrap();
+    let point = shooting.complete(&cycle).unwrap();
     let balance = FrequencyResponse::of(&MODEL).vary("drive").omega(1.0);
     let balance = balance
         .near_orbit(&point.orbit)

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::{EventKind, Shooting};
+use hertzian::{EventKind, FrequencyResponse, Shooting};
 use hertzian_tests::TwoMasses;
 
 hertzian::oscillator! {

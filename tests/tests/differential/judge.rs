@@ -204,7 +204,7 @@ impl Case {
             }
         };
         self.report.count("branches by the balance");
-        let passage = Passage::of_balance(name, &branch);
+        let passage = Passage::of(name, &branch);
         if judge {
             self.orbits(&branch);
         }
@@ -234,9 +234,9 @@ impl Case {
             }
         };
         self.report.count("branches by shooting");
-        let passage = Passage::of_shooting(name, &branch);
+        let passage = Passage::of(name, &branch);
         if judge {
-            self.points(&branch);
+            self.cycles(&branch);
         }
         self.passed(&passage).then_some(passage)
     }

@@ -47,7 +47,7 @@ impl Case {
                 let mut state = State::default();
                 for i in 0..model.coordinates {
                     let time = part * question.time;
-                    (state[i], state[COORDINATES + i]) = point.orbit.state(i, time);
+                    (state[i], state[COORDINATES + i]) = point.orbit.state_at(i, time).unwrap();
                 }
                 Ok(state)
             };
@@ -80,13 +80,14 @@ impl Case {
         for index in self.chosen(&verdicts, ORBITS[1]) {
             let cycle = &branch.points[index];
             let mut state = State::default();
-            let (positions, velocities) = cycle.state().split_at(model.coordinates);
+            let first = cycle.orbit.state();
+            let (positions, velocities) = first.split_at(model.coordinates);
             state[..positions.len()].copy_from_slice(positions);
             state[COORDINATES..][..velocities.len()].copy_from_slice(velocities);
-            let extremes = cycle.extremes.iter();
+            let extremes = cycle.observed.motions.iter();
             let size = extremes.fold(0.0, |size: f64, e| size.max(0.5 * e.peak_to_peak()));
             let name = format!("shooting at {:?}", cycle.value);
-            let question = Question::of(&model, cycle.value, cycle.period, size);
+            let question = Question::of(&model, cycle.value, cycle.orbit.period, size);
             let state = |part: f64| question.after(&state, part);
             self.truth(&question, state, (&name, 0.0), &cycle.stability);
         }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hertzian::{Branch, End, EventKind, Stability, Stop, Turn, Verdict};
+use hertzian::{Branch, EventKind, Stability, Stop, Turn, Verdict};
 
 /// An event of a branch.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,29 +51,9 @@ pub struct Passage {
 }
 
 impl Passage {
-    pub fn of_balance(name: &'static str, branch: &Branch) -> Self {
+    pub fn of(name: &'static str, branch: &Branch) -> Self {
         let points = branch.points.iter();
         let places = points.map(|p| Place::of(p.value, p.peak_to_peak(), &p.stability));
-        let events = branch.events.iter().map(|event| Seen {
-            kind: event.kind,
-            value: event.point.value,
-            error: event.error,
-            peak_to_peak: event.point.peak_to_peak(),
-            after: event.after,
-        });
-        Self {
-            name,
-            places: places.collect(),
-            events: events.collect(),
-            turns: branch.turns.clone(),
-            whole: branch.stopped == Stop::ReachedEnd,
-            ended: branch.stopped.to_string(),
-        }
-    }
-
-    pub fn of_shooting(name: &'static str, branch: &Branch) -> Self {
-        let cycles = branch.points.iter();
-        let places = cycles.map(|c| Place::of(c.value, c.peak_to_peak(), &c.stability));
         let events = branch.events.iter().map(|event| Seen {
             kind: event.kind,
             value: event.point.value,

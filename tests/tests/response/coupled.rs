@@ -41,7 +41,10 @@ fn two_masses_lose_stability_where_they_should() {
         assert!(bracketed, "{omega}: {changes:?}");
     }
     for point in &branch.points {
-        let (input, dissipated) = (point.observed.input_power, point.observed.dissipated_power);
+        let (input, dissipated) = (
+            point.observed.input_power.unwrap(),
+            point.observed.dissipated_power.unwrap(),
+        );
         assert!((input - dissipated).abs() < 1e-12, "{input} {dissipated}");
     }
 }
@@ -153,7 +156,10 @@ fn a_rotor_on_eight_moving_contacts_traces_its_branch() {
     assert_eq!(branch.stopped, Stop::ReachedEnd);
     for point in &branch.points {
         assert_eq!(point.observed.contacts.len(), 8);
-        let (input, dissipated) = (point.observed.input_power, point.observed.dissipated_power);
+        let (input, dissipated) = (
+            point.observed.input_power.unwrap(),
+            point.observed.dissipated_power.unwrap(),
+        );
         assert!((input - dissipated).abs() < 1e-12, "{input} {dissipated}");
         for contact in &point.observed.contacts {
             assert!(
@@ -164,7 +170,10 @@ fn a_rotor_on_eight_moving_contacts_traces_its_branch() {
     }
     for point in branch.points.iter().step_by(10) {
         let orbit = &point.orbit;
-        let ((x, u), (y, v)) = (orbit.state(0, 0.0), orbit.state(1, 0.0));
+        let ((x, u), (y, v)) = (
+            orbit.state_at(0, 0.0).unwrap(),
+            orbit.state_at(1, 0.0).unwrap(),
+        );
         let period = std::f64::consts::TAU / orbit.base;
         let after = bearing_after(&model, point.omega(), period, [x, y, u, v]);
         // The error of the orbit, carried around by the flow.

@@ -263,7 +263,7 @@ fn has_a_start(model: &dyn System, omega: f64, (size, rate): (f64, f64), case: &
     let point = found.unwrap_or_else(|error| panic!("{case} at {omega}: {error}"));
     let mut map = Stroboscope::of(model, omega).unwrap();
     let n = map.order() / 2;
-    let motions = (0..n).map(|i| point.orbit.state(i, 0.0));
+    let motions = (0..n).map(|i| point.orbit.state_at(i, 0.0).unwrap());
     let (mut state, velocities): (Vec<f64>, Vec<f64>) = motions.unzip();
     state.extend(velocities);
     let before = state.clone();

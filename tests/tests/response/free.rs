@@ -97,7 +97,7 @@ fn relative_peak_to_peak(point: &hertzian::Point) -> f64 {
     let period = std::f64::consts::TAU / point.omega();
     let at = |i: i32| {
         let time = period * f64::from(i) / 20_000.0;
-        point.orbit.state(0, time).0 - point.orbit.state(1, time).0
+        point.orbit.state_at(0, time).unwrap().0 - point.orbit.state_at(1, time).unwrap().0
     };
     let (low, high) = (0..20_000)
         .map(at)

@@ -47,7 +47,11 @@ fn orbits_by_shooting_have_the_exact_multipliers() {
             .by(Shooting::new())
             .vary("drive")
             .omega(1.0);
-        let cycle = shooting.period(index + 1).near(&state).orbit(1.0).unwrap();
+        let cycle = shooting
+            .period(index + 1)
+            .near_state(&state)
+            .orbit(1.0)
+            .unwrap();
         let error = distance(&cycle.stability.multipliers, &pair(multiplier));
         println!("period {}: {error:.1e}", index + 1);
         assert!(error < 1e-9, "{error:e}");

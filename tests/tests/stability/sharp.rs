@@ -336,7 +336,7 @@ impl Count {
             }
         };
         let orbit = &point.orbit;
-        let (x, v) = orbit.state(0, 0.0);
+        let (x, v) = orbit.state_at(0, 0.0).unwrap();
         let Some(exact) = exact(law, width, omega, [x, v]) else {
             self.without += 1;
             println!("{place}: no exact orbit");

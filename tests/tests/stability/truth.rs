@@ -2,10 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::shooting::Point;
 use hertzian::time;
 use hertzian::time::{FlowError, Options};
-use hertzian::{Complex, Event, Point, Shooting, System};
+use hertzian::{Complex, Event, FrequencyResponse, Point, Shooting, System};
 use hertzian_tests::random::Random;
 
 /// Tolerance of the flow, relative to the size of the motion.
@@ -61,17 +60,17 @@ pub fn growth(system: &dyn System, cycle: &Point, random: &mut Random) -> Result
     let largest = cycle.stability.multipliers[0].norm();
     let periods = (FACTOR.ln() / largest.ln().abs()).ceil() as usize;
     let options = Options::default().tolerance(TOLERANCE);
-    let mut flow = time::of(system, cycle.omega, options).unwrap();
+    let mut flow = time::of(system, cycle.omega(), options).unwrap();
     let small = if largest < 1.0 { FACTOR * SMALL } else { SMALL };
-    let [x, v] = [cycle.state()[0], cycle.state()[1]];
-    let [length, speed] = [cycle.peak_to_peak(), cycle.omega * cycle.peak_to_peak()];
+    let [x, v] = [cycle.orbit.state()[0], cycle.orbit.state()[1]];
+    let [length, speed] = [cycle.peak_to_peak(), cycle.omega() * cycle.peak_to_peak()];
     let turn = random.between(0.0, TAU);
     // Two directions at a right angle: one of them has a part along the largest multiplier.
     let mut grown = 0.0_f64;
     for angle in [turn, turn + 0.25 * TAU] {
         let (sine, cosine) = angle.sin_cos();
         let mut state = [x + small * length * cosine, v + small * speed * sine];
-        for _ in 0..periods * cycle.period {
+        for _ in 0..periods * cycle.orbit.period {
             flow.advance(0.0, TAU, &mut state, None, None)?;
         }
         let apart = ((state[0] - x) / length).hypot((state[1] - v) / speed);

@@ -1,16 +1,14 @@
 //! Harmonic balance as the engine of branches sees it.
 
-use std::ops::ControlFlow;
-
 use super::Run;
 use super::crossed::CROSSED;
 use super::events::FOLD_TOLERANCE;
 use super::watch::{Test as OfOrbit, Watch};
 use crate::balance::{Balance, Resolution};
-use crate::branches::point::Point;
 use crate::branches::problem::{
     BranchProblem, Change, Kept, Read, Step, Test, TestValue, Watched, Zero,
 };
+use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::{CurvePoint, Halted};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -24,11 +22,11 @@ const NOISE: f64 = 1e-20;
 pub(super) struct BalanceBranch<'r, 'v> {
     pub(super) run: Run<'r>,
     balance: Balance<'r>,
-    visit: &'v mut dyn FnMut(&Point) -> ControlFlow<()>,
+    visit: See<'v>,
 }
 
 impl<'r, 'v> BalanceBranch<'r, 'v> {
-    pub(super) fn new(run: Run<'r>, visit: &'v mut dyn FnMut(&Point) -> ControlFlow<()>) -> Self {
+    pub(super) fn new(run: Run<'r>, visit: See<'v>) -> Self {
         Self {
             balance: run.follower.balance(run.resolution),
             run,
@@ -94,7 +92,8 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         // It only seemed to belong to what comes after the end. The walk cannot be halted here for more harmonics, so that the point
         // stands with the error it has.
         let point = self.run.read_again(&mut self.balance, newton, step.1);
-        let answer = (self.visit)(&point);
+        let done = self.run.points.len() + 1;
+        let answer = (self.visit)(Progress::orbit(done, &point));
         self.run.points.push(point);
         Some(if answer.is_break() {
             Read::Stop

@@ -8,8 +8,6 @@ mod method;
 mod touch;
 mod watch;
 
-use std::ops::ControlFlow;
-
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
 use crate::balance_branch::follower::Follower;
@@ -18,6 +16,7 @@ use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::Read;
+use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Stop};
 use crate::continuation::newton::{Border, Newton, NewtonError};
 use crate::continuation::statistics::Statistics;
@@ -97,11 +96,7 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// If there is no first point.
-    pub(crate) fn follow(
-        mut self,
-        start: Start,
-        visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
-    ) -> Result<Followed, Error> {
+    pub(crate) fn follow(mut self, start: Start, visit: See<'_>) -> Result<Followed, Error> {
         if matches!(start, Start::Along(_)) {
             // Where another branch is near, what the tail leaves out decides between the two.
             self.couple_all();
@@ -202,7 +197,7 @@ impl<'a> Run<'a> {
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         at: &CurvePoint,
-        visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
+        visit: See<'_>,
     ) -> Read {
         let point = self.reader.read(balance, newton, &at.u);
         self.choose(&point, newton.contraction());
@@ -210,7 +205,7 @@ impl<'a> Run<'a> {
         if self.wanted.harmonics > self.resolution.harmonics {
             return Read::Refused;
         }
-        let answer = visit(&point);
+        let answer = visit(Progress::orbit(self.points.len() + 1, &point));
         self.points.push(point);
         if answer.is_break() {
             Read::Stop

@@ -23,6 +23,7 @@ use super::Backbone;
 use super::oscillation::Equations;
 use crate::bifurcation::error::BifurcationError;
 use crate::branches::error::OrbitError;
+use crate::branches::progress::{Progress, Stage};
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
@@ -170,7 +171,7 @@ impl FreeOscillation {
     /// As [`run`](Self::run).
     pub fn run_with(
         &self,
-        mut visit: impl FnMut(&FreePoint) -> ControlFlow<()>,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Backbone<FreePoint>, Error> {
         let started = Instant::now();
         let options = self.options()?;
@@ -197,7 +198,8 @@ impl FreeOscillation {
                         return Continue::Break(Halt::Stop);
                     }
                 };
-                let answer = visit(&point);
+                let (done, value) = (points.len() + 1, point.ends[0][0]);
+                let answer = visit(Progress::at(Stage::Curve, done, value));
                 points.push(point);
                 if answer.is_break() {
                     Continue::Break(Halt::Stop)

@@ -54,7 +54,7 @@ fn without_saltation_an_error_stays() {
         .iter()
         .max_by(|a, b| a.peak_to_peak().total_cmp(&b.peak_to_peak()));
     let point = largest.unwrap();
-    let (x, v) = point.orbit.state(0, 0.0);
+    let (x, v) = point.orbit.state_at(0, 0.0).unwrap();
     let state = oracle.orbit([x, v], 1, 64000);
     let exact = oracle.multipliers(state, 1, 64000, Switches::Exact);
     println!("steps, without saltation, with it");

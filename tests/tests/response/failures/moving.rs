@@ -34,7 +34,7 @@ fn a_moving_contact_has_a_second_part() {
     };
     // Lever and its rate, gap and its rate, at a phase.
     let motion = |tau: f64| {
-        let (x, v) = orbit.state(0, tau / omega);
+        let (x, v) = orbit.state_at(0, tau / omega).unwrap();
         let (lever, turn) = (1.0 + 0.5 * tau.cos(), -0.5 * omega * tau.sin());
         (lever, turn, lever * x, lever * v + turn * x)
     };

@@ -43,7 +43,7 @@ fn gauss_jacobi(power: f64, count: usize) -> Vec<(f64, f64)> {
 /// The one arc on which the gap is positive, by bisection.
 fn arc(orbit: &Orbit) -> [f64; 2] {
     let period = TAU / orbit.base;
-    let inside = |t: f64| orbit.state(0, t).0 > 0.0;
+    let inside = |t: f64| orbit.state_at(0, t).unwrap().0 > 0.0;
     let steps = 4000;
     let time = |i: i32| period * f64::from(i) / f64::from(steps);
     let crossings: Vec<_> = (0..steps)
@@ -92,7 +92,7 @@ fn one_rule_for_two_powers() {
     let mean = |power: f64, count: usize, law: &dyn Fn(f64) -> f64| {
         let nodes = gauss_jacobi(power, count).into_iter();
         let values = nodes.map(|(node, weight)| {
-            let (gap, _) = orbit.state(0, start + half * (1.0 + node));
+            let (gap, _) = orbit.state_at(0, start + half * (1.0 + node)).unwrap();
             weight * law(gap.max(0.0)) / (1.0 - node * node).powf(power)
         });
         half * values.sum::<f64>() * orbit.base / TAU

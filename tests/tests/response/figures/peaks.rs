@@ -96,7 +96,7 @@ fn error(model: &Declaration, orbit: &Point) -> Option<f64> {
     let exact = request.near_orbit(&orbit.orbit).orbit(orbit.value).ok()?;
     let motions = &orbit.observed.motions;
     let size = motions.iter().map(Motion::peak_to_peak).fold(0.0, f64::max);
-    let pairs = motions.iter().zip(&exact.extremes);
+    let pairs = motions.iter().zip(&exact.observed.motions);
     // The first coordinate relative to its own, the others to the largest.
     let errors = pairs.enumerate().map(|(coordinate, (motion, exact))| {
         let unit = if coordinate == 0 {

@@ -301,14 +301,14 @@ fn figure_2b_has_another_pair_of_folds() {
         omega,
     };
     for orbit in &orbits {
-        let (x, v) = orbit.orbit.state(0, 0.0);
+        let (x, v) = orbit.orbit.state_at(0, 0.0).unwrap();
         let (exact_x, exact_v) = system.periodic(x, v);
         let (again_x, again_v) = system.periodic(exact_x, exact_v);
         assert!((again_x - exact_x).hypot(again_v - exact_v) < 1e-8);
         // The unbounded stiffness costs the integration digits, near folds even more: what counts is that there are three.
         let far = (x - exact_x).hypot(v - exact_v);
         for other in &orbits {
-            let (other_x, other_v) = other.orbit.state(0, 0.0);
+            let (other_x, other_v) = other.orbit.state_at(0, 0.0).unwrap();
             let apart = (x - other_x).hypot(v - other_v);
             assert!(std::ptr::eq(orbit, other) || apart > 10.0 * far);
         }

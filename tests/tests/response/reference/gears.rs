@@ -3,7 +3,7 @@
 //! The pieces are affine, but the stiffness varies, so motions are integrated. Shooting is the method for digits.
 
 use hertzian::EventKind::{Fold, PeriodDoubling};
-use hertzian::{EventKind, Shooting};
+use hertzian::{EventKind, FrequencyResponse, Shooting};
 
 use super::{all_found, of_shooting};
 

@@ -3,8 +3,7 @@
 //! Every piece is affine, so shooting is the method: its motions have closed forms, and its events are exact to rounding.
 
 use hertzian::EventKind::{Fold, NeimarkSacker, PeriodDoubling};
-use hertzian::shooting::End;
-use hertzian::{EventKind, Shooting, Stop};
+use hertzian::{EventKind, FrequencyResponse, Shooting, Stop};
 use hertzian_tests::TwoMasses;
 
 use super::{all_found, of_shooting};

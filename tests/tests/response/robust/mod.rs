@@ -172,7 +172,7 @@ fn finite(point: &Point) -> Result<(), String> {
         (
             "its motions",
             motions
-                .flat_map(|m| [m.maximum, m.minimum, m.mean, m.rms])
+                .flat_map(|m| [m.maximum, m.minimum, m.mean.unwrap(), m.rms.unwrap()])
                 .collect(),
         ),
         (
@@ -181,7 +181,9 @@ fn finite(point: &Point) -> Result<(), String> {
         ),
         (
             "its powers",
-            vec![observed.input_power, observed.dissipated_power],
+            [observed.input_power, observed.dissipated_power]
+                .map(Option::unwrap)
+                .to_vec(),
         ),
         (
             "its multipliers",

@@ -9,8 +9,9 @@
     reason = "numbers as they were published, to be searched for"
 )]
 
-use hertzian::shooting::{Branch, Event, Point};
-use hertzian::{Complex, EventKind, FrequencyResponse, OrbitError, Shooting, Verdict};
+use hertzian::{
+    Branch, Complex, Event, EventKind, FrequencyResponse, OrbitError, Point, Shooting, Verdict,
+};
 use hertzian_tests::OneSidedLinear;
 
 const MODEL: OneSidedLinear = OneSidedLinear {
@@ -94,7 +95,7 @@ const TABLE_1: [(f64, [f64; 2], [f64; 2]); 3] = [
     ),
 ];
 
-fn shooting() -> Shooting {
+fn shooting() -> FrequencyResponse<Shooting> {
     FrequencyResponse::of(&MODEL)
         .by(Shooting::new())
         .vary("drive")
@@ -116,8 +117,8 @@ fn assert_exact(event: &Event, kind: EventKind, exact: &Exact) {
         assert!((found - expected).norm() < 1e-9, "{event}: {multipliers:?}");
     }
     // Orbits of longer periods may be found from another phase on.
-    if event.point.period == 1 {
-        for (found, expected) in event.point.state().iter().zip(exact.state) {
+    if event.point.orbit.period == 1 {
+        for (found, expected) in event.point.orbit.state().iter().zip(exact.state) {
             assert!((found - expected).abs() < 1e-9, "{event}");
         }
     }
@@ -132,7 +133,10 @@ fn assert_smooth(branch: &Branch) {
 fn period_1_doubles_at_a1() {
     // Also in two segments, which are two problems of another size.
     for segments in [1, 2] {
-        let request = shooting().segments(segments).from(1.0).to(1.4);
+        let request = shooting()
+            .by(Shooting::new().segments(segments))
+            .from(1.0)
+            .to(1.4);
         let branch = request.run().unwrap();
         assert_smooth(&branch);
         let [doubling] = &branch.events[..] else {
@@ -154,7 +158,7 @@ fn period_1_doubles_at_a1() {
 /// The branch that is born at A1, from a state near it to three digits.
 #[test]
 fn period_2_doubles_at_a4_and_a6_and_folds() {
-    let request = shooting().period(2).near(&[-0.097, 0.283]);
+    let request = shooting().period(2).near_state(&[-0.097, 0.283]);
     let branch = request.from(1.52).to(2.2).run().unwrap();
     assert_smooth(&branch);
     let grazing = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
@@ -181,7 +185,7 @@ fn period_2_folds_at_small_drive() {
 /// Period two ends where period one doubles.
 #[test]
 fn period_2_joins_period_1_at_a1() {
-    let request = shooting().period(2).near(&[-0.097, 0.283]);
+    let request = shooting().period(2).near_state(&[-0.097, 0.283]);
     let branch = request.from(1.52).to(1.1).run().unwrap();
     let joint = branch.events.last().unwrap();
     assert_eq!(joint.kind, EventKind::BranchPoint);
@@ -200,7 +204,7 @@ fn period_2_joins_period_1_at_a1() {
 /// From a state near it to three digits.
 #[test]
 fn period_8_folds_beyond_table_1() {
-    let request = shooting().period(8).near(&[-0.330, 0.333]);
+    let request = shooting().period(8).near_state(&[-0.330, 0.333]);
     let branch = request.from(1.7798).to(1.7799).run().unwrap();
     assert_smooth(&branch);
     let [fold] = &branch.events[..] else {
@@ -214,8 +218,8 @@ fn multipliers_of_table_1_and_no_solution_at_the_last() {
     // From one orbit to the next, the first from three digits.
     let mut near = vec![-0.330, 0.333];
     for (drive, state, multipliers) in TABLE_1 {
-        let cycle = shooting().period(8).near(&near).orbit(drive).unwrap();
-        for (found, expected) in cycle.state().iter().zip(state) {
+        let cycle = shooting().period(8).near_state(&near).orbit(drive).unwrap();
+        for (found, expected) in cycle.orbit.state().iter().zip(state) {
             let error = (found - expected).abs();
             assert!(
                 error < 1e-10 && error <= cycle.error.unwrap(),
@@ -230,9 +234,9 @@ fn multipliers_of_table_1_and_no_solution_at_the_last() {
                 "{error:.1e} {cycle:?}"
             );
         }
-        near = cycle.state().to_vec();
+        near = cycle.orbit.state().to_vec();
     }
-    let request = shooting().period(8).near(&near);
+    let request = shooting().period(8).near_state(&near);
     let error = request.orbit(1.77983603).unwrap_err();
     let Some(&OrbitError::Beyond { value, fold }) = error.downcast_ref() else {
         panic!("{error}");
@@ -265,7 +269,6 @@ const AT_DRIVE_1: [(usize, [f64; 2], f64); 3] = [
 ];
 
 fn assert_known(cycle: &Point, [re, im]: [f64; 2], peak_to_peak: f64) {
-    assert!((1..10).contains(&cycle.iterations), "{cycle:?}");
     let found = cycle.stability.multipliers[0];
     let error = (found - Complex::new(re, im)).norm();
     assert!(error < 1e-11, "{error:.1e} {cycle:?}");
@@ -292,8 +295,10 @@ fn orbits_of_the_balance_are_refined() {
 fn period_3_is_found_from_a_state_near_it() {
     let (period, multiplier, peak_to_peak) = AT_DRIVE_1[2];
     for segments in [1, 3, 7] {
-        let request = shooting().period(period).segments(segments);
-        let cycle = request.near(&[-31.3, 0.605]).orbit(1.0).unwrap();
+        let request = shooting()
+            .period(period)
+            .by(Shooting::new().segments(segments));
+        let cycle = request.near_state(&[-31.3, 0.605]).orbit(1.0).unwrap();
         assert_known(&cycle, multiplier, peak_to_peak);
     }
 }

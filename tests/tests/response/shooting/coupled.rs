@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use super::stated::assert_stated;
-use hertzian::shooting::End;
 use hertzian::time;
 use hertzian::time::Options;
 use hertzian::{EventKind, FrequencyResponse, Shooting, Stop, Verdict};
@@ -84,14 +83,14 @@ fn a_period_is_that_of_the_declaration() {
         .by(Shooting::new())
         .orbit(0.9)
         .unwrap();
-    assert_eq!(cycle.period, 1);
+    assert_eq!(cycle.orbit.period, 1);
     // The phase of the flow is that of the declaration too.
     let mut flow = time::of(&model, 0.9, Options::default()).unwrap();
     let mut state = [0.0, 0.0];
     for _ in 0..40 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();
     }
-    for (x, settled) in cycle.state().iter().zip(state) {
+    for (x, settled) in cycle.orbit.state().iter().zip(state) {
         assert!((x - settled).abs() < 1e-8, "{cycle:?} {state:?}");
     }
     let expected = (-TAU * 5.0 / 0.9 * 2.0 * 0.1_f64).exp();
@@ -110,7 +109,10 @@ fn rounding_is_stated() {
     let request = FrequencyResponse::of(&model).by(Shooting::new());
     let branch = request.clone().from(0.5).to(0.7).run().unwrap();
     for cycle in &branch.points {
-        let again = request.clone().segments(3).near(cycle.state());
+        let again = request
+            .clone()
+            .by(Shooting::new().segments(3))
+            .near_orbit(&cycle.orbit);
         assert_stated(cycle, &again.orbit(cycle.value).unwrap());
     }
 }

@@ -9,10 +9,9 @@
 
 use std::f64::consts::TAU;
 
-use hertzian::shooting::{Branch, End, Event};
 use hertzian::time;
 use hertzian::time::Options;
-use hertzian::{EventKind, Shooting, Stop, System, Verdict};
+use hertzian::{Branch, Event, EventKind, FrequencyResponse, Shooting, Stop, System, Verdict};
 use hertzian_tests::{Continuous, OneSided};
 
 /// What the exact values leave open.
@@ -196,9 +195,9 @@ fn asymmetric(system: &dyn System, start: f64, end: f64) -> Vec<Event> {
         .by(Shooting::new())
         .orbit(start)
         .unwrap();
-    assert!(symmetric.symmetric);
+    assert!(symmetric.orbit.symmetric);
     assert_eq!(symmetric.stability.verdict, Verdict::Unstable);
-    let state = symmetric.state();
+    let state = symmetric.orbit.state();
     let state = settled(system, start, [1.1 * state[0], state[1]]);
     let request = FrequencyResponse::of(system)
         .by(Shooting::new())

@@ -1,16 +1,15 @@
 //! What is stated of errors: orbits at a coarse tolerance against the same orbits at a fine one.
 
-use hertzian::shooting::Point;
-use hertzian::{Shooting, System, Verdict};
+use hertzian::{FrequencyResponse, Point, Shooting, System, Verdict};
 use hertzian_tests::distance;
 
 use super::integrated::{continuous, one_sided};
 
 /// Errors of states and multipliers are within what is stated, and no verdict is false.
 pub fn assert_stated(cycle: &Point, finer: &Point) {
-    let pairs = cycle.state().iter().zip(finer.state());
+    let pairs = cycle.orbit.state().into_iter().zip(finer.orbit.state());
     let state = pairs.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()));
-    let omega = cycle.omega.max(1.0);
+    let omega = cycle.omega().max(1.0);
     assert!(
         state <= cycle.error.unwrap() * omega,
         "{state:.1e} {cycle:?}"
@@ -29,7 +28,11 @@ fn compare(system: &dyn System, (from, to): (f64, f64)) {
     let branch = coarse.from(from).to(to).run().unwrap();
     let mut undecided = 0;
     for cycle in branch.points.iter().step_by(3) {
-        let finer = fine.clone().near(cycle.state()).orbit(cycle.value).unwrap();
+        let finer = fine
+            .clone()
+            .near_orbit(&cycle.orbit)
+            .orbit(cycle.value)
+            .unwrap();
         assert_stated(cycle, &finer);
         undecided += usize::from(cycle.stability.verdict == Verdict::Undecided);
     }

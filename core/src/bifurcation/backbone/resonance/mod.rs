@@ -25,6 +25,7 @@ use crate::balance::{Balance, Parity, Resolution};
 use crate::bifurcation::error::BifurcationError;
 use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
+use crate::branches::progress::{Progress, Stage};
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
@@ -178,7 +179,7 @@ impl PhaseResonance {
     /// As [`run`](Self::run).
     pub fn run_with(
         &self,
-        mut visit: impl FnMut(&ResonancePoint) -> ControlFlow<()>,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Backbone<ResonancePoint>, Error> {
         let started = Instant::now();
         let (index, parameters, options) = self.options()?;
@@ -199,7 +200,8 @@ impl PhaseResonance {
                 return Continue::Continue(());
             };
             let point = equations.read(&at.u);
-            let answer = visit(&point);
+            let (done, value) = (points.len() + 1, point.value);
+            let answer = visit(Progress::at(Stage::Curve, done, value));
             points.push(point);
             if answer.is_break() {
                 Continue::Break(Halt::Stop)
