@@ -39,7 +39,7 @@ mod linear;
 mod sizes;
 #[cfg(test)]
 mod switched_tests;
-mod terms;
+pub(crate) mod terms;
 #[cfg(test)]
 mod tests;
 

@@ -3,6 +3,8 @@
 //! A [`System`] lists its coefficients in any order; the runtime walks them term by term. The lists are made once, so
 //! that the same walk serves the coefficients and their derivatives.
 
+use nalgebra::DMatrix;
+
 use crate::system::{Place, System, Wave};
 
 /// An entry of a matrix or of the load, times a wave.
@@ -14,6 +16,20 @@ pub(crate) struct Entry {
     pub(crate) wave: Wave,
     /// Position of its coefficient.
     pub(crate) coefficient: usize,
+}
+
+/// Adds what is constant in a matrix of order `n` to `rows`, row by row.
+pub(crate) fn add_constant(entries: &[Entry], coefficients: &[f64], n: usize, rows: &mut [f64]) {
+    for entry in entries.iter().filter(|entry| entry.wave.harmonic == 0) {
+        rows[entry.row * n + entry.column] += coefficients[entry.coefficient];
+    }
+}
+
+/// What is constant in a matrix of order `n`.
+pub(crate) fn constant(entries: &[Entry], coefficients: &[f64], n: usize) -> DMatrix<f64> {
+    let mut rows = vec![0.0; n * n];
+    add_constant(entries, coefficients, n, &mut rows);
+    DMatrix::from_row_slice(n, n, &rows)
 }
 
 /// A component of a direction, or a term of an offset, times a wave.
@@ -180,6 +196,11 @@ impl Layout {
                 self.contacts[contact].arguments.push((index, coefficient));
             }
         }
+    }
+
+    /// The mass matrix.
+    pub(crate) fn mass(&self, coefficients: &[f64]) -> DMatrix<f64> {
+        constant(&self.mass, coefficients, self.coordinates)
     }
 
     /// Highest harmonic in the declaration, in multiples of `omega / divisor`.

@@ -43,6 +43,7 @@ use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
+use crate::model::layout::add_constant;
 use crate::numeric::fourier::series;
 use crate::system::{System, Variable};
 
@@ -297,10 +298,7 @@ impl<'a> Finer<'a> {
                 .iter_mut()
                 .zip([&layout.mass, &layout.damping, &layout.stiffness])
         {
-            for entry in entries.iter().filter(|entry| entry.wave.harmonic == 0) {
-                let place = entry.row * layout.coordinates + entry.column;
-                matrix[place] += coefficients[entry.coefficient];
-            }
+            add_constant(entries, coefficients, layout.coordinates, matrix);
         }
     }
 

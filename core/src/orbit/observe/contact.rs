@@ -8,7 +8,7 @@ use super::reader::{Reader, largest};
 use crate::balance::{Balance, rate_series};
 use crate::law::{Law, RateDependence, Variation};
 use crate::model::layout::ContactLayout;
-use crate::numeric::fourier::crossings::levels::Cuts;
+use crate::numeric::fourier::crossings::levels::{Cuts, Stretch};
 
 /// Whether the force of a contact is identically zero.
 pub(super) fn is_idle(balance: &Balance<'_>, contact: usize) -> bool {
@@ -23,21 +23,9 @@ pub(super) struct ContactReader {
     arguments: Vec<f64>,
     levels: Vec<f64>,
     cuts: Cuts,
-    panels: Vec<Panel>,
     rate: Vec<f64>,
     rates: Vec<f64>,
     batch: Batch,
-}
-
-/// A part of the period on which the gap stays on one piece.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Panel {
-    /// At most a period before the end.
-    pub(super) start: f64,
-    pub(super) end: f64,
-    pub(super) piece: usize,
-    /// The levels that its ends are on; none where it is the whole period.
-    pub(super) levels: Option<[f64; 2]>,
 }
 
 impl ContactReader {
@@ -56,29 +44,30 @@ impl ContactReader {
     ) -> ContactMotion {
         self.cut(law, reader);
         let pieces = &law.facts().pieces;
-        let touches = |panel: &Panel| pieces[panel.piece].force != Variation::Zero;
+        let touches = |stretch: &Stretch| pieces[stretch.piece].force != Variation::Zero;
         let mut motion = ContactMotion::NONE;
-        let mut before = self.panels.last().is_some_and(touches);
-        if before && self.panels.iter().all(touches) {
+        let always = self.cuts.stretches().iter().all(touches);
+        let mut before = self.cuts.stretches().last().is_some_and(touches);
+        if before && always {
             motion.count = 1;
         }
-        if self.panels.iter().any(touches) {
+        if self.cuts.stretches().iter().any(touches) {
             self.sample_rate(law, reader, base);
         }
         let mut extremes = [f64::INFINITY, f64::NEG_INFINITY];
-        for panel in &self.panels {
-            let now = touches(panel);
-            let part = (panel.end - panel.start) / TAU;
-            on_pieces[panel.piece] += part;
+        for stretch in self.cuts.stretches() {
+            let now = touches(stretch);
+            let part = (stretch.end - stretch.start) / TAU;
+            on_pieces[stretch.piece] += part;
             let mut here = [0.0; 2];
             if now {
                 motion.fraction += part;
                 let (gaps, rates) = (reader.samples(), &self.rates[..]);
-                self.batch.take(panel, [gaps, rates], reader.series(), base);
                 let gap = reader.series();
-                here = self
-                    .batch
-                    .extremes(law, panel.piece, &self.arguments, gap, base);
+                let levels = &self.levels;
+                self.batch.take(stretch, levels, [gaps, rates], gap, base);
+                let piece = stretch.piece;
+                here = self.batch.extremes(law, piece, &self.arguments, gap, base);
             }
             extremes = [
                 -largest(-extremes[0], -here[0]),
@@ -87,15 +76,15 @@ impl ContactReader {
             motion.count += usize::from(now && !before);
             before = now;
         }
-        // The panels of contact that is never lost add up to the period but for rounding.
-        if before && self.panels.iter().all(touches) {
+        // The stretches of contact that is never lost add up to the period but for rounding.
+        if before && always {
             motion.fraction = 1.0;
         }
         motion.fraction = motion.fraction.min(1.0);
         for part in on_pieces {
             *part = part.min(1.0);
         }
-        // A gap that is not a number is on no panel.
+        // A gap that is not a number is on no stretch.
         if extremes[0] <= extremes[1] {
             [motion.minimum_force, motion.maximum_force] = extremes;
             motion.peak_force = largest(-extremes[0], extremes[1]);
@@ -120,15 +109,6 @@ impl ContactReader {
         law.levels(&self.arguments, &mut self.levels);
         self.cuts
             .apply(reader.finder(), reader.series(), &self.levels);
-        self.panels.clear();
-        let levels = &self.levels;
-        let panels = self.cuts.stretches().iter().map(|stretch| Panel {
-            start: stretch.start,
-            end: stretch.end,
-            piece: stretch.piece,
-            levels: stretch.levels.map(|ends| ends.map(|level| levels[level])),
-        });
-        self.panels.extend(panels);
     }
 }
 

@@ -7,8 +7,13 @@
 
 use std::f64::consts::TAU;
 
-use super::{Crossing, CrossingFinder};
+use super::{Crossing, CrossingFinder, NearMiss};
 use crate::numeric::fourier::series;
+
+/// How far from the real axis singularities may be for a cut, as a phase: those farther away cost fewer nodes than a cut.
+const NEAR: f64 = 0.15;
+/// Where near misses are looked for, in parts of the size of the series' oscillation.
+const REACH: f64 = 0.05;
 
 /// The series crosses a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +52,7 @@ pub(crate) struct Stretch {
 #[derive(Debug, Default)]
 pub(crate) struct Cuts {
     found: Vec<Crossing>,
+    misses: Vec<NearMiss>,
     switches: Vec<Switch>,
     stretches: Vec<Stretch>,
 }
@@ -78,6 +84,22 @@ impl Cuts {
             self.put_in_order(series, levels);
         }
         self.fill_stretches(series[0], levels);
+    }
+
+    /// Phases near which a broken power of the distance from a level needs a cut although nothing switches. Near an extremum that misses
+    /// the level by a small distance `d` with curvature `c`, the power has its singularities beside the real axis, at
+    /// `tau +- i sqrt(2 d / c)`. The finder has sampled the series.
+    pub(crate) fn near_misses(
+        &mut self,
+        finder: &CrossingFinder,
+        series: &[f64],
+        level: f64,
+    ) -> impl Iterator<Item = f64> {
+        let size: f64 = series[1..].iter().map(|x| x.abs()).sum();
+        self.misses.clear();
+        finder.near_misses(level, REACH * size, &mut self.misses);
+        let near = |miss: &&NearMiss| 2.0 * miss.distance < NEAR * NEAR * miss.curvature;
+        self.misses.iter().filter(near).map(|miss| miss.tau)
     }
 
     pub(crate) fn switches(&self) -> &[Switch] {
