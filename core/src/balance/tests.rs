@@ -101,6 +101,7 @@ fn equations(
             }
             Place::Argument { contact, index } => arguments[contact][index] += value,
             Place::ForceDirection { .. } => {}
+            ref other => panic!("{other:?}"),
         }
     }
     for (place, &value) in facts.places.iter().zip(&coefficients) {

@@ -7,11 +7,13 @@ use std::collections::HashMap;
 
 use proc_macro2::TokenStream;
 
+use hertzian_contract::system::Place;
+
 use crate::ast::Form;
 use crate::dag::{Id, Node, Variable};
 use crate::emit;
 use crate::errors::{Diagnostics, Errors, Extent};
-use crate::ir::{Law, Level, Model, Place};
+use crate::ir::{Law, Level, Model};
 use crate::sketch;
 
 /// Expands a law to code that names the runtime by a path. After errors the expansion holds all of them, and a stub of the type.

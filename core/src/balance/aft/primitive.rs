@@ -48,7 +48,10 @@ impl PrimitiveAft {
 
     /// Writes the series of the force.
     pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
-        let Some(Parts { spring, primitive }) = input.law.parts() else {
+        let Some(Parts {
+            spring, primitive, ..
+        }) = input.law.parts()
+        else {
             return self.sampled.force(input, force);
         };
         self.sampled.force(of(input, spring), force);
@@ -66,7 +69,10 @@ impl PrimitiveAft {
         force: &mut [f64],
         out: &mut ContactDerivatives<'_>,
     ) {
-        let Some(Parts { spring, primitive }) = input.law.parts() else {
+        let Some(Parts {
+            spring, primitive, ..
+        }) = input.law.parts()
+        else {
             return self.sampled.derivatives(input, change, force, out);
         };
         self.sampled

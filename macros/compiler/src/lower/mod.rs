@@ -18,13 +18,15 @@ pub(crate) mod term;
 pub(crate) mod wave;
 pub(crate) mod written;
 
+use hertzian_contract::system::Bound;
+
 use crate::ast::{Declaration, Equation, Expr, Kind, Limit, Statement};
 use crate::check::{forcing, inertia};
 use crate::dag::{Dag, Id, Variable};
 use crate::errors::{Diagnostics, Extent};
 use crate::index::Constants;
 use crate::interpret::{Coefficients, Family};
-use crate::ir::{self, Bound, Model};
+use crate::ir::{self, Model};
 
 use self::build::Builder;
 use self::expand::{Expander, Meaning};
