@@ -10,11 +10,11 @@ use hertzian_contract::law::{LawFacts, Variation};
 
 use crate::dag::{Dag, Function, Id, Variable};
 use crate::differentiate::differentiate;
-use crate::emit::tape::{Operation, Style, Tape};
 use crate::facts::{Piece, derive, variation};
 use crate::ir::{Law, Model};
 use crate::primitive;
 use crate::simplify::{expand, factor};
+use crate::tape::{Operation, Style, Tape};
 
 /// A law with its derivatives, as expressions and as data.
 #[derive(Debug, Clone)]
@@ -170,6 +170,21 @@ impl Coefficients {
             by_parameter: (0..count).map(|_| take()).collect(),
         }
     }
+}
+
+/// Whether the derivatives of laws and coefficients, and what is known of them, can be had with so many operands read and written: a
+/// product of many factors is short, and its second derivative is not.
+pub(crate) fn derivatives_fit(model: &Model, budget: u64) -> bool {
+    let mut trial = model.clone();
+    trial.dag.set_budget(Some(budget));
+    for law in &model.laws {
+        let _ = Family::of(&mut trial.dag, law);
+        if trial.dag.is_spent() {
+            return false;
+        }
+    }
+    let _ = Coefficients::of(&mut trial);
+    !trial.dag.is_spent()
 }
 
 /// Puts every output of a piece into the form to be computed.

@@ -7,10 +7,10 @@ use quote::{format_ident, quote};
 use super::code::{Code, position};
 use super::data::{bound, list, text};
 use super::names::{imported, locals};
-use super::tape::{Style, Tape};
 use crate::dag::{Id, Variable};
 use crate::differentiate::differentiate;
 use crate::ir::Model;
+use crate::tape::{Style, Tape};
 
 /// The implementation for a model.
 pub fn system(model: &mut Model) -> TokenStream {
