@@ -84,14 +84,23 @@ pub struct Resolution {
     pub period: usize,
 }
 
+/// Harmonics at equal distances.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Lattice {
+    pub(crate) first: usize,
+    pub(crate) step: usize,
+}
+
 impl Resolution {
-    /// The lowest harmonic that is an unknown, and from one to the next.
-    pub(crate) fn lattice(&self) -> (usize, usize) {
-        match self.parity {
-            Parity::All => (0, self.stride),
-            Parity::Odd => (self.stride, 2 * self.stride),
-            Parity::Even => (0, 2 * self.stride),
-        }
+    /// The harmonics that are unknowns, up to the highest.
+    pub(crate) fn lattice(&self) -> Lattice {
+        let stride = self.stride;
+        let (first, step) = match self.parity {
+            Parity::All => (0, stride),
+            Parity::Odd => (stride, 2 * stride),
+            Parity::Even => (0, 2 * stride),
+        };
+        Lattice { first, step }
     }
 }
 

@@ -6,7 +6,7 @@ use super::FrequencyResponse;
 use crate::balance::aft::Aft;
 use crate::balance::resolution::Chooser;
 use crate::balance::symmetry::{Over, has_stride, is_broken};
-use crate::balance::{Parity, Resolution};
+use crate::balance::{Lattice, Parity, Resolution};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Event;
 use crate::continuation::follow::FollowOptions;
@@ -270,7 +270,7 @@ impl FrequencyResponse {
         resolution.stride = stride;
         resolution.core *= stride;
         if self.harmonics.is_none() {
-            let (first, step) = resolution.lattice();
+            let Lattice { first, step } = resolution.lattice();
             let beyond = resolution.harmonics - first;
             resolution.harmonics = first + beyond.next_multiple_of(step);
         }

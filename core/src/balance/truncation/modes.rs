@@ -14,7 +14,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::balance::Balance;
+use crate::balance::{Balance, Lattice};
 use crate::numeric::spectrum::eigenvalues;
 
 /// Beyond so many times the highest harmonic of the correction nothing is said: next to nothing is left there of a power.
@@ -82,7 +82,7 @@ impl Modes {
                 parts.fold(0.0, f64::max)
             })
             .collect();
-        let (first, step) = balance.resolution().lattice();
+        let Lattice { first, step } = balance.resolution().lattice();
         let mut known = top;
         for frequency in met {
             // The two harmonics of the orbit on either side of it.

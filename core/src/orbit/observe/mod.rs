@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn extremes_are_those_of_a_dense_scan() {
-        let mut random = Random::new(3);
+        let mut random = Random::seeded(3);
         let mut reader = Reader::default();
         for harmonics in [1, 2, 3, 7, 12, 30] {
             for _ in 0..20 {

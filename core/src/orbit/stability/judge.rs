@@ -122,25 +122,7 @@ impl Judge {
         let orbit = Orbit::of(balance, &u[..u.len() - 1]);
         self.refined = None;
         let rests = self.rest.on_a_level(&orbit);
-        let plain;
-        let corrected = match finer {
-            None => {
-                plain = self.engine.multipliers(&orbit, self.aim);
-                None
-            }
-            Some(finer) if self.engine.knows_its_error() && finer.change() <= NOTHING => {
-                let by_truncation = |_: &Found| finer.change();
-                plain = self.sharp(&orbit, by_truncation);
-                Some((plain.clone(), finer.change()))
-            }
-            Some(finer) => {
-                let corrected = Orbit::of(finer.balance(), finer.series());
-                let (first, found, by_truncation) =
-                    self.both([&orbit, &corrected], finer.change() > FAR);
-                plain = first;
-                Some((found, by_truncation))
-            }
-        };
+        let (plain, corrected) = self.plain_and_corrected(&orbit, finer);
         let known = |found: &Found| !found.multipliers.is_empty();
         let corrected = if self.overlooks(balance, finer, u) {
             let series = finer.map_or(orbit.series, |finer| finer.series());
@@ -180,6 +162,24 @@ impl Judge {
             cost: self.engine.cost(),
             elapsed: started.elapsed(),
         }
+    }
+
+    /// Multipliers of an orbit as it is, and of the corrected one with what the truncation may leave in them.
+    fn plain_and_corrected(
+        &mut self,
+        orbit: &Orbit<'_>,
+        finer: Option<&Finer<'_>>,
+    ) -> (Found, Option<(Found, f64)>) {
+        let Some(finer) = finer else {
+            return (self.engine.multipliers(orbit, self.aim), None);
+        };
+        if self.engine.knows_its_error() && finer.change() <= NOTHING {
+            let plain = self.sharp(orbit, |_: &Found| finer.change());
+            return (plain.clone(), Some((plain, finer.change())));
+        }
+        let corrected = Orbit::of(finer.balance(), finer.series());
+        let (plain, found, by_truncation) = self.both([orbit, &corrected], finer.change() > FAR);
+        (plain, Some((found, by_truncation)))
     }
 
     /// Whether a law changes between the nodes of the orbit where they do not see it; asked of the monodromy matrix if the method has

@@ -171,13 +171,13 @@ impl Monodromy {
         self.path.begin();
         self.graded = false;
         if self.path.cuts.is_empty() {
-            self.panel(walk, orbit, (0.0, TAU), None, density);
+            self.panel(walk, orbit, [0.0, TAU], None, density);
         }
         for index in 0..self.path.cuts.len() {
             let (from, to) = (self.path.cuts[index], self.path.next(index));
             self.path.pass(&from);
             if to.tau > from.tau {
-                self.panel(walk, orbit, (from.tau, to.tau), Some(index), density);
+                self.panel(walk, orbit, [from.tau, to.tau], Some(index), density);
             }
             let matrices = walk.matrices();
             self.linearised.jump(orbit, &self.path, &to, matrices);
@@ -189,7 +189,7 @@ impl Monodromy {
         &mut self,
         walk: &mut impl Walk,
         orbit: &Orbit<'_>,
-        (start, end): (f64, f64),
+        [start, end]: [f64; 2],
         cut: Option<usize>,
         density: f64,
     ) {

@@ -111,7 +111,7 @@ mod tests {
 
     /// Factors `X_(j+1) D_j X_j^(-1)` with block diagonal `D_j`: the eigenvalues of their product are known.
     fn factors(moduli: &[f64], angles: &[f64], count: usize, seed: u32) -> Vec<DMatrix<f64>> {
-        let mut random = Random::new(seed.into());
+        let mut random = Random::seeded(seed.into());
         let order: usize = angles
             .iter()
             .map(|&angle| if angle == 0.0 { 1 } else { 2 })

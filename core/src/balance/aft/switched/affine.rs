@@ -43,11 +43,11 @@ struct Place<'l> {
 }
 
 impl Affine {
-    /// Adds a piece that is affine and its panels.
+    /// Adds the panels of one piece that is affine.
     pub(super) fn add<'p>(
         &mut self,
         input: ContactInput<'_>,
-        (piece, levels): (usize, &[f64]),
+        levels: &[f64],
         panels: impl Iterator<Item = &'p Panel> + Clone,
         product: &mut Product,
         sums: &mut Sums<'_>,
@@ -56,6 +56,7 @@ impl Affine {
             return;
         };
         let point = series::value(input.gap, 0.5 * (first.start + first.end));
+        let piece = first.piece;
         let place = Place {
             piece,
             point,

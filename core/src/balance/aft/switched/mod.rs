@@ -197,9 +197,9 @@ impl SwitchedAft {
                 continue;
             }
             if of.affine {
-                let place = (piece, self.cut.levels());
+                let levels = self.cut.levels();
                 self.affine
-                    .add(input, place, panels(), &mut self.product, sums);
+                    .add(input, levels, panels(), &mut self.product, sums);
             } else {
                 for panel in panels() {
                     self.quadrature

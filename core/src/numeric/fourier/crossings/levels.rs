@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn levels_as_near_as_rounding_are_crossed_in_order() {
-        let mut random = Random::new(11);
+        let mut random = Random::seeded(11);
         let mut crossed = 0;
         for _ in 0..20_000 {
             let series: Vec<f64> = (0..7).map(|_| random.between(-1.0, 1.0)).collect();

@@ -16,24 +16,7 @@ use nalgebra::{Complex, DMatrix, Schur};
 
 use super::super::{Crossing, CrossingFinder};
 use crate::numeric::fourier::series;
-
-/// Knuth (1998), The Art of Computer Programming, volume 2, section 3.3.4, table 1.
-struct Congruential(u64);
-
-impl Congruential {
-    /// Between zero and one.
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 2.0_f64.powi(53)
-    }
-
-    fn between(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * self.next()
-    }
-}
+use crate::testing::random::Random;
 
 /// Sum of sines and cosines, each by itself.
 fn value(series: &[f64], tau: f64) -> f64 {
@@ -121,28 +104,28 @@ fn expected(series: &[f64], level: f64) -> Option<Vec<f64>> {
 }
 
 /// A series and a level; two of three times the level is close to an extremum.
-fn draw(random: &mut Congruential) -> (Vec<f64>, f64) {
-    let k = 1 + (12.0 * random.next()) as usize;
+fn draw(random: &mut Random) -> (Vec<f64>, f64) {
+    let k = 1 + (12.0 * random.between(0.0, 1.0)) as usize;
     let decay = random.between(0.0, 2.0);
     let mut series = vec![random.between(-1.0, 1.0)];
     for harmonic in 1..=k {
         let size = (harmonic as f64).powf(-decay);
         series.extend([random.between(-size, size), random.between(-size, size)]);
     }
-    if random.next() < 1.0 / 3.0 {
+    if random.between(0.0, 1.0) < 1.0 / 3.0 {
         let level = value(&series, random.between(0.0, TAU));
         return (series, level);
     }
     let mut slope = series.clone();
     series::differentiate(&series, &mut slope);
     let phase = |n: usize| TAU * n as f64 / (16 * k) as f64;
-    let start = (random.next() * (16 * k) as f64) as usize;
+    let start = (random.between(0.0, 1.0) * (16 * k) as f64) as usize;
     let rises = |n: usize| value(&slope, phase(n)) > 0.0;
     let turn = (start..start + 16 * k).find(|&n| rises(n) != rises(n + 1));
     let turn = turn.expect("a slope has no mean");
     let extremum = super::super::extremum(&series, phase(turn), phase(turn + 1));
     let epsilon = 10.0_f64.powf(random.between(-14.0, -2.0));
-    let side = if random.next() < 0.5 {
+    let side = if random.between(0.0, 1.0) < 0.5 {
         epsilon
     } else {
         -epsilon
@@ -201,7 +184,7 @@ fn crossings_are_the_zeros_on_the_unit_circle() {
         .ok()
         .and_then(|text| text.parse().ok());
     let count: usize = count.unwrap_or(20_000);
-    let mut random = Congruential(20_240_229);
+    let mut random = Random::seeded(20_240_229);
     let mut finder = CrossingFinder::new(12);
     let mut found = Vec::new();
     let (mut undecidable, mut pairs) = (0, 0);
