@@ -8,7 +8,7 @@ use super::reader::{Reader, largest};
 use crate::balance::{Balance, rate_series};
 use crate::law::{Law, RateDependence, Variation};
 use crate::model::layout::ContactLayout;
-use crate::numeric::fourier::crossings::levels::{Cuts, Stretch};
+use crate::numeric::fourier::crossings::levels::{Cuts, Segment};
 
 /// Whether the force of a contact is identically zero.
 pub(super) fn is_idle(balance: &Balance<'_>, contact: usize) -> bool {
@@ -44,29 +44,29 @@ impl ContactReader {
     ) -> ContactMotion {
         self.cut(law, reader);
         let pieces = &law.facts().pieces;
-        let touches = |stretch: &Stretch| pieces[stretch.piece].force != Variation::Zero;
+        let touches = |segment: &Segment| pieces[segment.piece].force != Variation::Zero;
         let mut motion = ContactMotion::NONE;
-        let always = self.cuts.stretches().iter().all(touches);
-        let mut before = self.cuts.stretches().last().is_some_and(touches);
+        let always = self.cuts.segments().iter().all(touches);
+        let mut before = self.cuts.segments().last().is_some_and(touches);
         if before && always {
             motion.count = 1;
         }
-        if self.cuts.stretches().iter().any(touches) {
+        if self.cuts.segments().iter().any(touches) {
             self.sample_rate(law, reader, base);
         }
         let mut extremes = [f64::INFINITY, f64::NEG_INFINITY];
-        for stretch in self.cuts.stretches() {
-            let now = touches(stretch);
-            let part = (stretch.end - stretch.start) / TAU;
-            on_pieces[stretch.piece] += part;
+        for segment in self.cuts.segments() {
+            let now = touches(segment);
+            let part = (segment.end - segment.start) / TAU;
+            on_pieces[segment.piece] += part;
             let mut here = [0.0; 2];
             if now {
                 motion.fraction += part;
                 let (gaps, rates) = (reader.samples(), &self.rates[..]);
                 let gap = reader.series();
                 let levels = &self.levels;
-                self.batch.take(stretch, levels, [gaps, rates], gap, base);
-                let piece = stretch.piece;
+                self.batch.take(segment, levels, [gaps, rates], gap, base);
+                let piece = segment.piece;
                 here = self.batch.extremes(law, piece, &self.arguments, gap, base);
             }
             extremes = [
@@ -76,7 +76,7 @@ impl ContactReader {
             motion.count += usize::from(now && !before);
             before = now;
         }
-        // The stretches of contact that is never lost add up to the period but for rounding.
+        // The segments of contact that is never lost add up to the period but for rounding.
         if before && always {
             motion.fraction = 1.0;
         }
@@ -84,7 +84,7 @@ impl ContactReader {
         for part in on_pieces {
             *part = part.min(1.0);
         }
-        // A gap that is not a number is on no stretch.
+        // A gap that is not a number is on no segment.
         if extremes[0] <= extremes[1] {
             [motion.minimum_force, motion.maximum_force] = extremes;
             motion.peak_force = largest(-extremes[0], extremes[1]);
@@ -207,7 +207,7 @@ mod tests {
         gap
     }
 
-    /// By a scan of each stretch between crossings of zero, ends included, and golden sections about its best sample.
+    /// By a scan of each segment between crossings of zero, ends included, and golden sections about its best sample.
     /// Source: Kiefer (1953), Sequential minimax search for a maximum.
     fn scanned(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> (f64, f64) {
         let size = |tau: f64| {
@@ -230,7 +230,7 @@ mod tests {
             let count = 4000;
             let at = |index: usize| a + (b - a) * index as f64 / f64::from(4000);
             if !found.is_empty() {
-                // At a switch itself, from the side of this stretch.
+                // At a switch itself, from the side of this segment.
                 let rate = |tau| BASE * series::value_and_derivatives(gap, tau).1;
                 let (gaps, mut force) = ([0.0; 2], [0.0; 2]);
                 let on = On::Piece(usize::from(middle > 0.0));

@@ -1,4 +1,4 @@
-//! The largest force on a stretch: by samples, both ends included, and then where the slope vanishes next to the best of them and to
+//! The largest force on a segment: by samples, both ends included, and then where the slope vanishes next to the best of them and to
 //! every other that might be exceeded by more.
 //!
 //! The slope by phase is `phi_g dg/dtau + phi_r dr/dtau`. The first step goes to the vertex of the parabola through the best
@@ -10,28 +10,28 @@ use std::ops::Range;
 use super::reader::largest;
 use crate::balance::rate_series;
 use crate::law::{Derivatives, Law, On};
-use crate::numeric::fourier::crossings::levels::Stretch;
+use crate::numeric::fourier::crossings::levels::Segment;
 use crate::numeric::fourier::kernels::{LANES, evaluate};
 use crate::numeric::fourier::series;
 use crate::numeric::roots::{Guarded, Place, STEPS};
 
-/// A stretch with fewer samples is sampled by itself.
+/// A segment with fewer samples is sampled by itself.
 const FEWEST: usize = 8;
-/// Phases of a stretch that is sampled by itself: two groups of lanes.
+/// Phases of a segment that is sampled by itself: two groups of lanes.
 const OWN: usize = 2 * LANES;
 /// The slope at an end is taken this part of the distance to the next sample inside, where no power is on its level.
 const INSIDE: f64 = 1e-6;
 /// The search ends when the next step would gain no more than this part of the force.
 const GAIN: f64 = 1e-14;
 
-/// The samples of one stretch.
+/// The samples of one segment.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
     phases: Vec<f64>,
     gap: Vec<f64>,
     rate: Vec<f64>,
     force: Vec<f64>,
-    /// Series of the rate of a stretch that is sampled by itself.
+    /// Series of the rate of a segment that is sampled by itself.
     series: Vec<f64>,
     /// The first and the last sample are not ends, but repeat those at the other end of the period.
     whole: bool,
@@ -77,34 +77,34 @@ impl Motion<'_> {
 }
 
 impl Batch {
-    /// Gathers the samples of a stretch from those of the period.
+    /// Gathers the samples of a segment from those of the period.
     pub(super) fn take(
         &mut self,
-        stretch: &Stretch,
+        segment: &Segment,
         levels: &[f64],
         [gaps, rates]: [&[f64]; 2],
         gap: &[f64],
         base: f64,
     ) {
-        let ends = stretch.levels.map(|ends| ends.map(|level| levels[level]));
+        let ends = segment.levels.map(|ends| ends.map(|level| levels[level]));
         let count = gaps.len() as isize;
         let step = TAU / count as f64;
         self.whole = ends.is_none();
         let (first, last) = if self.whole {
             (-1, count)
         } else {
-            let first = (stretch.start / step).floor() as isize + 1;
-            (first, (stretch.end / step).ceil() as isize - 1)
+            let first = (segment.start / step).floor() as isize + 1;
+            (first, (segment.end / step).ceil() as isize - 1)
         };
         for buffer in [&mut self.phases, &mut self.gap, &mut self.rate] {
             buffer.clear();
         }
         if last - first + 1 < FEWEST as isize {
-            self.sample(stretch, ends, gap, base);
+            self.sample(segment, ends, gap, base);
             return;
         }
         if let Some([level, _]) = ends {
-            self.push(stretch.start, level, gap, base);
+            self.push(segment.start, level, gap, base);
         }
         self.phases
             .extend((first..=last).map(|index| index as f64 * step));
@@ -114,7 +114,7 @@ impl Batch {
             self.rate.push(rates[index]);
         }
         if let Some([_, level]) = ends {
-            self.push(stretch.end, level, gap, base);
+            self.push(segment.end, level, gap, base);
         }
     }
 
@@ -126,12 +126,12 @@ impl Batch {
         self.rate.push(base * by_phase);
     }
 
-    /// Samples a stretch that is short, from end to end.
-    fn sample(&mut self, stretch: &Stretch, levels: Option<[f64; 2]>, gap: &[f64], base: f64) {
-        let step = (stretch.end - stretch.start) / (OWN - 1) as f64;
+    /// Samples a segment that is short, from end to end.
+    fn sample(&mut self, segment: &Segment, levels: Option<[f64; 2]>, gap: &[f64], base: f64) {
+        let step = (segment.end - segment.start) / (OWN - 1) as f64;
         self.phases
-            .extend((0..OWN - 1).map(|index| stretch.start + step * index as f64));
-        self.phases.push(stretch.end);
+            .extend((0..OWN - 1).map(|index| segment.start + step * index as f64));
+        self.phases.push(segment.end);
         let (mut sines, mut cosines) = ([0.0; OWN], [0.0; OWN]);
         for (index, tau) in self.phases.iter().enumerate() {
             (sines[index], cosines[index]) = tau.sin_cos();
@@ -147,7 +147,7 @@ impl Batch {
         }
     }
 
-    /// Smallest and largest force on the stretch that was taken.
+    /// Smallest and largest force on the segment that was taken.
     pub(super) fn extremes(
         &mut self,
         law: &dyn Law,
@@ -191,7 +191,7 @@ impl Batch {
         peak
     }
 
-    /// The samples that are in the stretch.
+    /// The samples that are in the segment.
     fn inside(&self) -> Range<usize> {
         let skip = usize::from(self.whole);
         skip..self.force.len() - skip

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::panel::power_at;
 use crate::balance::aft::ContactInput;
 use crate::numeric::fourier::crossings::CrossingFinder;
-use crate::numeric::fourier::crossings::levels::{Cuts, Stretch, Switch};
+use crate::numeric::fourier::crossings::levels::{Cuts, Segment, Switch};
 use crate::numeric::fourier::series;
 
 /// What bounds a panel.
@@ -38,14 +38,14 @@ impl Panel {
     }
 }
 
-impl From<&Stretch> for Panel {
-    fn from(stretch: &Stretch) -> Self {
-        let &Stretch {
+impl From<&Segment> for Panel {
+    fn from(segment: &Segment) -> Self {
+        let &Segment {
             start,
             end,
             piece,
             levels,
-        } = stretch;
+        } = segment;
         let [from, to] = levels.map_or([End::Period; 2], |levels| levels.map(End::Level));
         Self {
             start,
@@ -83,7 +83,7 @@ impl Cut {
         self.cuts.apply(finder, input.gap, &self.levels);
         self.panels.clear();
         self.panels
-            .extend(self.cuts.stretches().iter().map(Panel::from));
+            .extend(self.cuts.segments().iter().map(Panel::from));
         for level in 0..count {
             self.cut_near(input, level);
         }
