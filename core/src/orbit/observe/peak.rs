@@ -58,7 +58,7 @@ struct Motion<'a> {
 
 impl Motion<'_> {
     fn at(&self, tau: f64) -> Slope {
-        let (gap, by_phase, bend) = series::value_and_derivatives(self.gap, tau);
+        let (gap, by_phase, curvature) = series::value_and_derivatives(self.gap, tau);
         let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
         let out = Derivatives {
             force: &mut force,
@@ -68,7 +68,7 @@ impl Motion<'_> {
         let rate = [self.base * by_phase];
         self.law
             .derivatives(On::Piece(self.piece), self.arguments, &[gap], &rate, out);
-        let slope = by_gap[0] * by_phase + by_rate[0] * self.base * bend;
+        let slope = by_gap[0] * by_phase + by_rate[0] * self.base * curvature;
         Slope {
             size: self.sign * force[0],
             slope: self.sign * slope,

@@ -166,10 +166,10 @@ impl Refined {
                 // Phases of series are of the orbit's own period, those of a flow of the declaration's.
                 flow.advance(0.0, phase * period, &mut state, None, None)
                     .ok()?;
-                let (value, _, bend) = series::value_and_derivatives(of, *phase);
+                let (value, _, curvature) = series::value_and_derivatives(of, *phase);
                 *difference = state[coordinate] - value;
                 let slope = state[coordinates + coordinate] / balance.base();
-                let rise = slope * slope / (2.0 * bend.abs());
+                let rise = slope * slope / (2.0 * curvature.abs());
                 beyond += if slope == 0.0 {
                     0.0
                 } else {

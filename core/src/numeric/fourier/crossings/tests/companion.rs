@@ -89,13 +89,13 @@ fn expected(series: &[f64], level: f64) -> Option<Vec<f64>> {
             continue;
         }
         let middle = phase(z + zeros[other]);
-        let (_, _, bend) = series::value_and_derivatives(series, middle);
-        let beyond = (value(series, middle) - level) * -bend.signum();
+        let (_, _, curvature) = series::value_and_derivatives(series, middle);
+        let beyond = (value(series, middle) - level) * -curvature.signum();
         if beyond.abs() <= 16.0 * f64::EPSILON * (level.abs() + size(series)) {
             return None;
         }
         if beyond > 0.0 && index < other {
-            let half = (2.0 * beyond / bend.abs()).sqrt();
+            let half = (2.0 * beyond / curvature.abs()).sqrt();
             phases.extend([middle - half, middle + half].map(|tau| tau.rem_euclid(TAU)));
         }
     }
@@ -155,7 +155,7 @@ fn check(series: &[f64], level: f64, phases: &[f64], found: &[Crossing]) {
             "{}",
             told()
         );
-        let (_, slope, bend) = series::value_and_derivatives(series, crossing.tau);
+        let (_, slope, curvature) = series::value_and_derivatives(series, crossing.tau);
         // The phase itself is rounded; what remains is a few rounding errors of a sum.
         let residual = value(series, crossing.tau) - level;
         let by_phase = 2.0 * f64::EPSILON * crossing.tau * slope.abs();
@@ -173,7 +173,7 @@ fn check(series: &[f64], level: f64, phases: &[f64], found: &[Crossing]) {
         let nearest = phases.iter().map(|&phase| distance(phase, crossing.tau));
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         let error = 1e4 * rounding;
-        let allowed = (error / slope.abs()).min((error / bend.abs()).sqrt()) + 1e-10;
+        let allowed = (error / slope.abs()).min((error / curvature.abs()).sqrt()) + 1e-10;
         assert!(nearest <= allowed, "{nearest:e} > {allowed:e} {}", told());
     }
 }
