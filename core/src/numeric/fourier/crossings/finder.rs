@@ -62,7 +62,7 @@ impl CrossingFinder {
         };
         let before = found.len();
         let (last, _) = self.grid.interval(first);
-        let mut walk = Walk {
+        let mut search = Search {
             waves: &self.waves,
             target,
             above: last.x > target,
@@ -75,7 +75,7 @@ impl CrossingFinder {
             for index in range {
                 if low[index] <= target && target <= high[index] {
                     let (left, right) = self.grid.interval(start + index);
-                    walk.search(left, right);
+                    search.search(left, right);
                 }
             }
         }
@@ -144,7 +144,7 @@ fn has_extremum(a: &Point, b: &Point, shape: Shape) -> bool {
     matches!(shape, Shape::Curved | Shape::Flat) && (a.slope > 0.0) != (b.slope > 0.0)
 }
 
-struct Walk<'a> {
+struct Search<'a> {
     waves: &'a Waves,
     target: f64,
     /// The last phase that was decided, and its side.
@@ -153,7 +153,7 @@ struct Walk<'a> {
     found: &'a mut Vec<Crossing>,
 }
 
-impl Walk<'_> {
+impl Search<'_> {
     fn search(&mut self, left: Point, right: Point) {
         let (waves, target) = (self.waves, self.target);
         self.visit(&left);

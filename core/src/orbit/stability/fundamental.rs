@@ -1,4 +1,4 @@
-//! The solution of the linearised equation as it is built up, step by step.
+//! The fundamental solution of the linearised equation as it is built up, step by step.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -19,7 +19,7 @@ const ROUNDED: f64 = 1e-15;
 const LOST: f64 = 1e-8;
 
 /// What has been integrated, for matrices of some order. Matrices are slices, column by column.
-pub(super) trait Walk {
+pub(super) trait Fundamental {
     /// Room for the matrix at one of the three nodes of a step, times the step.
     fn scaled(&mut self, node: usize) -> &mut [f64];
 
@@ -65,14 +65,14 @@ impl Sums {
 
 /// Of one coordinate.
 #[derive(Debug)]
-pub(super) struct WalkOfTwo {
+pub(super) struct FundamentalOfTwo {
     scaled: [Square; 3],
     product: Square,
     lack: Square,
     sums: Sums,
 }
 
-impl WalkOfTwo {
+impl FundamentalOfTwo {
     pub(super) fn new() -> Self {
         Self {
             scaled: [[0.0; 4]; 3],
@@ -83,7 +83,7 @@ impl WalkOfTwo {
     }
 }
 
-impl Walk for WalkOfTwo {
+impl Fundamental for FundamentalOfTwo {
     fn scaled(&mut self, node: usize) -> &mut [f64] {
         &mut self.scaled[node]
     }
@@ -131,7 +131,7 @@ impl Walk for WalkOfTwo {
 
 /// Of several coordinates.
 #[derive(Debug)]
-pub(super) struct WalkOfMany {
+pub(super) struct FundamentalOfMany {
     magnus: Magnus,
     product: DMatrix<f64>,
     lack: DMatrix<f64>,
@@ -139,7 +139,7 @@ pub(super) struct WalkOfMany {
     sums: Sums,
 }
 
-impl WalkOfMany {
+impl FundamentalOfMany {
     pub(super) fn new(order: usize) -> Self {
         let zeros = || DMatrix::zeros(order, order);
         Self {
@@ -184,7 +184,7 @@ impl WalkOfMany {
     }
 }
 
-impl Walk for WalkOfMany {
+impl Fundamental for FundamentalOfMany {
     fn scaled(&mut self, node: usize) -> &mut [f64] {
         self.magnus.scaled[node].as_mut_slice()
     }
@@ -228,7 +228,7 @@ impl Walk for WalkOfMany {
 
 /// The factors of the solution, for multipliers that its matrix has lost.
 #[derive(Debug)]
-pub(super) struct WalkOfFactors {
+pub(super) struct FundamentalOfFactors {
     magnus: Magnus,
     done: Vec<DMatrix<f64>>,
     /// The product of the factors since, and the integral of its trace.
@@ -243,7 +243,7 @@ const SPREAD: f64 = 30.0;
 /// Norm of an exponent beyond which the exponential is divided.
 const LONG: f64 = 2.0;
 
-impl WalkOfFactors {
+impl FundamentalOfFactors {
     pub(super) fn new(order: usize) -> Self {
         Self {
             magnus: Magnus::new(order),
@@ -273,7 +273,7 @@ fn frequency(a: &DMatrix<f64>) -> f64 {
     (size(0, half) * size(half, 0)).sqrt() + size(half, half)
 }
 
-impl Walk for WalkOfFactors {
+impl Fundamental for FundamentalOfFactors {
     fn scaled(&mut self, node: usize) -> &mut [f64] {
         self.magnus.scaled[node].as_mut_slice()
     }
