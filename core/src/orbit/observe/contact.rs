@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::ContactMotion;
 use super::peak::Batch;
-use super::reader::{Reader, largest};
+use super::sampler::{Sampler, largest};
 use crate::balance::{Balance, rate_series};
 use crate::law::{Law, RateDependence, Variation};
 use crate::model::layout::ContactLayout;
@@ -17,9 +17,9 @@ pub(super) fn is_idle(balance: &Balance<'_>, contact: usize) -> bool {
     pieces.into_iter().all(|p| p.force == Variation::Zero)
 }
 
-/// Room for one contact after the other.
+/// Workspace for one contact after the other.
 #[derive(Debug, Default)]
-pub(super) struct ContactReader {
+pub(super) struct ContactObserver {
     arguments: Vec<f64>,
     levels: Vec<f64>,
     cuts: Cuts,
@@ -28,7 +28,7 @@ pub(super) struct ContactReader {
     batch: Batch,
 }
 
-impl ContactReader {
+impl ContactObserver {
     pub(super) fn take_arguments(&mut self, contact: &ContactLayout, coefficients: &[f64]) {
         self.arguments.resize(contact.argument_count, 0.0);
         contact.arguments(coefficients, &mut self.arguments);
@@ -38,11 +38,11 @@ impl ContactReader {
     pub(super) fn read(
         &mut self,
         law: &dyn Law,
-        reader: &mut Reader,
+        sampler: &mut Sampler,
         base: f64,
         on_pieces: &mut [f64],
     ) -> ContactMotion {
-        self.cut(law, reader);
+        self.cut(law, sampler);
         let pieces = &law.facts().pieces;
         let touches = |segment: &Segment| pieces[segment.piece].force != Variation::Zero;
         let mut motion = ContactMotion::NONE;
@@ -52,7 +52,7 @@ impl ContactReader {
             motion.count = 1;
         }
         if self.cuts.segments().iter().any(touches) {
-            self.sample_rate(law, reader, base);
+            self.sample_rate(law, sampler, base);
         }
         let mut extremes = [f64::INFINITY, f64::NEG_INFINITY];
         for segment in self.cuts.segments() {
@@ -62,8 +62,8 @@ impl ContactReader {
             let mut here = [0.0; 2];
             if now {
                 motion.fraction += part;
-                let (gaps, rates) = (reader.samples(), &self.rates[..]);
-                let gap = reader.series();
+                let (gaps, rates) = (sampler.samples(), &self.rates[..]);
+                let gap = sampler.series();
                 let levels = &self.levels;
                 self.batch.take(segment, levels, [gaps, rates], gap, base);
                 let piece = segment.piece;
@@ -92,23 +92,23 @@ impl ContactReader {
         motion
     }
 
-    fn sample_rate(&mut self, law: &dyn Law, reader: &mut Reader, base: f64) {
+    fn sample_rate(&mut self, law: &dyn Law, sampler: &mut Sampler, base: f64) {
         if law.facts().rate == RateDependence::None {
             self.rates.clear();
-            self.rates.resize(reader.samples().len(), 0.0);
+            self.rates.resize(sampler.samples().len(), 0.0);
             return;
         }
-        self.rate.resize(reader.series().len(), 0.0);
-        rate_series(reader.series(), base, &mut self.rate);
-        reader.sample(&self.rate, &mut self.rates);
+        self.rate.resize(sampler.series().len(), 0.0);
+        rate_series(sampler.series(), base, &mut self.rate);
+        sampler.sample(&self.rate, &mut self.rates);
     }
 
     /// Cuts the period at the levels.
-    fn cut(&mut self, law: &dyn Law, reader: &Reader) {
+    fn cut(&mut self, law: &dyn Law, sampler: &Sampler) {
         self.levels.resize(law.facts().levels.len(), 0.0);
         law.levels(&self.arguments, &mut self.levels);
         self.cuts
-            .apply(reader.finder(), reader.series(), &self.levels);
+            .apply(sampler.finder(), sampler.series(), &self.levels);
     }
 }
 
@@ -125,11 +125,11 @@ mod tests {
     const BASE: f64 = 0.9;
 
     fn read(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> ContactMotion {
-        let (mut contact, mut reader) = (ContactReader::default(), Reader::default());
+        let (mut contact, mut sampler) = (ContactObserver::default(), Sampler::default());
         contact.arguments = arguments.to_vec();
-        reader.load(gap);
+        sampler.load(gap);
         let mut on_pieces = vec![0.0; law.facts().pieces.len()];
-        let motion = contact.read(law, &mut reader, BASE, &mut on_pieces);
+        let motion = contact.read(law, &mut sampler, BASE, &mut on_pieces);
         assert!((on_pieces.iter().sum::<f64>() - 1.0).abs() < 1e-13);
         let size = motion.maximum_force.abs().max(motion.minimum_force.abs());
         assert_eq!(motion.peak_force, size);
@@ -138,11 +138,11 @@ mod tests {
 
     /// Parts of the period on each piece.
     fn on_pieces(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> Vec<f64> {
-        let (mut contact, mut reader) = (ContactReader::default(), Reader::default());
+        let (mut contact, mut sampler) = (ContactObserver::default(), Sampler::default());
         contact.arguments = arguments.to_vec();
-        reader.load(gap);
+        sampler.load(gap);
         let mut on_pieces = vec![0.0; law.facts().pieces.len()];
-        contact.read(law, &mut reader, BASE, &mut on_pieces);
+        contact.read(law, &mut sampler, BASE, &mut on_pieces);
         on_pieces
     }
 

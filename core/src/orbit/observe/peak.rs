@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::reader::largest;
+use super::sampler::largest;
 use crate::balance::rate_series;
 use crate::law::{Derivatives, Law, On};
 use crate::numeric::fourier::crossings::levels::Segment;
