@@ -21,14 +21,14 @@ pub(super) struct Scratch {
     by_parameter: Vec<f64>,
     product: Vec<f64>,
     pub(super) column: Vec<f64>,
-    /// Length of slopes that couple all harmonics, and room for them, made when they are first needed.
+    /// Length of slopes that couple all harmonics, and workspace for them, made when they are first needed.
     full: usize,
     full_by_gap: Vec<f64>,
     full_by_rate: Vec<f64>,
 }
 
 impl Scratch {
-    /// Room for slopes whose harmonics up to `coupling` are needed.
+    /// Workspace for slopes whose harmonics up to `coupling` are needed.
     pub(super) fn new(layout: &Layout, resolution: Resolution, coupling: usize) -> Self {
         let Resolution {
             harmonics, period, ..

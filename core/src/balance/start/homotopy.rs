@@ -148,7 +148,7 @@ fn followed<P: Problem>(
 struct Drive<'a> {
     balance: Balance<'a>,
     value: f64,
-    /// Room for extended unknowns, and for a direction.
+    /// Workspace for extended unknowns, and for a direction.
     extended: Vec<f64>,
     held: Vec<f64>,
     /// The oscillating load with its sign in the residual: the derivative by the factor.

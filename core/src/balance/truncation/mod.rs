@@ -56,7 +56,7 @@ const STILL: f64 = 1e-12;
 /// Relative error of an event that rounding leaves.
 const ROUNDING: f64 = 1e-12;
 
-/// A finer balance of the same system, and room for its vectors.
+/// A finer balance of the same system, and workspace for its vectors.
 #[derive(Debug)]
 pub(crate) struct Finer<'a> {
     balance: Balance<'a>,

@@ -20,7 +20,7 @@ const LOST: f64 = 1e-8;
 
 /// What has been integrated, for matrices of some order. Matrices are slices, column by column.
 pub(super) trait Fundamental {
-    /// Room for the matrix at one of the three nodes of a step, times the step.
+    /// Workspace for the matrix at one of the three nodes of a step, times the step.
     fn scaled(&mut self, node: usize) -> &mut [f64];
 
     /// A step in which the matrix is constant: that of the first node.
@@ -135,7 +135,7 @@ pub(super) struct FundamentalOfMany {
     magnus: Magnus,
     product: DMatrix<f64>,
     lack: DMatrix<f64>,
-    room: DMatrix<f64>,
+    workspace: DMatrix<f64>,
     sums: Sums,
 }
 
@@ -146,7 +146,7 @@ impl FundamentalOfMany {
             magnus: Magnus::new(order),
             product: zeros(),
             lack: zeros(),
-            room: zeros(),
+            workspace: zeros(),
             sums: Sums::default(),
         }
     }
@@ -178,8 +178,9 @@ impl FundamentalOfMany {
     /// Multiplies by the propagator.
     fn advance(&mut self) {
         for matrix in [&mut self.product, &mut self.lack] {
-            self.room.gemm(1.0, &self.magnus.propagator, matrix, 0.0);
-            matrix.copy_from(&self.room);
+            self.workspace
+                .gemm(1.0, &self.magnus.propagator, matrix, 0.0);
+            matrix.copy_from(&self.workspace);
         }
     }
 }

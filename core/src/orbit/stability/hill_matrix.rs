@@ -84,12 +84,12 @@ impl Coefficients {
         if 2 * n * Lattice::Whole.length(harmonics) > MOST_ROWS {
             return None;
         }
-        let room = || vec![vec![0.0; series::length(2 * harmonics)]; n * n];
+        let zeros = || vec![vec![0.0; series::length(2 * harmonics)]; n * n];
         let mut all = Self {
             coordinates: n,
             harmonics,
-            stiffness: room(),
-            damping: room(),
+            stiffness: zeros(),
+            damping: zeros(),
             contacts: 0,
         };
         for entry in &orbit.layout.stiffness {
@@ -331,8 +331,8 @@ fn add_twice(from: &[f64], [e, d]: [Wave; 2], factor: f64, to: &mut [f64]) {
     if d.harmonic == 0 {
         series::add_product(from, e, factor, to);
     } else {
-        let mut room = vec![0.0; from.len()];
-        series::add_product(from, d, factor, &mut room);
-        series::add_product(&room, e, 1.0, to);
+        let mut workspace = vec![0.0; from.len()];
+        series::add_product(from, d, factor, &mut workspace);
+        series::add_product(&workspace, e, 1.0, to);
     }
 }

@@ -16,7 +16,7 @@ fn differs(level: LevelFacts) -> bool {
     level.force_jumps || level.by_gap_jumps || level.by_rate_jumps
 }
 
-/// Looks for gaps that rest, and keeps its room.
+/// Looks for gaps that rest, and keeps its workspace.
 #[derive(Debug, Default)]
 pub(super) struct Rest {
     gap: Vec<f64>,

@@ -44,7 +44,7 @@ use cut::Cut;
 use panel::Quadrature;
 use whole::Whole;
 
-/// Room for one contact after the other; after the first few calls nothing is allocated.
+/// Workspace for one contact after the other; after the first few calls nothing is allocated.
 #[derive(Debug, Default)]
 pub(crate) struct SwitchedAft {
     cut: Cut,

@@ -28,7 +28,7 @@ const SLOPE_ERROR: f64 = 1e-11;
 /// Panels are cut in two at most so many times.
 const DEPTH: u32 = 12;
 
-/// Room for the nodes of one panel, and the graded rules met so far.
+/// Workspace for the nodes of one panel, and the graded rules met so far.
 #[derive(Debug, Default)]
 pub(super) struct Quadrature {
     rules: Vec<GradedRule>,
@@ -221,7 +221,7 @@ impl Quadrature {
         let rule = &self.rules[index];
         let nodes = padded(rule.nodes.len());
         let [c, s] = &mut self.rotated;
-        for room in [
+        for workspace in [
             &mut self.cosines,
             &mut self.sines,
             &mut self.weights,
@@ -234,7 +234,7 @@ impl Quadrature {
             c,
             s,
         ] {
-            room.resize(nodes, 0.0);
+            workspace.resize(nodes, 0.0);
         }
         let width = end - start;
         for (j, (node, weight)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
