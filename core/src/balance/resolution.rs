@@ -58,7 +58,7 @@ struct TooFew {
     /// Error over tolerance.
     excess: f64,
     /// Points for which it is remembered.
-    left: usize,
+    points: usize,
 }
 
 impl Chooser {
@@ -110,8 +110,8 @@ impl Chooser {
 
     fn forget(&mut self) {
         self.too_few = self.too_few.and_then(|few| {
-            let left = few.left.checked_sub(1)?;
-            Some(TooFew { left, ..few })
+            let points = few.points.checked_sub(1)?;
+            Some(TooFew { points, ..few })
         });
     }
 
@@ -120,7 +120,7 @@ impl Chooser {
         self.too_few = Some(TooFew {
             harmonics,
             excess,
-            left: MEMORY,
+            points: MEMORY,
         });
         let factor = if excess.is_finite() {
             (1.1 * excess.cbrt()).clamp(1.15, 2.0)

@@ -44,7 +44,7 @@ impl Effort {
     }
 
     /// Multiplications that are left.
-    pub(super) fn left(&self) -> u64 {
+    pub(super) fn remaining(&self) -> u64 {
         self.limit.saturating_sub(self.operations)
     }
 

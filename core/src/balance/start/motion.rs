@@ -56,7 +56,7 @@ pub(super) fn orbit(
                 skipped: periods - AVERAGED - passed,
                 recorded: AVERAGED,
                 samples,
-                most: effort.left(),
+                most: effort.remaining(),
             });
             passed = periods;
             effort.take_operations(moved.operations);

@@ -49,7 +49,7 @@ impl Finer<'_> {
         }
         self.further.clone_from(&self.orbit);
         let error = match self.step_on(u, units, newton) {
-            Some(left) => first.max(self.largest_change(u, phases, units)) + left,
+            Some(remaining) => first.max(self.largest_change(u, phases, units)) + remaining,
             None => f64::INFINITY,
         };
         // What else is read off the orbit is to first order.

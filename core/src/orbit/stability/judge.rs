@@ -202,7 +202,7 @@ impl Judge {
     /// Multipliers of an orbit and of the corrected one, and what the truncation may leave in the latter; nothing is known of that
     /// if they are `far` from each other.
     fn both(&mut self, [orbit, corrected]: [&Orbit<'_>; 2], far: bool) -> (Found, Found, f64) {
-        let left = |plain: &Found, found: &Found| {
+        let error = |plain: &Found, found: &Found| {
             if far {
                 f64::INFINITY
             } else {
@@ -210,13 +210,13 @@ impl Judge {
             }
         };
         let mut plain = self.engine.multipliers(orbit, LENIENCE * self.aim);
-        let found = self.sharp(corrected, |found| left(&plain, found));
+        let found = self.sharp(corrected, |found| error(&plain, found));
         // What sufficed for the orbit before may be too little for this one.
         if self.engine.knows_its_error() && plain.error > LENIENCE * self.aim {
             plain = self.engine.multipliers(orbit, self.aim);
         }
-        let left = left(&plain, &found);
-        (plain, found, left)
+        let error = error(&plain, &found);
+        (plain, found, error)
     }
 
     /// Multipliers so exact that the method adds little to the error of the orbit, and does not stand between the largest of

@@ -78,18 +78,18 @@ impl<'a> Map<'a> {
             .advance(0.0, self.end, &mut end, tangent, None)
             .ok()?;
         let units = &self.units;
-        let left = DVector::from_fn(order, |i, _| (end[i] - state[i]) / units[i]);
+        let residual = DVector::from_fn(order, |i, _| (end[i] - state[i]) / units[i]);
         let columns = &self.tangent.columns;
         let matrix = DMatrix::from_fn(order, order, |i, j| {
             columns[j * order + i] * units[j] / units[i]
         });
-        let finite = left.iter().chain(&matrix).all(|x| x.is_finite());
-        finite.then_some((left, matrix))
+        let finite = residual.iter().chain(&matrix).all(|x| x.is_finite());
+        finite.then_some((residual, matrix))
     }
 
     /// One step of (1): its size, and `P` before it.
     fn step(&mut self, state: &mut [f64]) -> Option<(f64, DMatrix<f64>)> {
-        let (left, matrix) = self.at(state)?;
+        let (residual, matrix) = self.at(state)?;
         let order = state.len();
         let mut system = DMatrix::identity(order, order) - &matrix;
         if let Some(rigid) = self.rigid {
@@ -98,7 +98,7 @@ impl<'a> Map<'a> {
             let mut block = system.view_mut((n, 0), (n, n));
             block += rigid.projector();
         }
-        let change = system.lu().solve(&left)?;
+        let change = system.lu().solve(&residual)?;
         for ((x, change), unit) in state.iter_mut().zip(&change).zip(&self.units) {
             *x += change * unit;
         }
@@ -138,7 +138,7 @@ pub(crate) struct Refined {
     /// Size of its largest oscillation.
     size: f64,
     /// The last update of the state, relative to the size.
-    left: f64,
+    remaining: f64,
 }
 
 impl Refined {
@@ -176,8 +176,8 @@ impl Refined {
                     rise.min(self.size)
                 };
             }
-            let left = (INTEGRATED + 2.0 * self.left) * self.size;
-            let difference = (range[1] - range[0]).abs() + beyond + left;
+            let remaining = (INTEGRATED + 2.0 * self.remaining) * self.size;
+            let difference = (range[1] - range[0]).abs() + beyond + remaining;
             largest = largest.max(difference / units[coordinate]);
         }
         Some(largest)
@@ -226,8 +226,15 @@ pub(super) fn multipliers(balance: &Balance<'_>, orbit: &[f64]) -> Option<(Found
             let differ = |other: &DMatrix<f64>| distance(&found.multipliers, &eigenvalues(other));
             let error = differ(&other) + differ(&before);
             found.error += error;
-            let left = next / size;
-            return Some((found, Refined { state, size, left }));
+            let remaining = next / size;
+            return Some((
+                found,
+                Refined {
+                    state,
+                    size,
+                    remaining,
+                },
+            ));
         }
         (change, before) = (next, matrix);
     }
