@@ -11,7 +11,7 @@ use crate::error::Error;
 /// Multiplications that a search may take: some seconds. Most searches take less than a thousandth of it.
 pub(super) const LIMIT: u64 = 20_000_000_000;
 
-/// Those that motions may take after it.
+/// Multiplications that motions may take after it.
 pub(super) const LIMIT_OF_MOTIONS: u64 = 4_000_000_000;
 
 /// What a search has cost so far.
@@ -23,7 +23,7 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    /// Nothing done of so many multiplications.
+    /// Nothing done, of `limit` multiplications.
     pub(super) fn of(limit: u64) -> Self {
         Self {
             statistics: Statistics::default(),
@@ -38,7 +38,7 @@ impl Effort {
         self.operations += std::mem::take(&mut newton.operations);
     }
 
-    /// Takes so many multiplications.
+    /// Takes multiplications off.
     pub(super) fn take_operations(&mut self, operations: u64) {
         self.operations += operations;
     }

@@ -6,8 +6,9 @@ use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::newton::{Border, Newton, NewtonError, NewtonOptions};
 use crate::continuation::problem::Problem;
 
-/// A solution so much smaller than where the search for it began is sought again on its own scale, and so many times in all.
+/// Size of a solution, in parts of where the search for it began, below which it is sought again on its own scale.
 const SMALLER: f64 = 1e-3;
+/// Searches on ever smaller scales, at most.
 const SCALES: usize = 3;
 
 /// One balance at a fixed value of the variable.

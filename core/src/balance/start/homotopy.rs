@@ -20,7 +20,7 @@ use crate::system::Variable;
 
 /// Points of a branch, at most.
 const POINTS: usize = 2000;
-/// Largest step: only the end counts, and the angle between tangents keeps to the branch.
+/// Largest step, in parts of the size of the unknowns: only the end counts, and the angle between tangents keeps to the branch.
 const STEP: f64 = 0.4;
 /// Multiples of the frequency wanted at which a branch is begun.
 const HIGHER: [f64; 4] = [1.3, 2.0, 4.0, 10.0];

@@ -21,7 +21,7 @@ use crate::law::{Derivatives, On};
 use crate::model::layout::{ContactLayout, Layout, Term};
 use crate::system::{Part, System};
 
-/// Values of laws that differ by this part of their terms are equal.
+/// Difference up to which values of laws are equal, in parts of the size of their terms.
 const EQUAL: f64 = 1e-12;
 /// Distances from a level at which laws are compared, in units of the levels.
 const DISTANCES: [f64; 11] = [

@@ -49,9 +49,9 @@ use crate::system::{System, Variable};
 
 /// The change by the harmonics from `K` to `2 K` times this is that by all above `K`, where it falls as `K^-1.6` or faster.
 pub(crate) const BEYOND: f64 = 1.5;
-/// A correction smaller than this part of the orbit is below what Newton's method leaves.
+/// Size of a correction, in parts of the orbit, that Newton's method leaves.
 pub(crate) const NOTHING: f64 = 1e-13;
-/// An oscillation smaller than this part of the mean is one of rounding.
+/// Size of an oscillation, in parts of the mean, that is one of rounding.
 const STILL: f64 = 1e-12;
 /// Relative error of an event that rounding leaves.
 const ROUNDING: f64 = 1e-12;
@@ -73,7 +73,7 @@ pub(crate) struct Finer<'a> {
     beyond: Vec<f64>,
     /// The coarse balance, where contact forces are exact.
     plain: Option<Balance<'a>>,
-    /// Series of a contact force; so much of it reaches the coarse harmonics.
+    /// Series of a contact force, and the length of its part that reaches the coarse harmonics.
     force: Vec<f64>,
     short: usize,
     /// The tail alone.

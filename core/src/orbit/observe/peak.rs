@@ -15,13 +15,13 @@ use crate::numeric::fourier::kernels::{LANES, evaluate};
 use crate::numeric::fourier::series;
 use crate::numeric::roots::{Guarded, Place, STEPS};
 
-/// A segment with fewer samples is sampled by itself.
+/// Samples below which a segment is sampled by itself.
 const FEWEST: usize = 8;
-/// Phases of a segment that is sampled by itself: two groups of lanes.
+/// Samples of such a segment: two groups of lanes.
 const OWN: usize = 2 * LANES;
-/// The slope at an end is taken this part of the distance to the next sample inside, where no power is on its level.
+/// Where the slope at an end is taken, in parts of the distance to the next sample: inside, where no power is on its level.
 const INSIDE: f64 = 1e-6;
-/// The search ends when the next step would gain no more than this part of the force.
+/// What the next step would gain, in parts of the force, when a search ends.
 const GAIN: f64 = 1e-14;
 
 /// The samples of one segment.

@@ -10,6 +10,7 @@ use crate::numeric::fourier::series;
 
 /// Samples per shortest wave.
 const PER_WAVE: usize = 4;
+/// Samples of a period, at least.
 const FEWEST: usize = 32;
 
 /// The series loaded last, its samples and the search of it.

@@ -15,7 +15,7 @@ const SAFETY: f64 = 1.5;
 /// Rounding errors of a matrix, relative to its entries. A double multiplier moves by their root.
 const ROUNDED: f64 = 1e-15;
 
-/// Multipliers smaller than this part of the matrix have lost half of their digits.
+/// Size of a multiplier, in parts of the matrix, below which it has lost half of its digits.
 const LOST: f64 = 1e-8;
 
 /// What has been integrated, for matrices of some order. Matrices are slices, column by column.
@@ -155,7 +155,7 @@ impl FundamentalOfMany {
         self.product.nrows()
     }
 
-    /// Whether a multiplier is so much smaller than the matrix that it has lost digits there.
+    /// Whether a multiplier has lost digits because it is smaller than the matrix.
     pub(super) fn has_lost(&self, multipliers: &[Complex<f64>]) -> bool {
         let lost = |last: &Complex<f64>| last.norm() < LOST * self.product.amax();
         multipliers.last().is_some_and(lost)
@@ -239,7 +239,7 @@ pub(super) struct FundamentalOfFactors {
     nothing: [f64; 0],
 }
 
-/// A factor is done when its largest entry exceeds the mean size of its eigenvalues by this.
+/// Ratio of the largest entry to the mean size of the eigenvalues with which a factor is done.
 const SPREAD: f64 = 30.0;
 /// Norm of an exponent beyond which the exponential is divided.
 const LONG: f64 = 2.0;

@@ -37,7 +37,7 @@ use crate::model::layout::{ContactLayout, Term};
 use crate::numeric::fourier::series;
 use crate::system::Wave;
 
-/// More rows of a Hill matrix would take too long, and too much room: its exponential needs ten of them at once.
+/// Rows of a Hill matrix, at most: more take too long, and too much memory, since its exponential needs ten of them at once.
 const MOST_ROWS: usize = 4000;
 
 /// Fourier coefficients of `S - T'` and `T`.

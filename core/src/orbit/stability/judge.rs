@@ -29,19 +29,22 @@ use crate::balance::truncation::{BEYOND, Finer, NOTHING};
 use crate::numeric::spectrum::spread;
 use crate::numeric::spectrum::{distance, eigenvalues};
 
-/// Error of the method that is aimed at by default, and when it is asked for by name.
+/// Error of the multipliers that is aimed at by default.
 const TOLERANCE: f64 = 1e-6;
+/// The same of a method that is asked for by name.
 const TIGHT: f64 = 1e-10;
-/// The same, as a part of the error of the orbit; and the part that is accepted.
+/// The same, in parts of the error that the orbit makes.
 const PART: f64 = 0.3;
+/// The part that is accepted.
 const ACCEPTED: f64 = 1.0;
-/// A first attempt may miss the error aimed at by this factor.
+/// Error of a first attempt, in units of what is aimed at.
 const LENIENCE: f64 = 3.0;
-/// An orbit that its correction changes by more than this part of its size is not known well enough for a verdict: the change of
-/// the multipliers is proportional to their error for small corrections only.
+/// Change of an orbit by its correction, in parts of its size, beyond which it is not known well enough for a verdict: the change of the
+/// multipliers is proportional to their error for small corrections only.
 const FAR: f64 = 0.1;
-/// The same, as a part of the distance from a verdict's boundary, and at least.
+/// Error that is aimed at, in parts of the distance from a verdict's boundary.
 const MARGIN: f64 = 0.1;
+/// The same, at least.
 const LEAST: f64 = 1e-11;
 
 /// (1), from the multipliers and matrices of both orbits.

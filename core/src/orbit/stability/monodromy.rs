@@ -44,13 +44,13 @@ const FIRST_DENSITY: f64 = 8.0;
 const LARGEST_DENSITY: f64 = 2048.0;
 /// Steps per period up to which a law that is sharp may ask for more.
 const SHARPEST: f64 = 64.0;
-/// What half the step makes the error smaller by, at least; the order would be 64.
+/// Ratio of the errors with a step and with half of it, at least; the order would be 64.
 const HALVED: f64 = 8.0;
 /// Steps for each wave of a stiffness or a direction that varies in time, at least.
 const STEPS_PER_WAVE: f64 = 2.0;
 /// Numbers of steps on a panel; above, powers of two and half as many more.
 const COUNTS: [usize; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
-/// The next orbit shall have this part of the error aimed at.
+/// Error of the next orbit, in parts of what is aimed at.
 const TARGET: f64 = 0.15;
 /// Largest order of a matrix whose factors are asked for small multipliers in any case.
 const SMALL: usize = 8;

@@ -24,7 +24,7 @@ pub(super) enum Event {
     Near,
 }
 
-/// Cuts no farther from each other than this switch together.
+/// Phase between cuts up to which they switch together.
 const TOGETHER: f64 = 1e-3;
 
 /// A phase at which the orbit is cut.

@@ -26,17 +26,19 @@ use crate::numeric::spectrum::spread;
 use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::time::{Flow, Integrated, Tangent};
 
-/// Tolerances of the integration that finds the orbit, and of the one that is given.
+/// Relative tolerance of the integration that finds the orbit.
 const COARSE: f64 = 1e-8;
+/// The same of the one whose orbit is given.
 const FINE: f64 = 1e-11;
-/// Steps of Newton's method with either.
+/// Steps of Newton's method with either, at most.
 const STEPS: usize = 8;
-/// An update smaller than this part of the orbit ends the first; the second goes on as far as rounding lets it, or to the other.
+/// Update with which the first ends, in parts of the orbit.
 const NEAR: f64 = 1e-6;
+/// The same of the second, as far as rounding lets it.
 const CLOSED: f64 = 1e-12;
 /// Error of the states of a closed orbit, in parts of its size.
 const INTEGRATED: f64 = 1e-9;
-/// Farther from the series, in parts of the orbit's size, lies another orbit.
+/// Distance from the series, in parts of the orbit's size, beyond which an orbit is another one.
 const FAR: f64 = 0.1;
 /// Rounding errors of the matrix, relative to its largest entry.
 const ROUNDED: f64 = 1e-13;

@@ -8,7 +8,7 @@ use crate::balance::gap_series;
 use crate::law::LevelFacts;
 use crate::numeric::fourier::series;
 
-/// A gap this near to a level, relative to its size and that of the orbit, is on it.
+/// Distance of a gap from a level that it is on, in parts of its size and that of the orbit.
 const ON: f64 = 1e-12;
 
 /// Whether force or slopes differ on the two sides of a level.

@@ -56,7 +56,7 @@ pub(crate) struct SwitchedAft {
     sharp: Vec<(usize, Option<Scales>)>,
 }
 
-/// So much of what [`Scales`] say may change from node to node: the coefficients of the force then fall, and tell the rest.
+/// Largest change from node to node, in the units of [`Scales`], with which the coefficients of the force fall and tell the rest.
 const SEEN: f64 = 1.5;
 
 /// Whether a law changes on a piece between nodes where they do not see it.

@@ -4,7 +4,7 @@
 //! an exponent. The map of [`grading`](crate::numeric::fourier::grading) makes all of them smooth at once, so one set of nodes serves
 //! the force and every derivative, whatever the exponents.
 //!
-//! How many nodes suffice, [`spectrum`](super::spectrum) tells. Where there is no rule of so many, the panel is cut in two.
+//! How many nodes suffice, [`spectrum`](super::spectrum) tells. Where there is no rule with that number, the panel is cut in two.
 
 use super::cut::{End, Panel};
 use super::spectrum::Spectrum;
@@ -23,9 +23,9 @@ use crate::numeric::fourier::taylor::Taylor;
 const MARGIN: f64 = 12.0;
 /// Error aimed at in the harmonics of the force, relative to the largest force on the panel.
 const FORCE_ERROR: f64 = 1e-15;
-/// Error aimed at in the harmonics of the derivatives.
+/// The same of the derivatives.
 const SLOPE_ERROR: f64 = 1e-11;
-/// Panels are cut in two at most so many times.
+/// Halvings of a panel, at most.
 const DEPTH: u32 = 12;
 
 /// Workspace for the nodes of one panel, and the graded rules met so far.
@@ -71,7 +71,7 @@ struct Part {
     end: f64,
     /// The powers that its ends need; one where it was only cut.
     ends: Grading,
-    /// It may be cut in two so many times.
+    /// Halvings that it may still have.
     depth: u32,
     spectra: [Spectrum; 4],
 }

@@ -15,7 +15,7 @@ use crate::numeric::fourier::series;
 /// asked for lie as far above Nyquist as those lie below, and are smaller still. It is the upper eighth, or twice the spacing of the gap's
 /// harmonics where that is more: an orbit of a shorter period than the balance's has a spectrum with holes.
 const RESOLVED: f64 = 1e-10;
-/// More samples are never taken.
+/// Samples of a period, at most.
 const MOST: usize = 1 << 15;
 
 /// Transforms of increasing length, made when they are first needed.

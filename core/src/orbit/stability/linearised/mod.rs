@@ -47,7 +47,7 @@ pub(super) struct Linearised {
     sight: Option<Sight>,
 }
 
-/// Phases no farther from each other than this are the same but for rounding.
+/// Difference of phases that are the same but for rounding.
 const SAME: f64 = 1e-12;
 
 /// A panel, and how it is to be integrated.
