@@ -44,6 +44,7 @@ pub(crate) mod terms;
 mod tests;
 
 use crate::balance::aft::{Aft, Engine};
+use crate::cancel::Cancel;
 use crate::continuation::jacobian::Partition;
 use crate::model::layout::Layout;
 use crate::model::rigid::{Place, Rigid};
@@ -122,6 +123,7 @@ pub struct Balance<'a> {
     rigid: Option<Rigid>,
     /// What gives the mean along rigid motions its stiffness, row by row.
     gauge: Vec<f64>,
+    cancel: Cancel,
 }
 
 impl std::fmt::Debug for Balance<'_> {
@@ -175,7 +177,14 @@ impl<'a> Balance<'a> {
             blocks: blocks::of_layout(&layout, harmonics.coupling()),
             harmonics,
             layout,
+            cancel: Cancel::new(),
         }
+    }
+
+    /// The same, and solving it ends when this token is cancelled.
+    pub(crate) fn until(self, cancel: &Cancel) -> Self {
+        let cancel = cancel.clone();
+        Self { cancel, ..self }
     }
 
     /// How finely orbits are represented.

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use super::known;
 use crate::continuation::follow::Stop;
-use crate::error::{Error, chain};
+use crate::error::{Error, ErrorKind, chain};
 use crate::event::{EventKind, Side};
 use crate::shooting::{Cycle, CycleBranch, CycleEvent, End, Shooting};
 
@@ -121,6 +121,16 @@ pub enum Reason {
         serde(serialize_with = "crate::numeric::serialise::text")
     )]
     Failed(Error),
+}
+
+impl Reason {
+    /// Why no branch was followed, as the search for its first orbit says.
+    pub(super) fn of(error: Error) -> Self {
+        match error.kind() {
+            ErrorKind::Cancelled => Self::Interrupted,
+            _ => Self::Failed(error),
+        }
+    }
 }
 
 impl fmt::Display for Reason {
@@ -270,7 +280,7 @@ impl<'v> Search<'v> {
             return Err(Reason::Interrupted);
         }
         let request = self.shooting.clone().period(period).near(state);
-        let orbit = request.orbit(value).map_err(Reason::Failed)?;
+        let orbit = request.orbit(value).map_err(Reason::of)?;
         let known = |limb: &Limb| known::contains(&self.shooting, limb, &orbit);
         if self.diagram.branches.iter().any(known) {
             return Ok(());
@@ -281,7 +291,7 @@ impl<'v> Search<'v> {
         // Each of two parts may have half.
         let request = request.near(orbit.state()).max_points(self.points_left / 2);
         let branch = request.through_with(value, |cycle| self.watch.see(cycle));
-        let branch = branch.map_err(Reason::Failed)?;
+        let branch = branch.map_err(Reason::of)?;
         self.add(Origin::Attractor { value }, 0, branch);
         Ok(())
     }
@@ -336,7 +346,7 @@ impl<'v> Search<'v> {
                 break;
             }
         }
-        failed.map_or(Ok(()), |error| Err(Reason::Failed(error)))
+        failed.map_or(Ok(()), |error| Err(Reason::of(error)))
     }
 
     /// Another branch that passes the same crossing.

@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
 use crate::attractors::basin::{Basin, Basins, Progress};
 use crate::bifurcation::error::BifurcationError;
+use crate::cancel::Cancel;
 use crate::continuation::step;
 use crate::error::Error;
 use crate::model::request::RequestError;
@@ -187,6 +188,13 @@ impl Bifurcations {
         self
     }
 
+    /// What is computed ends when this token is cancelled, the search for a first orbit too.
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.shooting = self.shooting.cancel(cancel);
+        self
+    }
+
     /// Follows the first branch and all that are connected with it.
     ///
     /// # Errors
@@ -249,7 +257,7 @@ impl Bifurcations {
             let found = match self.basins(*value, basin, watch) {
                 Ok(found) => found,
                 Err(error) => {
-                    search.diagram.missed.push((*value, Reason::Failed(error)));
+                    search.diagram.missed.push((*value, Reason::of(error)));
                     continue;
                 }
             };
@@ -289,7 +297,9 @@ impl Bifurcations {
                 self.omega.ok_or(RequestError::Missing { name: "omega" })?
             }
         };
-        let options = time::Options::default().tolerance(SETTLED);
+        let options = time::Options::default()
+            .tolerance(SETTLED)
+            .cancel(self.shooting.token());
         let flow = time::at(&self.system, &parameters, omega, options)?;
         let found = basin.compute(vec![flow], None, watch);
         found.map_err(|reason| BifurcationError::Search { value, reason }.into())

@@ -133,6 +133,7 @@ impl FrequencyResponse {
                 chooser,
                 from,
                 to,
+                cancel: self.cancel.clone(),
             },
             options,
         ))

@@ -11,6 +11,7 @@ use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::branches::value::{Chord, chain, solutions, turns_at};
+use crate::cancel::Cancel;
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -59,6 +60,7 @@ pub(crate) struct Follower {
     pub(crate) chooser: Option<Chooser>,
     pub(crate) from: f64,
     pub(crate) to: f64,
+    pub(crate) cancel: Cancel,
 }
 
 impl std::fmt::Debug for Follower {
@@ -79,6 +81,7 @@ impl Follower {
             self.variable,
             resolution,
         )
+        .until(&self.cancel)
     }
 
     /// A reader of orbits of that resolution.
@@ -173,6 +176,7 @@ impl Follower {
             resolution: self.resolution,
             newton: options.newton,
             motion: Some(motion),
+            cancel: &self.cancel,
         }
     }
 

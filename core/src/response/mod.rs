@@ -20,10 +20,10 @@ use crate::balance::Parity;
 use crate::balance::aft::Aft;
 use crate::balance::start::{Moving, start, without_symmetry};
 use crate::balance::symmetry::has_stride;
-use crate::branches::error::Attempts;
-use crate::branches::error::OrbitError;
+use crate::branches::error::{Attempts, OrbitError, unless_cancelled};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
+use crate::cancel::Cancel;
 use crate::continuation::follow::Start;
 use crate::continuation::statistics::Statistics;
 use crate::continuation::step::StepControl;
@@ -32,7 +32,7 @@ use crate::event::{EventKind, Side};
 use crate::orbit::stability::Method;
 use crate::response::branch::Branch;
 use crate::response::depart::depart;
-use crate::response::follower::Sought;
+use crate::response::follower::{Follower, Sought};
 use crate::response::run::{Followed, Run};
 use crate::system::System;
 
@@ -76,6 +76,7 @@ pub struct FrequencyResponse {
     near: Option<Orbit>,
     sought: Sought,
     symmetric: bool,
+    cancel: Cancel,
 }
 
 impl std::fmt::Debug for FrequencyResponse {
@@ -109,6 +110,7 @@ impl FrequencyResponse {
             near: None,
             sought: Sought::Folds,
             symmetric: true,
+            cancel: Cancel::new(),
             method: Method::default(),
         }
     }
@@ -257,6 +259,13 @@ impl FrequencyResponse {
         self
     }
 
+    /// What is computed ends when this token is cancelled, the search for a first orbit too.
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.cancel = cancel.clone();
+        self
+    }
+
     /// The one orbit at a value of what is varied; the ends of a range are not needed.
     ///
     /// # Errors
@@ -297,7 +306,8 @@ impl FrequencyResponse {
             None => {
                 let motion = |moving: Moving<'_>| motion::moved(&follower, moving);
                 let request = follower.start_request(options, &motion);
-                let found = start(request, &mut statistics)?;
+                let found = start(request, &mut statistics)
+                    .map_err(|error| unless_cancelled(&self.cancel, options.from, error))?;
                 let broken = follower.asymmetric;
                 let broken = broken.then(|| without_symmetry(request, &found, &mut statistics));
                 broken.flatten().unwrap_or(found)
@@ -382,7 +392,8 @@ impl FrequencyResponse {
             let known = times * event.point.orbit.harmonics();
             follower.resolution.harmonics = chooser.admitted(known);
         }
-        let point = depart(&follower, event, stride, side.sign())?;
+        let point = depart(&follower, event, stride, side.sign())
+            .map_err(|error| unless_cancelled(&self.cancel, event.point.value, error))?;
         let run = Run::new(&follower, options, &point.u);
         let start = Start::Along(Box::new(point));
         self.followed(run, start, &mut visit, (Statistics::default(), started))
@@ -396,14 +407,20 @@ impl FrequencyResponse {
         visit: &mut dyn FnMut(&Point) -> ControlFlow<()>,
         (mut statistics, started): (Statistics, Instant),
     ) -> Result<Branch, Error> {
-        let follower = run.follower.clone();
+        // What is asked of the branch later is not part of this run.
+        let follower = Follower {
+            cancel: Cancel::new(),
+            ..run.follower.clone()
+        };
         let Followed {
             stopped,
             points,
             mut events,
             mut turns,
             statistics: followed,
-        } = run.follow(start, visit)?;
+        } = run
+            .follow(start, visit)
+            .map_err(|error| unless_cancelled(&self.cancel, follower.from, error))?;
         // What a step hid is found one step later.
         events.sort_by_key(|event| event.after);
         turns.sort_by_key(|turn| turn.after);

@@ -80,7 +80,7 @@ impl Shooting {
             &self.system,
             &cycle.parameters,
             cycle.omega,
-            Options { tolerance },
+            Options::default().tolerance(tolerance).cancel(&self.cancel),
         )?;
         let mut map = Stroboscope::new(flow);
         let mut state = cycle.state().to_vec();
@@ -179,6 +179,7 @@ impl Shooting {
             stability: self.stability,
             points: step::max_points(self.max_points)?,
             steps: step::largest_step(self.largest_step)?,
+            cancel: self.cancel.clone(),
         })
     }
 
@@ -233,9 +234,10 @@ impl Shooting {
         let system = Arc::clone(&self.system);
         let parameters = parameters.to_vec();
         let exact = Affine::new(&system, &parameters, omega).is_ok();
+        let cancel = self.cancel.clone();
         Source {
             make: Box::new(move |tolerance| {
-                let options = Options::default().tolerance(tolerance);
+                let options = Options::default().tolerance(tolerance).cancel(&cancel);
                 time::at(&system, &parameters, omega, options)
             }),
             exact,
@@ -250,7 +252,8 @@ impl Shooting {
         }
         let mut request = FrequencyResponse::of(&self.system)
             .period(self.period)
-            .stability(false);
+            .stability(false)
+            .cancel(&self.cancel);
         if let (Some(name), Some(omega)) = (&self.vary, self.omega) {
             request = request.vary(name).omega(omega);
         }

@@ -7,8 +7,10 @@ use super::cycle::{Cycle, CycleBranch, CycleEvent};
 use super::start::Guess;
 use super::trace::{self, Track, TrackPoint};
 use super::{at, compute, series};
+use crate::branches::error::unless_cancelled;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
+use crate::cancel::Cancel;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::event::{EventKind, Side};
@@ -55,6 +57,7 @@ pub struct Shooting {
     pub(super) max_points: usize,
     pub(super) largest_step: f64,
     pub(super) stability: bool,
+    pub(super) cancel: Cancel,
 }
 
 impl std::fmt::Debug for Shooting {
@@ -84,6 +87,7 @@ impl Shooting {
             max_points: 20_000,
             largest_step: StepControl::default().largest,
             stability: true,
+            cancel: Cancel::new(),
         }
     }
 
@@ -175,6 +179,23 @@ impl Shooting {
         self
     }
 
+    /// What is computed ends when this token is cancelled, the search for a first orbit too.
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.cancel = cancel.clone();
+        self
+    }
+
+    /// The token that ends what is computed.
+    pub(crate) fn token(&self) -> &Cancel {
+        &self.cancel
+    }
+
+    /// What a computation gave that began at a value; where it was cancelled, that it was.
+    fn unless_cancelled<T>(&self, value: f64, found: Result<T, Error>) -> Result<T, Error> {
+        found.map_err(|error| unless_cancelled(&self.cancel, value, error))
+    }
+
     /// The one orbit at a value of what is varied.
     ///
     /// # Errors
@@ -183,7 +204,7 @@ impl Shooting {
     pub fn orbit(&self, value: f64) -> Result<Cycle, Error> {
         let setting = self.setting(value, value)?;
         let guess = self.guess(value)?;
-        compute::cycle(&setting, &guess, value)
+        self.unless_cancelled(value, compute::cycle(&setting, &guess, value))
     }
 
     /// The branch from one end of the range to the other.
@@ -205,7 +226,8 @@ impl Shooting {
     ) -> Result<CycleBranch, Error> {
         let ([from, to], setting) = self.ranged()?;
         let guess = self.guess(from)?;
-        compute::branch(&setting, &guess, [from, to], &mut visit)
+        let branch = compute::branch(&setting, &guess, [from, to], &mut visit);
+        self.unless_cancelled(from, branch)
     }
 
     /// The branch that begins at an event of another one, within the range from [`from`](Self::from) to [`to`](Self::to): of
@@ -237,7 +259,8 @@ impl Shooting {
             ..self.clone()
         };
         let ([from, to], setting) = request.ranged()?;
-        compute::branch_at(&setting, event, side.sign(), [from, to], &mut visit)
+        let branch = compute::branch_at(&setting, event, side.sign(), [from, to], &mut visit);
+        self.unless_cancelled(event.cycle.value, branch)
     }
 
     /// The branch through the orbit at a value inside the range, both ways as far as it goes; [`CycleBranch::end`] is that of the
@@ -267,7 +290,8 @@ impl Shooting {
             "must be between from and to",
         )?;
         let guess = self.guess(value)?;
-        compute::branch_through(&setting, &guess, value, [from, to], &mut visit)
+        let branch = compute::branch_through(&setting, &guess, value, [from, to], &mut visit);
+        self.unless_cancelled(value, branch)
     }
 
     /// Every orbit of a branch at a value of what it varies, in branch order; empty where the branch does not pass.
@@ -309,7 +333,7 @@ impl Shooting {
             let must = "must be what the branch varies";
             return Err(RequestError::Varied { name, must }.into());
         }
-        at::at(&setting, branch, value)
+        self.unless_cancelled(value, at::at(&setting, branch, value))
     }
 
     /// An orbit as a point of a branch by harmonic balance: its Fourier series, of 20 harmonics for each period of the excitation,
@@ -325,7 +349,8 @@ impl Shooting {
             ..self.clone()
         };
         let setting = request.setting(cycle.value, cycle.value)?;
-        series::point(self.system.as_ref(), &setting, cycle)
+        let point = series::point(self.system.as_ref(), &setting, cycle);
+        self.unless_cancelled(cycle.value, point)
     }
 
     /// The curve of bifurcations through an event of a branch, as a second parameter (or `"omega"`) varies between two values: of
@@ -371,6 +396,7 @@ impl Shooting {
             name: second.to_owned(),
             ranges: [[from, to], [low, high]],
         };
-        trace::track(&setting, event, &plane, &mut visit)
+        let curve = trace::track(&setting, event, &plane, &mut visit);
+        self.unless_cancelled(event.cycle.value, curve)
     }
 }

@@ -89,6 +89,9 @@ impl<'r> Run<'r> {
         }
         let last = self.cycles.last().map_or(options.from, |cycle| cycle.value);
         let end = match (outcome, failure) {
+            (Ok(_), Some(FlowError::Cancelled { .. })) if !self.cycles.is_empty() => {
+                return Ok(End::Stopped(Stop::Interrupted));
+            }
             (Err(reason), failure) => return Err(no_orbit(options.from, reason, failure)),
             (Ok(Stop::StepTooShort { .. }), Some(reason)) => {
                 let value = last;

@@ -1,5 +1,6 @@
 //! What a computation by shooting works with: checked, and the same for all orbits of a branch.
 
+use crate::cancel::Cancel;
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
 use crate::continuation::step::StepControl;
@@ -41,6 +42,7 @@ pub(super) struct Setting {
     pub(super) stability: bool,
     pub(super) points: usize,
     pub(super) steps: StepControl,
+    pub(super) cancel: Cancel,
 }
 
 /// Updates of Newton's method at most.

@@ -4,6 +4,7 @@
 //! evaluations of the balance and the factorisations estimate them.
 
 use crate::branches::error::OrbitError;
+use crate::cancel::Cancel;
 use crate::continuation::newton::{Newton, NewtonError};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
@@ -20,15 +21,17 @@ pub(super) struct Effort {
     pub(super) statistics: Statistics,
     operations: u64,
     limit: u64,
+    cancel: Cancel,
 }
 
 impl Effort {
-    /// Nothing done, of `limit` multiplications.
-    pub(super) fn of(limit: u64) -> Self {
+    /// Nothing done, of `limit` multiplications, which a token may end before.
+    pub(super) fn of(limit: u64, cancel: &Cancel) -> Self {
         Self {
             statistics: Statistics::default(),
             operations: 0,
             limit,
+            cancel: cancel.clone(),
         }
     }
 
@@ -48,9 +51,9 @@ impl Effort {
         self.limit.saturating_sub(self.operations)
     }
 
-    /// Whether nothing is left of it.
+    /// Whether nothing is left of it, or the search was cancelled.
     pub(super) fn is_spent(&self) -> bool {
-        self.operations >= self.limit
+        self.operations >= self.limit || self.cancel.is_cancelled()
     }
 
     /// Evaluations of the balance so far.

@@ -38,7 +38,8 @@ impl<'a> Fixed<'a> {
             request.omega,
             request.variable,
             resolution,
-        );
+        )
+        .until(request.cancel);
         let n = balance.unknowns();
         let mut border = vec![0.0; n + 1];
         border[n] = 1.0;
@@ -58,8 +59,11 @@ impl<'a> Fixed<'a> {
         u
     }
 
-    /// Size of the residual, which is kept.
+    /// Size of the residual, which is kept; not a number once the search is cancelled.
     pub(super) fn residual(&mut self, u: &[f64], effort: &mut Effort) -> f64 {
+        if self.balance.is_cancelled() {
+            return f64::NAN;
+        }
         let size = self
             .newton
             .size_of_residual(&mut self.balance, u, &mut self.residual);

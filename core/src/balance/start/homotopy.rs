@@ -209,6 +209,10 @@ impl Problem for Drive<'_> {
         self.balance.is_mean(unknown)
     }
 
+    fn is_cancelled(&self) -> bool {
+        self.balance.is_cancelled()
+    }
+
     fn operations(&self) -> u64 {
         self.balance.operations()
     }

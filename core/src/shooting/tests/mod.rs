@@ -64,6 +64,7 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting {
         stability: true,
         points: 2000,
         steps: StepControl::default(),
+        cancel: crate::cancel::Cancel::new(),
     }
 }
 
