@@ -5,8 +5,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
-use crate::attractors::basin::{Basin, Basins, Progress};
+use crate::attractors::basin::{Basin, Basins, Visit};
 use crate::bifurcation::error::BifurcationError;
+use crate::branches::progress::Progress;
 use crate::cancel::Cancel;
 use crate::continuation::step;
 use crate::error::Error;
@@ -167,7 +168,8 @@ impl Bifurcations {
 
     /// Also looks for branches that nothing leads to: at a value of what is varied, motions from a grid of initial states are
     /// followed until they have settled, and the branch of every periodic orbit that they settle to, of whatever period, is
-    /// followed unless it is known.
+    /// followed unless it is known. The basin is of the same system, with its grid, the longest period, the patience, the bound and the
+    /// threads; frequency, tolerance and parameters are those of this request at the value.
     #[must_use]
     pub fn search(mut self, value: f64, basin: Basin) -> Self {
         self.searched.push((value, basin));
@@ -209,18 +211,18 @@ impl Bifurcations {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn run_with(&self, visit: impl FnMut(&Cycle) -> ControlFlow<()>) -> Result<Diagram, Error> {
-        self.run_watched(visit, &|_| true)
+        self.run_watched(visit, |_| ControlFlow::Continue(()))
     }
 
     /// As [`run_with`](Self::run_with), and tells `watch` how far each [`search`](Self::search) is, which takes long before it has
-    /// an orbit to show. It ends the computation by answering false; what was found until then comes back.
+    /// an orbit to show: to show progress, or to stop.
     ///
     /// # Errors
     /// As [`run`](Self::run).
     pub fn run_watched(
         &self,
         mut visit: impl FnMut(&Cycle) -> ControlFlow<()>,
-        watch: &(dyn Fn(Progress) -> bool + Sync),
+        mut watch: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
     ) -> Result<Diagram, Error> {
         let started = Instant::now();
         let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
@@ -232,9 +234,9 @@ impl Bifurcations {
                 let name = "search";
                 return Err(RequestError::Option { name, value, must }.into());
             }
-            let order = 2 * self.system.facts().coordinates.len();
             basin
-                .check(Some(order))
+                .check()
+                .and_then(|_| basin.is_of(&*self.system))
                 .map_err(|reason| BifurcationError::Search { value, reason })?;
         }
         let first = self.shooting.clone().from(from).to(to);
@@ -254,7 +256,7 @@ impl Bifurcations {
                 search.diagram.missed.push((*value, Reason::Interrupted));
                 continue;
             }
-            let found = match self.basins(*value, basin, watch) {
+            let found = match self.basins(*value, basin, &mut watch) {
                 Ok(found) => found,
                 Err(error) => {
                     search.diagram.missed.push((*value, Reason::of(error)));
@@ -280,12 +282,7 @@ impl Bifurcations {
     }
 
     /// What motions settle to at a value.
-    fn basins(
-        &self,
-        value: f64,
-        basin: &Basin,
-        watch: &(dyn Fn(Progress) -> bool + Sync),
-    ) -> Result<Basins, Error> {
+    fn basins(&self, value: f64, basin: &Basin, visit: Visit<'_>) -> Result<Basins, Error> {
         let facts = self.system.facts();
         let variable = validate::variable(facts, self.vary.as_deref())?;
         let mut parameters = vec![0.0; facts.parameters.len()];
@@ -300,8 +297,11 @@ impl Bifurcations {
         let options = time::Options::default()
             .tolerance(SETTLED)
             .cancel(self.shooting.token());
-        let flow = time::at(&self.system, &parameters, omega, options)?;
-        let found = basin.compute(vec![flow], None, watch);
+        let basin = basin.clone().cancel(self.shooting.token());
+        let flows = (0..basin.threads_wanted())
+            .map(|_| time::at(&self.system, &parameters, omega, options.clone()));
+        let flows = flows.collect::<Result<_, Error>>()?;
+        let found = basin.compute(flows, None, visit);
         found.map_err(|reason| BifurcationError::Search { value, reason }.into())
     }
 
