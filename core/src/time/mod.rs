@@ -160,11 +160,12 @@ pub fn at(
     omega: f64,
     options: Options,
 ) -> Result<Box<dyn Flow>, Error> {
+    let Options { tolerance, cancel } = options;
     let system = system.shared();
-    let integrated = Integrated::new(&system, values, omega, options.tolerance)?;
+    let integrated = Integrated::new(&system, values, omega, tolerance)?;
     Ok(match affine::Affine::new(&system, values, omega) {
-        Ok(affine) => Box::new(affine.until(&options.cancel)),
-        Err(_) => Box::new(integrated.until(&options.cancel)),
+        Ok(affine) => Box::new(affine.until(&cancel)),
+        Err(_) => Box::new(integrated.until(&cancel)),
     })
 }
 
