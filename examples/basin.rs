@@ -5,7 +5,6 @@
 
 use hertzian::attractors::basin::{Axis, Basin, Fate, Grid};
 use hertzian::chart::{Chart, Colour, Markers, Raster};
-use hertzian::time;
 
 hertzian::oscillator! {
     /// Contact that opens
@@ -39,9 +38,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (columns, rows) = (axis(0, -30.0, 10.0), axis(1, -8.0, 8.0));
     let sides = ([columns.from, columns.to], [rows.from, rows.to]);
     let grid = Grid::new(vec![0.0, 0.0], columns, rows);
-    // One flow for each thread.
-    let flow = || time::of(&model, 1.0, time::Options::default());
-    let basins = Basin::new(grid).compute(vec![flow()?, flow()?], None, &|_| true)?;
+    let basins = Basin::of(&model).omega(1.0).grid(grid).threads(2).run()?;
 
     let mut classes = Vec::new();
     let mut markers = Vec::new();

@@ -3,9 +3,8 @@
 use std::error::Error;
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
+use hertzian::Cancel;
 use hertzian::error::chain;
 
 use crate::response::progress::Progress;
@@ -86,22 +85,23 @@ fn unless_closed(written: io::Result<()>) -> io::Result<()> {
 }
 
 /// Works, prints, and says by the exit code how it went: 0 done, 2 failed or what the failure says, 3 not complete. A first
-/// Ctrl-C sets the flag, a second one ends the program at once.
+/// Ctrl-C cancels the work, a second one ends the program at once.
 pub fn run(
     name: &str,
     quiet: bool,
-    work: impl FnOnce(&AtomicBool, &mut Progress) -> Result<Ended, Failed>,
+    work: impl FnOnce(&Cancel, &mut Progress) -> Result<Ended, Failed>,
 ) -> ExitCode {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&interrupted);
+    let cancel = Cancel::new();
+    let token = cancel.clone();
     // Without a handler, Ctrl-C ends the program at once: a nuisance, but no reason not to compute.
     let _ = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
+        if token.is_cancelled() {
             std::process::exit(130);
         }
+        token.cancel();
     });
     let mut progress = Progress::new(!quiet && io::stderr().is_terminal());
-    let outcome = work(&interrupted, &mut progress);
+    let outcome = work(&cancel, &mut progress);
     progress.end();
     let complain = |message: &str| {
         let _ = writeln!(io::stderr(), "{name}: {message}");

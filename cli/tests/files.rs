@@ -1,8 +1,8 @@
 //! What `response` writes, against what the book says of it: docs/book/src/files.md.
 
+use hertzian::Cancel;
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
 use hertzian::export::COLUMNS;
@@ -76,7 +76,7 @@ fn written(name: &str, command: &str) -> (Value, String) {
     let words = std::iter::once("response").chain(command.split_whitespace());
     let mut options = Options::try_parse_from(words).expect("arguments that can be parsed");
     (options.svg, options.json, options.csv) = (svg, Some(json.clone()), Some(csv.clone()));
-    let never = AtomicBool::new(false);
+    let never = Cancel::new();
     run(&options, &never, &mut Progress::new(false)).expect("a branch");
     let [json, csv] = [json, csv].map(|path| std::fs::read_to_string(path).expect("a file"));
     let _ = std::fs::remove_dir_all(&folder);

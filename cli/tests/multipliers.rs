@@ -1,7 +1,7 @@
 //! The subcommand `multipliers` with few harmonics.
 
+use hertzian::Cancel;
 use std::fs;
-use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
 use hertzian::stability::{Method, Sorting};
@@ -17,7 +17,7 @@ fn writes_a_table_and_two_pictures() {
     let words = words.into_iter().chain([folder.to_str().unwrap()]);
     let options = Options::try_parse_from(words).unwrap();
     let quiet = &mut Progress::new(false);
-    let ended = run(&options, &AtomicBool::new(false), quiet).unwrap();
+    let ended = run(&options, &Cancel::new(), quiet).unwrap();
     let summary = ended.summary;
     for method in METHODS {
         assert!(summary.contains(&format!(", {method}: ")), "{method}");

@@ -1,8 +1,8 @@
 //! The subcommand `paper` on some of its figures.
 
+use hertzian::Cancel;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
 use hertzian_cli::paper::complaints;
@@ -32,8 +32,7 @@ fn draw(folder: &Path, figures: &[&str]) -> Vec<Drawn> {
     let folder = folder.to_str().unwrap();
     let words = [&["paper", "--out", folder, "--only"], figures].concat();
     let options = Options::try_parse_from(words).unwrap();
-    let interrupted = AtomicBool::new(false);
-    run(&options, &interrupted, &mut Progress::new(false)).unwrap()
+    run(&options, &Cancel::new(), &mut Progress::new(false)).unwrap()
 }
 
 /// Every value that is known is found, and is the exact one.
@@ -106,7 +105,9 @@ fn an_interrupted_run_writes_its_page() {
     let folder = Folder::new("interrupted");
     let options = ["paper", "--out", folder.0.to_str().unwrap()];
     let options = Options::try_parse_from(options).unwrap();
-    let drawn = run(&options, &AtomicBool::new(true), &mut Progress::new(false)).unwrap();
+    let now = Cancel::new();
+    now.cancel();
+    let drawn = run(&options, &now, &mut Progress::new(false)).unwrap();
     assert!(drawn.is_empty());
     assert!(folder.0.join("index.html").exists());
 }
@@ -116,7 +117,7 @@ fn a_folder_that_cannot_be_made_is_named() {
     let folder = Folder::new("file");
     fs::write(&folder.0, "").unwrap();
     let options = Options::try_parse_from(["paper", "--out", folder.0.to_str().unwrap()]).unwrap();
-    let failure = run(&options, &AtomicBool::new(false), &mut Progress::new(false));
+    let failure = run(&options, &Cancel::new(), &mut Progress::new(false));
     assert!(
         failure
             .err()

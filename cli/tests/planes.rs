@@ -2,15 +2,14 @@
 
 mod folder;
 
-use std::sync::atomic::AtomicBool;
-
 use clap::Parser;
+use hertzian::Cancel;
 use hertzian::attractors::basin::Axis;
 use hertzian_cli::response::models::model;
 use hertzian_cli::response::options::Options;
 use hertzian_cli::response::progress::Progress;
 use hertzian_cli::response::run::{Failure, Outcome, run};
-use hertzian_cli::response::search::basin;
+use hertzian_cli::response::search;
 use serde_json::Value;
 
 use folder::Folder;
@@ -26,7 +25,7 @@ impl Folder {
     fn run(&self, name: &str, command: &str) -> Result<Outcome, Failure> {
         let [svg, json] = ["svg", "json"].map(|kind| self.file(&format!("{name}.{kind}")));
         let command = format!("{command} --svg {svg} --json {json}");
-        let never = AtomicBool::new(false);
+        let never = Cancel::new();
         run(&options(&command), &never, &mut Progress::new(false))
     }
 
@@ -117,7 +116,7 @@ fn a_grid_is_as_large_as_flights_under_the_force_there() {
     let grid = |command: &str, value: f64| {
         let options = options(command);
         let model = model(&options.model, (&options.sweep, options.from)).expect("a model");
-        let grid = basin(&options, &*model, value).grid;
+        let grid = search::grid(&options, &*model, value);
         [grid.columns, grid.rows].map(|Axis { from, to, .. }| [from, to])
     };
     // A flight of five periods of 2 pi under the load 3.

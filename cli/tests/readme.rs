@@ -1,11 +1,10 @@
 //! The numbers in the README are those of the present code, and true.
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use hertzian::EventKind;
 use hertzian::FrequencyResponse;
+use hertzian::{Cancel, EventKind};
 use hertzian_cli::paper::exact;
 use hertzian_cli::response::models::OneSidedHertz;
 use hertzian_cli::response::options::Options;
@@ -49,7 +48,7 @@ fn response(name: &str, command: &str) -> (String, Vec<[f64; 2]>) {
     let json = folder.join("a.json");
     options.svg = folder.join("response.svg");
     options.json = Some(json.clone());
-    let never = AtomicBool::new(false);
+    let never = Cancel::new();
     let outcome = run(&options, &never, &mut Progress::new(false)).expect("a branch");
     assert!(outcome.complete);
     let text = std::fs::read_to_string(&json).expect("a file");

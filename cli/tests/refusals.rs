@@ -2,9 +2,9 @@
 
 mod folder;
 
+use hertzian::Cancel;
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
 use hertzian_cli::attractors;
@@ -26,7 +26,7 @@ fn attractors_options(command: &str) -> attractors::options::Options {
 /// What the run of a command says that is refused.
 fn refused_by_response(command: &str) -> String {
     let options = response_options(command).expect("arguments that can be parsed");
-    let never = AtomicBool::new(false);
+    let never = Cancel::new();
     let failure = response::run::run(&options, &never, &mut Progress::new(false));
     let failure = failure.expect_err(command);
     assert_eq!(failure.exit_code(), 2);
@@ -35,11 +35,14 @@ fn refused_by_response(command: &str) -> String {
 
 fn run_attractors(
     command: &str,
-    interrupted: bool,
+    cancelled: bool,
 ) -> Result<attractors::run::Outcome, attractors::run::Failure> {
-    let interrupted = AtomicBool::new(interrupted);
+    let cancel = Cancel::new();
+    if cancelled {
+        cancel.cancel();
+    }
     let options = attractors_options(command);
-    attractors::run::run(&options, &interrupted, &mut Progress::new(false))
+    attractors::run::run(&options, &cancel, &mut Progress::new(false))
 }
 
 #[test]
@@ -139,10 +142,12 @@ fn transients_can_be_ended() {
     let options = attractors_options("--phase --alpha 1");
     let model = response::models::declared(&options.model);
     let mut progress = Progress::new(false);
+    let cancel = Cancel::new();
+    cancel.cancel();
     let task = attractors::run::Task {
         options: &options,
         system: &*model,
-        interrupted: &AtomicBool::new(true),
+        cancel: &cancel,
         progress: Mutex::new(&mut progress),
     };
     let mut map = task.map(None).expect("a map");
@@ -330,7 +335,7 @@ fn a_device_without_room_is_an_error() {
 #[test]
 fn other_programs_refuse_before_any_work_too() {
     use hertzian_cli::{multipliers, work_precision};
-    let never = AtomicBool::new(false);
+    let never = Cancel::new();
     let folder = Folder::new("others");
     for (words, message) in [
         (["--patience", "nan"], "--patience NaN: must be positive"),

@@ -1,7 +1,7 @@
 //! The subcommand `work-precision` on one problem, with little patience.
 
+use hertzian::Cancel;
 use std::fs;
-use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
 use hertzian_cli::response::progress::Progress;
@@ -25,7 +25,7 @@ fn every_method_is_measured_against_what_is_known() {
     let mut problems = problem::all();
     problems.truncate(1);
     let quiet = &mut Progress::new(false);
-    let sections = run(&options, problems, &AtomicBool::new(false), quiet).unwrap();
+    let sections = run(&options, problems, &Cancel::new(), quiet).unwrap();
     let measured = &sections[0].measured;
     for family in Family::ALL {
         assert!(

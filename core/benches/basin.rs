@@ -7,8 +7,6 @@
 use std::time::Instant;
 
 use hertzian::attractors::basin::{Axis, Basin, Basins, Grid};
-use hertzian::time;
-use hertzian::time::{Flow, Options};
 
 hertzian::oscillator! {
     OneSided(x) {
@@ -27,22 +25,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut sizes = std::env::args().filter_map(|argument| argument.parse().ok());
     let count = sizes.next_back().unwrap_or(256);
     let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(count);
-    let basin = Basin::new(Grid::new(
-        vec![0.0; 2],
-        axis(0, -110.0, 15.0),
-        axis(1, -16.0, 16.0),
-    ));
+    let grid = Grid::new(vec![0.0; 2], axis(0, -110.0, 15.0), axis(1, -16.0, 16.0));
     let model = OneSided {
         zeta: 0.032,
         load: 1.0,
         drive: 1.0,
     };
+    let basin = Basin::of(&model).omega(1.0).grid(grid);
     let compute = |threads: usize| -> Result<(f64, Basins), Box<dyn std::error::Error>> {
-        let flows: Result<Vec<Box<dyn Flow>>, _> = (0..threads)
-            .map(|_| time::of(&model, 1.0, Options::default()))
-            .collect();
         let start = Instant::now();
-        let basins = basin.compute(flows?, None, &|_| true)?;
+        let basins = basin.clone().threads(threads).run()?;
         Ok((start.elapsed().as_secs_f64(), basins))
     };
     let (one, alone) = compute(1)?;

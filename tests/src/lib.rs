@@ -1,6 +1,7 @@
 //! Tests of hertzian across its crates, and what several of them need.
 
 pub mod dormand_prince;
+#[path = "../../core/src/testing/random.rs"]
 pub mod random;
 
 use hertzian::Complex;

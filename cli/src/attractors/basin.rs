@@ -2,11 +2,12 @@
 
 use std::cmp::Ordering;
 use std::fmt::Write;
+use std::ops::ControlFlow;
 
-use hertzian::Complex;
 use hertzian::attractors::basin::{Attractor, Axis, Basin, Basins, Fate, Grid};
 use hertzian::chart::{Chart, Colour, Markers, Raster};
 use hertzian::export::Npy;
+use hertzian::{Complex, Progress};
 
 use super::output::{Results, entries, number};
 use super::run::{Failure, Task};
@@ -29,17 +30,22 @@ const MARKED: usize = 6;
 /// # Errors
 /// If an option cannot be used, or the checkpoint not.
 pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
-    let request = request(task, task.options.grid)?;
-    let log = task.log(&request)?;
-    let basins = request.compute(task.flows(None)?, log, &|progress| {
-        task.say(|| format!("{} of {} motions", progress.done, progress.cells));
-        task.goes_on()
-    })?;
+    let grid = grid(task, task.options.grid)?;
+    let request = request(task).grid(grid.clone());
+    let mut log = task.log(&request)?;
+    let visit = |progress: Progress<'_>| {
+        said(task, progress);
+        ControlFlow::Continue(())
+    };
+    let basins = match &mut log {
+        Some(log) => request.resume(log, visit),
+        None => request.run_with(visit),
+    }?;
     let facts = task.system.facts();
     let names = ["attractor", "period", "cells", "point"].map(str::to_owned);
     let multipliers = (1..=2 * facts.coordinates.len())
         .flat_map(|i| ["re", "im"].map(|part| format!("multiplier_{i}_{part}")));
-    let columns = request.grid.columns.count;
+    let columns = grid.columns.count;
     let mut array = Npy::<i16>::new(columns);
     let labels: Vec<i16> = basins.fates.iter().map(|fate| fate.label()).collect();
     labels.chunks(columns).for_each(|row| array.row(row));
@@ -52,17 +58,36 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         rows: rows(&basins, names.len()),
         names,
         array: array.to_bytes(),
-        svg: chart(task, &request, &basins)?.to_svg(),
+        svg: chart(task, &grid, &basins)?.to_svg(),
         summary: summary(&basins),
         complete: basins.complete,
     })
 }
 
-/// The request, with so many cells along each side.
+/// Says how many motions are looked at.
+pub fn said(task: &Task<'_>, progress: Progress<'_>) {
+    let all = progress.total.unwrap_or(progress.done);
+    task.say(|| format!("{} of {all} motions", progress.done));
+}
+
+/// The request, but for its grid.
+pub fn request(task: &Task<'_>) -> Basin {
+    let options = task.options;
+    Basin::of(task.system)
+        .omega(options.model.frequency())
+        .longest(options.longest)
+        .patience(options.patience)
+        .escape(options.escape)
+        .tolerance(options.tolerance)
+        .threads(task.threads())
+        .cancel(task.cancel)
+}
+
+/// The initial states, with so many cells along each side.
 ///
 /// # Errors
 /// If the ranges are empty, or the start has the wrong number of entries.
-pub fn request(task: &Task<'_>, count: usize) -> Result<Basin, Failure> {
+pub fn grid(task: &Task<'_>, count: usize) -> Result<Grid, Failure> {
     let options = task.options;
     let axis = |entry: usize, range: &[f64]| {
         let [from, to] = *range else {
@@ -75,17 +100,11 @@ pub fn request(task: &Task<'_>, count: usize) -> Result<Basin, Failure> {
         }
         Ok(Axis::of(entry).from(from).to(to).cells(count))
     };
-    let basin = Basin::new(Grid::new(
+    Ok(Grid::new(
         task.start()?,
         axis(0, &options.x_range)?,
         axis(task.system.facts().coordinates.len(), &options.v_range)?,
-    ));
-    Ok(Basin {
-        longest: options.longest,
-        patience: options.patience,
-        escape: options.escape,
-        ..basin
-    })
+    ))
 }
 
 /// A row for every point of every periodic orbit, then one for each other class; all have so many columns.
@@ -132,8 +151,8 @@ pub fn name(attractors: &[Attractor], index: usize) -> String {
     format!("period {period}{letter}")
 }
 
-fn chart(task: &Task<'_>, request: &Basin, basins: &Basins) -> Result<Chart, Failure> {
-    let Grid { columns, rows, .. } = &request.grid;
+fn chart(task: &Task<'_>, grid: &Grid, basins: &Basins) -> Result<Chart, Failure> {
+    let Grid { columns, rows, .. } = grid;
     let shown = basins.attractors.len().min(COLOURED);
     let mut classes: Vec<(String, Colour)> = (0..shown)
         .map(|index| (name(&basins.attractors, index), Colour::Class(index)))

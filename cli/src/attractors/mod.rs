@@ -19,17 +19,13 @@ use run::{Outcome, run};
 
 /// Does what is asked for, and says by the exit code how it went.
 pub fn start(options: &Options) -> ExitCode {
-    program::run(
-        "hertzian attractors",
-        options.quiet,
-        |interrupted, progress| {
-            let Outcome { summary, complete } = run(options, interrupted, progress)?;
-            let early = "ended before it was complete; what was computed is written";
-            Ok(Ended {
-                summary,
-                complaints: (!complete).then(|| early.to_owned()).into_iter().collect(),
-                complete,
-            })
-        },
-    )
+    program::run("hertzian attractors", options.quiet, |cancel, progress| {
+        let Outcome { summary, complete } = run(options, cancel, progress)?;
+        let early = "ended before it was complete; what was computed is written";
+        Ok(Ended {
+            summary,
+            complaints: (!complete).then(|| early.to_owned()).into_iter().collect(),
+            complete,
+        })
+    })
 }

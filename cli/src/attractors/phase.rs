@@ -1,6 +1,7 @@
 //! `--phase`: phase portraits of the attractors that are found from some starts.
 
 use std::fmt::Write;
+use std::ops::ControlFlow;
 
 use hertzian::attractors::basin::{Attractor, Basins, Fate};
 use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
@@ -8,7 +9,7 @@ use hertzian::time::history;
 use hertzian::time::history::Span;
 use hertzian::time::stroboscope::Stroboscope;
 
-use super::basin::{name, request};
+use super::basin::{grid, name, request, said};
 use super::output::{Results, Table, entries};
 use super::run::{Failure, Task};
 
@@ -104,30 +105,34 @@ type Other = (Fate, Vec<f64>);
 
 /// What the motions from the grid, or from the start, settle to, and one that is on no periodic orbit.
 fn settled(task: &Task<'_>, drive: Option<f64>) -> Result<(Basins, Option<Other>), Failure> {
-    let mut basin = request(task, task.options.starts.max(1))?;
+    let mut grid = grid(task, task.options.starts.max(1))?;
     if task.options.starts == 0 {
         // One cell, with the start in its middle.
-        for axis in [&mut basin.grid.columns, &mut basin.grid.rows] {
-            let middle = basin.grid.start[axis.entry];
+        for axis in [&mut grid.columns, &mut grid.rows] {
+            let middle = grid.start[axis.entry];
             (axis.from, axis.to) = (middle, middle);
         }
     }
-    let mut basins = basin.compute(task.flows(drive)?, None, &|progress| {
-        task.say(|| format!("{} of {} motions", progress.done, progress.cells));
-        task.goes_on()
+    let mut request = request(task).grid(grid.clone());
+    if let Some(drive) = drive {
+        request = request.parameter("drive", drive);
+    }
+    let mut basins = request.run_with(|progress| {
+        said(task, progress);
+        ControlFlow::Continue(())
     })?;
     let other = |fate: &Fate| matches!(fate, Fate::Chaotic | Fate::Long);
     let cell = basins.fates.iter().position(other);
     let start = cell.map(|cell| {
-        let mut state = basin.grid.start.clone();
-        basin.grid.state(cell, &mut state);
+        let mut state = grid.start.clone();
+        grid.state(cell, &mut state);
         (basins.fates[cell], state)
     });
     let Some((fate, mut state)) = start else {
         return Ok((basins, None));
     };
     let mut map = task.map(drive)?;
-    if !task.settle(&mut map, &mut state, basin.patience)? {
+    if !task.settle(&mut map, &mut state, task.options.patience)? {
         basins.complete = false;
         return Ok((basins, None));
     }

@@ -4,15 +4,13 @@ use std::io;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use hertzian::attractors::basin::BasinError;
 use hertzian::attractors::log::{Log, LogError};
 use hertzian::error::chain;
 use hertzian::time;
 use hertzian::time::stroboscope::Stroboscope;
 use hertzian::time::{Flow, FlowError};
-use hertzian::{Error, System};
+use hertzian::{Cancel, Error, System};
 
 use super::options::{Options, Swept};
 use super::output::{self, Results};
@@ -45,8 +43,6 @@ pub enum Failure {
     Model(PathBuf, ModelError),
     /// The motion cannot be computed.
     Motion(FlowError),
-    /// The basins cannot be computed.
-    Basin(BasinError),
     /// The checkpoint cannot be used.
     Checkpoint(LogError),
     /// A file cannot be written.
@@ -60,7 +56,6 @@ impl std::fmt::Display for Failure {
             Self::Option(message) => f.write_str(message),
             Self::Model(path, error) => f.write_str(&error.describe(path)),
             Self::Motion(error) => error.fmt(f),
-            Self::Basin(error) => chain(error).fmt(f),
             Self::Checkpoint(error) => error.fmt(f),
             Self::File(path, error) => write!(f, "cannot write {}: {error}", path.display()),
         }
@@ -81,12 +76,6 @@ impl From<FlowError> for Failure {
     }
 }
 
-impl From<BasinError> for Failure {
-    fn from(error: BasinError) -> Self {
-        Self::Basin(error)
-    }
-}
-
 impl From<LogError> for Failure {
     fn from(error: LogError) -> Self {
         Self::Checkpoint(error)
@@ -99,19 +88,19 @@ pub struct Task<'t> {
     pub options: &'t Options,
     /// The oscillator.
     pub system: &'t dyn System,
-    /// Ends the task when it is set.
-    pub interrupted: &'t AtomicBool,
+    /// Ends the task when it is cancelled.
+    pub cancel: &'t Cancel,
     /// The line on the terminal.
     pub progress: Mutex<&'t mut Progress>,
 }
 
-/// Does the task, writes the files and sums up. Setting `interrupted` ends the task where it is.
+/// Does the task, writes the files and sums up. Cancelling ends the task where it is.
 ///
 /// # Errors
 /// If the options are not usable, a motion cannot be computed, or a file cannot be written.
 pub fn run(
     options: &Options,
-    interrupted: &AtomicBool,
+    cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<Outcome, Failure> {
     output::check(&options.out)?;
@@ -122,7 +111,7 @@ pub fn run(
         let message = format!("{} is asked for more than once", path.display());
         return Err(Failure::Option(message));
     }
-    let results = compute(options, interrupted, progress)?;
+    let results = compute(options, cancel, progress)?;
     output::write(&options.out, &results)?;
     let paths = written.map(|path| path.display().to_string());
     Ok(Outcome {
@@ -137,7 +126,7 @@ pub fn run(
 /// If the options are not usable, or a motion cannot be computed.
 pub fn compute(
     options: &Options,
-    interrupted: &AtomicBool,
+    cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<Results, Failure> {
     let options = &Options {
@@ -153,7 +142,7 @@ pub fn compute(
     let task = Task {
         options,
         system: &*system,
-        interrupted,
+        cancel,
         progress: Mutex::new(progress),
     };
     task.check()?;
@@ -261,7 +250,7 @@ impl Task<'_> {
 
     /// Whether to go on.
     pub fn goes_on(&self) -> bool {
-        !self.interrupted.load(Ordering::Relaxed)
+        !self.cancel.is_cancelled()
     }
 
     /// Applies the map so many times; false if the task was ended before.
@@ -343,17 +332,12 @@ impl Task<'_> {
         Ok(Stroboscope::new(self.flow(drive)?))
     }
 
-    /// A flow for each thread.
-    ///
-    /// # Errors
-    /// As [`Task::flow`].
-    pub fn flows(&self, drive: Option<f64>) -> Result<Vec<Box<dyn Flow>>, Failure> {
+    /// Number of threads: as many as there are processors, if none was asked for.
+    pub fn threads(&self) -> usize {
         let processors = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        let count = self
-            .options
+        self.options
             .threads
-            .map_or_else(processors, NonZeroUsize::get);
-        (0..count).map(|_| self.flow(drive)).collect()
+            .map_or_else(processors, NonZeroUsize::get)
     }
 
     /// The state that motions start from.

@@ -1,10 +1,11 @@
 //! `--sweep`: bifurcation diagrams.
 
 use std::fmt::Write;
+use std::ops::ControlFlow;
 
+use hertzian::Progress;
 use hertzian::attractors::sweep::{Ended, Row, Sweep};
 use hertzian::chart::{Chart, Cloud};
-use hertzian::system::Variable;
 use hertzian::time::poincare::{Direction, Section};
 
 use super::options::Swept;
@@ -16,49 +17,49 @@ use super::run::{Failure, Task};
 /// # Errors
 /// If an option cannot be used, or the checkpoint not.
 pub fn run(task: &Task<'_>, swept: Swept) -> Result<Results, Failure> {
-    let options = task.options;
-    let variable = variable(task, swept)?;
     check(task, swept)?;
-    let up = options.up || !options.down;
-    let rising = Sweep::spread(options.from, options.to, options.values)?;
-    let falling = rising.iter().rev();
-    let mut values = Vec::new();
-    values.extend(rising.iter().filter(|_| up));
-    let ups = values.len();
-    values.extend(falling.filter(|_| options.down));
-    let request = Sweep {
-        variable,
-        values,
-        start: task.start()?,
-        transient: options.transient.unwrap_or(400),
-        periods: options.periods.unwrap_or(100),
-        escape: options.escape,
+    let request = request(task, swept)?;
+    let mut log = task.log(&request)?;
+    let visit = |progress: Progress<'_>| {
+        let value = progress.value.unwrap_or(f64::NAN);
+        task.say(|| format!("{} = {value:.6}", swept.name()));
+        ControlFlow::Continue(())
     };
-    let section = options
-        .section
-        .map(|value| Section::entry(0, value, Direction::Rising));
-    let mut log = task.log(&(&request, options.section))?;
-    let mut map = task.map(None)?;
-    let mut done = 0;
-    let rows = request.run(&mut map, section.as_ref(), log.as_mut(), &mut |row| {
-        done += 1;
-        task.say(|| format!("{} = {:.6}", swept.name(), row.value));
-        task.goes_on()
-    })?;
-    let complete = rows.len() == request.values.len();
-    results(task, swept, (&rows, ups), complete)
+    let found = match &mut log {
+        Some(log) => request.resume(log, visit),
+        None => request.run_with(visit),
+    }?;
+    results(task, swept, &found)
 }
 
-/// The variable of the oscillator that is swept.
-fn variable(task: &Task<'_>, swept: Swept) -> Result<Variable, Failure> {
-    if swept == Swept::Omega {
-        return Ok(Variable::Omega);
+/// The options in the library's terms.
+fn request(task: &Task<'_>, swept: Swept) -> Result<Sweep, Failure> {
+    let options = task.options;
+    let (low, high) = (options.from, options.to);
+    let [from, to] = if options.down && !options.up {
+        [high, low]
+    } else {
+        [low, high]
+    };
+    let mut request = Sweep::of(task.system)
+        .from(from)
+        .to(to)
+        .values(options.values)
+        .back(options.up && options.down)
+        .start(&task.start()?)
+        .transient(options.transient.unwrap_or(400))
+        .periods(options.periods.unwrap_or(100))
+        .escape(options.escape)
+        .tolerance(options.tolerance)
+        .cancel(task.cancel);
+    if swept != Swept::Omega {
+        let omega = options.model.frequency();
+        request = request.vary(swept.name()).omega(omega);
     }
-    let mut parameters = task.system.facts().parameters.iter();
-    let position = parameters.position(|parameter| parameter.name == swept.name());
-    position
-        .map(Variable::Parameter)
-        .ok_or_else(|| Failure::Option(format!("the oscillator has no parameter {}", swept.name())))
+    if let Some(value) = options.section {
+        request = request.section(Section::entry(0, value, Direction::Rising));
+    }
+    Ok(request)
 }
 
 /// Both ends are in the range of what is swept.
@@ -83,17 +84,21 @@ fn check(task: &Task<'_>, swept: Swept) -> Result<(), Failure> {
 fn results(
     task: &Task<'_>,
     swept: Swept,
-    (rows, ups): (&[Row], usize),
-    complete: bool,
+    found: &hertzian::attractors::sweep::Swept,
 ) -> Result<Results, Failure> {
+    let rows = &found.rows;
     let facts = task.system.facts();
     let order = 2 * facts.coordinates.len();
     let names = ["direction", swept.name()].map(str::to_owned);
     let mut table = Table::new([names.to_vec(), entries(&facts.coordinates)].concat());
+    let rising = match (task.options.up, task.options.down) {
+        (false, true) => 0,
+        _ => task.options.values,
+    };
     let mut clouds = [Vec::new(), Vec::new()];
     let mut line = Vec::new();
     for (index, row) in rows.iter().enumerate() {
-        let falls = index >= ups;
+        let falls = index >= rising;
         for state in row.points.chunks_exact(order) {
             line.clear();
             line.extend([if falls { -1.0 } else { 1.0 }, row.value]);
@@ -124,6 +129,12 @@ fn results(
             label: format!("{} rises", symbol(swept)),
             points: up,
         });
+    let summary = summary(rows, swept, order);
+    Ok(table.with(chart.to_svg(), summary, found.complete))
+}
+
+/// How many values there were, and at how many of them nothing was seen.
+fn summary(rows: &[Row], swept: Swept, order: usize) -> String {
     let mut summary = String::new();
     let points: usize = rows.iter().map(|row| row.points.len() / order).sum();
     // Writing to a string does not fail.
@@ -148,7 +159,7 @@ fn results(
             ends.len() - escaped
         );
     }
-    Ok(table.with(chart.to_svg(), summary, complete))
+    summary
 }
 
 fn symbol(swept: Swept) -> &'static str {

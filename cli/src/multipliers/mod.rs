@@ -7,9 +7,9 @@ use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
+use hertzian::Cancel;
 use hertzian::error::chain;
 
 use crate::program::{self, Ended, Failed};
@@ -45,21 +45,21 @@ const MOST_HARMONICS: usize = 2999;
 
 /// Does what is asked for, and says by the exit code how it went.
 pub fn start(options: &Options) -> ExitCode {
-    program::run("hertzian multipliers", false, |interrupted, progress| {
-        run(options, interrupted, progress).map_err(|failure| Failed {
+    program::run("hertzian multipliers", false, |cancel, progress| {
+        run(options, cancel, progress).map_err(|failure| Failed {
             message: chain(&*failure).to_string(),
             code: 2,
         })
     })
 }
 
-/// Measures and writes; returns what is printed. Setting `interrupted` ends it after the oscillator at hand.
+/// Measures and writes; returns what is printed. Cancelling ends it after the oscillator at hand.
 ///
 /// # Errors
 /// If an orbit is not found or a file cannot be written.
 pub fn run(
     options: &Options,
-    interrupted: &AtomicBool,
+    cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<Ended, Box<dyn std::error::Error>> {
     for &harmonics in &options.harmonics {
@@ -76,7 +76,7 @@ pub fn run(
     let mut all = Vec::new();
     let oscillators = oscillators();
     for oscillator in &oscillators {
-        if interrupted.load(Ordering::Relaxed) {
+        if cancel.is_cancelled() {
             break;
         }
         progress.update(|| format!("{}: every method", oscillator.name));

@@ -1,8 +1,5 @@
 //! Figures of frequency-response curves: 2 to 7.
 
-use std::ops::ControlFlow;
-use std::sync::atomic::Ordering;
-
 use hertzian::Side;
 use hertzian::chart::{Chart, Curve, Reference, Scale, event_markers};
 use hertzian::error::chain;
@@ -180,14 +177,7 @@ impl<'t> Curves<'t> {
 
     /// Traces a curve until it ends or is interrupted.
     fn followed(&mut self, case: &Case, request: &FrequencyResponse) -> Result<Branch, String> {
-        let task = self.task;
-        let followed = request.run_with(|_| {
-            if task.interrupted.load(Ordering::Relaxed) {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        });
+        let followed = request.clone().cancel(self.task.cancel).run();
         let branch = followed.map_err(|error| chain(&error).to_string())?;
         self.add(&case.label, &branch);
         Ok(branch)
@@ -270,8 +260,7 @@ impl<'t> Curves<'t> {
     #[must_use]
     pub fn boundary(self, case: &Case) -> Self {
         let [from, to] = case.range;
-        let stop = || self.task.interrupted.load(Ordering::Relaxed);
-        let points = loss_of_contact(&case.model, from..=to, stop);
+        let points = loss_of_contact(&case.model, from..=to, self.task.cancel);
         let drawn = self
             .drawing
             .data

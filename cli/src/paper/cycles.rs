@@ -2,9 +2,6 @@
 //!
 //! Every piece of its force is affine, so that motions are known in closed form and nothing is truncated.
 
-use std::ops::ControlFlow;
-use std::sync::atomic::Ordering;
-
 use hertzian::bifurcation::Bifurcations;
 use hertzian::chart::{Chart, Curve, Markers, Scale, event_markers};
 use hertzian::error::chain;
@@ -64,13 +61,9 @@ impl<'t> Cycles<'t> {
     /// Follows a branch and adds it.
     fn follow(&mut self, shooting: &FrequencyResponse<Shooting>) -> Result<Branch, String> {
         let branch = shooting
-            .run_with(|_| {
-                if self.task.interrupted.load(Ordering::Relaxed) {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
-            })
+            .clone()
+            .cancel(self.task.cancel)
+            .run()
             .map_err(|error| chain(&error).to_string())?;
         self.add(&branch);
         Ok(branch)

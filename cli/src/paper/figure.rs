@@ -1,6 +1,6 @@
 //! What a figure is, and what comes of it.
 
-use std::sync::atomic::AtomicBool;
+use hertzian::Cancel;
 
 /// As many times the stated error is allowed.
 const MARGIN: f64 = 3.0;
@@ -36,7 +36,7 @@ pub struct Task<'t> {
     /// The figure.
     pub figure: &'t Figure,
     /// Ends the computation when it is set.
-    pub interrupted: &'t AtomicBool,
+    pub cancel: &'t Cancel,
 }
 
 /// What came of a figure.

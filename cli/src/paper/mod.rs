@@ -13,7 +13,6 @@ pub mod run;
 
 use std::fmt::Write;
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
 
 use crate::program::{self, Ended};
 use figure::Value;
@@ -23,9 +22,9 @@ use run::{Drawn, run};
 /// Does what is asked for, and says by the exit code how it went: 0 all was drawn, 2 bad input or a file that
 /// cannot be written, 3 a figure failed or was not reached, or a value is missing or not the exact one.
 pub fn start(options: &Options) -> ExitCode {
-    program::run("hertzian paper", options.quiet, |interrupted, progress| {
-        let drawn = run(options, interrupted, progress)?;
-        let ended_early = interrupted.load(Ordering::Relaxed);
+    program::run("hertzian paper", options.quiet, |cancel, progress| {
+        let drawn = run(options, cancel, progress)?;
+        let ended_early = cancel.is_cancelled();
         let complaints = complaints(&drawn, ended_early);
         Ok(Ended {
             summary: summary(options, &drawn),

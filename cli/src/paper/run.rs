@@ -1,10 +1,11 @@
 //! From options to a folder with pictures, data and a page.
 
+use hertzian::Cancel;
 use std::io;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -39,13 +40,13 @@ impl std::fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// Draws the figures and writes the page. Setting `interrupted` ends it; what is done by then is written.
+/// Draws the figures and writes the page. Cancelling ends it; what is done by then is written.
 ///
 /// # Errors
 /// If a file cannot be written.
 pub fn run(
     options: &Options,
-    interrupted: &AtomicBool,
+    cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<Vec<Drawn>, Failure> {
     let folder = &options.out;
@@ -69,12 +70,12 @@ pub fn run(
     thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
-                while !interrupted.load(Ordering::Relaxed) {
+                while !cancel.is_cancelled() {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(&index) = order.get(index) else {
                         break;
                     };
-                    let drawn = draw(asked[index], interrupted);
+                    let drawn = draw(asked[index], cancel);
                     if let Err(failure) = write(&drawn, folder) {
                         *lock(&failed) = Some(failure);
                         break;
@@ -83,10 +84,7 @@ pub fn run(
                 }
             });
         }
-        while lock(&done).len() < asked.len()
-            && !interrupted.load(Ordering::Relaxed)
-            && lock(&failed).is_none()
-        {
+        while lock(&done).len() < asked.len() && !cancel.is_cancelled() && lock(&failed).is_none() {
             progress.update(|| bar(lock(&done).len(), asked.len(), started.elapsed()));
             thread::sleep(Duration::from_millis(20));
         }
@@ -110,12 +108,9 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
         .unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-fn draw(figure: &'static Figure, interrupted: &AtomicBool) -> Drawn {
+fn draw(figure: &'static Figure, cancel: &Cancel) -> Drawn {
     let started = Instant::now();
-    let drawing = (figure.draw)(&Task {
-        figure,
-        interrupted,
-    });
+    let drawing = (figure.draw)(&Task { figure, cancel });
     Drawn {
         figure,
         drawing,

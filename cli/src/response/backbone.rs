@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::chart::Reference;
 use hertzian::error::chain;
-use hertzian::{Branch, Error, System};
+use hertzian::{Branch, Cancel, Error, System};
 use serde::Serialize;
 
 use super::models::declared;
@@ -37,15 +37,12 @@ pub struct Backbone {
     pub resonance: Vec<BackbonePoint>,
 }
 
-/// Asked after every point whether to go on.
-type Go<'g> = &'g dyn Fn() -> ControlFlow<()>;
-
 /// The backbones of the oscillator over the displacements of a branch in the frequency, and why one of them is missing.
 pub fn of(
     options: &Options,
     model: &dyn System,
     branch: &Branch,
-    go: Go<'_>,
+    cancel: &Cancel,
 ) -> (Backbone, Vec<String>) {
     let mut warnings = Vec::new();
     let mut kept = |found: Result<Vec<BackbonePoint>, Error>| {
@@ -54,12 +51,20 @@ pub fn of(
             Vec::new()
         })
     };
-    let free = kept(free(options, branch, go));
-    let resonance = kept(resonance(options, model, go));
+    let free = kept(free(options, branch, cancel));
+    let resonance = kept(resonance(options, model, cancel));
     (Backbone { free, resonance }, warnings)
 }
 
-fn free(options: &Options, branch: &Branch, go: Go<'_>) -> Result<Vec<BackbonePoint>, Error> {
+fn unless(cancel: &Cancel) -> ControlFlow<()> {
+    if cancel.is_cancelled() {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
+    }
+}
+
+fn free(options: &Options, branch: &Branch, cancel: &Cancel) -> Result<Vec<BackbonePoint>, Error> {
     let ModelOptions { alpha, load, .. } = options.model;
     let model = declared(&ModelOptions {
         zeta: 0.0,
@@ -71,7 +76,7 @@ fn free(options: &Options, branch: &Branch, go: Go<'_>) -> Result<Vec<BackbonePo
     let largest = maxima.fold(rest, f64::max);
     let from = rest + SMALLEST * (largest - rest);
     let request = FreeOscillation::of(&*model).from(from).to(largest);
-    let curve = request.run_with(|_| go())?;
+    let curve = request.run_with(|_| unless(cancel))?;
     let points = curve.points.iter().map(|point| BackbonePoint {
         omega: point.omega,
         peak_to_peak: point.peak_to_peak(),
@@ -83,12 +88,12 @@ fn free(options: &Options, branch: &Branch, go: Go<'_>) -> Result<Vec<BackbonePo
 fn resonance(
     options: &Options,
     model: &dyn System,
-    go: Go<'_>,
+    cancel: &Cancel,
 ) -> Result<Vec<BackbonePoint>, Error> {
     let to = LEAST_DRIVE * options.model.drive;
     let request = PhaseResonance::of(model).vary("drive").to(to);
     let request = request.between(options.from, options.to);
-    let curve = request.run_with(|_| go())?;
+    let curve = request.run_with(|_| unless(cancel))?;
     let points = curve.points.iter().map(|point| BackbonePoint {
         omega: point.orbit.omega,
         peak_to_peak: point.motion.peak_to_peak(),

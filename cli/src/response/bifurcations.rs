@@ -3,13 +3,14 @@
 use std::fmt::{self, Write};
 use std::ops::ControlFlow;
 
-use hertzian::attractors::basin::Progress;
 use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
-use hertzian::error::chain;
+use hertzian::error::{ErrorKind, chain};
 use hertzian::export::{Decimal, Table};
 use hertzian::shooting::Track;
-use hertzian::{Error, Event, EventKind, FrequencyResponse, Point, RequestError, Shooting, System};
+use hertzian::{
+    Cancel, Error, Event, EventKind, FrequencyResponse, Point, RequestError, Shooting, System,
+};
 
 use super::options::{Options, Tracked};
 use super::records::{EventRecord, PointRecord, Record, TrackRecord};
@@ -31,15 +32,16 @@ pub struct Found {
     pub warnings: Vec<String>,
 }
 
-/// Everything beyond the branch itself that was asked for; nothing if nothing was. It ends, with what was found, where `go` says so.
+/// Everything beyond the branch itself that was asked for; nothing if nothing was, or if it was cancelled before there was anything. `see` is shown
+/// the value of every orbit.
 ///
 /// # Errors
 /// If an option cannot be used, or there is no first orbit.
 pub fn find(
     options: &Options,
     model: &dyn System,
-    go: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    search: &(dyn Fn(Progress) -> bool + Sync),
+    cancel: &Cancel,
+    see: &mut dyn FnMut(f64),
 ) -> Result<Option<Found>, Error> {
     if !options.bifurcations && options.track.is_none() {
         return Ok(None);
@@ -58,20 +60,21 @@ pub fn find(
     for &value in &options.search {
         request = request.search(value, basin(options, model, value));
     }
-    let mut interrupted = false;
-    let visit = |progress: hertzian::Progress<'_>| {
-        let answer = go(progress.value.unwrap_or(options.from));
-        interrupted |= answer.is_break();
-        answer
+    let diagram = request.cancel(cancel).run_with(|progress| {
+        see(progress.value.unwrap_or(options.from));
+        ControlFlow::Continue(())
+    });
+    let diagram = match diagram {
+        Err(error) if error.kind() == ErrorKind::Cancelled => return Ok(None),
+        diagram => diagram?,
     };
-    let diagram = request.run_watched(visit, search)?;
     let mut found = Found {
         diagram,
         tracks: Vec::new(),
         warnings: Vec::new(),
     };
-    if let Some(kind) = options.track.filter(|_| !interrupted) {
-        found.track(options, model, kind, go)?;
+    if let Some(kind) = options.track {
+        found.track(options, model, kind, cancel, see)?;
     }
     Ok(Some(found))
 }
@@ -128,7 +131,8 @@ impl Found {
         options: &Options,
         model: &dyn System,
         tracked: Tracked,
-        go: &mut dyn FnMut(f64) -> ControlFlow<()>,
+        cancel: &Cancel,
+        see: &mut dyn FnMut(f64),
     ) -> Result<(), Error> {
         let is_wanted = |kind: EventKind| match tracked {
             Tracked::Fold => kind == EventKind::Fold,
@@ -136,7 +140,7 @@ impl Found {
             Tracked::BranchPoint => kind == EventKind::SymmetryBreaking,
             Tracked::Grazing => matches!(kind, EventKind::Grazing { .. }),
         };
-        let shooting = shooting(options, model);
+        let shooting = shooting(options, model).cancel(cancel);
         let second = second(options, model)?;
         let value = value_of(options, model, second);
         let range = within(options, value);
@@ -150,15 +154,17 @@ impl Found {
             .cloned()
             .collect();
         for event in events {
-            if go(event.point.value).is_break() {
+            if cancel.is_cancelled() {
                 break;
             }
+            see(event.point.value);
             let on_it = |track: &&Track| passes(track, &event, value);
             if self.tracks.iter().any(|track| on_it(&track)) {
                 continue;
             }
             let tracked = shooting.track_with(&event, second, range, |progress| {
-                go(progress.value.unwrap_or(event.point.value))
+                see(progress.value.unwrap_or(event.point.value));
+                ControlFlow::Continue(())
             });
             match tracked {
                 Ok(track) => self.tracks.push(track),

@@ -2,7 +2,7 @@
 
 use std::ops::{ControlFlow, RangeInclusive};
 
-use hertzian::{Branch, FrequencyResponse};
+use hertzian::{Branch, Cancel, FrequencyResponse};
 
 use super::models::declared;
 use crate::model::ModelOptions;
@@ -26,20 +26,27 @@ const POINTS: usize = 200;
 pub fn loss_of_contact(
     options: &ModelOptions,
     frequencies: RangeInclusive<f64>,
-    interrupted: impl Fn() -> bool,
+    cancel: &Cancel,
 ) -> Vec<[f64; 2]> {
     if !options.loses_contact() || options.load <= 0.0 {
         return Vec::new();
     }
     let (first, last) = frequencies.into_inner();
-    let touch = |omega| [omega, at_frequency(options, omega).unwrap_or(f64::NAN)];
+    let touch = |omega| {
+        [
+            omega,
+            at_frequency(options, omega, cancel).unwrap_or(f64::NAN),
+        ]
+    };
     let mut points: Vec<_> = (0..FREQUENCIES)
         .map(|index| first + (last - first) * index as f64 / (FREQUENCIES - 1) as f64)
-        .take_while(|_| !interrupted())
+        .take_while(|_| !cancel.is_cancelled())
         .map(touch)
         .collect();
     for _ in 0..HALVINGS {
-        points = halved(&points, |omega| (!interrupted()).then(|| touch(omega)));
+        points = halved(&points, |omega| {
+            (!cancel.is_cancelled()).then(|| touch(omega))
+        });
     }
     points
 }
@@ -68,7 +75,7 @@ fn halved(points: &[[f64; 2]], touch: impl Fn(f64) -> Option<[f64; 2]>) -> Vec<[
 }
 
 /// Peak-to-peak of the orbit that touches zero at one frequency.
-fn at_frequency(options: &ModelOptions, omega: f64) -> Option<f64> {
+fn at_frequency(options: &ModelOptions, omega: f64, cancel: &Cancel) -> Option<f64> {
     let model = declared(options);
     let highest = highest_drive(options, omega);
     let branch = FrequencyResponse::of(&*model)
@@ -80,6 +87,7 @@ fn at_frequency(options: &ModelOptions, omega: f64) -> Option<f64> {
         .samples(SAMPLES)
         .tolerance(1e-3)
         .max_points(POINTS)
+        .cancel(cancel)
         .run_with(|progress| {
             if progress
                 .point

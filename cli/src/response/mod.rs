@@ -21,19 +21,15 @@ use run::run;
 
 /// Does what is asked for, and says by the exit code how it went.
 pub fn start(options: &Options) -> ExitCode {
-    program::run(
-        "hertzian response",
-        options.quiet,
-        |interrupted, progress| {
-            let outcome = run(options, interrupted, progress).map_err(|failure| Failed {
-                message: failure.to_string(),
-                code: failure.exit_code(),
-            })?;
-            Ok(Ended {
-                summary: outcome.summary,
-                complaints: outcome.warnings,
-                complete: outcome.complete,
-            })
-        },
-    )
+    program::run("hertzian response", options.quiet, |cancel, progress| {
+        let outcome = run(options, cancel, progress).map_err(|failure| Failed {
+            message: failure.to_string(),
+            code: failure.exit_code(),
+        })?;
+        Ok(Ended {
+            summary: outcome.summary,
+            complaints: outcome.warnings,
+            complete: outcome.complete,
+        })
+    })
 }

@@ -3,12 +3,13 @@
 use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use hertzian::chart::{Chart, Reference};
-use hertzian::error::chain;
+use hertzian::error::{ErrorKind, chain};
 use hertzian::export::{self, Table};
-use hertzian::{Branch, Error, FrequencyResponse, OrbitError, Point, Stop, System, remarks};
+use hertzian::{
+    Branch, Cancel, Error, FrequencyResponse, OrbitError, Point, Stop, System, remarks,
+};
 
 use super::backbone;
 use super::bifurcations;
@@ -54,9 +55,10 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// 3 if the branch could not begin, 2 if what was asked for is at fault.
+    /// 3 if the branch could not begin or was cancelled before, 2 if what was asked for is at fault.
     pub fn exit_code(&self) -> u8 {
         match self {
+            Self::Library(error) if error.kind() == ErrorKind::Cancelled => 3,
             Self::Library(error) => match error.downcast_ref() {
                 Some(OrbitError::NoStart { .. } | OrbitError::NoSuchPeriod { .. }) => 3,
                 _ => 2,
@@ -89,13 +91,13 @@ impl From<Error> for Failure {
     }
 }
 
-/// Traces the branch, writes the files and sums up. Setting `interrupted` ends the branch where it is.
+/// Traces the branch, writes the files and sums up. Cancelling ends the branch where it is.
 ///
 /// # Errors
 /// If the options are not usable, no orbit was found to start from, or a file cannot be written.
 pub fn run(
     options: &Options,
-    interrupted: &AtomicBool,
+    cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<Outcome, Failure> {
     let options = &Options {
@@ -110,22 +112,16 @@ pub fn run(
     })?;
     search::check(options, &*model)?;
     bifurcations::check(options, &*model)?;
-    let stop = || interrupted.load(Ordering::Relaxed);
-    let go = || {
-        if stop() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    };
     let mut count = 0_usize;
     let mut see = |value: f64| {
         count += 1;
         progress.update(|| format!("{count} points, {} = {value:.6}", options.varied()));
-        go()
     };
-    let branch = request(options, &*model)
-        .run_with(|progress| see(progress.value.unwrap_or(options.from)))?;
+    let request = request(options, &*model).cancel(cancel);
+    let branch = request.run_with(|progress| {
+        see(progress.value.unwrap_or(options.from));
+        ControlFlow::Continue(())
+    })?;
 
     let omega = branch.points.first().map_or(1.0, |point| point.orbit.omega);
     let remarks = remarks::of(&*model, omega).into_iter();
@@ -136,14 +132,14 @@ pub fn run(
     branch.points.iter().for_each(|point| table.add(0, point));
     let found = match branch.stopped {
         Stop::Interrupted => None,
-        _ => bifurcations::find(options, &*model, &mut see, &|_| !stop())?,
+        _ => bifurcations::find(options, &*model, cancel, &mut see)?,
     };
     let mut chart = match &found {
         Some(found) => found.chart(options, &*model),
-        None => picture(options, &branch, &*model, stop),
+        None => picture(options, &branch, &*model, cancel),
     };
-    if options.backbone && !stop() {
-        let (backbone, missing) = backbone::of(options, &*model, &branch, &go);
+    if options.backbone && !cancel.is_cancelled() {
+        let (backbone, missing) = backbone::of(options, &*model, &branch, cancel);
         chart = backbone.references().fold(chart, Chart::reference);
         record.backbone = backbone;
         warnings.extend(missing);
@@ -156,10 +152,10 @@ pub fn run(
     let reached = branch.stopped == Stop::ReachedEnd;
     if !reached {
         warnings.push(format!("the branch ended early: {}", branch.stopped));
-    } else if stop() {
+    } else if cancel.is_cancelled() {
         warnings.push("interrupted: what was found until then is kept".to_owned());
     }
-    let complete = reached && !stop();
+    let complete = reached && !cancel.is_cancelled();
     let further = found.map_or_else(String::new, |found| found.summary());
     Ok(Outcome {
         summary: summary::of(options, &branch, &at, &written) + &further,
@@ -255,12 +251,7 @@ fn solutions_at(options: &Options, branch: &Branch, warnings: &mut Vec<String>) 
 }
 
 /// The library's picture of the branch, with the boundary of lost contact.
-fn picture(
-    options: &Options,
-    branch: &Branch,
-    model: &dyn System,
-    stop: impl Fn() -> bool,
-) -> Chart {
+fn picture(options: &Options, branch: &Branch, model: &dyn System, cancel: &Cancel) -> Chart {
     if options.model.file.is_some() {
         return branch.chart();
     }
@@ -274,7 +265,7 @@ fn picture(
     });
     chart.reference(Reference {
         label: "loss of contact".to_owned(),
-        points: loss_of_contact(&options.model, low..=high, stop),
+        points: loss_of_contact(&options.model, low..=high, cancel),
     })
 }
 

@@ -44,25 +44,26 @@ pub fn check(options: &Options, model: &dyn System) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What motions from those states settle to.
+pub fn basin(options: &Options, model: &dyn System, value: f64) -> Basin {
+    let grid = grid(options, model, value);
+    Basin::of(model).grid(grid).longest(LONGEST).patience(3000)
+}
+
 /// Initial states to which orbits of up to five periods in free flight under the load come near: with the acceleration `a` one
 /// flight of `T` rises `a T^2 / 8` and falls back with the speed `a T / 2`.
-pub fn basin(options: &Options, model: &dyn System, value: f64) -> Basin {
+pub fn grid(options: &Options, model: &dyn System, value: f64) -> Grid {
     let (_, omega) = values_at(options, model, value);
     let periods = LONGEST * model.facts().divisor as usize;
     let time = periods as f64 * TAU / omega;
     let acceleration = acceleration(options, model, value);
     let (height, speed) = (0.15 * acceleration * time * time, 0.5 * acceleration * time);
     let axis = |entry: usize, from: f64, to: f64| Axis::of(entry).from(from).to(to).cells(CELLS);
-    let grid = Grid::new(
+    Grid::new(
         vec![0.0, 0.0],
         axis(0, -height, 0.2 * height),
         axis(1, -speed, speed),
-    );
-    Basin {
-        longest: LONGEST,
-        patience: 3000,
-        ..Basin::new(grid)
-    }
+    )
 }
 
 /// Parameters and frequency where what varies has a value.

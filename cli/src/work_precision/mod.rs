@@ -12,11 +12,11 @@ mod page;
 pub mod peer;
 pub mod problem;
 
+use hertzian::Cancel;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use hertzian::chart::Page;
 use hertzian::error::chain;
@@ -78,29 +78,29 @@ pub fn start(options: &Options) -> ExitCode {
     program::run(
         "hertzian work-precision",
         options.quiet,
-        |interrupted, progress| {
+        |cancel, progress| {
             let mut problems = problem::all();
             problems.retain(|problem| {
                 options.only.is_empty() || options.only.iter().any(|id| id == problem.id)
             });
-            let sections = run(options, problems, interrupted, progress)?;
+            let sections = run(options, problems, cancel, progress)?;
             Ok(Ended {
                 summary: summary(options, &sections),
                 complaints: Vec::new(),
-                complete: !interrupted.load(Ordering::Relaxed),
+                complete: !cancel.is_cancelled(),
             })
         },
     )
 }
 
-/// Measures the problems and writes the results of each as soon as it is done. Setting `interrupted` ends it.
+/// Measures the problems and writes the results of each as soon as it is done. Cancelling ends it.
 ///
 /// # Errors
 /// If a reference cannot be computed, or a file cannot be written.
 pub fn run(
     options: &Options,
     problems: Vec<Problem>,
-    interrupted: &AtomicBool,
+    cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<Vec<Section>, Failure> {
     let failed = |path: &Path| {
@@ -117,14 +117,14 @@ pub fn run(
     let machine = machine();
     let mut sections = Vec::new();
     for problem in problems {
-        if interrupted.load(Ordering::Relaxed) {
+        if cancel.is_cancelled() {
             break;
         }
         let reference = method::reference(&problem).map_err(Failure::Reference)?;
         let reference = reference.ok_or(Failure::NoOrbit(problem.id))?;
         let measured = measure(&problem, &reference, limits, &mut |done, all| {
             progress.update(|| format!("{}: {done} of {all} runs", problem.title));
-            !interrupted.load(Ordering::Relaxed)
+            !cancel.is_cancelled()
         });
         let fold = chart::chart(
             &problem,

@@ -1,8 +1,7 @@
 //! Options: figures by their names, and what is refused in which words.
 
-use std::sync::atomic::AtomicBool;
-
 use clap::CommandFactory;
+use hertzian::Cancel;
 use hertzian_cli::attractors::figures::FIGURES;
 use hertzian_cli::attractors::options::Options;
 use hertzian_cli::attractors::run::run;
@@ -132,7 +131,7 @@ fn bad_input_gives_one_message() {
     }
     let failure = run(
         &options(&["--basin", "--out", &nowhere]),
-        &AtomicBool::new(false),
+        &Cancel::new(),
         &mut Progress::new(false),
     );
     assert!(

@@ -1,13 +1,14 @@
 //! The subcommand `attractors`: what it accepts, what it writes, and how it goes on after it was ended.
 
 mod accepted;
+#[path = "../cancels/mod.rs"]
+mod cancels;
 #[path = "../folder/mod.rs"]
 mod folder;
 mod resumed;
 mod written;
 
-use std::sync::atomic::AtomicBool;
-
+use hertzian::Cancel;
 use hertzian_cli::attractors::options::Options;
 use hertzian_cli::attractors::run::{Failure, Outcome, run};
 use hertzian_cli::command::{Program, Task};
@@ -48,7 +49,7 @@ fn options(arguments: &[&str]) -> Options {
 fn run_in(folder: &Folder, prefix: &str, arguments: &[&str]) -> Result<Outcome, Failure> {
     let out = folder.file(prefix);
     let arguments = [arguments, &["--out", &out]].concat();
-    let never = AtomicBool::new(false);
+    let never = Cancel::new();
     run(&options(&arguments), &never, &mut Progress::new(false))
 }
 

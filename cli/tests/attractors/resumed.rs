@@ -1,14 +1,22 @@
 //! What was interrupted or killed goes on to the same bytes.
 
-use std::sync::atomic::AtomicBool;
-
-use hertzian_cli::attractors::run::run;
+use hertzian::Cancel;
+use hertzian_cli::attractors::options::Options;
+use hertzian_cli::attractors::run::{Failure, Outcome, run};
 use hertzian_cli::response::progress::Progress;
 
+use crate::cancels::CancelsWhereWritten;
 use crate::{Folder, options, rows, run_in};
 
 /// What the run that is killed computes, and where it keeps it.
 const TO_BE_KILLED: [&str; 7] = ["--basin", "--alpha", "1", "--drive", "1", "--grid", "128"];
+
+/// A run that is cancelled when it says for the first time how far it is.
+fn cancelled_at_once(options: &Options) -> Result<Outcome, Failure> {
+    let now = Cancel::new();
+    let mut progress = Progress::to(CancelsWhereWritten(now.clone()));
+    run(options, &now, &mut progress)
+}
 
 const CHECKPOINT: &str = "HERTZIAN_TEST_CHECKPOINT";
 
@@ -21,8 +29,7 @@ fn a_basin_that_was_interrupted_goes_on_to_the_same_bytes() {
     run_in(&folder, "whole", &task).expect("basins");
     let kept = ["--checkpoint", &checkpoint, "--out", &out];
     let part = options(&[&task[..], &kept, &["--threads", "1"]].concat());
-    let now = AtomicBool::new(true);
-    let outcome = run(&part, &now, &mut Progress::new(false)).expect("part of it");
+    let outcome = cancelled_at_once(&part).expect("part of it");
     assert!(!outcome.complete);
     assert!(
         outcome.summary.contains("not looked at"),
@@ -54,7 +61,7 @@ fn a_run_that_is_killed() {
         let out = format!("{checkpoint}-unwanted");
         let kept = ["--checkpoint", &checkpoint, "--out", &out];
         let task = [&TO_BE_KILLED[..], &kept].concat();
-        let never = AtomicBool::new(false);
+        let never = Cancel::new();
         run(&options(&task), &never, &mut Progress::new(false)).expect("basins");
     }
 }
@@ -119,10 +126,9 @@ fn a_sweep_that_was_interrupted_goes_on_to_the_same_bytes() {
     run_in(&folder, "whole", &task).expect("rows");
     let kept = [&task[..], &["--checkpoint", &checkpoint]].concat();
     let out = folder.file("part");
-    let now = AtomicBool::new(true);
     let part = options(&[&kept[..], &["--out", &out]].concat());
     for _ in 0..3 {
-        let outcome = run(&part, &now, &mut Progress::new(false)).expect("a row more");
+        let outcome = cancelled_at_once(&part).expect("a row more");
         assert!(!outcome.complete);
     }
     assert_eq!(rows(&folder.text("part.csv")).len(), 3 * 5);

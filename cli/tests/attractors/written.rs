@@ -1,6 +1,6 @@
 //! Results against values known from elsewhere.
 
-use hertzian::{Shooting, Verdict};
+use hertzian::{FrequencyResponse, Shooting, Verdict};
 use hertzian_cli::response::models::model;
 
 use crate::{Folder, array, options, rows, run_in};
@@ -152,8 +152,8 @@ fn other_exponents_are_integrated() {
                 .orbit(omega)
                 .expect("an orbit");
             assert_eq!(cycle.stability.verdict, Verdict::Stable);
-            for (x, y) in row[4..].iter().zip(cycle.state()) {
-                assert!((x - y).abs() < 1e-8, "{row:?} {:?}", cycle.state());
+            for (x, y) in row[4..].iter().zip(cycle.orbit.state()) {
+                assert!((x - y).abs() < 1e-8, "{row:?} {:?}", cycle.orbit.state());
             }
             found.push(cycle.peak_to_peak());
         }

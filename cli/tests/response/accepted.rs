@@ -1,5 +1,6 @@
 //! Options and files of oscillators: what is understood, and what is refused in which words.
 
+use hertzian::Cancel;
 use std::path::Path;
 
 use hertzian_cli::response::boundary::loss_of_contact;
@@ -107,7 +108,7 @@ fn bad_input_gives_one_message_and_exit_code_2() {
 fn contact_with_a_linear_spring_is_lost_at_twice_the_load() {
     for load in ["0.5", "1"] {
         let options = options(&["--alpha", "1", "--load", load]);
-        let boundary = loss_of_contact(&options.model, 0.6..=1.6, || false);
+        let boundary = loss_of_contact(&options.model, 0.6..=1.6, &Cancel::new());
         assert!(boundary.len() > 20);
         for [omega, size] in boundary {
             let error = size - 2.0 * options.model.load;
@@ -119,7 +120,7 @@ fn contact_with_a_linear_spring_is_lost_at_twice_the_load() {
 #[test]
 fn contact_that_cannot_be_lost_has_no_boundary() {
     for arguments in [&["--continuous"][..], &["--load", "0"], &["--load", "-1"]] {
-        let boundary = loss_of_contact(&options(arguments).model, 0.6..=1.6, || false);
+        let boundary = loss_of_contact(&options(arguments).model, 0.6..=1.6, &Cancel::new());
         assert_eq!(boundary, Vec::<[f64; 2]>::new());
     }
 }

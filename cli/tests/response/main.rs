@@ -1,12 +1,13 @@
 //! The subcommand `response`: what it accepts, and what it writes and says.
 
 mod accepted;
+#[path = "../cancels/mod.rs"]
+mod cancels;
 #[path = "../folder/mod.rs"]
 mod folder;
 mod written;
 
-use std::sync::atomic::AtomicBool;
-
+use hertzian::Cancel;
 use hertzian::export::COLUMNS;
 use hertzian_cli::command::{Program, Task};
 use hertzian_cli::response::options::Options;
@@ -32,7 +33,7 @@ fn options(arguments: &[&str]) -> Options {
 }
 
 fn run_with(arguments: &[&str]) -> Result<Outcome, Failure> {
-    let never = AtomicBool::new(false);
+    let never = Cancel::new();
     run(&options(arguments), &never, &mut Progress::new(false))
 }
 

@@ -1,12 +1,13 @@
 //! Results: files, summaries and pictures.
 
+use hertzian::Cancel;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 use hertzian_cli::response::progress::Progress;
 use hertzian_cli::response::run::run;
 use serde_json::Value;
 
+use crate::cancels::CancelsWhereWritten;
 use crate::{Folder, all, check_csv, check_point, coarse, numbers, options, run_with};
 
 #[test]
@@ -92,11 +93,17 @@ fn a_branch_that_ends_early_is_written_all_the_same() {
 fn an_interrupt_ends_the_branch() {
     let folder = Folder::new("interrupt");
     let svg = folder.file("a.svg");
-    let now = AtomicBool::new(true);
-    let outcome = run(&options(&["--svg", &svg]), &now, &mut Progress::new(false));
-    let outcome = outcome.expect("a branch");
+    let arguments = options(&["--svg", &svg]);
+    let now = Cancel::new();
+    // At the first point.
+    let mut progress = Progress::to(CancelsWhereWritten(now.clone()));
+    let outcome = run(&arguments, &now, &mut progress).expect("a branch");
     assert!(!outcome.complete && outcome.summary.contains("interrupted"));
     assert!(Path::new(&svg).exists());
+    // Before there is anything to write.
+    let failure = run(&arguments, &now, &mut Progress::new(false)).expect_err("nothing");
+    assert_eq!(failure.exit_code(), 3);
+    assert!(failure.to_string().starts_with("cancelled"), "{failure}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::data::LawData;
 use crate::law::{Exponent, LawFacts, RateDependence, TermFacts, Variation};
-use crate::system::{ContactFacts, ParameterFacts, Part, Place, Wave};
+use crate::system::{ContactFacts, ParameterFacts, Place, SystemFacts, Wave};
 
 pub use crate::data::Node;
 pub use crate::data::Node::*;
@@ -68,6 +68,33 @@ pub const fn law_facts(
     }
 }
 
+/// The facts of a system.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "written by the compiler, in the order of the fields"
+)]
+pub const fn system_facts(
+    name: &'static str,
+    equation: &'static str,
+    coordinates: &'static [Cow<'static, str>],
+    parameters: &'static [ParameterFacts],
+    divisor: u32,
+    laws: usize,
+    contacts: &'static [ContactFacts],
+    places: &'static [Place],
+) -> SystemFacts {
+    SystemFacts {
+        name: Cow::Borrowed(name),
+        equation: Cow::Borrowed(equation),
+        coordinates: Cow::Borrowed(coordinates),
+        parameters: Cow::Borrowed(parameters),
+        divisor,
+        laws,
+        contacts: Cow::Borrowed(contacts),
+        places: Cow::Borrowed(places),
+    }
+}
+
 /// An argument of a law that may have any value.
 pub const fn free(name: &'static str) -> ArgumentFacts {
     ArgumentFacts::named(Cow::Borrowed(name))
@@ -107,22 +134,12 @@ pub const fn piece(
 
 /// A term with powers at the ends of its piece.
 pub const fn term(of: Quantity, lower: Exponent, upper: Exponent) -> TermFacts {
-    TermFacts {
-        of,
-        lower,
-        upper,
-        logarithm: false,
-    }
+    TermFacts::new(of, lower, upper)
 }
 
 /// A term with powers and a logarithm at the ends of its piece.
 pub const fn term_with_logarithm(of: Quantity, lower: Exponent, upper: Exponent) -> TermFacts {
-    TermFacts {
-        of,
-        lower,
-        upper,
-        logarithm: true,
-    }
+    TermFacts::new(of, lower, upper).logarithm(true)
 }
 
 /// A smooth term.
@@ -132,18 +149,12 @@ pub const fn smooth(of: Quantity) -> TermFacts {
 
 /// An exponent known at compile time.
 pub const fn exponent(number: f64) -> Exponent {
-    Exponent {
-        number,
-        argument: None,
-    }
+    Exponent::new(number)
 }
 
 /// A number plus the argument at a position.
 pub const fn exponent_of(number: f64, argument: usize) -> Exponent {
-    Exponent {
-        number,
-        argument: Some(argument),
-    }
+    Exponent::of_argument(number, argument)
 }
 
 /// A law as data.
@@ -194,23 +205,17 @@ pub const fn parameter(
 
 /// `cos h tau`
 pub const fn cos(harmonic: u32) -> Wave {
-    Wave {
-        harmonic,
-        part: Part::Cosine,
-    }
+    Wave::cosine(harmonic)
 }
 
 /// `sin h tau`
 pub const fn sin(harmonic: u32) -> Wave {
-    Wave {
-        harmonic,
-        part: Part::Sine,
-    }
+    Wave::sine(harmonic)
 }
 
 /// A contact of a law.
 pub const fn contact(law: usize) -> ContactFacts {
-    ContactFacts { law }
+    ContactFacts::new(law)
 }
 
 /// An entry of `M`.

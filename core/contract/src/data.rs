@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 /// A law as data.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LawData {
     /// The nodes; operands of node `i` have positions below `i`.
     pub nodes: Cow<'static, [Node]>,
@@ -13,8 +14,24 @@ pub struct LawData {
     pub pieces: Cow<'static, [PieceData]>,
 }
 
+impl LawData {
+    /// A law of these nodes, with its levels and pieces among them.
+    pub fn new(
+        nodes: impl Into<Cow<'static, [Node]>>,
+        levels: impl IntoIterator<Item = LevelData>,
+        pieces: impl IntoIterator<Item = PieceData>,
+    ) -> Self {
+        Self {
+            nodes: nodes.into(),
+            levels: levels.into_iter().collect(),
+            pieces: pieces.into_iter().collect(),
+        }
+    }
+}
+
 /// A level as data.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LevelData {
     /// The node of its value.
     pub value: usize,
@@ -22,8 +39,19 @@ pub struct LevelData {
     pub by_argument: Cow<'static, [usize]>,
 }
 
+impl LevelData {
+    /// The nodes of its value and of its derivatives by each argument.
+    pub fn new(value: usize, by_argument: impl Into<Cow<'static, [usize]>>) -> Self {
+        Self {
+            value,
+            by_argument: by_argument.into(),
+        }
+    }
+}
+
 /// A piece as data: positions of nodes.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PieceData {
     /// `phi`
     pub force: usize,
@@ -33,6 +61,21 @@ pub struct PieceData {
     pub by_rate: usize,
     /// `d phi / d argument`, one per argument.
     pub by_argument: Cow<'static, [usize]>,
+}
+
+impl PieceData {
+    /// The nodes of force, derivatives by gap and by rate, and of those by each argument.
+    pub fn new(
+        [force, by_gap, by_rate]: [usize; 3],
+        by_argument: impl Into<Cow<'static, [usize]>>,
+    ) -> Self {
+        Self {
+            force,
+            by_gap,
+            by_rate,
+            by_argument: by_argument.into(),
+        }
+    }
 }
 
 /// One operation. A `usize` is the position of an operand.

@@ -78,11 +78,20 @@ impl std::fmt::Debug for dyn Law + '_ {
 
 /// The two laws of the gap alone of which a law that is linear in its rate consists, see [`Law::parts`].
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Parts<'a> {
     /// `f(g)`, the force at zero rate.
     pub spring: &'a dyn Law,
     /// `G(g)`, whose time derivative is the rate term.
     pub primitive: &'a dyn Law,
+}
+
+impl<'a> Parts<'a> {
+    /// A spring, and the primitive of the rate term.
+    #[inline]
+    pub const fn new(spring: &'a dyn Law, primitive: &'a dyn Law) -> Self {
+        Self { spring, primitive }
+    }
 }
 
 /// Which pieces a batch is evaluated on.
@@ -108,6 +117,7 @@ pub struct Derivatives<'a> {
 
 /// What is known of a law without evaluating it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LawFacts {
     /// Name in the declaration.
     pub name: Cow<'static, str>,
@@ -123,8 +133,49 @@ pub struct LawFacts {
     pub odd: bool,
 }
 
+impl LawFacts {
+    /// A law of these pieces, one more than there are levels. It depends on the rate in any way, has no arguments and is not odd,
+    /// unless said otherwise.
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        levels: impl IntoIterator<Item = LevelFacts>,
+        pieces: impl IntoIterator<Item = PieceFacts>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            arguments: Cow::Borrowed(&[]),
+            levels: levels.into_iter().collect(),
+            pieces: pieces.into_iter().collect(),
+            rate: RateDependence::General,
+            odd: false,
+        }
+    }
+
+    /// The arguments, in the order of the argument slice.
+    #[must_use]
+    pub fn arguments(mut self, arguments: impl IntoIterator<Item = ArgumentFacts>) -> Self {
+        self.arguments = arguments.into_iter().collect();
+        self
+    }
+
+    /// How the force depends on the rate.
+    #[must_use]
+    pub fn rate(mut self, rate: RateDependence) -> Self {
+        self.rate = rate;
+        self
+    }
+
+    /// Whether the force is odd in gap and rate together.
+    #[must_use]
+    pub fn odd(mut self, odd: bool) -> Self {
+        self.odd = odd;
+        self
+    }
+}
+
 /// What is known of an argument. Everything else that is known of the law holds for values within the range.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ArgumentFacts {
     /// Its name.
     pub name: Cow<'static, str>,
@@ -143,6 +194,14 @@ impl ArgumentFacts {
             minimum: Bound::Unbounded,
             maximum: Bound::Unbounded,
         }
+    }
+
+    /// The range that its values must be in.
+    #[must_use]
+    pub fn range(mut self, minimum: Bound, maximum: Bound) -> Self {
+        self.minimum = minimum;
+        self.maximum = maximum;
+        self
     }
 
     /// Whether a value is finite and within the range.
@@ -181,6 +240,7 @@ pub(crate) fn is_within(minimum: Bound, maximum: Bound, value: f64) -> bool {
 
 /// How a force depends on the rate of its gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RateDependence {
     /// Not at all.
     None,
@@ -190,8 +250,10 @@ pub enum RateDependence {
     General,
 }
 
-/// What happens to the force and its derivatives where two pieces meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What happens to the force and its derivatives where two pieces meet. By default nothing: all of them are continuous, and the level
+/// belongs to the piece below it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 #[allow(
     clippy::struct_excessive_bools,
     reason = "independent facts, not states"
@@ -209,8 +271,46 @@ pub struct LevelFacts {
     pub unbounded_by_gap: bool,
 }
 
+impl LevelFacts {
+    /// Whether the level itself belongs to the piece above it.
+    #[must_use]
+    pub const fn belongs_above(mut self, holds: bool) -> Self {
+        self.belongs_above = holds;
+        self
+    }
+
+    /// Whether the force jumps, even at zero rate.
+    #[must_use]
+    pub const fn force_jumps(mut self, holds: bool) -> Self {
+        self.force_jumps = holds;
+        self
+    }
+
+    /// Whether the derivative by the gap differs on the two sides, or is unbounded on one of them.
+    #[must_use]
+    pub const fn by_gap_jumps(mut self, holds: bool) -> Self {
+        self.by_gap_jumps = holds;
+        self
+    }
+
+    /// Whether the derivative by the rate differs on the two sides.
+    #[must_use]
+    pub const fn by_rate_jumps(mut self, holds: bool) -> Self {
+        self.by_rate_jumps = holds;
+        self
+    }
+
+    /// Whether the derivative by the gap is unbounded on at least one side.
+    #[must_use]
+    pub const fn unbounded_by_gap(mut self, holds: bool) -> Self {
+        self.unbounded_by_gap = holds;
+        self
+    }
+}
+
 /// What is known of one piece.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PieceFacts {
     /// The force is constant plus linear in gap and rate, with coefficients that do not depend on either.
     pub affine: bool,
@@ -226,8 +326,65 @@ pub struct PieceFacts {
     pub terms: Cow<'static, [TermFacts]>,
 }
 
+impl PieceFacts {
+    /// A piece on which nothing is known of a law with so many arguments but that it is smooth.
+    pub fn smooth(arguments: usize) -> Self {
+        Self {
+            affine: false,
+            force: Variation::Varying,
+            by_gap: Variation::Varying,
+            by_rate: Variation::Varying,
+            by_argument: vec![Variation::Varying; arguments].into(),
+            terms: Cow::Borrowed(&[]),
+        }
+    }
+
+    /// A piece without force.
+    pub fn zero(arguments: usize) -> Self {
+        Self {
+            affine: true,
+            force: Variation::Zero,
+            by_gap: Variation::Zero,
+            by_rate: Variation::Zero,
+            by_argument: vec![Variation::Zero; arguments].into(),
+            terms: Cow::Borrowed(&[]),
+        }
+    }
+
+    /// How the force varies.
+    #[must_use]
+    pub fn force(mut self, force: Variation) -> Self {
+        self.force = force;
+        self
+    }
+
+    /// How the derivatives by gap and by rate vary. Where both do not, the piece is affine.
+    #[must_use]
+    pub fn slopes(mut self, by_gap: Variation, by_rate: Variation) -> Self {
+        self.by_gap = by_gap;
+        self.by_rate = by_rate;
+        self.affine = ![by_gap, by_rate].contains(&Variation::Varying);
+        self
+    }
+
+    /// How the derivatives by the arguments vary.
+    #[must_use]
+    pub fn by_argument(mut self, by_argument: impl IntoIterator<Item = Variation>) -> Self {
+        self.by_argument = by_argument.into_iter().collect();
+        self
+    }
+
+    /// The terms of the force and of each derivative with their exponents; those that are smooth need not be there.
+    #[must_use]
+    pub fn terms(mut self, terms: impl IntoIterator<Item = TermFacts>) -> Self {
+        self.terms = terms.into_iter().collect();
+        self
+    }
+}
+
 /// How a quantity varies over a piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Variation {
     /// Zero everywhere.
     Zero,
@@ -239,6 +396,7 @@ pub enum Variation {
 
 /// The behaviour of one additive term near the ends of its piece: it is `|g - level|^exponent` times a smooth factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct TermFacts {
     /// The quantity the term belongs to.
     pub of: Quantity,
@@ -250,8 +408,28 @@ pub struct TermFacts {
     pub logarithm: bool,
 }
 
+impl TermFacts {
+    /// A term with these exponents at the ends of its piece.
+    pub const fn new(of: Quantity, lower: Exponent, upper: Exponent) -> Self {
+        Self {
+            of,
+            lower,
+            upper,
+            logarithm: false,
+        }
+    }
+
+    /// Whether the term carries a logarithm of the distance as well.
+    #[must_use]
+    pub const fn logarithm(mut self, logarithm: bool) -> Self {
+        self.logarithm = logarithm;
+        self
+    }
+}
+
 /// A force or one of its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Quantity {
     /// `phi`
     Force,
@@ -265,6 +443,7 @@ pub enum Quantity {
 
 /// An exponent known at compile time, or a runtime argument plus a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Exponent {
     /// The number.
     pub number: f64,
@@ -274,10 +453,23 @@ pub struct Exponent {
 
 impl Exponent {
     /// No power: smooth.
-    pub const ZERO: Self = Self {
-        number: 0.0,
-        argument: None,
-    };
+    pub const ZERO: Self = Self::new(0.0);
+
+    /// A number.
+    pub const fn new(number: f64) -> Self {
+        Self {
+            number,
+            argument: None,
+        }
+    }
+
+    /// A number plus the argument at a position.
+    pub const fn of_argument(number: f64, argument: usize) -> Self {
+        Self {
+            number,
+            argument: Some(argument),
+        }
+    }
 
     /// Its value for given arguments.
     #[inline]

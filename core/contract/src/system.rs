@@ -99,6 +99,7 @@ pub enum Variable {
 
 /// What is known of a system without evaluating it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SystemFacts {
     /// Name of the declared type.
     pub name: Cow<'static, str>,
@@ -118,8 +119,75 @@ pub struct SystemFacts {
     pub places: Cow<'static, [Place]>,
 }
 
+impl SystemFacts {
+    /// A system of this name without coordinates, with a divisor of one.
+    pub fn new(name: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            name: name.into(),
+            equation: Cow::Borrowed(""),
+            coordinates: Cow::Borrowed(&[]),
+            parameters: Cow::Borrowed(&[]),
+            divisor: 1,
+            laws: 0,
+            contacts: Cow::Borrowed(&[]),
+            places: Cow::Borrowed(&[]),
+        }
+    }
+
+    /// The equations of motion, for whoever reads them.
+    #[must_use]
+    pub fn equation(mut self, equation: impl Into<Cow<'static, str>>) -> Self {
+        self.equation = equation.into();
+        self
+    }
+
+    /// Names of the coordinates.
+    #[must_use]
+    pub fn coordinates<N: Into<Cow<'static, str>>>(
+        mut self,
+        names: impl IntoIterator<Item = N>,
+    ) -> Self {
+        self.coordinates = names.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// The parameters, in the order of the value slice.
+    #[must_use]
+    pub fn parameters(mut self, parameters: impl IntoIterator<Item = ParameterFacts>) -> Self {
+        self.parameters = parameters.into_iter().collect();
+        self
+    }
+
+    /// By what `omega` is divided in the base frequency.
+    #[must_use]
+    pub fn divisor(mut self, divisor: u32) -> Self {
+        self.divisor = divisor;
+        self
+    }
+
+    /// The number of laws, and the contacts that they act in.
+    #[must_use]
+    pub fn contacts(
+        mut self,
+        laws: usize,
+        contacts: impl IntoIterator<Item = ContactFacts>,
+    ) -> Self {
+        self.laws = laws;
+        self.contacts = contacts.into_iter().collect();
+        self
+    }
+
+    /// Where each coefficient stands.
+    #[must_use]
+    pub fn places(mut self, places: impl IntoIterator<Item = Place>) -> Self {
+        self.places = places.into_iter().collect();
+        self
+    }
+}
+
 /// What is known of a parameter.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ParameterFacts {
     /// Name of the field.
     pub name: Cow<'static, str>,
@@ -132,6 +200,31 @@ pub struct ParameterFacts {
 }
 
 impl ParameterFacts {
+    /// A parameter that may have any value.
+    pub fn new(name: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            name: name.into(),
+            documentation: Cow::Borrowed(""),
+            minimum: Bound::Unbounded,
+            maximum: Bound::Unbounded,
+        }
+    }
+
+    /// What it is; the first line is what charts say of it.
+    #[must_use]
+    pub fn documentation(mut self, documentation: impl Into<Cow<'static, str>>) -> Self {
+        self.documentation = documentation.into();
+        self
+    }
+
+    /// The range that its values must be in.
+    #[must_use]
+    pub fn range(mut self, minimum: Bound, maximum: Bound) -> Self {
+        self.minimum = minimum;
+        self.maximum = maximum;
+        self
+    }
+
     /// Whether a value is finite and within the range.
     #[inline]
     pub fn admits(&self, value: f64) -> bool {
@@ -141,13 +234,22 @@ impl ParameterFacts {
 
 /// A term `e_c phi_c(g_c, g_c')` of (1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ContactFacts {
     /// Index of its law.
     pub law: usize,
 }
 
+impl ContactFacts {
+    /// A contact with the law of this index.
+    #[inline]
+    pub const fn new(law: usize) -> Self {
+        Self { law }
+    }
+}
+
 /// A function of the phase: one of `1`, `cos h tau`, `sin h tau`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Wave {
     /// `h`; zero for the constant.
     pub harmonic: u32,
@@ -157,36 +259,38 @@ pub struct Wave {
 
 impl Wave {
     /// The constant function.
-    pub const CONSTANT: Self = Self {
-        harmonic: 0,
-        part: Part::Cosine,
-    };
+    pub const CONSTANT: Self = Self::cosine(0);
+
+    /// `cos h tau`
+    #[inline]
+    pub const fn cosine(harmonic: u32) -> Self {
+        Self {
+            harmonic,
+            part: Part::Cosine,
+        }
+    }
+
+    /// `sin h tau`
+    #[inline]
+    pub const fn sine(harmonic: u32) -> Self {
+        Self {
+            harmonic,
+            part: Part::Sine,
+        }
+    }
 
     /// The wave that the phase derivative is `harmonic` times, and its sign: `-sin` for a cosine, `cos` for a sine.
     #[inline]
     pub const fn derivative(self) -> (Self, f64) {
-        let Self { harmonic, part } = self;
-        match part {
-            Part::Cosine => (
-                Self {
-                    harmonic,
-                    part: Part::Sine,
-                },
-                -1.0,
-            ),
-            Part::Sine => (
-                Self {
-                    harmonic,
-                    part: Part::Cosine,
-                },
-                1.0,
-            ),
+        match self.part {
+            Part::Cosine => (Self::sine(self.harmonic), -1.0),
+            Part::Sine => (Self::cosine(self.harmonic), 1.0),
         }
     }
 }
 
 /// Cosine or sine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Part {
     /// `cos h tau`
     Cosine,
@@ -195,7 +299,8 @@ pub enum Part {
 }
 
 /// Where a coefficient stands in equations (1) and (2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Place {
     /// An entry of `M`.
     Mass {

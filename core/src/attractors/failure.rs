@@ -11,6 +11,7 @@ pub(super) fn numbers(error: FlowError) -> [f64; 3] {
         FlowError::TooManySwitches { phase, switches } => [3.0, phase, switches as f64],
         FlowError::Rests { phase } => [4.0, phase, 0.0],
         FlowError::Grazes { phase } => [5.0, phase, 0.0],
+        FlowError::Cancelled { phase } => [14.0, phase, 0.0],
         FlowError::SingularMass { determinant } => [6.0, determinant, 0.0],
         FlowError::Value { variable, value } => match variable {
             Variable::Omega => [7.0, value, 0.0],

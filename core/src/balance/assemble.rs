@@ -118,6 +118,10 @@ impl Problem for Balance<'_> {
         Balance::partition(self)
     }
 
+    fn is_cancelled(&self) -> bool {
+        self.cancel.is_cancelled()
+    }
+
     fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
         let unknowns = self.unknowns();
         self.set(u[unknowns]);

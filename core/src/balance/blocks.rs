@@ -96,9 +96,9 @@ impl Block {
         e: Wave,
         d: Wave,
         factor: f64,
-        room: &mut [f64],
+        workspace: &mut [f64],
     ) {
-        add_twice(by_gap, e, d, factor, &mut self.stiffness, room);
+        add_twice(by_gap, e, d, factor, &mut self.stiffness, workspace);
     }
 
     /// Adds `Omega factor phi_r e D d` to `S` and `Omega factor phi_r e d` to `Omega T`.
@@ -108,13 +108,13 @@ impl Block {
         e: Wave,
         d: Wave,
         factor: f64,
-        room: &mut [f64],
+        workspace: &mut [f64],
     ) {
-        add_twice(by_rate, e, d, factor, &mut self.damping, room);
+        add_twice(by_rate, e, d, factor, &mut self.damping, workspace);
         if d.harmonic > 0 {
             let (slope, sign) = d.derivative();
             let factor = factor * sign * f64::from(d.harmonic);
-            add_twice(by_rate, e, slope, factor, &mut self.stiffness, room);
+            add_twice(by_rate, e, slope, factor, &mut self.stiffness, workspace);
         }
     }
 
@@ -264,15 +264,15 @@ fn projections(series: &[f64], sum: usize, difference: usize, sign: f64) -> Proj
 }
 
 /// Adds `factor e(tau) d(tau) series(tau)`.
-fn add_twice(from: &[f64], e: Wave, d: Wave, factor: f64, to: &mut [f64], room: &mut [f64]) {
+fn add_twice(from: &[f64], e: Wave, d: Wave, factor: f64, to: &mut [f64], workspace: &mut [f64]) {
     if factor == 0.0 {
         return;
     }
     if d.harmonic == 0 {
         series::add_product(from, e, factor, to);
     } else {
-        room.fill(0.0);
-        series::add_product(from, d, factor, room);
-        series::add_product(room, e, 1.0, to);
+        workspace.fill(0.0);
+        series::add_product(from, d, factor, workspace);
+        series::add_product(workspace, e, 1.0, to);
     }
 }

@@ -21,14 +21,14 @@ pub(super) struct Scratch {
     by_parameter: Vec<f64>,
     product: Vec<f64>,
     pub(super) column: Vec<f64>,
-    /// Length of slopes that couple all harmonics, and room for them, made when they are first needed.
+    /// Length of slopes that couple all harmonics, and workspace for them, made when they are first needed.
     full: usize,
     full_by_gap: Vec<f64>,
     full_by_rate: Vec<f64>,
 }
 
 impl Scratch {
-    /// Room for slopes whose harmonics up to `coupling` are needed.
+    /// Workspace for slopes whose harmonics up to `coupling` are needed.
     pub(super) fn new(layout: &Layout, resolution: Resolution, coupling: usize) -> Self {
         let Resolution {
             harmonics, period, ..
@@ -70,8 +70,8 @@ impl Scratch {
 }
 
 impl Balance<'_> {
-    /// Writes the series of the force of one contact at the variable set last.
-    pub(crate) fn contact_force(&mut self, u: &[f64], contact: usize, force: &mut [f64]) {
+    /// Puts arguments, gap and rate of one contact into the scratch series.
+    fn load_contact(&mut self, u: &[f64], contact: usize) {
         let (base, length, period) = (self.base(), self.length(), self.resolution.period);
         let layout = &self.layout.contacts[contact];
         let s = &mut self.scratch;
@@ -79,17 +79,42 @@ impl Balance<'_> {
         layout.arguments(&self.coefficients, arguments);
         gap_series(layout, &self.coefficients, period, u, length, &mut s.gap);
         rate_series(&s.gap, base, &mut s.rate);
-        let law = self.system.law(layout.law);
-        self.aft.force(
-            ContactInput {
-                law,
-                arguments,
-                gap: &s.gap,
-                rate: &s.rate,
-                base,
-            },
-            force,
-        );
+    }
+
+    /// The same of the derivatives of arguments and gap by the variable, as far as coefficients make them.
+    fn load_change(&mut self, u: &[f64], contact: usize) {
+        let (length, period) = (self.length(), self.resolution.period);
+        let layout = &self.layout.contacts[contact];
+        let s = &mut self.scratch;
+        let arguments = &mut s.arguments_by[..layout.argument_count];
+        layout.arguments(&self.coefficients_by, arguments);
+        let by = &self.coefficients_by;
+        gap_series(layout, by, period, u, length, &mut s.change_gap);
+    }
+
+    /// The change of the rate, for one of the gap and one of the variable. The rate is base times the phase derivative, so it grows with
+    /// the base frequency by itself over base.
+    fn load_change_of_rate(&mut self, by: f64) {
+        let (base, base_by) = (self.base(), self.base_by());
+        let s = &mut self.scratch;
+        rate_series(&s.change_gap, base, &mut s.change_rate);
+        for (to, rate) in s.change_rate.iter_mut().zip(&s.rate) {
+            *to += by * base_by / base * rate;
+        }
+    }
+
+    /// Writes the series of the force of one contact at the variable set last.
+    pub(crate) fn contact_force(&mut self, u: &[f64], contact: usize, force: &mut [f64]) {
+        self.load_contact(u, contact);
+        let (base, layout, s) = (self.base(), &self.layout.contacts[contact], &self.scratch);
+        let input = ContactInput {
+            law: self.system.law(layout.law),
+            arguments: &s.arguments[..layout.argument_count],
+            gap: &s.gap,
+            rate: &s.rate,
+            base,
+        };
+        self.aft.force(input, force);
     }
 
     /// Adds the force of one contact, in its direction, to the equations it acts on.
@@ -104,39 +129,22 @@ impl Balance<'_> {
     /// Evaluates one contact and its derivatives into the scratch series. Returns whether it depends on the variable.
     pub(crate) fn contact_derivatives(&mut self, u: &[f64], contact: usize) -> bool {
         let (base, base_by) = (self.base(), self.base_by());
-        let (length, period) = (self.length(), self.resolution.period);
+        self.load_contact(u, contact);
         let layout = &self.layout.contacts[contact];
-        let s = &mut self.scratch;
-        let arguments = &mut s.arguments[..layout.argument_count];
-        let arguments_by = &mut s.arguments_by[..layout.argument_count];
-        layout.arguments(&self.coefficients, arguments);
-        gap_series(layout, &self.coefficients, period, u, length, &mut s.gap);
-        rate_series(&s.gap, base, &mut s.rate);
         let own = layout
             .coefficients()
             .any(|index| self.coefficients_by[index] != 0.0);
         let changes = own || base_by != 0.0;
         if changes {
-            layout.arguments(&self.coefficients_by, arguments_by);
-            gap_series(
-                layout,
-                &self.coefficients_by,
-                period,
-                u,
-                length,
-                &mut s.change_gap,
-            );
-            rate_series(&s.change_gap, base, &mut s.change_rate);
-            // The rate is base times the phase derivative, so it grows with the base frequency by itself over base.
-            for (to, rate) in s.change_rate.iter_mut().zip(&s.rate) {
-                *to += base_by / base * rate;
-            }
+            self.load_change(u, contact);
+            self.load_change_of_rate(1.0);
         }
-        let law = self.system.law(layout.law);
+        let layout = &self.layout.contacts[contact];
+        let s = &mut self.scratch;
         let change = Change {
             gap: &s.change_gap,
             rate: &s.change_rate,
-            arguments: arguments_by,
+            arguments: &s.arguments_by[..layout.argument_count],
             base: base_by,
         };
         let mut out = ContactDerivatives {
@@ -145,8 +153,8 @@ impl Balance<'_> {
             by_parameter: &mut s.by_parameter,
         };
         let input = ContactInput {
-            law,
-            arguments,
+            law: self.system.law(layout.law),
+            arguments: &s.arguments[..layout.argument_count],
             gap: &s.gap,
             rate: &s.rate,
             base,
@@ -196,22 +204,11 @@ impl Balance<'_> {
         let (base, base_by) = (self.base(), self.base_by());
         let (length, period) = (self.length(), self.resolution.period);
         let by = direction[direction.len() - 1];
+        self.load_contact(u, contact);
+        self.load_change(u, contact);
         let layout = &self.layout.contacts[contact];
         let s = &mut self.scratch;
-        let arguments = &mut s.arguments[..layout.argument_count];
         let arguments_by = &mut s.arguments_by[..layout.argument_count];
-        layout.arguments(&self.coefficients, arguments);
-        layout.arguments(&self.coefficients_by, arguments_by);
-        gap_series(layout, &self.coefficients, period, u, length, &mut s.gap);
-        rate_series(&s.gap, base, &mut s.rate);
-        gap_series(
-            layout,
-            &self.coefficients_by,
-            period,
-            u,
-            length,
-            &mut s.change_gap,
-        );
         for x in s.change_gap.iter_mut().chain(arguments_by.iter_mut()) {
             *x *= by;
         }
@@ -221,16 +218,15 @@ impl Balance<'_> {
             let value = self.coefficients[term.coefficient];
             series::add_product(from, wave, value, &mut s.change_gap);
         }
-        rate_series(&s.change_gap, base, &mut s.change_rate);
-        for (to, rate) in s.change_rate.iter_mut().zip(&s.rate) {
-            *to += by * base_by / base * rate;
-        }
+        self.load_change_of_rate(by);
+        let layout = &self.layout.contacts[contact];
+        let s = &mut self.scratch;
         s.full_by_gap.resize(s.full, 0.0);
         s.full_by_rate.resize(s.full, 0.0);
         let change = Change {
             gap: &s.change_gap,
             rate: &s.change_rate,
-            arguments: arguments_by,
+            arguments: &s.arguments_by[..layout.argument_count],
             base: by * base_by,
         };
         let mut out = ContactDerivatives {
@@ -240,7 +236,7 @@ impl Balance<'_> {
         };
         let input = ContactInput {
             law: self.system.law(layout.law),
-            arguments,
+            arguments: &s.arguments[..layout.argument_count],
             gap: &s.gap,
             rate: &s.rate,
             base,

@@ -1,7 +1,7 @@
 //! Which harmonics are unknowns, and how their equations are coupled.
 
-use super::Resolution;
 use super::blocks::places;
+use super::{Lattice, Resolution};
 use crate::continuation::jacobian::Partition;
 use crate::numeric::fourier::series;
 
@@ -19,7 +19,7 @@ impl Harmonics {
         let Resolution {
             harmonics, core, ..
         } = resolution;
-        let (first, step) = resolution.lattice();
+        let Lattice { first, step } = resolution.lattice();
         let (core, tail) = (first..=harmonics)
             .step_by(step)
             .partition(|&k| k <= core.max(first));

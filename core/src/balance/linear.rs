@@ -13,17 +13,23 @@ impl Balance<'_> {
 
     /// Adds `Omega^2 M D^2 u + Omega C D u + K u`.
     pub(super) fn add_motion(&self, coefficients: &[f64], u: &[f64], to: &mut [f64]) {
-        let (base, length) = (self.base(), self.length());
+        let base = self.base();
+        self.add_inertia(coefficients, base * base, u, to);
+        self.add_damping(coefficients, base, u, to);
+        self.add_stiffness(coefficients, u, to);
+    }
+
+    /// Adds `factor M D^2 u`.
+    fn add_inertia(&self, coefficients: &[f64], factor: f64, u: &[f64], to: &mut [f64]) {
+        let length = self.length();
         for entry in &self.layout.mass {
-            let factor = base * base * coefficients[entry.coefficient];
+            let factor = factor * coefficients[entry.coefficient];
             add_inertia(
                 block(u, entry.column, length),
                 factor,
                 block_mut(to, entry.row, length),
             );
         }
-        self.add_damping(coefficients, base, u, to);
-        self.add_stiffness(coefficients, u, to);
     }
 
     /// Adds `factor C D u`.
@@ -76,7 +82,7 @@ impl Balance<'_> {
 
     /// The derivative of the linear terms with respect to the variable.
     pub(super) fn linear_by_variable(&mut self, u: &[f64], column: &mut [f64]) {
-        let (base, base_by, length) = (self.base(), self.base_by(), self.length());
+        let (base, base_by) = (self.base(), self.base_by());
         column.fill(0.0);
         self.system.coefficients_by(
             self.variable,
@@ -86,14 +92,7 @@ impl Balance<'_> {
         );
         self.add_linear(&self.coefficients_by, u, column);
         if base_by != 0.0 {
-            for entry in &self.layout.mass {
-                let factor = 2.0 * base * base_by * self.coefficients[entry.coefficient];
-                add_inertia(
-                    block(u, entry.column, length),
-                    factor,
-                    block_mut(column, entry.row, length),
-                );
-            }
+            self.add_inertia(&self.coefficients, 2.0 * base * base_by, u, column);
             self.add_damping(&self.coefficients, base_by, u, column);
         }
     }

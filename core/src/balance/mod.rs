@@ -39,11 +39,12 @@ mod linear;
 mod sizes;
 #[cfg(test)]
 mod switched_tests;
-mod terms;
+pub(crate) mod terms;
 #[cfg(test)]
 mod tests;
 
 use crate::balance::aft::{Aft, Engine};
+use crate::cancel::Cancel;
 use crate::continuation::jacobian::Partition;
 use crate::model::layout::Layout;
 use crate::model::rigid::{Place, Rigid};
@@ -84,14 +85,23 @@ pub struct Resolution {
     pub period: usize,
 }
 
+/// Harmonics at equal distances.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Lattice {
+    pub(crate) first: usize,
+    pub(crate) step: usize,
+}
+
 impl Resolution {
-    /// The lowest harmonic that is an unknown, and from one to the next.
-    pub(crate) fn lattice(&self) -> (usize, usize) {
-        match self.parity {
-            Parity::All => (0, self.stride),
-            Parity::Odd => (self.stride, 2 * self.stride),
-            Parity::Even => (0, 2 * self.stride),
-        }
+    /// The harmonics that are unknowns, up to the highest.
+    pub(crate) fn lattice(&self) -> Lattice {
+        let stride = self.stride;
+        let (first, step) = match self.parity {
+            Parity::All => (0, stride),
+            Parity::Odd => (stride, 2 * stride),
+            Parity::Even => (0, 2 * stride),
+        };
+        Lattice { first, step }
     }
 }
 
@@ -113,6 +123,7 @@ pub struct Balance<'a> {
     rigid: Option<Rigid>,
     /// What gives the mean along rigid motions its stiffness, row by row.
     gauge: Vec<f64>,
+    cancel: Cancel,
 }
 
 impl std::fmt::Debug for Balance<'_> {
@@ -166,7 +177,14 @@ impl<'a> Balance<'a> {
             blocks: blocks::of_layout(&layout, harmonics.coupling()),
             harmonics,
             layout,
+            cancel: Cancel::new(),
         }
+    }
+
+    /// The same, and solving it ends when this token is cancelled.
+    pub(crate) fn until(self, cancel: &Cancel) -> Self {
+        let cancel = cancel.clone();
+        Self { cancel, ..self }
     }
 
     /// How finely orbits are represented.

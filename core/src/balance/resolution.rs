@@ -22,14 +22,15 @@
 //! selection technique for harmonic balance method, and Jaumouille, Sinou and Petitjean (2010), An adaptive harmonic balance
 //! method for predicting the nonlinear dynamic responses of mechanical systems.
 
-/// Errors below this part of the tolerance make room for fewer harmonics.
-const CALM: f64 = 1e-2;
-/// So many points in succession.
-const PATIENCE: usize = 3;
+use super::Lattice;
 
-/// What was too few harmonics is remembered for so many points.
+/// Error, in parts of the tolerance, below which there may be fewer harmonics.
+const CALM: f64 = 1e-2;
+/// Successive points with such errors before there are fewer.
+const PATIENCE: usize = 3;
+/// Points for which a number of harmonics that was too few is remembered.
 const MEMORY: usize = 15;
-/// After another number of harmonics has failed, the number is kept for so many points, and twice as many the next time.
+/// Points for which the number is kept after another one has failed; each further time twice as many.
 const KEPT: usize = 5;
 
 /// Decides on the number of harmonics.
@@ -41,8 +42,8 @@ pub(crate) struct Chooser {
     least: usize,
     /// Most harmonics.
     most: usize,
-    /// Lowest harmonic there may be, and from one to the next: a number between two is as good as the one below it.
-    lattice: (usize, usize),
+    /// Harmonics that there may be: a number between two is as good as the one below it.
+    lattice: Lattice,
     calm: usize,
     too_few: Option<TooFew>,
     /// Points for which the number is kept, and how many the next time.
@@ -57,12 +58,12 @@ struct TooFew {
     /// Error over tolerance.
     excess: f64,
     /// Points for which it is remembered.
-    left: usize,
+    points: usize,
 }
 
 impl Chooser {
-    pub(crate) fn new(tolerance: f64, least: usize, most: usize, lattice: (usize, usize)) -> Self {
-        let (first, step) = lattice;
+    pub(crate) fn new(tolerance: f64, least: usize, most: usize, lattice: Lattice) -> Self {
+        let Lattice { first, step } = lattice;
         let most = most - most.saturating_sub(first) % step;
         Self {
             tolerance,
@@ -109,8 +110,8 @@ impl Chooser {
 
     fn forget(&mut self) {
         self.too_few = self.too_few.and_then(|few| {
-            let left = few.left.checked_sub(1)?;
-            Some(TooFew { left, ..few })
+            let points = few.points.checked_sub(1)?;
+            Some(TooFew { points, ..few })
         });
     }
 
@@ -119,7 +120,7 @@ impl Chooser {
         self.too_few = Some(TooFew {
             harmonics,
             excess,
-            left: MEMORY,
+            points: MEMORY,
         });
         let factor = if excess.is_finite() {
             (1.1 * excess.cbrt()).clamp(1.15, 2.0)
@@ -151,7 +152,7 @@ impl Chooser {
 
     /// The next whole number that makes a difference, at most the largest.
     fn rounded(&self, wanted: f64) -> usize {
-        let (first, step) = self.lattice;
+        let Lattice { first, step } = self.lattice;
         let beyond = (wanted.ceil() as usize).saturating_sub(first);
         (first + beyond.next_multiple_of(step)).min(self.most)
     }
@@ -176,14 +177,14 @@ mod tests {
 
     #[test]
     fn harmonics_follow_the_error() {
-        let mut chooser = Chooser::new(1e-6, 3, 100, (0, 1));
+        let mut chooser = Chooser::new(1e-6, 3, 100, Lattice { first: 0, step: 1 });
         assert_eq!(chooser.decide(10, 5e-7), None);
         assert_eq!(chooser.decide(10, 8e-6), Some(20));
         assert_eq!(chooser.decide(10, 1.0), Some(20));
         assert_eq!(chooser.decide(10, f64::NAN), Some(20));
         assert_eq!(chooser.decide(90, 1.0), Some(100));
         assert_eq!(chooser.decide(100, 1.0), None);
-        let mut chooser = Chooser::new(1e-6, 3, 100, (0, 1));
+        let mut chooser = Chooser::new(1e-6, 3, 100, Lattice { first: 0, step: 1 });
         assert_eq!(chooser.decide(10, 0.0), None);
         assert_eq!(chooser.decide(10, 0.0), None);
         assert_eq!(chooser.decide(10, 0.0), Some(5));
@@ -195,7 +196,7 @@ mod tests {
     /// An error that falls as `e^(-2 K)` asks for the same number for ever, once it is found.
     #[test]
     fn an_exponential_fall_settles() {
-        let mut chooser = Chooser::new(1e-6, 3, 100, (0, 1));
+        let mut chooser = Chooser::new(1e-6, 3, 100, Lattice { first: 0, step: 1 });
         let error = |harmonics: usize| (-2.0 * harmonics as f64).exp();
         let (mut harmonics, mut changes) = (40, Vec::new());
         for _ in 0..200 {
@@ -211,7 +212,7 @@ mod tests {
 
     #[test]
     fn odd_orbits_have_odd_numbers() {
-        let mut chooser = Chooser::new(1e-6, 5, 100, (1, 2));
+        let mut chooser = Chooser::new(1e-6, 5, 100, Lattice { first: 1, step: 2 });
         assert_eq!(chooser.decide(9, 1e-6 * 1.2), Some(11));
         assert_eq!(chooser.decide(51, 1.0), Some(99));
         assert_eq!(chooser.decide(99, 1.0), None);
@@ -219,7 +220,7 @@ mod tests {
 
     #[test]
     fn after_a_failure_the_number_is_kept_for_a_while() {
-        let mut chooser = Chooser::new(1e-6, 3, 100, (0, 1));
+        let mut chooser = Chooser::new(1e-6, 3, 100, Lattice { first: 0, step: 1 });
         for times in [KEPT, 2 * KEPT] {
             assert_eq!(chooser.decide(10, 1.0), Some(20));
             chooser.keep();

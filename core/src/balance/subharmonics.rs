@@ -7,8 +7,8 @@ use crate::numeric::fourier::series;
 /// simple orbit a little; that is not a longer period.
 const SUBHARMONIC_SHARE: f64 = 1e-4;
 
-/// The straight line between two orbits passes a more regular one if what both have in addition is this small on it, in parts of
-/// the smaller.
+/// What two orbits have beyond a more regular one, where the straight line between them comes nearest to it, in parts of the smaller:
+/// up to this the line passes one.
 const NEAR: f64 = 0.3;
 
 /// Whether no divisor of the period is a period of the orbit: for every prime divisor some harmonic is no multiple of it.

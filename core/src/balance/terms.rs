@@ -5,7 +5,7 @@ use crate::numeric::fourier::series;
 use crate::system::Wave;
 
 /// A wave of the declaration in harmonics of the orbit's own period.
-pub(super) fn stretched(wave: Wave, period: usize) -> Wave {
+pub(crate) fn stretched(wave: Wave, period: usize) -> Wave {
     Wave {
         harmonic: wave.harmonic * period as u32,
         part: wave.part,
@@ -36,7 +36,7 @@ pub(super) fn add_inertia(u: &[f64], factor: f64, to: &mut [f64]) {
 }
 
 /// Adds `factor D u`.
-pub(super) fn add_derivative(u: &[f64], factor: f64, to: &mut [f64]) {
+pub(crate) fn add_derivative(u: &[f64], factor: f64, to: &mut [f64]) {
     for (index, (pair, to)) in u[1..]
         .chunks_exact(2)
         .zip(to[1..].chunks_exact_mut(2))

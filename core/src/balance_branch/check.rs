@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::balance::aft::Aft;
 use crate::balance::resolution::Chooser;
 use crate::balance::symmetry::{Over, has_stride, is_broken};
-use crate::balance::{Parity, Resolution};
+use crate::balance::{Lattice, Parity, Resolution};
 use crate::balance_branch::follower::Follower;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::orbit::Orbit;
@@ -125,6 +125,7 @@ impl Asked<'_> {
                 chooser,
                 from,
                 to,
+                cancel: self.request.cancel.clone(),
             },
             options,
         ))
@@ -261,7 +262,7 @@ impl Asked<'_> {
         resolution.stride = stride;
         resolution.core *= stride;
         if self.balance.harmonics.is_none() {
-            let (first, step) = resolution.lattice();
+            let Lattice { first, step } = resolution.lattice();
             let beyond = resolution.harmonics - first;
             resolution.harmonics = first + beyond.next_multiple_of(step);
         }

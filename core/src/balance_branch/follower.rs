@@ -14,6 +14,7 @@ use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::solve::{Toward, along};
 use crate::branches::value::{Chord, orbits_at};
+use crate::cancel::Cancel;
 use crate::continuation::follow::{CurvePoint, FollowOptions};
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -61,6 +62,7 @@ pub(crate) struct Follower {
     pub(crate) chooser: Option<Chooser>,
     pub(crate) from: f64,
     pub(crate) to: f64,
+    pub(crate) cancel: Cancel,
 }
 
 impl std::fmt::Debug for Follower {
@@ -81,6 +83,7 @@ impl Follower {
             self.variable,
             resolution,
         )
+        .until(&self.cancel)
     }
 
     /// A reader of orbits of that resolution.
@@ -175,6 +178,7 @@ impl Follower {
             resolution: self.resolution,
             newton: options.newton,
             motion: Some(motion),
+            cancel: &self.cancel,
         }
     }
 

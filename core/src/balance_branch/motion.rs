@@ -21,7 +21,9 @@ pub(crate) fn moved(follower: &Follower, moving: Moving<'_>) -> Moved {
         Variable::Omega => omega = moving.value,
         Variable::Parameter(index) => parameters[index] = moving.value,
     }
-    let options = Options::default().tolerance(TOLERANCE);
+    let options = Options::default()
+        .tolerance(TOLERANCE)
+        .cancel(&follower.cancel);
     let Ok(mut flow) = time::at(&follower.system, &parameters, omega, options) else {
         return Moved {
             positions: None,

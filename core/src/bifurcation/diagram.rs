@@ -13,7 +13,7 @@ use crate::branches::branch::Branch;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::Stop;
-use crate::error::{Error, chain};
+use crate::error::{Error, ErrorKind, chain};
 use crate::event::{EventKind, Side};
 use crate::response::{FrequencyResponse, OrbitMethod};
 
@@ -124,6 +124,16 @@ pub enum Reason {
         serde(serialize_with = "crate::numeric::serialise::text")
     )]
     Failed(Error),
+}
+
+impl Reason {
+    /// Why no branch was followed, as the search for its first orbit says.
+    pub(super) fn of(error: Error) -> Self {
+        match error.kind() {
+            ErrorKind::Cancelled => Self::Interrupted,
+            _ => Self::Failed(error),
+        }
+    }
 }
 
 impl fmt::Display for Reason {
@@ -273,7 +283,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             return Err(Reason::Interrupted);
         }
         let request = self.response.clone().period(period).near_state(state);
-        let orbit = request.orbit(value).map_err(Reason::Failed)?;
+        let orbit = request.orbit(value).map_err(Reason::of)?;
         let known = |limb: &Limb| known::contains(&self.response, limb, &orbit);
         if self.diagram.branches.iter().any(known) {
             return Ok(());
@@ -286,7 +296,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             .near_orbit(&orbit.orbit)
             .max_points(self.points_left / 2);
         let branch = request.through_with(value, |progress| self.watch.see(progress));
-        let branch = branch.map_err(Reason::Failed)?;
+        let branch = branch.map_err(Reason::of)?;
         self.add(Origin::Attractor { value }, 0, branch);
         Ok(())
     }
@@ -342,7 +352,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
                 break;
             }
         }
-        failed.map_or(Ok(()), |error| Err(Reason::Failed(error)))
+        failed.map_or(Ok(()), |error| Err(Reason::of(error)))
     }
 
     /// Another branch that passes the same crossing.

@@ -4,9 +4,10 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::diagram::{Diagram, Origin, Reason, Search, Watch};
-use crate::attractors::basin::{Basin, Basins, Progress};
+use crate::attractors::basin::{Basin, Basins, Visit};
 use crate::bifurcation::error::BifurcationError;
-use crate::branches::progress;
+use crate::branches::progress::Progress;
+use crate::cancel::Cancel;
 use crate::continuation::step;
 use crate::error::Error;
 use crate::model::request::RequestError;
@@ -169,7 +170,8 @@ impl<M: OrbitMethod> Bifurcations<M> {
 
     /// Also looks for branches that nothing leads to: at a value of what is varied, motions from a grid of initial states are
     /// followed until they have settled, and the branch of every periodic orbit that they settle to, of whatever period, is
-    /// followed unless it is known.
+    /// followed unless it is known. The basin is of the same system, with its grid, the longest period, the patience, the bound and the
+    /// threads; frequency, tolerance and parameters are those of this request at the value.
     #[must_use]
     pub fn search(mut self, value: f64, basin: Basin) -> Self {
         self.searched.push((value, basin));
@@ -190,6 +192,13 @@ impl<M: OrbitMethod> Bifurcations<M> {
         self
     }
 
+    /// What is computed ends when this token is cancelled, the search for a first orbit too.
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.response = self.response.cancel(cancel);
+        self
+    }
+
     /// Follows the first branch and all that are connected with it.
     ///
     /// # Errors
@@ -205,20 +214,20 @@ impl<M: OrbitMethod> Bifurcations<M> {
     /// As [`run`](Self::run).
     pub fn run_with(
         &self,
-        visit: impl FnMut(progress::Progress<'_>) -> ControlFlow<()>,
+        visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Diagram, Error> {
-        self.run_watched(visit, &|_| true)
+        self.run_watched(visit, |_| ControlFlow::Continue(()))
     }
 
     /// As [`run_with`](Self::run_with), and tells `watch` how far each [`search`](Self::search) is, which takes long before it has
-    /// an orbit to show. It ends the computation by answering false; what was found until then comes back.
+    /// an orbit to show: to show progress, or to stop.
     ///
     /// # Errors
     /// As [`run`](Self::run).
     pub fn run_watched(
         &self,
-        mut visit: impl FnMut(progress::Progress<'_>) -> ControlFlow<()>,
-        watch: &(dyn Fn(Progress) -> bool + Sync),
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+        mut watch: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
     ) -> Result<Diagram, Error> {
         let started = Instant::now();
         let [from, to] = self.response.request.range()?;
@@ -229,9 +238,9 @@ impl<M: OrbitMethod> Bifurcations<M> {
                 let name = "search";
                 return Err(RequestError::Option { name, value, must }.into());
             }
-            let order = 2 * self.response.request.system.facts().coordinates.len();
             basin
-                .check(Some(order))
+                .check()
+                .and_then(|_| basin.is_of(&*self.response.request.system))
                 .map_err(|reason| BifurcationError::Search { value, reason })?;
         }
         let mut seen = Watch::new(&mut visit);
@@ -250,10 +259,10 @@ impl<M: OrbitMethod> Bifurcations<M> {
                 search.diagram.missed.push((*value, Reason::Interrupted));
                 continue;
             }
-            let found = match self.basins(*value, basin, watch) {
+            let found = match self.basins(*value, basin, &mut watch) {
                 Ok(found) => found,
                 Err(error) => {
-                    search.diagram.missed.push((*value, Reason::Failed(error)));
+                    search.diagram.missed.push((*value, Reason::of(error)));
                     continue;
                 }
             };
@@ -276,12 +285,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
     }
 
     /// What motions settle to at a value.
-    fn basins(
-        &self,
-        value: f64,
-        basin: &Basin,
-        watch: &(dyn Fn(Progress) -> bool + Sync),
-    ) -> Result<Basins, Error> {
+    fn basins(&self, value: f64, basin: &Basin, visit: Visit<'_>) -> Result<Basins, Error> {
         let request = &self.response.request;
         let variable = request.variable()?;
         let mut parameters = request.parameters();
@@ -289,9 +293,14 @@ impl<M: OrbitMethod> Bifurcations<M> {
         if let Variable::Parameter(index) = variable {
             parameters[index] = value;
         }
-        let options = time::Options::default().tolerance(SETTLED);
-        let flow = time::at(&request.system, &parameters, omega, options)?;
-        let found = basin.compute(vec![flow], None, watch);
+        let options = time::Options::default()
+            .tolerance(SETTLED)
+            .cancel(&request.cancel);
+        let basin = basin.clone().cancel(&request.cancel);
+        let flows = (0..basin.threads_wanted())
+            .map(|_| time::at(&request.system, &parameters, omega, options.clone()));
+        let flows = flows.collect::<Result<_, Error>>()?;
+        let found = basin.compute(flows, None, visit);
         found.map_err(|reason| BifurcationError::Search { value, reason }.into())
     }
 

@@ -1,5 +1,6 @@
 //! Why there is no orbit, or none was found.
 
+use crate::cancel::Cancel;
 use crate::continuation::newton::NewtonError;
 use crate::error::{Error, ErrorKind};
 use crate::event::EventKind;
@@ -84,6 +85,12 @@ pub enum OrbitError {
         /// Value of what is varied there.
         value: f64,
     },
+    /// The search for an orbit was [cancelled](crate::Cancel).
+    #[error("cancelled before there was a periodic orbit at {}", Decimal::plain(*.value))]
+    Cancelled {
+        /// Where it was looked for.
+        value: f64,
+    },
 }
 
 crate::error::sentence_as_debug! {
@@ -94,6 +101,7 @@ crate::error::sentence_as_debug! {
     Beyond { value, fold }
     Lost { value, from, to }
     NoBranch { kind, value }
+    Cancelled { value }
     ;
 }
 
@@ -104,9 +112,20 @@ impl From<OrbitError> for Error {
             OrbitError::NoSuchPeriod { attempts, .. } if attempts.made < attempts.planned => {
                 ErrorKind::Limit
             }
+            OrbitError::Cancelled { .. } => ErrorKind::Cancelled,
             _ => ErrorKind::NoOrbit,
         };
         Self::new(kind, error)
+    }
+}
+
+/// What is said of a search at a value that failed: where it was cancelled that it was, and not what that made of it.
+pub(crate) fn unless_cancelled(cancel: &Cancel, value: f64, error: Error) -> Error {
+    match error.kind() {
+        ErrorKind::NoOrbit | ErrorKind::Limit | ErrorKind::Motion if cancel.is_cancelled() => {
+            OrbitError::Cancelled { value }.into()
+        }
+        _ => error,
     }
 }
 

@@ -70,8 +70,6 @@ pub enum Stage {
     Curve,
     /// It lets motions settle, value by value: values.
     Sweep,
-    /// It averages rates along a motion: periods.
-    Exponents,
     /// It lets motions settle, cell by cell: cells.
     Basin,
 }
@@ -83,7 +81,6 @@ impl std::fmt::Display for Stage {
             Self::Branch => "branch",
             Self::Curve => "curve",
             Self::Sweep => "sweep",
-            Self::Exponents => "exponents",
             Self::Basin => "basin",
         })
     }

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
+use super::error::unless_cancelled;
 use super::orbit::Orbit;
+use crate::cancel::Cancel;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::model::request::RequestError;
@@ -25,6 +27,8 @@ pub struct Request {
     pub(crate) max_points: usize,
     pub(crate) largest_step: f64,
     pub(crate) stability: bool,
+    /// Ends what is computed.
+    pub(crate) cancel: Cancel,
 }
 
 /// What is known of the first orbit beforehand.
@@ -62,6 +66,7 @@ impl Request {
             max_points: 20_000,
             largest_step: StepControl::default().largest,
             stability: true,
+            cancel: Cancel::new(),
         }
     }
 
@@ -126,6 +131,23 @@ impl Request {
             (Variable::Parameter(_), None) => Err(RequestError::Missing { name: "omega" }.into()),
             (Variable::Parameter(_), Some(omega)) => Ok(Some(omega)),
         }
+    }
+
+    /// The same with a token that nobody cancels: for what is asked of a result later.
+    pub(crate) fn afterwards(&self) -> Self {
+        Self {
+            cancel: Cancel::new(),
+            ..self.clone()
+        }
+    }
+
+    /// What a computation gave that began at a value; where it was cancelled, that it was.
+    pub(crate) fn unless_cancelled<T>(
+        &self,
+        value: f64,
+        found: Result<T, Error>,
+    ) -> Result<T, Error> {
+        found.map_err(|error| unless_cancelled(&self.cancel, value, error))
     }
 
     /// An orbit is one of a system with as many coordinates.

@@ -100,7 +100,7 @@ pub enum Stop {
         /// How many times the first orbit's oscillation the last one is.
         growth: f64,
     },
-    /// The caller asked to stop.
+    /// The caller asked to stop, or [cancelled](crate::Cancel) the work.
     Interrupted,
 }
 
@@ -256,6 +256,10 @@ pub(crate) fn follow_until_stuck<P: AsProblem + ?Sized>(
         if let Some(from) = &previous
             && visit(problem, newton, Visit::Between(from, &point)).is_break()
         {
+            return stopped(Stop::Interrupted);
+        }
+        if problem.problem().is_cancelled() {
+            // What is between the two points may not have been looked at to its end.
             return stopped(Stop::Interrupted);
         }
         if let Some(stop) = stop {

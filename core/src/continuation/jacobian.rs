@@ -357,7 +357,7 @@ mod tests {
     use nalgebra::DVector;
 
     fn filled(partition: Partition) -> Jacobian {
-        let mut random = Random::new(4);
+        let mut random = Random::seeded(4);
         let mut next = |_| random.between(-1.0, 1.0);
         let mut jacobian = Jacobian::new(partition);
         for row in 0..=jacobian.partition.core.len() {

@@ -39,6 +39,11 @@ pub trait Problem {
     /// Whether an unknown is the mean of a coordinate, which is measured apart from what oscillates about it.
     fn is_mean(&self, unknown: usize) -> bool;
 
+    /// Whether the work with it is to end, which every iteration of Newton's method asks.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+
     /// About how many multiplications all evaluations so far have taken, for a search whose work is limited.
     fn operations(&self) -> u64 {
         0

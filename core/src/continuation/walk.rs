@@ -298,6 +298,7 @@ impl Walk {
                     newton.statistics.rejected_steps += 1;
                     shorter
                 }
+                Err(NewtonError::Cancelled { .. }) => return Err(Stop::Interrupted),
                 Err(reason) => {
                     newton.statistics.rejected_steps += 1;
                     steps.after_failure(self.step).ok_or(Stop::StepTooShort {
@@ -412,10 +413,13 @@ impl Walk {
         self.scale = from.scale;
         // A point beyond the range is never kept: the equations need not make sense there.
         self.solve_at(problem, newton, limit)
-            .map_err(|reason| Stop::StepTooShort {
-                step: self.step,
-                value: from.parameter(),
-                reason,
+            .map_err(|reason| match reason {
+                NewtonError::Cancelled { .. } => Stop::Interrupted,
+                reason => Stop::StepTooShort {
+                    step: self.step,
+                    value: from.parameter(),
+                    reason,
+                },
             })?;
         let mut point = self.point(problem, newton);
         if newton

@@ -3,6 +3,8 @@
 //! A [`System`] lists its coefficients in any order; the runtime walks them term by term. The lists are made once, so
 //! that the same walk serves the coefficients and their derivatives.
 
+use nalgebra::DMatrix;
+
 use crate::system::{Place, System, Wave};
 
 /// An entry of a matrix or of the load, times a wave.
@@ -14,6 +16,20 @@ pub(crate) struct Entry {
     pub(crate) wave: Wave,
     /// Position of its coefficient.
     pub(crate) coefficient: usize,
+}
+
+/// Adds what is constant in a matrix of order `n` to `rows`, row by row.
+pub(crate) fn add_constant(entries: &[Entry], coefficients: &[f64], n: usize, rows: &mut [f64]) {
+    for entry in entries.iter().filter(|entry| entry.wave.harmonic == 0) {
+        rows[entry.row * n + entry.column] += coefficients[entry.coefficient];
+    }
+}
+
+/// What is constant in a matrix of order `n`.
+pub(crate) fn constant(entries: &[Entry], coefficients: &[f64], n: usize) -> DMatrix<f64> {
+    let mut rows = vec![0.0; n * n];
+    add_constant(entries, coefficients, n, &mut rows);
+    DMatrix::from_row_slice(n, n, &rows)
 }
 
 /// A component of a direction, or a term of an offset, times a wave.
@@ -117,69 +133,44 @@ impl Layout {
     }
 
     fn add(&mut self, place: Place, coefficient: usize) {
-        let constant = Wave::CONSTANT;
+        let entry = |row, column, wave| Entry {
+            row,
+            column,
+            wave,
+            coefficient,
+        };
+        let term = |index, wave| Term {
+            index,
+            wave,
+            coefficient,
+        };
         match place {
-            Place::Mass { row, column } => {
-                self.mass.push(Entry {
-                    row,
-                    column,
-                    wave: constant,
-                    coefficient,
-                });
-            }
-            Place::Damping { row, column } => {
-                self.damping.push(Entry {
-                    row,
-                    column,
-                    wave: constant,
-                    coefficient,
-                });
-            }
+            Place::Mass { row, column } => self.mass.push(entry(row, column, Wave::CONSTANT)),
+            Place::Damping { row, column } => self.damping.push(entry(row, column, Wave::CONSTANT)),
             Place::Stiffness { row, column, wave } => {
-                self.stiffness.push(Entry {
-                    row,
-                    column,
-                    wave,
-                    coefficient,
-                });
+                self.stiffness.push(entry(row, column, wave));
             }
-            Place::Load { row, wave } => {
-                self.load.push(Entry {
-                    row,
-                    column: 0,
-                    wave,
-                    coefficient,
-                });
-            }
+            Place::Load { row, wave } => self.load.push(entry(row, 0, wave)),
             Place::ForceDirection { contact, row, wave } => {
-                self.contacts[contact].force.push(Term {
-                    index: row,
-                    wave,
-                    coefficient,
-                });
+                self.contacts[contact].force.push(term(row, wave));
             }
             Place::GapDirection {
                 contact,
                 column,
                 wave,
-            } => {
-                self.contacts[contact].gap.push(Term {
-                    index: column,
-                    wave,
-                    coefficient,
-                });
-            }
-            Place::Offset { contact, wave } => {
-                self.contacts[contact].offset.push(Term {
-                    index: 0,
-                    wave,
-                    coefficient,
-                });
-            }
+            } => self.contacts[contact].gap.push(term(column, wave)),
+            Place::Offset { contact, wave } => self.contacts[contact].offset.push(term(0, wave)),
             Place::Argument { contact, index } => {
                 self.contacts[contact].arguments.push((index, coefficient));
             }
+            // The contract is of this very version: Cargo.toml asks for it.
+            other => unreachable!("this version of the contract has no {other:?}"),
         }
+    }
+
+    /// The mass matrix.
+    pub(crate) fn mass(&self, coefficients: &[f64]) -> DMatrix<f64> {
+        constant(&self.mass, coefficients, self.coordinates)
     }
 
     /// Highest harmonic in the declaration, in multiples of `omega / divisor`.

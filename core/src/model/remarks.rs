@@ -4,7 +4,7 @@ use std::fmt;
 
 use nalgebra::DMatrix;
 
-use crate::model::layout::{Entry, Layout};
+use crate::model::layout::{Layout, constant};
 use crate::system::System;
 
 /// Entries that differ by less, relative to the largest, are equal.
@@ -74,7 +74,7 @@ pub fn of(system: &dyn System, omega: f64) -> Vec<Remark> {
         remarks.push(Remark::NoExcitation);
     }
     for (matrix, entries) in [("mass", &layout.mass), ("stiffness", &layout.stiffness)] {
-        let matrix_of = constant_part(entries, layout.coordinates, &coefficients);
+        let matrix_of = constant(entries, &coefficients, layout.coordinates);
         remarks.extend(
             unsymmetric(&matrix_of).map(|(row, column)| Remark::Unsymmetric {
                 matrix,
@@ -104,15 +104,6 @@ fn is_excited(layout: &Layout, coefficients: &[f64]) -> bool {
         wave.harmonic > 0 && coefficients[coefficient] != 0.0
     };
     waves.any(varies) || of_contacts.any(varies)
-}
-
-/// A matrix of (1) of [`system`](crate::system), without what varies in time.
-fn constant_part(entries: &[Entry], coordinates: usize, coefficients: &[f64]) -> DMatrix<f64> {
-    let mut matrix = DMatrix::zeros(coordinates, coordinates);
-    for entry in entries.iter().filter(|entry| entry.wave.harmonic == 0) {
-        matrix[(entry.row, entry.column)] += coefficients[entry.coefficient];
-    }
-    matrix
 }
 
 /// The pair of entries that differ most, if they do.

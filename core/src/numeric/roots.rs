@@ -10,7 +10,7 @@
 //! Sources: Chandrupatla (1997), A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without using
 //! derivatives, Advances in Engineering Software 28, 145. Press et al. (2007), Numerical Recipes, section 9.4.
 
-/// More steps than any function needs, discontinuous ones included.
+/// Steps, at most: more than any function needs, discontinuous ones included.
 pub(crate) const STEPS: usize = 200;
 
 /// A function at a place.

@@ -198,7 +198,13 @@ fn as_branch(asked: Asked<'_>, follower: Follower, followed: Followed) -> Branch
     events.sort_by_key(|event| event.after);
     turns.sort_by_key(|turn| turn.after);
     let system = Arc::clone(&asked.request.system);
-    let request = Following::Balance(Box::new(follower), asked.request.clone(), *asked.balance);
+    // What is asked of the branch later is not part of this run.
+    let request = asked.request.afterwards();
+    let follower = Follower {
+        cancel: request.cancel.clone(),
+        ..follower
+    };
+    let request = Following::Balance(Box::new(follower), request, *asked.balance);
     Branch {
         model: Model::of(system.as_ref()),
         varied: asked.request.varied(),

@@ -212,7 +212,10 @@ fn with_request(branch: Branch, request: &Request, shooting: Shooting) -> Branch
     Branch {
         further: Further {
             system: Some(Arc::clone(&request.system)),
-            request: Some(Arc::new(Following::Shooting(request.clone(), shooting))),
+            request: Some(Arc::new(Following::Shooting(
+                request.afterwards(),
+                shooting,
+            ))),
         },
         ..branch
     }

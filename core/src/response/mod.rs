@@ -16,6 +16,7 @@ use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::{Progress, See};
 use crate::branches::request::{Guess, Request};
+use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::event::Side;
 use crate::orbit::stability::Method;
@@ -255,6 +256,13 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         self
     }
 
+    /// What is computed ends when this token is cancelled, the search for a first orbit too.
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.request.cancel = cancel.clone();
+        self
+    }
+
     /// Stop after this many points. Default: 20000.
     #[must_use]
     pub fn max_points(mut self, points: usize) -> Self {
@@ -268,7 +276,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     /// If a parameter or an option is not usable, or no orbit is found; by shooting
     /// [`OrbitError::Beyond`](crate::OrbitError::Beyond) if the branch that comes near turns back before the value.
     pub fn orbit(&self, value: f64) -> Result<Point, Error> {
-        self.method.orbit(&self.request, value)
+        let found = self.method.orbit(&self.request, value);
+        self.request.unless_cancelled(value, found)
     }
 
     /// Computes the branch, from one end of the range to the other.
@@ -288,7 +297,9 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         &self,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
-        self.method.run(&self.request, &mut visit)
+        let found = self.method.run(&self.request, &mut visit);
+        let from = self.request.from.unwrap_or(f64::NAN);
+        self.request.unless_cancelled(from, found)
     }
 
     /// The branch that begins at an event of another one, as [`run`](Self::run) would follow it: of twice the period at a doubling
@@ -336,7 +347,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         side: Side,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
-        self.method.switch(&self.request, event, side, &mut visit)
+        let found = self.method.switch(&self.request, event, side, &mut visit);
+        self.request.unless_cancelled(event.point.value, found)
     }
 
     /// The branch through the orbit at a value inside the range, both ways as far as it goes; [`Branch::stopped`] is that of the
@@ -359,7 +371,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         value: f64,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
-        self.method.through(&self.request, value, &mut visit)
+        let found = self.method.through(&self.request, value, &mut visit);
+        self.request.unless_cancelled(value, found)
     }
 
     /// An orbit with its Fourier series and everything that is read off; see [`Branch::complete`].
@@ -370,7 +383,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         if point.orbit.has_series() {
             return Ok(point.clone());
         }
-        by_shooting::completed(&self.request, self.shooting(), point)
+        let found = by_shooting::completed(&self.request, self.shooting(), point);
+        self.request.unless_cancelled(point.value, found)
     }
 
     /// The options of shooting, where that is the method, or those by default.
@@ -401,7 +415,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         range: [f64; 2],
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Track, Error> {
-        by_shooting::track(
+        let found = by_shooting::track(
             &self.request,
             self.shooting(),
             event,
@@ -410,6 +424,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
                 range,
             },
             &mut visit,
-        )
+        );
+        self.request.unless_cancelled(event.point.value, found)
     }
 }

@@ -142,6 +142,7 @@ impl Asked<'_> {
             stability: self.request.stability,
             points: step::max_points(self.request.max_points)?,
             steps: step::largest_step(self.request.largest_step)?,
+            cancel: self.request.cancel.clone(),
         })
     }
 
@@ -207,9 +208,10 @@ impl Asked<'_> {
         let system = Arc::clone(&self.request.system);
         let parameters = parameters.to_vec();
         let exact = Affine::new(&system, &parameters, omega).is_ok();
+        let cancel = self.request.cancel.clone();
         Source {
             make: Box::new(move |tolerance| {
-                let options = Options::default().tolerance(tolerance);
+                let options = Options::default().tolerance(tolerance).cancel(&cancel);
                 time::at(&system, &parameters, omega, options)
             }),
             exact,
@@ -226,7 +228,7 @@ impl Request {
             &self.system,
             &point.parameters,
             point.orbit.omega,
-            Options { tolerance },
+            Options::default().tolerance(tolerance).cancel(&self.cancel),
         )?;
         let mut map = Stroboscope::new(flow);
         let mut state = point.orbit.state();

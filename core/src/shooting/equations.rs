@@ -22,6 +22,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DMatrixView};
 
 use super::setting::Setting;
+use crate::cancel::Cancel;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
 use crate::error::Error;
@@ -106,6 +107,7 @@ pub(super) struct Equations {
     state: Vec<f64>,
     /// Derivatives of the residual by the parameter.
     column: Vec<f64>,
+    cancel: Cancel,
 }
 
 impl Equations {
@@ -131,6 +133,7 @@ impl Equations {
             disturbance: 0.0,
             failure: None,
             tolerance,
+            cancel: setting.cancel.clone(),
         })
     }
 
@@ -389,6 +392,10 @@ impl Problem for Equations {
         if let Some(jacobian) = jacobian {
             jacobian.set_column(&self.column);
         }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.cancel.is_cancelled()
     }
 
     fn weights(&self, weights: &mut [f64]) {

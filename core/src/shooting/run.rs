@@ -98,6 +98,9 @@ impl<'r> Run<'r> {
             });
         }
         match (outcome, self.failure, failure) {
+            (Ok(_), _, Some(FlowError::Cancelled { .. })) if !self.points.is_empty() => {
+                Ok(Stop::Interrupted)
+            }
             (Err(reason), _, failure) => Err(no_orbit(options.from, reason, failure)),
             (_, Some(reason), _) | (Ok(Stop::StepTooShort { .. }), _, Some(reason)) => {
                 Ok(Stop::Motion { value, reason })

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::cancel::Cancel;
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
 use crate::continuation::step::StepControl;
@@ -41,6 +42,7 @@ pub(crate) struct Setting {
     pub(super) stability: bool,
     pub(super) points: usize,
     pub(super) steps: StepControl,
+    pub(super) cancel: Cancel,
 }
 
 /// Updates of Newton's method at most.

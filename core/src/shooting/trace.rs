@@ -2,8 +2,6 @@
 //!
 //! What is special is looked for by [`watch`](super::watch).
 
-use std::ops::ControlFlow;
-
 use nalgebra::Complex;
 
 use super::run::no_orbit;
@@ -199,15 +197,20 @@ pub(crate) fn track(
         });
     }
     let interrupted = matches!(back.end, TrackEnd::Stopped(Stop::Interrupted));
-    // The other half is then the event alone.
-    let end: See<'_> = &mut |_| ControlFlow::Break(());
-    let mut forth = half(
-        setting,
-        event,
-        plane,
-        1.0,
-        if interrupted { end } else { visit },
-    )?;
+    let forth = if interrupted {
+        None
+    } else {
+        match half(setting, event, plane, 1.0, visit) {
+            Err(_) if setting.cancel.is_cancelled() => None,
+            forth => Some(forth?),
+        }
+    };
+    // Without the other half there is the event, where both begin.
+    let mut forth = forth.unwrap_or(Half {
+        points: Vec::new(),
+        special: Vec::new(),
+        end: TrackEnd::Stopped(Stop::Interrupted),
+    });
     let count = back.points.len();
     back.points.reverse();
     back.special.reverse();
@@ -299,6 +302,7 @@ fn half(
     let failure = watch.failure.or(curve.equations.failure);
     let end = match (outcome, failure) {
         _ if interrupted => TrackEnd::Stopped(Stop::Interrupted),
+        (Ok(_), Some(FlowError::Cancelled { .. })) => TrackEnd::Stopped(Stop::Interrupted),
         _ if watch.left => TrackEnd::Left,
         _ if watch.joined => TrackEnd::Joined,
         (Err(reason), failure) => return Err(no_orbit(event.point.value, reason, failure)),

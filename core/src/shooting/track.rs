@@ -203,6 +203,10 @@ impl Problem for Curve<'_> {
         (self.moved, self.column) = (moved, column);
     }
 
+    fn is_cancelled(&self) -> bool {
+        self.equations.is_cancelled()
+    }
+
     fn weights(&self, weights: &mut [f64]) {
         let n = self.room.len();
         self.equations.weights(&mut weights[..n]);

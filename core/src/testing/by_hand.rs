@@ -2,16 +2,13 @@
 //!
 //! `x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = A cos(omega t) + W`, Wang et al. (2021), Eq. (1).
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::law::{
     ArgumentFacts, Derivatives, Exponent, Law, LawFacts, LevelFacts, On, Parts, PieceFacts,
     Quantity, RateDependence, TermFacts, Variation,
 };
-use crate::system::{
-    Bound, ContactFacts, ParameterFacts, Part, Place, System, SystemFacts, Variable, Wave,
-};
+use crate::system::{ContactFacts, ParameterFacts, Place, System, SystemFacts, Variable, Wave};
 
 /// The oscillator, with all its parameters at run time.
 #[derive(Debug, Clone)]
@@ -28,61 +25,34 @@ struct PowerLaw {
     facts: LawFacts,
 }
 
-const COSINE: Wave = Wave {
-    harmonic: 1,
-    part: Part::Cosine,
-};
-
 impl PowerForm {
     pub(crate) fn new(one_sided: bool, alpha: f64, zeta: f64, load: f64, drive: f64) -> Self {
-        let parameter = |name: &'static str| ParameterFacts {
-            name: name.into(),
-            documentation: "".into(),
-            minimum: Bound::Unbounded,
-            maximum: Bound::Unbounded,
-        };
-        let facts = SystemFacts {
-            name: "PowerForm".into(),
-            equation: "".into(),
-            coordinates: vec!["x".into()].into(),
-            parameters: ["zeta", "alpha", "load", "drive"]
-                .map(parameter)
-                .to_vec()
-                .into(),
-            divisor: 1,
-            laws: 1,
-            contacts: vec![ContactFacts { law: 0 }].into(),
-            places: vec![
-                Place::Mass { row: 0, column: 0 },
-                Place::Load {
-                    row: 0,
-                    wave: Wave::CONSTANT,
-                },
-                Place::Load {
-                    row: 0,
-                    wave: COSINE,
-                },
-                Place::ForceDirection {
-                    contact: 0,
-                    row: 0,
-                    wave: Wave::CONSTANT,
-                },
-                Place::GapDirection {
-                    contact: 0,
-                    column: 0,
-                    wave: Wave::CONSTANT,
-                },
-                Place::Argument {
-                    contact: 0,
-                    index: 0,
-                },
-                Place::Argument {
-                    contact: 0,
-                    index: 1,
-                },
-            ]
-            .into(),
-        };
+        let (wave, contact) = (Wave::CONSTANT, 0);
+        let places = [
+            Place::Mass { row: 0, column: 0 },
+            Place::Load { row: 0, wave },
+            Place::Load {
+                row: 0,
+                wave: Wave::cosine(1),
+            },
+            Place::ForceDirection {
+                contact,
+                row: 0,
+                wave,
+            },
+            Place::GapDirection {
+                contact,
+                column: 0,
+                wave,
+            },
+            Place::Argument { contact, index: 0 },
+            Place::Argument { contact, index: 1 },
+        ];
+        let facts = SystemFacts::new("PowerForm")
+            .coordinates(["x"])
+            .parameters(["zeta", "alpha", "load", "drive"].map(ParameterFacts::new))
+            .contacts(1, [ContactFacts::new(0)])
+            .places(places);
         let law = PowerLaw::new(one_sided);
         Self {
             values: [zeta, alpha, load, drive],
@@ -95,16 +65,8 @@ impl PowerForm {
 /// The force is a power of the distance from the level, the stiffness one less; by the exponent, with a logarithm.
 fn terms() -> Vec<TermFacts> {
     let term = |of, number, logarithm| {
-        let exponent = Exponent {
-            number,
-            argument: Some(1),
-        };
-        TermFacts {
-            of,
-            lower: exponent,
-            upper: exponent,
-            logarithm,
-        }
+        let exponent = Exponent::of_argument(number, 1);
+        TermFacts::new(of, exponent, exponent).logarithm(logarithm)
     };
     vec![
         term(Quantity::Force, 0.0, false),
@@ -115,39 +77,21 @@ fn terms() -> Vec<TermFacts> {
 
 impl PowerLaw {
     fn new(one_sided: bool) -> Self {
-        let piece = |zero: bool| {
-            let variation = |v| if zero { Variation::Zero } else { v };
-            PieceFacts {
-                affine: zero,
-                force: variation(Variation::Varying),
-                by_gap: variation(Variation::Varying),
-                by_rate: variation(Variation::Constant),
-                by_argument: vec![variation(Variation::Varying); 2].into(),
-                terms: if zero {
-                    Cow::Borrowed(&[])
-                } else {
-                    terms().into()
-                },
-            }
+        let slopes = |piece: PieceFacts| piece.slopes(Variation::Varying, Variation::Constant);
+        let closed = slopes(PieceFacts::smooth(2)).terms(terms());
+        let open = if one_sided {
+            PieceFacts::zero(2)
+        } else {
+            closed.clone()
         };
-        let facts = LawFacts {
-            name: "contact".into(),
-            arguments: ["zeta", "alpha"]
-                .map(|name| ArgumentFacts::named(name.into()))
-                .to_vec()
-                .into(),
-            levels: vec![LevelFacts {
-                belongs_above: false,
-                force_jumps: false,
-                by_gap_jumps: true,
-                by_rate_jumps: one_sided,
-                unbounded_by_gap: true,
-            }]
-            .into(),
-            pieces: vec![piece(one_sided), piece(false)].into(),
-            rate: RateDependence::Linear,
-            odd: !one_sided,
-        };
+        let level = LevelFacts::default()
+            .by_gap_jumps(true)
+            .by_rate_jumps(one_sided)
+            .unbounded_by_gap(true);
+        let facts = LawFacts::new("contact", [level], [open, closed])
+            .arguments(["zeta", "alpha"].map(|name| ArgumentFacts::named(name.into())))
+            .rate(RateDependence::Linear)
+            .odd(!one_sided);
         Self { one_sided, facts }
     }
 

@@ -108,10 +108,7 @@ impl Divergence {
         let n = layout.coordinates;
         let mut coefficients = vec![0.0; layout.coefficients];
         system.coefficients(parameters, omega, &mut coefficients);
-        let mut mass = DMatrix::zeros(n, n);
-        for entry in &layout.mass {
-            mass[(entry.row, entry.column)] += coefficients[entry.coefficient];
-        }
+        let mass = layout.mass(&coefficients);
         let determinant = mass.determinant();
         let inverse = mass.try_inverse();
         let inverse = inverse.ok_or(ModelError::SingularMass { determinant })?;

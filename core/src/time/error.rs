@@ -64,6 +64,12 @@ pub enum FlowError {
         /// Where.
         phase: f64,
     },
+    /// The motion was [cancelled](crate::Cancel).
+    #[error("cancelled at the phase {phase}")]
+    Cancelled {
+        /// Where.
+        phase: f64,
+    },
     /// The mass matrix is singular.
     #[error("the mass matrix is singular: its determinant is {determinant:e}")]
     SingularMass {
@@ -104,6 +110,7 @@ crate::error::sentence_as_debug! {
     TooManySteps { phase, steps }
     Rests { phase }
     Grazes { phase }
+    Cancelled { phase }
     SingularMass { determinant }
     Value { variable, value }
     Levels { contact }
@@ -140,6 +147,7 @@ impl FlowError {
         match self {
             Self::Value { .. } | Self::Entries { .. } | Self::NoPeriods => ErrorKind::Request,
             Self::SingularMass { .. } | Self::Levels { .. } => ErrorKind::Model,
+            Self::Cancelled { .. } => ErrorKind::Cancelled,
             _ => ErrorKind::Motion,
         }
     }
@@ -153,7 +161,8 @@ impl FlowError {
             | Self::TooManySwitches { phase, .. }
             | Self::TooManySteps { phase, .. }
             | Self::Rests { phase }
-            | Self::Grazes { phase } => *phase = to(*phase),
+            | Self::Grazes { phase }
+            | Self::Cancelled { phase } => *phase = to(*phase),
             Self::SingularMass { .. }
             | Self::NoPeriods
             | Self::Value { .. }

@@ -20,6 +20,7 @@ mod tests;
 pub use error::{FlowError, MotionError};
 pub use integrated::Integrated;
 
+use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::system::{System, Variable};
 
@@ -48,7 +49,7 @@ pub trait Flow: Send {
     /// stretch of the motion is shown to `see` once it is complete, in order and without gaps.
     ///
     /// # Errors
-    /// If the motion cannot be continued: state and tangent are then those of the phase that the error tells. If the state or the
+    /// If the motion cannot be continued, or was cancelled: state and tangent are then those of the phase that the error tells. If the state or the
     /// tangent has the wrong number of entries: nothing has moved then.
     fn advance(
         &mut self,
@@ -64,18 +65,23 @@ pub trait Flow: Send {
 }
 
 /// How a flow is made.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Options {
     /// The error allowed in a state, relative to the largest states of the motion; from `1e-14` to `1e-2`. A closed form is
     /// always exact to rounding.
     pub tolerance: f64,
+    /// Ends motions when it is cancelled, which every step and every switch looks at.
+    pub cancel: Cancel,
 }
 
 impl Default for Options {
-    /// A tolerance of `1e-10`.
+    /// A tolerance of `1e-10`, and a token that nobody cancels.
     fn default() -> Self {
-        Self { tolerance: 1e-10 }
+        Self {
+            tolerance: 1e-10,
+            cancel: Cancel::new(),
+        }
     }
 }
 
@@ -91,6 +97,13 @@ impl Options {
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
+        self
+    }
+
+    /// A motion ends when this token is cancelled, with [`FlowError::Cancelled`].
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.cancel = cancel.clone();
         self
     }
 }
@@ -147,11 +160,12 @@ pub fn at(
     omega: f64,
     options: Options,
 ) -> Result<Box<dyn Flow>, Error> {
+    let Options { tolerance, cancel } = options;
     let system = system.shared();
-    let integrated = Integrated::new(&system, values, omega, options.tolerance)?;
+    let integrated = Integrated::new(&system, values, omega, tolerance)?;
     Ok(match affine::Affine::new(&system, values, omega) {
-        Ok(affine) => Box::new(affine),
-        Err(_) => Box::new(integrated),
+        Ok(affine) => Box::new(affine.until(&cancel)),
+        Err(_) => Box::new(integrated.until(&cancel)),
     })
 }
 

@@ -232,3 +232,43 @@ fn a_motion_that_almost_touches_goes_on() {
         assert!((x - y).abs() < 1e-3, "{coarse:?} {fine:?}");
     }
 }
+
+/// A token ends a motion before its next step, forwards and back, and what it says of the phase is where the state is.
+#[test]
+fn a_cancelled_motion_stops_where_it_is() {
+    for (from, to) in [(0.0, 40.0 * TAU), (40.0 * TAU, 0.0)] {
+        for mut flow in flows() {
+            let mut whole = [0.3, 0.1];
+            let mut first = Vec::new();
+            let mut record = |stretch: &dyn Stretch| first.push(stretch.phases().1);
+            flow.advance(from, to, &mut whole, None, Some(&mut record))
+                .unwrap();
+            let cancel = Cancel::new();
+            let options = Options::default().tolerance(1e-13).cancel(&cancel);
+            let mut flow: Box<dyn Flow> = if flow.work().forces == 0 {
+                super::at(&MODEL, &VALUES, 0.9, options).unwrap()
+            } else {
+                let flow = Integrated::new(&MODEL, &VALUES, 0.9, 1e-13).unwrap();
+                Box::new(flow.until(&cancel))
+            };
+            let (mut state, mut seen) = ([0.3, 0.1], Vec::new());
+            let mut stop = |stretch: &dyn Stretch| {
+                seen.push(stretch.phases().1);
+                if seen.len() == 5 {
+                    cancel.cancel();
+                }
+            };
+            let ended = flow.advance(from, to, &mut state, None, Some(&mut stop));
+            assert_eq!(seen, first[..5]);
+            let Err(FlowError::Cancelled { phase }) = ended else {
+                panic!("{ended:?}");
+            };
+            assert!((phase - seen[4]).abs() < 1e-13 * 40.0 * TAU, "{phase}");
+            let steps = flow.work().steps;
+            let before = state;
+            let ended = flow.advance(from, to, &mut state, None, None);
+            assert_eq!(ended, Err(FlowError::Cancelled { phase: from }));
+            assert_eq!((flow.work().steps, state), (steps, before));
+        }
+    }
+}

@@ -20,6 +20,30 @@ const IN_CONTRACT: &[&str] = &["data", "law", "system", "declared", "constants"]
 /// Single files that stand before all rooms, at most four.
 const SHARED: &[&str] = &["event", "cancel"];
 
+/// The modules of the compiler, the first that runs first. What differentiates and simplifies stands before lowering, which takes terms
+/// apart with both; `stages` calls them in the order in which a declaration passes through them.
+const STAGES: &[&str] = &[
+    "errors",
+    "dag",
+    "ast",
+    "index",
+    "ir",
+    "parse",
+    "check",
+    "differentiate",
+    "simplify",
+    "lower",
+    "facts",
+    "primitive",
+    "tape",
+    "interpret",
+    "emit",
+    "stages",
+    "sketch",
+    "law_alone",
+    "text",
+];
+
 /// Packages that the runtime is built on, and which of them each is built on itself.
 const LEAVES: &[(&str, &[&str])] = &[("contract", &[]), ("file", &[]), ("chart", &["file"])];
 
@@ -46,11 +70,9 @@ const ROOMS: &[&str] = &[
 const TESTS: &[&str] = &["guide", "testing"];
 
 /// The arrows of a text that run up.
-fn up(room: &str, text: &str) -> Vec<String> {
+fn up(room: &str, text: &str, order: &[&str]) -> Vec<String> {
     let arrows = Reader::of(&[room.to_owned(), "file".to_owned()], text).arrows;
-    let up = arrows
-        .into_iter()
-        .filter(|arrow| !arrow.runs_down(&order()));
+    let up = arrows.into_iter().filter(|arrow| !arrow.runs_down(order));
     up.map(|arrow| arrow.path).collect()
 }
 
@@ -94,6 +116,11 @@ fn every_module_of_the_root_has_its_place() {
         let may_be_file = [CONTRACT, SHARED, TESTS].concat().contains(&name);
         assert!(!is_file || may_be_file, "{name} is no room");
     }
+}
+
+#[test]
+fn stages_of_the_compiler_name_only_stages_before_them() {
+    assert_no_arrow_runs_up("../macros/compiler", STAGES, 100);
 }
 
 #[test]
@@ -161,11 +188,20 @@ fn planted_arrows_are_found() {
         ("use crate as root;", ""),
     ] {
         assert_eq!(
-            up("balance", text).first().map(String::as_str),
+            up("balance", text, &order()).first().map(String::as_str),
             Some(path),
             "{text}"
         );
     }
+}
+
+#[test]
+fn planted_arrows_of_the_compiler_are_found() {
+    let up = |stage, text| up(stage, text, STAGES);
+    assert_eq!(up("check", "use crate::lower::term;"), ["lower::term"]);
+    assert_eq!(up("tape", "use crate::emit::powers;"), ["emit::powers"]);
+    let none: [&str; 0] = [];
+    assert_eq!(up("lower", "use crate::simplify::expand;"), none);
 }
 
 #[test]
@@ -182,6 +218,10 @@ fn what_is_allowed_is_not_reported() {
         "#[cfg(all(test, feature = \"plot\"))] fn f() { crate::report::f() }",
         "fn f() { a::crate_report::b(); let report = 1; }",
     ] {
-        assert_eq!(up("balance", text), Vec::<String>::new(), "{text}");
+        assert_eq!(
+            up("balance", text, &order()),
+            Vec::<String>::new(),
+            "{text}"
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! What a user of the runtime alone meets: messages, results to keep, structures given as matrices, declarations read from text.
 
+mod cancelled;
 mod messages;
 mod owned;
 mod structure;

@@ -52,10 +52,8 @@ fn text_and_macro_are_one_model() {
 fn compare(model: &dyn System, text: &str) {
     let mut declared = Declaration::parse(text).expect("the macro has accepted it");
     // A macro cannot keep the layout of the equation apart from its tokens; the rest is the same to the letter.
-    let facts = hertzian::system::SystemFacts {
-        equation: model.facts().equation.clone(),
-        ..declared.facts().clone()
-    };
+    let facts = declared.facts().clone();
+    let facts = facts.equation(model.facts().equation.clone());
     assert_eq!(&facts, model.facts());
     let mut values = vec![0.0; facts.parameters.len()];
     model.values(&mut values);

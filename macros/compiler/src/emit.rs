@@ -12,14 +12,10 @@ mod kernel;
 mod law;
 mod names;
 mod pieces;
-mod powers;
 mod raising;
 mod shared;
 mod stub;
 mod system;
-pub(crate) mod tape;
-#[cfg(test)]
-mod tests;
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;

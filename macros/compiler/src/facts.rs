@@ -1,71 +1,21 @@
-//! What is known of a law without evaluating it: `hertzian::law::LawFacts`, derived.
+//! What is known of a law without evaluating it: the facts of the contract, derived.
 
 mod limit;
 mod terms;
 
 use std::collections::HashMap;
 
+use hertzian_contract::law::{
+    ArgumentFacts, LawFacts, LevelFacts, PieceFacts, RateDependence, Variation,
+};
+use hertzian_contract::system::Bound;
+
 use crate::dag::{Dag, Id, Rational, Variable};
 use crate::differentiate::differentiate;
-use crate::ir::{Bound, Law, Level};
+use crate::ir::{Law, Level};
 use crate::simplify::{expand, is_zero};
 
 pub use limit::{Limit, Ranges, at as limit_at};
-pub use terms::{Exponent, Quantity, Term};
-
-/// What is known of a law.
-#[derive(Debug, Clone)]
-pub struct LawFacts {
-    /// One entry per level.
-    pub levels: Vec<LevelFacts>,
-    /// One entry per piece.
-    pub pieces: Vec<PieceFacts>,
-    /// How the force depends on the rate.
-    pub rate: RateDependence,
-    /// `phi(-g, -r) = -phi(g, r)`
-    pub odd: bool,
-}
-
-/// How a force depends on the rate of its gap.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum RateDependence {
-    None,
-    Linear,
-    General,
-}
-
-/// What happens where two pieces meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs, clippy::struct_excessive_bools)]
-pub struct LevelFacts {
-    pub belongs_above: bool,
-    pub force_jumps: bool,
-    pub by_gap_jumps: bool,
-    pub by_rate_jumps: bool,
-    pub unbounded_by_gap: bool,
-}
-
-/// What is known of one piece.
-#[derive(Debug, Clone)]
-#[allow(missing_docs)]
-pub struct PieceFacts {
-    pub affine: bool,
-    pub force: Variation,
-    pub by_gap: Variation,
-    pub by_rate: Variation,
-    pub by_argument: Vec<Variation>,
-    pub terms: Vec<Term>,
-}
-
-/// How a quantity varies over a piece.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum Variation {
-    Zero,
-    Constant,
-    Varying,
-}
 
 /// A piece and its derivatives.
 #[derive(Debug, Clone)]
@@ -110,7 +60,7 @@ pub fn derive(dag: &mut Dag, law: &Law, pieces: &[Piece]) -> LawFacts {
         .enumerate()
         .map(|(index, level)| level_facts(dag, *level, &pieces[index], &pieces[index + 1], ranges))
         .collect::<Vec<_>>();
-    let facts = (0..pieces.len())
+    let facts: Vec<PieceFacts> = (0..pieces.len())
         .map(|index| {
             let lower = index.checked_sub(1).map(|below| law.levels[below].value);
             let upper = law.levels.get(index).map(|level| level.value);
@@ -119,30 +69,33 @@ pub fn derive(dag: &mut Dag, law: &Law, pieces: &[Piece]) -> LawFacts {
         .collect();
     let rate = rate_dependence(dag, pieces);
     let odd = is_odd(dag, law, &levels);
-    LawFacts {
-        levels,
-        pieces: facts,
-        rate,
-        odd,
-    }
+    LawFacts::new(law.name.clone(), levels, facts)
+        .arguments(arguments(law))
+        .rate(rate)
+        .odd(odd)
+}
+
+/// The arguments, with their ranges as far as they are known.
+fn arguments(law: &Law) -> impl Iterator<Item = ArgumentFacts> {
+    let names = law.arguments.iter().enumerate();
+    names.map(|(index, name)| {
+        let argument = ArgumentFacts::named(name.clone().into());
+        match law.ranges.get(index) {
+            Some(&(minimum, maximum)) => argument.range(minimum, maximum),
+            None => argument,
+        }
+    })
 }
 
 fn piece_facts(dag: &mut Dag, piece: &Piece, lower: Option<Id>, upper: Option<Id>) -> PieceFacts {
-    let force = variation(dag, piece.force);
-    let by_gap = variation(dag, piece.by_gap);
-    let by_rate = variation(dag, piece.by_rate);
-    PieceFacts {
-        affine: by_gap != Variation::Varying && by_rate != Variation::Varying,
-        force,
-        by_gap,
-        by_rate,
-        by_argument: piece
-            .by_argument
-            .iter()
-            .map(|&id| variation(dag, id))
-            .collect(),
-        terms: terms::of_piece(dag, piece, lower, upper),
-    }
+    let [force, by_gap, by_rate] =
+        [piece.force, piece.by_gap, piece.by_rate].map(|id| variation(dag, id));
+    let by_argument = piece.by_argument.iter().map(|&id| variation(dag, id));
+    PieceFacts::smooth(0)
+        .force(force)
+        .slopes(by_gap, by_rate)
+        .by_argument(by_argument.collect::<Vec<_>>())
+        .terms(terms::of_piece(dag, piece, lower, upper))
 }
 
 /// How a quantity varies, decided on its expanded form.
@@ -184,13 +137,12 @@ fn level_facts(
         }
     };
     let (by_gap_jumps, unbounded_by_gap) = jump([below.by_gap, above.by_gap]);
-    LevelFacts {
-        belongs_above: level.belongs_above,
-        force_jumps: jump(forces).0,
-        by_gap_jumps,
-        by_rate_jumps: jump([below.by_rate, above.by_rate]).0,
-        unbounded_by_gap,
-    }
+    LevelFacts::default()
+        .belongs_above(level.belongs_above)
+        .force_jumps(jump(forces).0)
+        .by_gap_jumps(by_gap_jumps)
+        .by_rate_jumps(jump([below.by_rate, above.by_rate]).0)
+        .unbounded_by_gap(unbounded_by_gap)
 }
 
 /// How the force depends on the rate, decided on the expanded derivatives.

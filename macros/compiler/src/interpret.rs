@@ -1,59 +1,20 @@
 //! Laws and coefficients as data: one list of operations, and where in it each result is.
 //!
 //! Generated code carries these data for the interpreter, and a declaration that is read at run time is made of them, so
-//! both come from here. The types mirror those of `hertzian::generic`.
+//! both come from here.
+
+use std::borrow::Cow;
+
+use hertzian_contract::data::{LawData, LevelData, Node, PieceData};
+use hertzian_contract::law::{LawFacts, Variation};
 
 use crate::dag::{Dag, Function, Id, Variable};
 use crate::differentiate::differentiate;
-use crate::emit::tape::{Operation, Style, Tape};
-use crate::facts::{LawFacts, Piece, Variation, derive, variation};
+use crate::facts::{Piece, derive, variation};
 use crate::ir::{Law, Model};
 use crate::primitive;
 use crate::simplify::{expand, factor};
-
-/// One operation; a `usize` is the position of an operand, which comes first.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)]
-pub enum Node {
-    Number(f64),
-    Gap,
-    Rate,
-    /// Argument of a law. Of coefficients: a parameter, and after the last of them the frequency.
-    Argument(usize),
-    Add(usize, usize),
-    Subtract(usize, usize),
-    Multiply(usize, usize),
-    Divide(usize, usize),
-    Negate(usize),
-    Absolute(usize),
-    Sign(usize),
-    Integer(usize, i32),
-    Power(usize, usize),
-    PowerLog(usize, usize),
-    Sine(usize),
-    Cosine(usize),
-    Exponential(usize),
-    Tanh(usize),
-}
-
-/// A level: where its value is, and its derivative by each argument.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LevelData {
-    /// The level.
-    pub value: usize,
-    /// By each argument.
-    pub by_argument: Vec<usize>,
-}
-
-/// A piece: where force, derivatives by gap and rate, and by each argument are.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)]
-pub struct PieceData {
-    pub force: usize,
-    pub by_gap: usize,
-    pub by_rate: usize,
-    pub by_argument: Vec<usize>,
-}
+use crate::tape::{Operation, Style, Tape};
 
 /// A law with its derivatives, as expressions and as data.
 #[derive(Debug, Clone)]
@@ -170,19 +131,20 @@ impl Member {
         let mut take = |count: usize| -> Vec<usize> { positions.by_ref().take(count).collect() };
         let count = self.law.arguments.len();
         self.level_data = (0..self.levels.len())
-            .map(|_| LevelData {
-                value: take(1)[0],
-                by_argument: take(count),
-            })
+            .map(|_| LevelData::new(take(1)[0], take(count)))
             .collect();
         self.piece_data = (0..self.pieces.len())
-            .map(|_| PieceData {
-                force: take(1)[0],
-                by_gap: take(1)[0],
-                by_rate: take(1)[0],
-                by_argument: take(count),
+            .map(|_| {
+                let own = [(); 3].map(|()| take(1)[0]);
+                PieceData::new(own, take(count))
             })
             .collect();
+    }
+
+    /// The law as data, among the nodes of its family.
+    pub fn data(&self, nodes: impl Into<Cow<'static, [Node]>>) -> LawData {
+        let (levels, pieces) = (self.level_data.iter(), self.piece_data.iter());
+        LawData::new(nodes, levels.cloned(), pieces.cloned())
     }
 }
 
@@ -208,6 +170,21 @@ impl Coefficients {
             by_parameter: (0..count).map(|_| take()).collect(),
         }
     }
+}
+
+/// Whether the derivatives of laws and coefficients, and what is known of them, can be had with so many operands read and written: a
+/// product of many factors is short, and its second derivative is not.
+pub(crate) fn derivatives_fit(model: &Model, budget: u64) -> bool {
+    let mut trial = model.clone();
+    trial.dag.set_budget(Some(budget));
+    for law in &model.laws {
+        let _ = Family::of(&mut trial.dag, law);
+        if trial.dag.is_spent() {
+            return false;
+        }
+    }
+    let _ = Coefficients::of(&mut trial);
+    !trial.dag.is_spent()
 }
 
 /// Puts every output of a piece into the form to be computed.

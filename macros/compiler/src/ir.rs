@@ -1,7 +1,8 @@
 //! The checked model: what lowering makes of a declaration, and what the later stages read.
 //!
-//! It mirrors the runtime's contract (`hertzian::system` and `hertzian::law`): every scalar is an expression in one
-//! shared graph, and everything but the laws is a coefficient with a place.
+//! Every scalar is an expression in one shared graph, and everything but the laws is a coefficient with a place of the contract.
+
+use hertzian_contract::system::{Bound, ContactFacts, ParameterFacts, Place, SystemFacts};
 
 use crate::dag::{Dag, Id};
 
@@ -27,7 +28,7 @@ pub struct Model {
     /// Distinct laws.
     pub laws: Vec<Law>,
     /// Terms `e_c phi_c`; the law of each.
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<ContactFacts>,
     /// Coefficients: functions of parameters and omega, with their places.
     pub coefficients: Vec<(Place, Id)>,
 }
@@ -47,15 +48,22 @@ pub struct Parameter {
     pub default: Option<f64>,
 }
 
-/// One end of a range.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Bound {
-    /// No bound.
-    Unbounded,
-    /// The value itself is allowed.
-    Included(f64),
-    /// The value itself is not allowed.
-    Excluded(f64),
+impl Model {
+    /// What is known of the system without evaluating it.
+    pub fn facts(&self) -> SystemFacts {
+        let parameters = self.parameters.iter().map(|parameter| {
+            ParameterFacts::new(parameter.name.to_string())
+                .documentation(parameter.documentation.clone())
+                .range(parameter.minimum, parameter.maximum)
+        });
+        SystemFacts::new(self.name.to_string())
+            .equation(self.equation.clone())
+            .coordinates(self.coordinates.iter().cloned())
+            .parameters(parameters)
+            .divisor(self.divisor)
+            .contacts(self.laws.len(), self.contacts.iter().copied())
+            .places(self.coefficients.iter().map(|&(place, _)| place))
+    }
 }
 
 /// A force of one gap, its rate and arguments.
@@ -84,61 +92,4 @@ pub struct Level {
     pub value: Id,
     /// The level itself belongs to the piece above.
     pub belongs_above: bool,
-}
-
-/// A term `e_c phi_c` of the equations of motion.
-#[derive(Debug, Clone, Copy)]
-pub struct Contact {
-    /// Index into [`Model::laws`].
-    pub law: usize,
-}
-
-/// A function of the phase: one of `1`, `cos h tau`, `sin h tau`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Wave {
-    /// Zero for the constant, which is a cosine.
-    pub harmonic: u32,
-    /// Sine rather than cosine.
-    pub sine: bool,
-}
-
-/// Where a coefficient stands; see `hertzian::system::Place`, which it mirrors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[allow(missing_docs)]
-pub enum Place {
-    Mass {
-        row: usize,
-        column: usize,
-    },
-    Damping {
-        row: usize,
-        column: usize,
-    },
-    Stiffness {
-        row: usize,
-        column: usize,
-        wave: Wave,
-    },
-    Load {
-        row: usize,
-        wave: Wave,
-    },
-    ForceDirection {
-        contact: usize,
-        row: usize,
-        wave: Wave,
-    },
-    GapDirection {
-        contact: usize,
-        column: usize,
-        wave: Wave,
-    },
-    Offset {
-        contact: usize,
-        wave: Wave,
-    },
-    Argument {
-        contact: usize,
-        index: usize,
-    },
 }

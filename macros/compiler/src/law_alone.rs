@@ -7,17 +7,19 @@ use std::collections::HashMap;
 
 use proc_macro2::TokenStream;
 
+use hertzian_contract::system::Place;
+
 use crate::ast::Form;
 use crate::dag::{Id, Node, Variable};
 use crate::emit;
 use crate::errors::{Diagnostics, Errors, Extent};
-use crate::ir::{Law, Level, Model, Place};
-use crate::sketch;
+use crate::ir::{Law, Level, Model};
+use crate::{sketch, stages};
 
 /// Expands a law to code that names the runtime by a path. After errors the expansion holds all of them, and a stub of the type.
 pub fn law(runtime: &TokenStream, declaration: TokenStream) -> TokenStream {
     let written = declaration.clone();
-    let compiled = crate::read(declaration, Form::LawAlone);
+    let compiled = stages::read(declaration, Form::LawAlone);
     let law = compiled.and_then(|mut model| {
         let law = alone(&mut model)?;
         Ok((model, law))
@@ -94,7 +96,7 @@ mod tests {
 
     fn faults(text: &str) -> Vec<String> {
         let tokens = text.parse().expect("it is made of tokens");
-        let compiled = crate::read(tokens, Form::LawAlone);
+        let compiled = stages::read(tokens, Form::LawAlone);
         compiled.expect_err("it is refused").messages()
     }
 
@@ -102,7 +104,7 @@ mod tests {
     fn arguments_keep_their_order() {
         let declaration =
             quote!(Stop(gap, play > 0, k) { gap > play => k*(gap - play)^2, else => 0 });
-        let compiled = crate::read(declaration, Form::LawAlone);
+        let compiled = stages::read(declaration, Form::LawAlone);
         let mut model = compiled.expect("it is sound");
         let law = alone(&mut model).expect("it is a law");
         assert_eq!(law.arguments, ["play", "k"]);

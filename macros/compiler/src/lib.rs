@@ -23,11 +23,13 @@ mod law_alone;
 mod lower;
 mod parse;
 mod sketch;
+mod stages;
+mod tape;
 
 use proc_macro2::TokenStream;
 
 use crate::ast::Form;
-use crate::errors::{Diagnostics, Errors};
+use crate::errors::Errors;
 use crate::ir::Model;
 
 pub use crate::law_alone::law;
@@ -36,7 +38,7 @@ pub use crate::law_alone::law;
 /// of them, and a stub of the type.
 pub fn oscillator(runtime: &TokenStream, declaration: TokenStream) -> TokenStream {
     let written = declaration.clone();
-    match read(declaration, Form::Model) {
+    match stages::read(declaration, Form::Model) {
         Ok(model) => emit::emit(runtime, &model),
         Err(errors) => {
             let mut expansion = errors.into_compile_error();
@@ -58,23 +60,5 @@ pub fn oscillator(runtime: &TokenStream, declaration: TokenStream) -> TokenStrea
 /// # Errors
 /// Everything that is wrong with the declaration.
 pub fn compile(declaration: TokenStream) -> Result<Model, Errors> {
-    read(declaration, Form::Model)
-}
-
-/// Parses, checks and lowers. Each stage runs only if the one before found nothing, so that no fault is reported twice.
-fn read(tokens: TokenStream, form: Form) -> Result<Model, Errors> {
-    let mut diagnostics = Diagnostics::default();
-    let declaration = parse::parse(tokens, form, &mut diagnostics);
-    let mut model = None;
-    if let Some(declaration) = &declaration {
-        if diagnostics.is_clean() {
-            check::check(declaration, &mut diagnostics);
-        }
-        if diagnostics.is_clean() {
-            model = lower::lower(declaration, &mut diagnostics);
-        }
-    }
-    diagnostics
-        .finish()
-        .and_then(|()| model.ok_or_else(Errors::internal))
+    stages::read(declaration, Form::Model)
 }

@@ -2,9 +2,11 @@
 
 use std::collections::HashMap;
 
+use hertzian_contract::law::RateDependence;
+
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
 use crate::differentiate::differentiate;
-use crate::facts::{Limit, Piece, Ranges, RateDependence, limit_at, rate_dependence};
+use crate::facts::{Limit, Piece, Ranges, limit_at, rate_dependence};
 use crate::ir::Law;
 use crate::simplify::{addends_of, expand, factors_of};
 

@@ -7,8 +7,9 @@ use std::str::FromStr;
 
 use proc_macro2::{Span, TokenStream, TokenTree};
 
-use crate::compile;
+use crate::ast::Form;
 use crate::ir::Model;
+use crate::stages;
 
 /// A longer text is no model of one person, and reading it would take long.
 const LONGEST_TEXT: usize = 1 << 18;
@@ -58,7 +59,7 @@ pub fn compile_text(text: &str) -> Result<Model, Vec<Fault>> {
         let message = "this is not made of words, numbers and marks that close what they open";
         vec![at(message.to_owned(), fault.span())]
     })?;
-    compile(inside(tokens)).map_err(|errors| {
+    stages::read(inside(tokens), Form::Model).map_err(|errors| {
         let faults = errors.faults().into_iter();
         faults
             .map(|fault| at(fault.to_string(), fault.span()))

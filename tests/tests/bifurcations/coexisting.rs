@@ -42,14 +42,10 @@ const AT_FREQUENCY_1: [Known; 3] = [
     ),
 ];
 
-fn basin() -> Basin {
+fn basin(model: &OneSidedLinear) -> Basin {
     let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(48);
     let grid = Grid::new(vec![0.0, 0.0], axis(0, -150.0, 30.0), axis(1, -16.0, 16.0));
-    Basin {
-        longest: 5,
-        patience: 3000,
-        ..Basin::new(grid)
-    }
+    Basin::of(model).grid(grid).longest(5).patience(3000)
 }
 
 /// The orbits of a period at frequency one, on all branches.
@@ -85,7 +81,7 @@ fn periods_one_to_five_of_figure_9() {
         drive: 1.0,
     };
     let request = Bifurcations::of(&model).from(2.2).to(0.4).depth(1);
-    let diagram = request.search(1.0, basin()).run().unwrap();
+    let diagram = request.search(1.0, basin(&model)).run().unwrap();
     for period in 1..=5 {
         let limbs = diagram
             .branches
@@ -241,11 +237,7 @@ fn the_detached_branch_of_a_hertzian_contact() {
         axis(0, -1.2 * height(at), 0.0),
         axis(1, -PI / at, PI / at),
     );
-    let basin = Basin {
-        longest: 1,
-        patience: 3000,
-        ..Basin::new(grid)
-    };
+    let basin = Basin::of(&model).grid(grid).longest(1).patience(3000);
     let request = Bifurcations::of(&model).from(0.3).to(0.18).depth(0);
     let diagram = request.search(at, basin).run().unwrap();
     let detached = |limb: &&Limb| {

@@ -6,13 +6,15 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use super::attractor::Fate;
 use super::catalogue::Catalogue;
+use super::grid::Grid;
 use super::recognise::Recogniser;
 use super::record::Block;
 use super::threads::Threads;
-use super::{Basin, BasinError, Basins, Progress};
+use super::{Basin, BasinError, Basins, Visit};
 use crate::attractors::log::{Log, LogError};
-use crate::time::Flow;
+use crate::branches::progress::{Progress, Stage};
 use crate::time::stroboscope::Stroboscope;
+use crate::time::{Flow, FlowError};
 
 /// Cells of a block: so many that a thread seldom waits for another, so few that little is lost when a run ends.
 const BLOCK: usize = 256;
@@ -20,24 +22,26 @@ const BLOCK: usize = 256;
 /// What the threads share.
 struct Shared<'w> {
     basin: &'w Basin,
+    grid: &'w Grid,
     /// Those that no thread uses now.
     idle: Mutex<Vec<Recogniser>>,
-    log: Mutex<Option<Log>>,
+    log: Mutex<Option<&'w mut Log>>,
     error: Mutex<Option<LogError>>,
     done: AtomicUsize,
     ended: AtomicBool,
-    watch: &'w (dyn Fn(Progress) -> bool + Sync),
+    visit: Mutex<Visit<'w>>,
 }
 
 pub(super) fn compute(
     basin: &Basin,
+    grid: &Grid,
     flows: Vec<Box<dyn Flow>>,
-    log: Option<Log>,
-    watch: &(dyn Fn(Progress) -> bool + Sync),
+    log: Option<&mut Log>,
+    visit: Visit<'_>,
 ) -> Result<Basins, BasinError> {
     let threads = Threads::new(flows.len())?;
-    let known = log.as_ref().map_or(&[][..], Log::records);
-    let mut kept: HashMap<(usize, usize), Block> = known
+    let known = log.as_deref().map_or(&[][..], Log::records);
+    let mut kept: Kept = known
         .iter()
         .filter_map(|record| Block::read(record))
         .map(|block| ((block.round, block.index), block))
@@ -45,21 +49,52 @@ pub(super) fn compute(
     let recogniser = |flow| Recogniser::new(Stroboscope::new(flow).phase(basin.phase));
     let shared = Shared {
         basin,
+        grid,
         idle: Mutex::new(flows.into_iter().map(recogniser).collect()),
         log: Mutex::new(log),
         error: Mutex::new(None),
         done: AtomicUsize::new(kept.values().map(|block| block.fates.len()).sum()),
         ended: AtomicBool::new(false),
-        watch,
+        visit: Mutex::new(visit),
     };
     let mut basins = Basins {
-        fates: vec![Fate::Unknown; basin.grid.cells()],
+        fates: vec![Fate::Unknown; grid.cells()],
         attractors: Vec::new(),
         periods: 0,
         complete: true,
     };
     let mut catalogue = Catalogue::default();
-    for (round, cells) in basin.grid.rounds().iter().enumerate() {
+    for (round, cells) in grid.rounds().iter().enumerate() {
+        shared.round(
+            &threads,
+            (round, cells),
+            &mut catalogue,
+            &mut kept,
+            &mut basins,
+        );
+        if !basins.complete {
+            break;
+        }
+    }
+    shared.finish(&basins)?;
+    basins.attractors = catalogue.0;
+    basins.number();
+    Ok(basins)
+}
+
+/// Blocks that are computed and not yet taken over, by round and by index.
+type Kept = HashMap<(usize, usize), Block>;
+
+impl Shared<'_> {
+    /// Computes the blocks of a round that are missing, and takes all of them over.
+    fn round(
+        &self,
+        threads: &Threads,
+        (round, cells): (usize, &[usize]),
+        catalogue: &mut Catalogue,
+        kept: &mut Kept,
+        basins: &mut Basins,
+    ) {
         // The blocks of the first round know nothing, so it is one.
         let size = if round == 0 { cells.len() } else { BLOCK };
         let blocks: Vec<&[usize]> = cells.chunks(size).collect();
@@ -68,57 +103,70 @@ pub(super) fn compute(
             .collect();
         let base = catalogue.0.len();
         let computed = threads.map(&missing, |index| {
-            shared.block((round, index), blocks[index], &catalogue)
+            self.block([round, index], blocks[index], catalogue)
         });
         let computed = computed.into_iter().flatten();
         kept.extend(computed.map(|block| ((round, block.index), block)));
         for (index, cells) in blocks.iter().enumerate() {
             match kept.remove(&(round, index)) {
-                Some(block) => basins.take(block, cells, base, &mut catalogue),
+                Some(block) => basins.take(block, cells, base, catalogue),
                 None => basins.complete = false,
             }
         }
-        if !basins.complete {
-            break;
-        }
     }
-    if let Some(error) = shared.error.into_inner().ok().flatten() {
-        return Err(error.into());
-    }
-    if basins.fates.iter().all(|&fate| fate == Fate::Failed) {
-        let mut start = basin.grid.start.clone();
-        basin.grid.state(0, &mut start);
-        let idle = shared.idle.into_inner().ok();
-        let recogniser = idle.and_then(|mut idle| idle.pop());
-        let fault = recogniser.and_then(|mut recogniser| recogniser.fault(basin, &start));
-        if let Some(reason) = fault {
-            return Err(BasinError::Motion { reason });
-        }
-    }
-    basins.attractors = catalogue.0;
-    basins.number();
-    Ok(basins)
-}
 
-impl Shared<'_> {
-    /// One block; `None` if the computation has been ended.
-    fn block(&self, id: (usize, usize), cells: &[usize], known: &Catalogue) -> Option<Block> {
-        if self.ended.load(Ordering::Relaxed) {
+    /// What went wrong, if anything did: with the log, or with every motion.
+    fn finish(self, basins: &Basins) -> Result<(), BasinError> {
+        if let Some(error) = self.error.into_inner().ok().flatten() {
+            return Err(error.into());
+        }
+        if basins.fates.iter().any(|&fate| fate != Fate::Failed) {
+            return Ok(());
+        }
+        let mut start = self.grid.start.clone();
+        self.grid.state(0, &mut start);
+        let idle = self.idle.into_inner().ok();
+        let recogniser = idle.and_then(|mut idle| idle.pop());
+        let fault = recogniser.and_then(|mut recogniser| recogniser.fault(self.basin, &start));
+        match fault {
+            None | Some(FlowError::Cancelled { .. }) => Ok(()),
+            Some(reason) => Err(BasinError::Motion { reason }),
+        }
+    }
+
+    /// Whether no further cell is to be looked at.
+    fn is_ended(&self) -> bool {
+        self.ended.load(Ordering::Relaxed) || self.basin.cancel.is_cancelled()
+    }
+
+    /// One block, by its round and index; `None` if the computation has been ended.
+    fn block(
+        &self,
+        [round, index]: [usize; 2],
+        cells: &[usize],
+        known: &Catalogue,
+    ) -> Option<Block> {
+        if self.is_ended() {
             return None;
         }
         // There is one for each thread. A poisoned lock means that another thread has panicked, and so will the caller.
         let mut recogniser = self.idle.lock().ok()?.pop()?;
         let before = recogniser.map.periods();
         let mut own = Catalogue::default();
-        let mut start = self.basin.grid.start.clone();
+        let mut start = self.grid.start.clone();
         let mut fates = Vec::with_capacity(cells.len());
         for &cell in cells {
-            self.basin.grid.state(cell, &mut start);
-            fates.push(recogniser.fate(self.basin, &start, known, &mut own));
+            self.grid.state(cell, &mut start);
+            let fate = recogniser.fate(self.basin, &start, known, &mut own);
+            // A motion that was cut short has no fate.
+            if self.basin.cancel.is_cancelled() {
+                return None;
+            }
+            fates.push(fate);
         }
         let block = Block {
-            round: id.0,
-            index: id.1,
+            round,
+            index,
             fates,
             found: own.0,
             periods: recogniser.map.periods() - before,
@@ -132,10 +180,13 @@ impl Shared<'_> {
             return None;
         }
         let progress = Progress {
-            done: self.done.fetch_add(cells.len(), Ordering::Relaxed) + cells.len(),
-            cells: self.basin.grid.cells(),
+            total: Some(self.grid.cells()),
+            ..Progress::new(
+                Stage::Basin,
+                self.done.fetch_add(cells.len(), Ordering::Relaxed) + cells.len(),
+            )
         };
-        if !(self.watch)(progress) {
+        if (self.visit.lock().ok()?)(progress).is_break() {
             self.ended.store(true, Ordering::Relaxed);
         }
         Some(block)

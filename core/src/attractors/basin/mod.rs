@@ -24,16 +24,26 @@ mod threads;
 pub use attractor::{Attractor, Fate};
 pub use grid::{Axis, Grid};
 
-use super::log::{Log, LogError};
-use crate::error::{Error, ErrorKind};
-use crate::time::{Flow, FlowError};
+use std::ops::ControlFlow;
+use std::sync::Arc;
 
-/// Which basins to compute.
+use super::log::{Log, LogError};
+use crate::branches::progress::Progress;
+use crate::cancel::Cancel;
+use crate::error::{Error, ErrorKind};
+use crate::model::request::RequestError;
+use crate::model::validate;
+use crate::system::{System, Variable};
+use crate::time;
+use crate::time::{Flow, FlowError, Options};
+
+/// Which basins to compute: set up step by step, then [run](Basin::run).
+///
+/// By default motions start at phase zero, orbits of up to 64 periods are looked for, motions are followed for 20000 periods, and one has
+/// escaped beyond a million.
 ///
 /// ```
 /// use hertzian::attractors::basin::{Axis, Basin, Grid};
-/// use hertzian::time;
-/// use hertzian::time::Options;
 ///
 /// hertzian::oscillator! {
 ///     TwoWells(x) {
@@ -45,24 +55,42 @@ use crate::time::{Flow, FlowError};
 /// let axis = |entry| Axis::of(entry).from(-1.6).to(1.6).cells(8);
 /// let grid = Grid::new(vec![0.0, 0.0], axis(0), axis(1));
 /// let model = TwoWells { drive: 0.05 };
-/// let flow = time::of(&model, 1.0, Options::default())?;
-/// let basins = Basin { longest: 2, ..Basin::new(grid) }.compute(vec![flow], None, &|_| true)?;
+/// let basins = Basin::of(&model).omega(1.0).grid(grid).longest(2).run()?;
 /// // One motion in each well.
 /// assert_eq!(basins.attractors.len(), 2);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), hertzian::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub struct Basin {
-    /// The initial states.
-    pub grid: Grid,
-    /// The phase at which motions start and are looked at.
-    pub phase: f64,
-    /// The longest period that is looked for, in periods of the declaration.
-    pub longest: usize,
-    /// Periods after which a motion that was not recognised is judged by its Lyapunov exponent.
-    pub patience: usize,
-    /// A state with an entry beyond this has escaped.
-    pub escape: f64,
+    system: Arc<dyn System>,
+    omega: Option<f64>,
+    /// Values of parameters that are not the system's.
+    parameters: Vec<(String, f64)>,
+    grid: Option<Grid>,
+    phase: f64,
+    longest: usize,
+    patience: usize,
+    escape: f64,
+    tolerance: f64,
+    threads: usize,
+    cancel: Cancel,
+}
+
+/// Everything that the basins depend on.
+impl std::fmt::Debug for Basin {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Basin")
+            .field("system", &self.system.facts().name)
+            .field("omega", &self.omega)
+            .field("parameters", &self.parameters)
+            .field("grid", &self.grid)
+            .field("phase", &self.phase)
+            .field("longest", &self.longest)
+            .field("patience", &self.patience)
+            .field("escape", &self.escape)
+            .field("tolerance", &self.tolerance)
+            .finish_non_exhaustive()
+    }
 }
 
 /// Basins of attraction.
@@ -78,16 +106,6 @@ pub struct Basins {
     pub periods: u64,
     /// Whether all cells were looked at.
     pub complete: bool,
-}
-
-/// How far a computation is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Progress {
-    /// Cells that are done.
-    pub done: usize,
-    /// All cells.
-    pub cells: usize,
 }
 
 /// Why there are no basins.
@@ -130,54 +148,186 @@ crate::error::sentence_as_debug! {
 }
 
 impl Basin {
-    /// A request with what is usual: phase zero, periods up to 64, 20000 periods of patience, and a bound of a million.
-    pub fn new(grid: Grid) -> Self {
+    /// Of this system, at the values that its parameters have now.
+    pub fn of(system: &dyn System) -> Self {
         Self {
-            grid,
+            system: system.shared(),
+            omega: None,
+            parameters: Vec::new(),
+            grid: None,
             phase: 0.0,
             longest: 64,
             patience: 20_000,
             escape: 1e6,
+            tolerance: 1e-10,
+            threads: 1,
+            cancel: Cancel::new(),
         }
     }
 
-    /// Computes the basins with one thread for each flow; all flows must be the same. What the log holds of this request is not
-    /// computed again; what is computed is added to it. `watch` is told of progress, and ends the computation by
-    /// answering false; the cells that are missing then are [`Fate::Unknown`].
-    ///
-    /// Without the feature `parallel` only the first flow is used.
+    /// The excitation frequency, in radians per unit of time.
+    #[must_use]
+    pub fn omega(mut self, omega: f64) -> Self {
+        self.omega = Some(omega);
+        self
+    }
+
+    /// A parameter has this value, whatever the system has.
+    #[must_use]
+    pub fn parameter(mut self, name: impl Into<String>, value: f64) -> Self {
+        self.parameters.push((name.into(), value));
+        self
+    }
+
+    /// The initial states.
+    #[must_use]
+    pub fn grid(mut self, grid: Grid) -> Self {
+        self.grid = Some(grid);
+        self
+    }
+
+    /// The phase at which motions start and are looked at. Default: 0.
+    #[must_use]
+    pub fn phase(mut self, phase: f64) -> Self {
+        self.phase = phase;
+        self
+    }
+
+    /// The longest period that is looked for, in periods of the declaration. Default: 64.
+    #[must_use]
+    pub fn longest(mut self, period: usize) -> Self {
+        self.longest = period;
+        self
+    }
+
+    /// Periods after which a motion that was not recognised is judged by its Lyapunov exponent. Default: 20000.
+    #[must_use]
+    pub fn patience(mut self, periods: usize) -> Self {
+        self.patience = periods;
+        self
+    }
+
+    /// A state with an entry beyond this has escaped. Default: a million.
+    #[must_use]
+    pub fn escape(mut self, bound: f64) -> Self {
+        self.escape = bound;
+        self
+    }
+
+    /// Tolerance of the flow, where it is not in closed form. Default: 1e-10.
+    #[must_use]
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// So many threads, which do not change the result. Default: 1, and without the feature `parallel` there is no more.
+    #[must_use]
+    pub fn threads(mut self, count: usize) -> Self {
+        self.threads = count;
+        self
+    }
+
+    /// The computation ends when this token is cancelled; cells that are missing then are [`Fate::Unknown`].
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.cancel = cancel.clone();
+        self
+    }
+
+    /// Computes the basins.
     ///
     /// # Errors
-    /// If the request cannot be used, the log cannot be written, threads cannot be started, or no motion of the grid can be computed.
-    pub fn compute(
-        &self,
-        flows: Vec<Box<dyn Flow>>,
-        log: Option<Log>,
-        watch: &(dyn Fn(Progress) -> bool + Sync),
-    ) -> Result<Basins, BasinError> {
-        let order = flows.first().map(|flow| 2 * flow.coordinates());
-        self.check(order)?;
-        if flows.len() > MOST_FLOWS {
-            let (name, must) = ("flows", "must be at most 1024, a thread for each");
-            return Err(BasinError::Request { name, must });
-        }
-        compute::compute(self, flows, log, watch)
+    /// If a parameter or an option is not usable, threads cannot be started, or no motion of the grid can be computed.
+    pub fn run(&self) -> Result<Basins, Error> {
+        self.run_with(|_| ControlFlow::Continue(()))
     }
 
-    /// Whether the request can be used with flows of so many entries, if there are any.
-    pub(crate) fn check(&self, order: Option<usize>) -> Result<(), BasinError> {
+    /// As [`run`](Self::run), and calls `visit` after every part of the grid: to show progress, or to stop. Cells that are missing then are
+    /// [`Fate::Unknown`].
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with(
+        &self,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Result<Basins, Error> {
+        Ok(self.compute(self.flows()?, None, &mut visit)?)
+    }
+
+    /// As [`run_with`](Self::run_with), and goes on from what a log holds of this request; what is computed is added to it.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run), and if the log cannot be written.
+    pub fn resume(
+        &self,
+        log: &mut Log,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Result<Basins, Error> {
+        Ok(self.compute(self.flows()?, Some(log), &mut visit)?)
+    }
+
+    /// A flow for each thread.
+    fn flows(&self) -> Result<Vec<Box<dyn Flow>>, Error> {
+        let omega = self.omega.ok_or(RequestError::Missing { name: "omega" })?;
+        self.check()?;
+        let mut values = vec![0.0; self.system.facts().parameters.len()];
+        self.system.values(&mut values);
+        for (name, value) in &self.parameters {
+            if let Variable::Parameter(index) = validate::variable(self.system.facts(), Some(name))?
+            {
+                values[index] = *value;
+            }
+        }
+        let flow = || {
+            let options = Options::default().tolerance(self.tolerance);
+            time::at(&self.system, &values, omega, options.cancel(&self.cancel))
+        };
+        (0..self.threads).map(|_| flow()).collect()
+    }
+
+    /// Whether the request is of a system with the same declaration, whatever its parameters are.
+    pub(crate) fn is_of(&self, system: &dyn System) -> Result<(), BasinError> {
+        if self.system.facts() == system.facts() {
+            return Ok(());
+        }
+        let (name, must) = ("basin", "must be of the system that is followed");
+        Err(BasinError::Request { name, must })
+    }
+
+    /// Number of threads.
+    pub(crate) fn threads_wanted(&self) -> usize {
+        self.threads
+    }
+
+    /// Computes the basins with one thread for each flow; all flows must be the same.
+    pub(crate) fn compute(
+        &self,
+        flows: Vec<Box<dyn Flow>>,
+        log: Option<&mut Log>,
+        visit: Visit<'_>,
+    ) -> Result<Basins, BasinError> {
+        compute::compute(self, self.check()?, flows, log, visit)
+    }
+
+    /// The grid of a request that can be used.
+    pub(crate) fn check(&self) -> Result<&Grid, BasinError> {
+        let fault = |name, must| Err(BasinError::Request { name, must });
+        let Some(grid) = &self.grid else {
+            return fault("grid", "is missing");
+        };
         let Grid {
             start,
             columns,
             rows,
-        } = &self.grid;
+        } = grid;
         let ranges = [columns, rows].map(|axis| [axis.from, axis.to]);
         let entries = [columns.entry, rows.entry];
-        let fault = |name, must| Err(BasinError::Request { name, must });
-        if order.is_none() {
-            return fault("flows", "must be at least one");
+        if !(1..=MOST_THREADS).contains(&self.threads) {
+            return fault("threads", "must be from 1 to 1024");
         }
-        if order != Some(start.len()) || entries.iter().any(|&entry| entry >= start.len()) {
+        let order = 2 * self.system.facts().coordinates.len();
+        if order != start.len() || entries.iter().any(|&entry| entry >= start.len()) {
             return fault("grid", "must have the entries of a state");
         }
         if entries[0] == entries[1] {
@@ -192,7 +342,7 @@ impl Basin {
         {
             return fault("grid", "must be finite");
         }
-        if self.grid.cells() == 0 || self.grid.cells() > MOST_CELLS {
+        if grid.cells() == 0 || grid.cells() > MOST_CELLS {
             return fault("grid", "must have at least one cell and at most 2^28");
         }
         if self.longest == 0 || self.patience == 0 {
@@ -201,12 +351,15 @@ impl Basin {
         if self.escape.is_nan() || self.escape <= 0.0 {
             return fault("escape", "must be positive");
         }
-        Ok(())
+        Ok(grid)
     }
 }
 
+/// What is told of progress, from any thread.
+pub(crate) type Visit<'v> = &'v mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send);
+
 /// More threads gain nothing, and take longer to start than the work.
-const MOST_FLOWS: usize = 1024;
+const MOST_THREADS: usize = 1024;
 /// More would not fit into memory well.
 const MOST_CELLS: usize = 1 << 28;
 

@@ -1,12 +1,10 @@
 //! Basins of the one-sided oscillator at `A = 1`, `omega = 1`, where orbits of periods 1 to 5 coexist.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
 use crate::error::chain;
 use crate::system::Variable;
-use crate::time::affine::Affine;
 use crate::time::stroboscope::Stroboscope;
 use crate::time::{See, Tangent, Work};
 
@@ -30,31 +28,17 @@ const MODEL: OneSided = OneSided {
     drive: 1.0,
 };
 
-fn flows(model: &OneSided, count: usize) -> Vec<Box<dyn Flow>> {
-    let values = [model.zeta, model.load, model.drive];
-    let flow = || Affine::new(model, &values, 1.0).expect("affine");
-    (0..count)
-        .map(|_| Box::new(flow()) as Box<dyn Flow>)
-        .collect()
+fn grid(count: usize) -> Grid {
+    let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(count);
+    Grid::new(vec![0.0; 2], axis(0, -60.0, 10.0), axis(1, -12.0, 12.0))
 }
 
 fn basin(count: usize) -> Basin {
-    let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(count);
-    Basin::new(Grid::new(
-        vec![0.0; 2],
-        axis(0, -60.0, 10.0),
-        axis(1, -12.0, 12.0),
-    ))
-}
-
-fn always(_: Progress) -> bool {
-    true
+    Basin::of(&MODEL).omega(1.0).grid(grid(count))
 }
 
 fn compute(count: usize, threads: usize) -> Basins {
-    basin(count)
-        .compute(flows(&MODEL, threads), None, &always)
-        .expect("basins")
+    basin(count).threads(threads).run().expect("basins")
 }
 
 /// Period, first point, multiplier if it is known, and the error of what is known.
@@ -119,11 +103,11 @@ fn coexisting_orbits_are_told_apart() {
 #[test]
 fn recognised_motions_end_where_they_are_said_to() {
     let count = 30;
-    let (basin, basins) = (basin(count), compute(count, 1));
-    let mut map = Stroboscope::new(flows(&MODEL, 1).remove(0));
+    let (grid, basins) = (grid(count), compute(count, 1));
+    let mut map = Stroboscope::of(&MODEL, 1.0).expect("a flow");
     let mut state = [0.0; 2];
     for (cell, fate) in basins.fates.iter().enumerate() {
-        basin.grid.state(cell, &mut state);
+        grid.state(cell, &mut state);
         for _ in 0..4000 {
             map.map(&mut state).expect("a motion");
         }
@@ -143,20 +127,18 @@ fn recognised_motions_end_where_they_are_said_to() {
 /// A single motion, recognised without knowing what others found, gives what it gives in the grid.
 #[test]
 fn a_cell_does_not_depend_on_the_others() {
-    let (whole, basin) = (compute(40, 1), basin(40));
+    let (whole, grid) = (compute(40, 1), grid(40));
     for cell in (0..1600).step_by(97) {
         let mut state = [0.0; 2];
-        basin.grid.state(cell, &mut state);
+        grid.state(cell, &mut state);
         let tiny = |entry| {
             Axis::of(entry)
                 .from(state[entry] - 1e-13)
                 .to(state[entry] + 1e-13)
                 .cells(1)
         };
-        let alone = Basin::new(Grid::new(vec![0.0; 2], tiny(0), tiny(1)));
-        let alone = alone
-            .compute(flows(&MODEL, 1), None, &always)
-            .expect("basins");
+        let tiny = Grid::new(vec![0.0; 2], tiny(0), tiny(1));
+        let alone = basin(40).grid(tiny).run().expect("basins");
         let Fate::Periodic(index) = whole.fates[cell] else {
             panic!("{cell}: {:?}", whole.fates[cell]);
         };
@@ -189,18 +171,23 @@ fn a_run_that_was_ended_goes_on_and_computes_nothing_twice() {
     let whole = compute(64, 2);
     let path = log_path("ended");
     let mut runs = 0;
-    let computed = AtomicUsize::new(0);
+    let mut computed = 0;
     loop {
-        let log = Log::open(&path, "basin").expect("a log");
+        let mut log = Log::open(&path, "basin").expect("a log");
         // Ends after a few blocks.
-        let left = AtomicUsize::new(5);
-        let watch = |_: Progress| {
-            computed.fetch_add(1, Ordering::Relaxed);
-            left.fetch_sub(1, Ordering::Relaxed) > 1
+        let mut left = 5;
+        let watch = |progress: Progress<'_>| {
+            assert_eq!(progress.total, Some(64 * 64));
+            computed += 1;
+            left -= 1;
+            if left > 0 {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
         };
-        let part = basin(64)
-            .compute(flows(&MODEL, 2), Some(log), &watch)
-            .expect("basins");
+        let part = basin(64).threads(2).resume(&mut log, watch);
+        let part = part.expect("basins");
         runs += 1;
         if part.complete {
             assert_eq!(part, whole);
@@ -208,22 +195,45 @@ fn a_run_that_was_ended_goes_on_and_computes_nothing_twice() {
         }
         assert!(part.count(Fate::Unknown) > 0);
     }
-    let blocks: usize = basin(64)
-        .grid
+    let blocks: usize = grid(64)
         .rounds()
         .iter()
         .map(|round| round.len().div_ceil(256))
         .sum();
     assert!(runs > 2);
-    assert_eq!(computed.into_inner(), blocks);
+    assert_eq!(computed, blocks);
     // A record that was being written when the process ended is computed again.
     let bytes = std::fs::read(&path).expect("readable");
     std::fs::write(&path, &bytes[..bytes.len() - 3]).expect("written");
-    let log = Log::open(&path, "basin").expect("a log");
-    let again = basin(64)
-        .compute(flows(&MODEL, 1), Some(log), &always)
-        .expect("basins");
-    assert_eq!(again, whole);
+    let mut log = Log::open(&path, "basin").expect("a log");
+    let again = basin(64).resume(&mut log, |_| ControlFlow::Continue(()));
+    assert_eq!(again.expect("basins"), whole);
+}
+
+/// A cell whose motion was cut short is not looked at, and one that was looked at before has the fate that it has.
+#[test]
+fn a_cancelled_run_keeps_its_cells() {
+    let whole = compute(64, 1);
+    let cancel = Cancel::new();
+    let mut parts = 0;
+    let part = basin(64).cancel(&cancel).run_with(|_| {
+        parts += 1;
+        if parts == 4 {
+            cancel.cancel();
+        }
+        ControlFlow::Continue(())
+    });
+    let part = part.expect("basins");
+    assert_eq!(parts, 4);
+    assert!(!part.complete && part.count(Fate::Unknown) > 0);
+    let period = |basins: &Basins, fate: Fate| match fate {
+        Fate::Periodic(index) => basins.attractors[index].period,
+        _ => 0,
+    };
+    for (of_part, of_whole) in part.fates.iter().zip(&whole.fates) {
+        let same = period(&part, *of_part) == period(&whole, *of_whole);
+        assert!(same || *of_part == Fate::Unknown);
+    }
 }
 
 /// Beyond the interior crisis nothing is periodic; without damping and at resonance everything grows.
@@ -233,73 +243,56 @@ fn chaos_and_escape_are_classes_of_their_own() {
         drive: 1.785,
         ..MODEL
     };
-    let chaos = Basin {
-        patience: 500,
-        ..basin(3)
-    };
-    let chaos = chaos
-        .compute(flows(&model, 1), None, &always)
-        .expect("basins");
+    let on = |system: &OneSided| Basin::of(system).omega(1.0).grid(grid(3));
+    let chaos = on(&model).patience(500).run().expect("basins");
     assert_eq!(chaos.count(Fate::Chaotic), 9, "{chaos:?}");
     // In intermittency neighbours part by a hundredth in a period: two thousand periods do not tell it from zero.
     let model = OneSided {
         drive: 1.78,
         ..MODEL
     };
-    let mut slow = basin(1);
-    (slow.grid.columns.from, slow.grid.columns.to) = (-0.35, -0.35);
-    (slow.grid.rows.from, slow.grid.rows.to) = (0.335, 0.335);
-    let slow = slow.compute(flows(&model, 1), None, &always);
+    let at = |entry, value| Axis::of(entry).from(value).to(value).cells(1);
+    let one = Grid::new(vec![0.0; 2], at(0, -0.35), at(1, 0.335));
+    let slow = on(&model).grid(one).run();
     assert_eq!(slow.expect("basins").fates, [Fate::Chaotic]);
     crate::oscillator! {
         Resonance(x) {
             ddot(x) + x = cos(omega*t);
         }
     }
-    let flow = Affine::new(&Resonance {}, &[], 1.0).expect("affine");
-    let escape = Basin {
-        escape: 100.0,
-        ..basin(3)
-    };
-    let escape = escape
-        .compute(vec![Box::new(flow)], None, &always)
-        .expect("basins");
+    let resonance = Basin::of(&Resonance {}).omega(1.0).grid(grid(3));
+    let escape = resonance.clone().escape(100.0).run().expect("basins");
     assert_eq!(escape.count(Fate::Escaped), 9);
     // Without damping and off resonance motions have two frequencies.
-    let flow = Affine::new(&Resonance {}, &[], 2.0_f64.sqrt()).expect("affine");
-    let long = Basin {
-        patience: 300,
-        ..basin(3)
-    };
-    let long = long
-        .compute(vec![Box::new(flow)], None, &always)
-        .expect("basins");
+    let long = resonance.omega(2.0_f64.sqrt()).patience(300);
+    let long = long.run().expect("basins");
     assert_eq!(long.count(Fate::Long), 9);
 }
 
 #[test]
 fn a_request_that_cannot_be_used_is_refused() {
-    let good = basin(4);
-    let with = |change: &dyn Fn(&mut Basin)| {
-        let mut request = good.clone();
-        change(&mut request);
-        let error = request
-            .compute(flows(&MODEL, 1), None, &always)
-            .expect_err("a refusal");
-        error.to_string()
+    let on = |change: &dyn Fn(&mut Grid)| {
+        let mut grid = grid(4);
+        change(&mut grid);
+        basin(4).grid(grid)
     };
-    assert!(with(&|b| b.grid.start = vec![0.0; 3]).contains("entries"));
-    assert!(with(&|b| b.grid.rows.entry = 0).contains("different"));
-    assert!(with(&|b| b.grid.rows.entry = 2).contains("entries"));
-    assert!(with(&|b| b.grid.columns.to = f64::NAN).contains("finite"));
-    assert!(with(&|b| b.grid.columns.count = 0).contains("cell"));
-    assert!(with(&|b| b.grid.columns.count = usize::MAX).contains("cell"));
-    assert!(with(&|b| b.longest = 0).contains("longest"));
-    assert!(with(&|b| b.escape = -1.0).contains("escape"));
-    let error = good
-        .compute(Vec::new(), None, &always)
-        .expect_err("no flow");
-    assert!(error.to_string().contains("flows"));
+    for (request, said) in [
+        (on(&|grid| grid.start = vec![0.0; 3]), "entries"),
+        (on(&|grid| grid.rows.entry = 0), "different"),
+        (on(&|grid| grid.rows.entry = 2), "entries"),
+        (on(&|grid| grid.columns.to = f64::NAN), "finite"),
+        (on(&|grid| grid.columns.count = 0), "cell"),
+        (on(&|grid| grid.columns.count = usize::MAX), "cell"),
+        (basin(4).longest(0), "longest"),
+        (basin(4).escape(-1.0), "escape"),
+        (basin(4).threads(0), "threads"),
+        (Basin::of(&MODEL).omega(1.0), "grid is missing"),
+        (Basin::of(&MODEL).grid(grid(4)), "omega"),
+    ] {
+        let error = request.run().expect_err("a refusal");
+        assert_eq!(error.kind(), ErrorKind::Request);
+        assert!(error.to_string().contains(said), "{error}");
+    }
 }
 
 /// A flow none of whose motions can be computed.
@@ -336,10 +329,8 @@ impl Flow for Stuck {
 
 #[test]
 fn a_basin_without_a_motion_is_an_error() {
-    let axis = |entry| Axis::of(entry).from(-1.0).to(1.0).cells(4);
-    let grid = Grid::new(vec![0.0; 2], axis(0), axis(1));
     let flows: Vec<Box<dyn Flow>> = vec![Box::new(Stuck)];
-    let found = Basin::new(grid).compute(flows, None, &|_| true);
+    let found = basin(4).compute(flows, None, &mut |_| ControlFlow::Continue(()));
     let reason = FlowError::Rests { phase: 0.0 };
     assert_eq!(found, Err(BasinError::Motion { reason }));
     let said = chain(&BasinError::Motion { reason }).to_string();

@@ -35,7 +35,7 @@ impl std::fmt::Display for Aft {
     }
 }
 
-/// The method chosen, with its room.
+/// The method chosen, with its workspace.
 #[derive(Debug)]
 pub(crate) enum Engine {
     Switched(Box<SwitchedAft>),

@@ -48,7 +48,10 @@ impl PrimitiveAft {
 
     /// Writes the series of the force.
     pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
-        let Some(Parts { spring, primitive }) = input.law.parts() else {
+        let Some(Parts {
+            spring, primitive, ..
+        }) = input.law.parts()
+        else {
             return self.sampled.force(input, force);
         };
         self.sampled.force(of(input, spring), force);
@@ -66,7 +69,10 @@ impl PrimitiveAft {
         force: &mut [f64],
         out: &mut ContactDerivatives<'_>,
     ) {
-        let Some(Parts { spring, primitive }) = input.law.parts() else {
+        let Some(Parts {
+            spring, primitive, ..
+        }) = input.law.parts()
+        else {
             return self.sampled.derivatives(input, change, force, out);
         };
         self.sampled
@@ -86,13 +92,13 @@ impl PrimitiveAft {
             &mut self.primitive,
             &mut of_primitive,
         );
-        let room = &mut self.derivative;
-        add_derivative(&self.primitive, input.base, room, force);
+        let workspace = &mut self.derivative;
+        add_derivative(&self.primitive, input.base, workspace, force);
         out.by_rate.copy_from_slice(&self.slope);
-        add_derivative(&self.slope, input.base, room, out.by_gap);
+        add_derivative(&self.slope, input.base, workspace, out.by_gap);
         if let Some(change) = change {
-            add_derivative(&self.by_parameter, input.base, room, out.by_parameter);
-            add_derivative(&self.primitive, change.base, room, out.by_parameter);
+            add_derivative(&self.by_parameter, input.base, workspace, out.by_parameter);
+            add_derivative(&self.primitive, change.base, workspace, out.by_parameter);
         }
     }
 }
@@ -103,10 +109,10 @@ fn of<'a>(input: ContactInput<'a>, law: &'a dyn Law) -> ContactInput<'a> {
 }
 
 /// Adds `factor D series`.
-fn add_derivative(of: &[f64], factor: f64, room: &mut Vec<f64>, to: &mut [f64]) {
-    room.resize(of.len(), 0.0);
-    series::differentiate(of, room);
-    for (to, slope) in to.iter_mut().zip(room) {
+fn add_derivative(of: &[f64], factor: f64, workspace: &mut Vec<f64>, to: &mut [f64]) {
+    workspace.resize(of.len(), 0.0);
+    series::differentiate(of, workspace);
+    for (to, slope) in to.iter_mut().zip(workspace) {
         *to += factor * *slope;
     }
 }

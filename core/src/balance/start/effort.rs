@@ -4,6 +4,7 @@
 //! evaluations of the balance and the factorisations estimate them.
 
 use crate::branches::error::OrbitError;
+use crate::cancel::Cancel;
 use crate::continuation::newton::{Newton, NewtonError};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
@@ -11,7 +12,7 @@ use crate::error::Error;
 /// Multiplications that a search may take: some seconds. Most searches take less than a thousandth of it.
 pub(super) const LIMIT: u64 = 20_000_000_000;
 
-/// Those that motions may take after it.
+/// Multiplications that motions may take after it.
 pub(super) const LIMIT_OF_MOTIONS: u64 = 4_000_000_000;
 
 /// What a search has cost so far.
@@ -20,15 +21,17 @@ pub(super) struct Effort {
     pub(super) statistics: Statistics,
     operations: u64,
     limit: u64,
+    cancel: Cancel,
 }
 
 impl Effort {
-    /// Nothing done of so many multiplications.
-    pub(super) fn of(limit: u64) -> Self {
+    /// Nothing done, of `limit` multiplications, which a token may end before.
+    pub(super) fn of(limit: u64, cancel: &Cancel) -> Self {
         Self {
             statistics: Statistics::default(),
             operations: 0,
             limit,
+            cancel: cancel.clone(),
         }
     }
 
@@ -38,19 +41,19 @@ impl Effort {
         self.operations += std::mem::take(&mut newton.operations);
     }
 
-    /// Takes so many multiplications.
+    /// Takes multiplications off.
     pub(super) fn take_operations(&mut self, operations: u64) {
         self.operations += operations;
     }
 
     /// Multiplications that are left.
-    pub(super) fn left(&self) -> u64 {
+    pub(super) fn remaining(&self) -> u64 {
         self.limit.saturating_sub(self.operations)
     }
 
-    /// Whether nothing is left of it.
+    /// Whether nothing is left of it, or the search was cancelled.
     pub(super) fn is_spent(&self) -> bool {
-        self.operations >= self.limit
+        self.operations >= self.limit || self.cancel.is_cancelled()
     }
 
     /// Evaluations of the balance so far.

@@ -8,9 +8,9 @@ use super::effort::Effort;
 use super::fixed::{Fixed, geometric, oscillation, spread};
 use crate::model::layout::Layout;
 
-/// Amplitudes whose residuals differ by no more than this part are on a plateau, as all tiny ones are.
+/// Relative difference of residuals up to which amplitudes are on a plateau, as all tiny ones are.
 const PLATEAU: f64 = 1e-6;
-/// Solutions that differ by no more than this part are one.
+/// Relative difference up to which solutions are one.
 const SAME: f64 = 1e-6;
 
 /// Different solutions in the harmonics of the load alone, smallest amplitude first.

@@ -6,8 +6,9 @@ use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::newton::{Border, Newton, NewtonError, NewtonOptions};
 use crate::continuation::problem::Problem;
 
-/// A solution so much smaller than where the search for it began is sought again on its own scale, and so many times in all.
+/// Size of a solution, in parts of where the search for it began, below which it is sought again on its own scale.
 const SMALLER: f64 = 1e-3;
+/// Searches on ever smaller scales, at most.
 const SCALES: usize = 3;
 
 /// One balance at a fixed value of the variable.
@@ -37,7 +38,8 @@ impl<'a> Fixed<'a> {
             request.omega,
             request.variable,
             resolution,
-        );
+        )
+        .until(request.cancel);
         let n = balance.unknowns();
         let mut border = vec![0.0; n + 1];
         border[n] = 1.0;
@@ -57,8 +59,11 @@ impl<'a> Fixed<'a> {
         u
     }
 
-    /// Size of the residual, which is kept.
+    /// Size of the residual, which is kept; not a number once the search is cancelled.
     pub(super) fn residual(&mut self, u: &[f64], effort: &mut Effort) -> f64 {
+        if self.balance.is_cancelled() {
+            return f64::NAN;
+        }
         let size = self
             .newton
             .size_of_residual(&mut self.balance, u, &mut self.residual);

@@ -20,7 +20,7 @@ use crate::system::Variable;
 
 /// Points of a branch, at most.
 const POINTS: usize = 2000;
-/// Largest step: only the end counts, and the angle between tangents keeps to the branch.
+/// Largest step, in parts of the size of the unknowns: only the end counts, and the angle between tangents keeps to the branch.
 const STEP: f64 = 0.4;
 /// Multiples of the frequency wanted at which a branch is begun.
 const HIGHER: [f64; 4] = [1.3, 2.0, 4.0, 10.0];
@@ -148,7 +148,7 @@ fn followed<P: Problem>(
 struct Drive<'a> {
     balance: Balance<'a>,
     value: f64,
-    /// Room for extended unknowns, and for a direction.
+    /// Workspace for extended unknowns, and for a direction.
     extended: Vec<f64>,
     held: Vec<f64>,
     /// The oscillating load with its sign in the residual: the derivative by the factor.
@@ -207,6 +207,10 @@ impl Problem for Drive<'_> {
 
     fn is_mean(&self, unknown: usize) -> bool {
         self.balance.is_mean(unknown)
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.balance.is_cancelled()
     }
 
     fn operations(&self) -> u64 {

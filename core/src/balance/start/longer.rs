@@ -18,7 +18,7 @@ use crate::numeric::fourier::series;
 const SIZES: u32 = 8;
 /// Phases of a disturbance in eighths of its period. Those far apart come first, in case that the work ends the search.
 const PHASES: [u32; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
-/// Orbits found with few harmonics whose oscillations and means differ by no more than this part are one.
+/// Relative difference of oscillations and means up to which orbits found with few harmonics are one.
 const SAME: f64 = 1e-4;
 
 /// An orbit whose shortest period is the one asked for.

@@ -25,6 +25,7 @@ mod rest;
 
 use crate::balance::Resolution;
 use crate::branches::error::OrbitError;
+use crate::cancel::Cancel;
 use crate::continuation::newton::{NewtonError, NewtonOptions};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
@@ -47,6 +48,8 @@ pub(crate) struct StartRequest<'a> {
     pub(crate) newton: NewtonOptions,
     /// How motions are computed, where they can be.
     pub(crate) motion: Option<&'a Motion<'a>>,
+    /// Ends the search.
+    pub(crate) cancel: &'a Cancel,
 }
 
 /// Moves a state in time.
@@ -103,14 +106,14 @@ pub(crate) fn start(
         resolution,
         ..request
     };
-    let mut effort = Effort::of(effort::LIMIT);
+    let mut effort = Effort::of(effort::LIMIT, request.cancel);
     let found = orbit_of_period_one(simple, &mut effort);
     *statistics += effort.statistics;
     let found = found.map_err(|reason| effort.error(request.value, reason))?;
     if period == 1 {
         return Ok(found);
     }
-    let mut effort = Effort::of(effort::LIMIT);
+    let mut effort = Effort::of(effort::LIMIT, request.cancel);
     let longer = longer::orbit(request, &found, &mut effort);
     *statistics += effort.statistics;
     longer.map_err(|attempts| {
@@ -130,7 +133,7 @@ pub(crate) fn without_symmetry(
     symmetric: &[f64],
     statistics: &mut Statistics,
 ) -> Option<Vec<f64>> {
-    let mut effort = Effort::of(effort::LIMIT);
+    let mut effort = Effort::of(effort::LIMIT, request.cancel);
     let found = broken::orbit(request, symmetric, &mut effort);
     *statistics += effort.statistics;
     found
@@ -154,7 +157,10 @@ fn orbit_of_period_one(
     if let Some(found) = homotopy::in_frequency(request, effort) {
         return Ok(found);
     }
-    let mut further = Effort::of(effort::LIMIT_OF_MOTIONS);
+    if request.cancel.is_cancelled() {
+        return Err(met);
+    }
+    let mut further = Effort::of(effort::LIMIT_OF_MOTIONS, request.cancel);
     let found = settled(request, rest.ok(), &mut further);
     effort.statistics += further.statistics;
     found.ok_or(met)
@@ -221,7 +227,7 @@ mod tests {
     use crate::error::ErrorKind;
     use crate::testing::by_hand::PowerForm;
 
-    fn request(system: &PowerForm, period: usize) -> StartRequest<'_> {
+    fn request<'a>(system: &'a PowerForm, period: usize, cancel: &'a Cancel) -> StartRequest<'a> {
         StartRequest {
             system,
             parameters: &system.values,
@@ -243,15 +249,17 @@ mod tests {
                 damped: false,
             },
             motion: None,
+            cancel,
         }
     }
 
     /// Without a load nothing is found from rest, so that the search goes on until it may not.
     #[test]
     fn a_search_ends_at_its_limit_and_says_so() {
+        let cancel = Cancel::new();
         let system = PowerForm::new(false, 0.6, 0.01, 0.0, 0.1);
-        let mut effort = Effort::of(1);
-        let reason = orbit_of_period_one(request(&system, 1), &mut effort).unwrap_err();
+        let mut effort = Effort::of(1, &cancel);
+        let reason = orbit_of_period_one(request(&system, 1, &cancel), &mut effort).unwrap_err();
         let error = effort.error(0.8, reason);
         assert_eq!(error.kind(), ErrorKind::Limit);
         let Some(&OrbitError::SearchLimit {
@@ -264,21 +272,22 @@ mod tests {
         };
         // The sequences of amplitudes, and what one attempt took.
         assert!(evaluations < 800, "{evaluations}");
-        let mut effort = Effort::of(effort::LIMIT);
-        assert!(orbit_of_period_one(request(&system, 1), &mut effort).is_ok());
+        let mut effort = Effort::of(effort::LIMIT, &cancel);
+        assert!(orbit_of_period_one(request(&system, 1, &cancel), &mut effort).is_ok());
         assert!(!effort.is_spent());
     }
 
     #[test]
     fn attempts_at_a_longer_period_are_counted() {
+        let cancel = Cancel::new();
         let system = PowerForm::new(true, 1.0, 0.032, 1.0, 0.1);
-        let mut effort = Effort::of(effort::LIMIT);
-        let simple = orbit_of_period_one(request(&system, 1), &mut effort).unwrap();
-        let whole = longer::orbit(request(&system, 2), &simple, &mut effort).unwrap_err();
+        let mut effort = Effort::of(effort::LIMIT, &cancel);
+        let simple = orbit_of_period_one(request(&system, 1, &cancel), &mut effort).unwrap();
+        let whole = longer::orbit(request(&system, 2, &cancel), &simple, &mut effort).unwrap_err();
         assert_eq!((whole.planned, whole.made), (64, 64));
         assert!(whole.shorter > 32, "{whole}");
-        let mut effort = Effort::of(1);
-        let part = longer::orbit(request(&system, 2), &simple, &mut effort).unwrap_err();
+        let mut effort = Effort::of(1, &cancel);
+        let part = longer::orbit(request(&system, 2, &cancel), &simple, &mut effort).unwrap_err();
         assert_eq!(part.made, 1);
         let told = part.to_string();
         assert!(

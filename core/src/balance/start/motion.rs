@@ -20,8 +20,9 @@ use crate::numeric::fourier::sampled::SampledTransform;
 const TRIED_AFTER: [usize; 5] = [12, 48, 192, 576, 1152];
 /// Periods whose mean is taken: a multiple of the lengths 2, 3, 4, 6 and 12.
 const AVERAGED: usize = 12;
-/// Samples for each harmonic, and at least.
+/// Samples for each harmonic.
 const OVERSAMPLED: usize = 8;
+/// Samples of a period, at least.
 const LEAST_SAMPLES: usize = 256;
 
 /// An orbit near what motions from these positions at rest come to.
@@ -56,7 +57,7 @@ pub(super) fn orbit(
                 skipped: periods - AVERAGED - passed,
                 recorded: AVERAGED,
                 samples,
-                most: effort.left(),
+                most: effort.remaining(),
             });
             passed = periods;
             effort.take_operations(moved.operations);

@@ -13,7 +13,7 @@ use crate::continuation::newton::NewtonError;
 use crate::numeric::linear::dot;
 use crate::numeric::roots::{self, Place};
 
-/// So many of the amplitudes are tried.
+/// Amplitudes that Newton's method is tried from, at most.
 const TRIALS: usize = 6;
 /// Accuracy of the amplitude at which the residual changes its sign, in parts of the distance of those tried.
 const CLOSE: f64 = 1e-12;

@@ -21,7 +21,7 @@ use crate::law::{Derivatives, On};
 use crate::model::layout::{ContactLayout, Layout, Term};
 use crate::system::{Part, System};
 
-/// Values of laws that differ by this part of their terms are equal.
+/// Difference up to which values of laws are equal, in parts of the size of their terms.
 const EQUAL: f64 = 1e-12;
 /// Distances from a level at which laws are compared, in units of the levels.
 const DISTANCES: [f64; 11] = [
@@ -49,22 +49,22 @@ struct Contact {
 /// Whether every contact has an image among them.
 pub(super) fn are_symmetric(system: &dyn System, layout: &Layout, values: &[f64]) -> bool {
     let contacts = layout.contacts.iter();
-    let mut left: Vec<Contact> = contacts
+    let mut unpaired: Vec<Contact> = contacts
         .map(|contact| Contact::of(contact, values))
         .filter(|contact| !contact.force.is_empty())
         .collect();
     // Images of one contact are all alike, so that it does not matter which of them is taken.
-    while let Some(contact) = left.pop() {
+    while let Some(contact) = unpaired.pop() {
         if contact.has_image(system, &contact) {
             continue;
         }
-        let image = left
+        let image = unpaired
             .iter()
             .position(|other| contact.has_image(system, other));
         let Some(image) = image else {
             return false;
         };
-        left.swap_remove(image);
+        unpaired.swap_remove(image);
     }
     true
 }
@@ -82,7 +82,7 @@ pub(super) fn shifted(
         .map(|contact| Contact::of(contact, values))
         .filter(|contact| !contact.force.is_empty())
         .collect();
-    let mut left: Vec<&Contact> = all.iter().collect();
+    let mut unpaired: Vec<&Contact> = all.iter().collect();
     let mut moved = false;
     for contact in &all {
         let turned = contact.turned(parts);
@@ -90,9 +90,9 @@ pub(super) fn shifted(
             let mut signs = SIGNS.into_iter();
             signs.any(|signs| turned.is_like(system, other, signs))
         };
-        let image = left.iter().position(|other| is_image(other))?;
+        let image = unpaired.iter().position(|other| is_image(other))?;
         moved |= !is_image(contact);
-        left.swap_remove(image);
+        unpaired.swap_remove(image);
     }
     Some(moved)
 }

@@ -21,7 +21,7 @@ use crate::system::{System, Variable};
 /// Values of the variable, as parts of its range, at which coefficients are looked at: the symmetry that a system has at all of
 /// them it is taken to have throughout.
 const LOOKED_AT: [f64; 6] = [0.0, 0.137, 0.36, 0.618, 0.83, 1.0];
-/// Terms that cancel to this part of their sizes cancel.
+/// Sum of terms that cancel, in parts of their sizes.
 const ROUNDING: f64 = 1e-14;
 
 pub(crate) use stride::has_stride;

@@ -16,7 +16,7 @@ use super::{BROKEN_SHARE, Over, cancels, contacts};
 use crate::branches::orbit::Orbit;
 use crate::model::layout::Entry;
 
-/// More parts are not looked for: so many steps of a cage are more than there are harmonics.
+/// Parts of the period that are looked for, at most: a cage of more steps has more than there are harmonics.
 const MOST: usize = 10_000;
 
 impl Over<'_> {

@@ -16,16 +16,16 @@ use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
 use crate::numeric::fourier::series;
 
-/// Relative to the oscillation, a smaller correction needs no further steps: they change it by a part that is as small.
+/// Size of a correction, in parts of the oscillation, below which it needs no further steps: they change it by a part that is as small.
 const SMALL: f64 = 1e-5;
-/// Unless harmonics are so few: a contact that is always closed needs no more, however stiff it is beside the inertia of the tail. Steps
-/// cost least then.
+/// Harmonics up to which such steps are made in any case, and cost least: a contact that is always closed needs no more, however stiff
+/// it is beside the inertia of the tail.
 const FEW: usize = 12;
-/// Steps are over when one is smaller than this part of all.
+/// Size of the last step, in parts of all of them.
 const ENOUGH: f64 = 0.01;
 /// Further steps, at most.
 const STEPS: usize = 6;
-/// Steps that hardly fall tell no more than that: what is left is taken as so many times the last one.
+/// Ratio of successive steps, at most, by which the sum of those that follow is extrapolated: steps that hardly fall tell no more.
 const SLOWEST: f64 = 0.9;
 
 impl Finer<'_> {
@@ -49,7 +49,7 @@ impl Finer<'_> {
         }
         self.further.clone_from(&self.orbit);
         let error = match self.step_on(u, units, newton) {
-            Some(left) => first.max(self.largest_change(u, phases, units)) + left,
+            Some(remaining) => first.max(self.largest_change(u, phases, units)) + remaining,
             None => f64::INFINITY,
         };
         // What else is read off the orbit is to first order.

@@ -43,19 +43,20 @@ use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
+use crate::model::layout::add_constant;
 use crate::numeric::fourier::series;
 use crate::system::{System, Variable};
 
 /// The change by the harmonics from `K` to `2 K` times this is that by all above `K`, where it falls as `K^-1.6` or faster.
 pub(crate) const BEYOND: f64 = 1.5;
-/// A correction smaller than this part of the orbit is below what Newton's method leaves.
+/// Size of a correction, in parts of the orbit, that Newton's method leaves.
 pub(crate) const NOTHING: f64 = 1e-13;
-/// An oscillation smaller than this part of the mean is one of rounding.
+/// Size of an oscillation, in parts of the mean, that is one of rounding.
 const STILL: f64 = 1e-12;
 /// Relative error of an event that rounding leaves.
 const ROUNDING: f64 = 1e-12;
 
-/// A finer balance of the same system, and room for its vectors.
+/// A finer balance of the same system, and workspace for its vectors.
 #[derive(Debug)]
 pub(crate) struct Finer<'a> {
     balance: Balance<'a>,
@@ -72,7 +73,7 @@ pub(crate) struct Finer<'a> {
     beyond: Vec<f64>,
     /// The coarse balance, where contact forces are exact.
     plain: Option<Balance<'a>>,
-    /// Series of a contact force; so much of it reaches the coarse harmonics.
+    /// Series of a contact force, and the length of its part that reaches the coarse harmonics.
     force: Vec<f64>,
     short: usize,
     /// The tail alone.
@@ -297,10 +298,7 @@ impl<'a> Finer<'a> {
                 .iter_mut()
                 .zip([&layout.mass, &layout.damping, &layout.stiffness])
         {
-            for entry in entries.iter().filter(|entry| entry.wave.harmonic == 0) {
-                let place = entry.row * layout.coordinates + entry.column;
-                matrix[place] += coefficients[entry.coefficient];
-            }
+            add_constant(entries, coefficients, layout.coordinates, matrix);
         }
     }
 

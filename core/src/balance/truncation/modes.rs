@@ -14,12 +14,12 @@
 
 use nalgebra::DMatrix;
 
-use crate::balance::Balance;
+use crate::balance::{Balance, Lattice};
 use crate::numeric::spectrum::eigenvalues;
 
-/// Beyond so many times the highest harmonic of the correction nothing is said: next to nothing is left there of a power.
+/// Highest mode that is looked at, in units of the highest harmonic of the correction: next to nothing is left of a power beyond.
 const FARTHEST: f64 = 1e6;
-/// So many modes above `2 K` are looked at, the lowest, which answer most.
+/// Modes above `2 K` that are looked at: the lowest, which answer most.
 const MODES: usize = 4;
 
 /// Frequencies of the linear modes, as long as their matrices stay as they are.
@@ -82,7 +82,7 @@ impl Modes {
                 parts.fold(0.0, f64::max)
             })
             .collect();
-        let (first, step) = balance.resolution().lattice();
+        let Lattice { first, step } = balance.resolution().lattice();
         let mut known = top;
         for frequency in met {
             // The two harmonics of the orbit on either side of it.

@@ -120,6 +120,9 @@ pub(crate) fn run(
                 last = Some(halted);
                 Start::At(resized)
             }
+            Err(NewtonError::Cancelled { .. }) if problem.points() > 0 => {
+                return Ok(Stop::Interrupted);
+            }
             Err(_) if problem.strengthen() => begun,
             Err(reason) => {
                 let Some(halted) = last.take() else {

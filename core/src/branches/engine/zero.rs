@@ -73,6 +73,10 @@ impl Search<'_> {
         match kept {
             Kept::Event | Kept::Nothing => return Recorded::Found,
             Kept::Ends(stop) => return Recorded::Ends(stop),
+            // It may well be an event.
+            Kept::Unread if problem.equations().is_cancelled() => {
+                return Recorded::Ends(Stop::Interrupted);
+            }
             Kept::Unread => {}
         }
         let middle = 0.5 * (self.step.0.parameter() + self.step.1.parameter());

@@ -36,6 +36,12 @@ pub enum NewtonError {
         /// After this many updates.
         iterations: usize,
     },
+    /// The work was [cancelled](crate::Cancel).
+    #[error("cancelled after {iterations} iterations")]
+    Cancelled {
+        /// After this many updates.
+        iterations: usize,
+    },
 }
 
 crate::error::sentence_as_debug! {
@@ -43,6 +49,7 @@ crate::error::sentence_as_debug! {
     NotConverged { iterations, update, residual }
     Singular { iterations, at }
     NotFinite { iterations }
+    Cancelled { iterations }
     ;
 }
 
@@ -51,7 +58,7 @@ impl NewtonError {
         match self {
             Self::Singular { at, .. } => Self::Singular { iterations, at },
             Self::NotFinite { .. } => Self::NotFinite { iterations },
-            other @ Self::NotConverged { .. } => other,
+            other @ (Self::NotConverged { .. } | Self::Cancelled { .. }) => other,
         }
     }
 }

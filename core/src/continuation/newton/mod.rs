@@ -169,6 +169,11 @@ impl Newton {
         let most = options.iterations * if options.damped { 1 } else { CHORD_PATIENCE };
         let mut updates = 0;
         for iteration in 0..most {
+            if problem.is_cancelled() {
+                return Err(NewtonError::Cancelled {
+                    iterations: iteration,
+                });
+            }
             let renewed = renew;
             if renew {
                 self.linearise(problem, u, border)
@@ -373,6 +378,9 @@ impl Newton {
         let before = norm(&self.residual);
         let mut factor = 1.0;
         for _ in 0..12 {
+            if problem.is_cancelled() {
+                break;
+            }
             self.trial.copy_from_slice(u);
             subtract(&mut self.trial, &self.update, factor);
             let work = (&mut self.statistics, &mut self.operations);

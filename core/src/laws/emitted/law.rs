@@ -58,7 +58,7 @@ impl<K, const A: usize, const L: usize, const V: usize> Generated<K, A, L, V> {
         spring: &'static dyn Law,
         primitive: &'static dyn Law,
     ) -> Self {
-        self.parts = Some(Parts { spring, primitive });
+        self.parts = Some(Parts::new(spring, primitive));
         self
     }
 }

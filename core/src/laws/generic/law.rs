@@ -264,7 +264,7 @@ impl Law for InterpretedLaw {
     fn parts(&self) -> Option<Parts<'_>> {
         self.parts
             .as_deref()
-            .map(|[spring, primitive]| Parts { spring, primitive })
+            .map(|[spring, primitive]| Parts::new(spring, primitive))
     }
 }
 

@@ -42,63 +42,29 @@ fn hertz(exponent: Option<f64>) -> InterpretedLaw {
 }
 
 fn piece(force: usize, by_gap: usize, by_rate: usize, by_argument: [usize; 2]) -> PieceData {
-    PieceData {
-        force,
-        by_gap,
-        by_rate,
-        by_argument: by_argument.to_vec().into(),
-    }
+    PieceData::new([force, by_gap, by_rate], by_argument.to_vec())
 }
 
 fn data(nodes: Vec<Node>, pieces: Vec<PieceData>) -> LawData {
-    let level = LevelData {
-        value: 5,
-        by_argument: vec![5, 5].into(),
-    };
-    LawData {
-        nodes: nodes.into(),
-        levels: vec![level].into(),
-        pieces: pieces.into(),
-    }
+    LawData::new(nodes, [LevelData::new(5, vec![5, 5])], pieces)
 }
 
 fn facts() -> LawFacts {
-    let power = TermFacts {
-        of: Quantity::Force,
-        lower: Exponent {
-            number: 0.0,
-            argument: Some(1),
-        },
-        upper: Exponent::ZERO,
-        logarithm: false,
-    };
-    let piece = |variation, by_rate, terms| PieceFacts {
-        affine: false,
-        force: variation,
-        by_gap: variation,
-        by_rate,
-        by_argument: vec![variation; 2].into(),
-        terms,
-    };
-    LawFacts {
-        name: "hertz".into(),
-        arguments: ARGUMENTS.to_vec().into(),
-        levels: vec![LevelFacts {
-            belongs_above: false,
-            force_jumps: false,
-            by_gap_jumps: true,
-            by_rate_jumps: true,
-            unbounded_by_gap: true,
-        }]
-        .into(),
-        pieces: vec![
-            piece(Variation::Zero, Variation::Zero, Cow::Borrowed(&[])),
-            piece(Variation::Varying, Variation::Constant, vec![power].into()),
-        ]
-        .into(),
-        rate: RateDependence::Linear,
-        odd: false,
-    }
+    let power = TermFacts::new(
+        Quantity::Force,
+        Exponent::of_argument(0.0, 1),
+        Exponent::ZERO,
+    );
+    let closed = PieceFacts::smooth(2)
+        .slopes(Variation::Varying, Variation::Constant)
+        .terms([power]);
+    let level = LevelFacts::default()
+        .by_gap_jumps(true)
+        .by_rate_jumps(true)
+        .unbounded_by_gap(true);
+    LawFacts::new("hertz", [level], [PieceFacts::zero(2), closed])
+        .arguments(ARGUMENTS.iter().cloned())
+        .rate(RateDependence::Linear)
 }
 
 /// Force, by gap, by rate and by one argument of a batch.
@@ -258,17 +224,11 @@ fn levels_follow_the_arguments() {
         Node::Number(-1.0),
         Node::Number(0.0),
     ];
-    let level = |value, by_argument| LevelData {
-        value,
-        by_argument: vec![by_argument, 4].into(),
-    };
+    let level = |value, by_argument| LevelData::new(value, vec![by_argument, 4]);
     let mut facts = facts();
     facts.levels = vec![facts.levels[0]; 2].into();
-    let data = LawData {
-        nodes: nodes.into(),
-        levels: vec![level(1, 3), level(0, 2)].into(),
-        pieces: vec![piece(4, 4, 4, [4, 4]); 3].into(),
-    };
+    let pieces = vec![piece(4, 4, 4, [4, 4]); 3];
+    let data = LawData::new(nodes, [level(1, 3), level(0, 2)], pieces);
     let law = InterpretedLaw::new(facts, data).expect("a law");
     let mut levels = [0.0; 2];
     law.levels(&[0.7, 1.5], &mut levels);
@@ -280,11 +240,7 @@ fn levels_follow_the_arguments() {
 #[test]
 fn a_node_that_uses_itself_is_refused() {
     let nodes = vec![Node::Negate(0)];
-    let data = LawData {
-        nodes: nodes.into(),
-        levels: Cow::Borrowed(&[]),
-        pieces: vec![piece(0, 0, 0, [0, 0])].into(),
-    };
+    let data = LawData::new(nodes, [], [piece(0, 0, 0, [0, 0])]);
     let mut facts = facts();
     facts.levels = Cow::Borrowed(&[]);
     let error = InterpretedLaw::new(facts, data).expect_err("a circle");

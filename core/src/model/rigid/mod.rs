@@ -34,7 +34,7 @@ use nalgebra::DMatrix;
 
 use crate::error::Error;
 use crate::model::error::ModelError;
-use crate::model::layout::{Entry, Layout};
+use crate::model::layout::Layout;
 use crate::system::{System, Variable};
 use null_space::Rows;
 
@@ -87,15 +87,6 @@ impl Place<'_> {
             Variable::Omega => self.omega,
             Variable::Parameter(index) => self.parameters[index],
         }
-    }
-
-    fn sum(&self, entries: &[Entry], coefficients: &[f64]) -> DMatrix<f64> {
-        let n = self.layout.coordinates;
-        let mut matrix = DMatrix::zeros(n, n);
-        for entry in entries {
-            matrix[(entry.row, entry.column)] += coefficients[entry.coefficient];
-        }
-        matrix
     }
 }
 
@@ -163,7 +154,7 @@ impl Rigid {
         if all.iter().any(unbalanced) {
             return None;
         }
-        Self::new(&directions, &place.sum(&place.layout.mass, &all[0]))
+        Self::new(&directions, &place.layout.mass(&all[0]))
     }
 
     fn new(directions: &Directions, mass: &DMatrix<f64>) -> Option<Self> {

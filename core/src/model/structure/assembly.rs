@@ -62,12 +62,7 @@ impl Assembly {
         let index = self.values.len();
         self.known.insert(name.to_owned(), index);
         self.values.push(value);
-        self.parameters.push(ParameterFacts {
-            name: name.to_owned().into(),
-            documentation: "".into(),
-            minimum: Bound::Unbounded,
-            maximum: Bound::Unbounded,
-        });
+        self.parameters.push(ParameterFacts::new(name.to_owned()));
         Ok(index)
     }
 

@@ -79,19 +79,15 @@ impl Builder {
         for (index, contact) in self.contacts.iter().enumerate() {
             assembly.contact(index, contact, coordinates)?;
         }
-        let contacts = (0..self.contacts.len()).map(|law| ContactFacts { law });
-        let names = (1..=coordinates).map(|number| format!("q{number}").into());
+        let contacts = (0..self.contacts.len()).map(ContactFacts::new);
+        let facts = SystemFacts::new(self.name)
+            .equation("M ddot(q) + C dot(q) + K q + contacts = loads")
+            .coordinates((1..=coordinates).map(|number| format!("q{number}")))
+            .parameters(assembly.parameters)
+            .contacts(self.contacts.len(), contacts)
+            .places(assembly.places);
         Ok(Structure {
-            facts: SystemFacts {
-                name: self.name.into(),
-                equation: "M ddot(q) + C dot(q) + K q + contacts = loads".into(),
-                coordinates: names.collect(),
-                parameters: assembly.parameters.into(),
-                divisor: 1,
-                laws: self.contacts.len(),
-                contacts: contacts.collect(),
-                places: assembly.places.into(),
-            },
+            facts,
             values: assembly.values,
             coefficients: assembly.coefficients,
             laws: self

@@ -193,10 +193,7 @@ pub(crate) fn mass(system: &dyn System, parameters: &[f64], omega: f64) -> Resul
     let layout = Layout::of(system);
     let mut coefficients = vec![0.0; layout.coefficients];
     system.coefficients(parameters, omega, &mut coefficients);
-    let mut mass = DMatrix::zeros(layout.coordinates, layout.coordinates);
-    for entry in &layout.mass {
-        mass[(entry.row, entry.column)] += coefficients[entry.coefficient];
-    }
+    let mass = layout.mass(&coefficients);
     let determinant: f64 = mass.determinant();
     regular(&mass).map_err(|_| ModelError::SingularMass { determinant })?;
     energy_is_positive(system.facts(), &mass)

@@ -5,11 +5,9 @@ use crate::attractors::lyapunov::Lyapunov;
 use crate::attractors::sweep::Sweep;
 use crate::bifurcation::Bifurcations;
 use crate::bifurcation::backbone::{FreeOscillation, PhaseResonance};
-use crate::bifurcation::error::BifurcationError;
 use crate::error::{Error, chain};
 use crate::response::FrequencyResponse;
 use crate::shooting::Shooting;
-use crate::system::Variable;
 use crate::time;
 use crate::time::Options;
 use crate::time::poincare::{Direction, Section};
@@ -117,10 +115,7 @@ fn values_within_a_range() {
             .map(drop)
     };
     refused(near, &single);
-    let basin = |escape| Basin {
-        escape,
-        ..Basin::new(grid(1.0))
-    };
+    let basin = |escape| Basin::of(&model).grid(grid(1.0)).escape(escape);
     let all = || Bifurcations::of(&model).from(0.5).to(0.6);
     let rows = [(NAN, "search = NaN"), (9.0, "must be in the range")];
     refused(|&v| all().search(v, basin(1.0)).run().map(drop), &rows);
@@ -174,13 +169,10 @@ fn grid(high: f64) -> Grid {
 fn motions() {
     let model = MODEL;
     let map = || Stroboscope::of(&model, 0.5).expect("a map");
-    let sweep = |escape, start| Sweep {
-        variable: Variable::Omega,
-        values: vec![0.5],
-        start: vec![start, 0.0],
-        transient: 1,
-        periods: 1,
-        escape,
+    let sweep = |escape, start| {
+        let sweep = Sweep::of(&model).from(0.5).to(0.5).values(1);
+        let sweep = sweep.start(&[start, 0.0]).escape(escape);
+        sweep.transient(1).periods(1)
     };
     let rows = [
         ([NAN, 0.0], "escape = NaN"),
@@ -188,10 +180,7 @@ fn motions() {
         ([-1.0, 0.0], "escape = -1"),
         ([1e6, NAN], "start = NaN"),
     ];
-    let run = |&[escape, start]: &[f64; 2]| {
-        let rows = sweep(escape, start).run(&mut map(), None, None, &mut |_| true);
-        rows.map(drop)
-    };
+    let run = |&[escape, start]: &[f64; 2]| sweep(escape, start).run().map(drop);
     refused(run, &rows);
     let section = |&value: &f64| {
         let section = Section::entry(0, value, Direction::Rising);
@@ -214,26 +203,15 @@ fn motions() {
 #[test]
 fn basins() {
     let model = MODEL;
-    let flow = || time::of(&model, 0.5, Options::default()).expect("a flow");
-    let compute = |(basin, flows): &(Basin, usize)| {
-        let flows = (0..*flows).map(|_| flow()).collect();
-        let basins = basin.compute(flows, None, &|_| true);
-        let value = 0.5;
-        basins
-            .map(drop)
-            .map_err(|reason| BifurcationError::Search { value, reason }.into())
-    };
-    let basin = |escape, longest| Basin {
-        longest,
-        escape,
-        ..Basin::new(grid(1.0))
-    };
+    let basin = || Basin::of(&model).omega(0.5).grid(grid(1.0));
     let rows = [
-        ((basin(1.0, 1), 0), "flows must be at least one"),
-        ((basin(1.0, 1), 1025), "flows must be at most 1024"),
-        ((basin(NAN, 1), 1), "escape must be positive"),
-        ((basin(1.0, 0), 1), "longest and patience"),
-        ((Basin::new(grid(NAN)), 1), "grid must be finite"),
+        (basin().threads(0), "threads must be from 1 to 1024"),
+        (basin().threads(1025), "threads must be from 1 to 1024"),
+        (basin().escape(NAN), "escape must be positive"),
+        (basin().longest(0), "longest and patience"),
+        (basin().grid(grid(NAN)), "grid must be finite"),
+        (basin().tolerance(NAN), "tolerance = NaN"),
+        (basin().omega(-1.0), "omega = -1"),
     ];
-    refused(compute, &rows);
+    refused(|basin: &Basin| basin.run().map(drop), &rows);
 }

@@ -57,7 +57,7 @@ pub(crate) fn evaluate(
     }
 }
 
-/// Adds `sum_j value_j (1, 2 cos t_j, 2 sin t_j, 2 cos 2 t_j, ...)` to a series. `c` and `s` are room for as many phases.
+/// Adds `sum_j value_j (1, 2 cos t_j, 2 sin t_j, 2 cos 2 t_j, ...)` to a series. `c` and `s` are workspace for as many phases.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub(crate) fn project(
     values: &[f64],
@@ -106,7 +106,7 @@ fn total(lanes: &Group) -> f64 {
         + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]))
 }
 
-/// Room for the product of two series of limited length.
+/// Workspace for the product of two series of limited length.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Product {
     x: [Vec<f64>; 2],

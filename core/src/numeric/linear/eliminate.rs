@@ -109,7 +109,7 @@ fn eliminate_panel(matrix: &mut Matrix, panel: usize, lu: &mut Lu) -> Result<(),
         let (above, below) = matrix.groups_mut().split_at_mut((column + 1) * width);
         let pivot = &above[column * width + panel];
         lu.reciprocals[column] = 1.0 / pivot[lane];
-        best = eliminate_column(below, pivot, lane, (width, panel), &scales[column + 1..]);
+        best = eliminate_column(below, pivot, lane, [width, panel], &scales[column + 1..]);
         best.row += column + 1;
     }
     Ok(())
@@ -122,7 +122,7 @@ fn eliminate_column(
     below: &mut [Group],
     pivot: &Group,
     lane: usize,
-    (width, panel): (usize, usize),
+    [width, panel]: [usize; 2],
     scales: &[f64],
 ) -> Candidate {
     let reciprocal = 1.0 / pivot[lane];

@@ -141,7 +141,7 @@ pub struct Lu {
 }
 
 impl Lu {
-    /// Room for matrices of one order.
+    /// Workspace for matrices of one order.
     pub fn new(order: usize) -> Self {
         Self {
             pivots: vec![0; order],

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use super::ContactMotion;
 use super::peak::Batch;
-use super::reader::{Reader, largest};
+use super::sampler::{Sampler, largest};
 use crate::balance::{Balance, rate_series};
 use crate::law::{Law, RateDependence, Variation};
 use crate::model::layout::ContactLayout;
-use crate::numeric::fourier::crossings::levels::Cuts;
+use crate::numeric::fourier::crossings::levels::{Cuts, Segment};
 
 /// Whether the force of a contact is identically zero.
 pub(super) fn is_idle(balance: &Balance<'_>, contact: usize) -> bool {
@@ -17,30 +17,18 @@ pub(super) fn is_idle(balance: &Balance<'_>, contact: usize) -> bool {
     pieces.into_iter().all(|p| p.force == Variation::Zero)
 }
 
-/// Room for one contact after the other.
+/// Workspace for one contact after the other.
 #[derive(Debug, Default)]
-pub(super) struct ContactReader {
+pub(super) struct ContactObserver {
     arguments: Vec<f64>,
     levels: Vec<f64>,
     cuts: Cuts,
-    panels: Vec<Panel>,
     rate: Vec<f64>,
     rates: Vec<f64>,
     batch: Batch,
 }
 
-/// A part of the period on which the gap stays on one piece.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Panel {
-    /// At most a period before the end.
-    pub(super) start: f64,
-    pub(super) end: f64,
-    pub(super) piece: usize,
-    /// The levels that its ends are on; none where it is the whole period.
-    pub(super) levels: Option<[f64; 2]>,
-}
-
-impl ContactReader {
+impl ContactObserver {
     pub(super) fn take_arguments(&mut self, contact: &ContactLayout, coefficients: &[f64]) {
         self.arguments.resize(contact.argument_count, 0.0);
         contact.arguments(coefficients, &mut self.arguments);
@@ -50,35 +38,36 @@ impl ContactReader {
     pub(super) fn read(
         &mut self,
         law: &dyn Law,
-        reader: &mut Reader,
+        sampler: &mut Sampler,
         base: f64,
         on_pieces: &mut [f64],
     ) -> ContactMotion {
-        self.cut(law, reader);
+        self.cut(law, sampler);
         let pieces = &law.facts().pieces;
-        let touches = |panel: &Panel| pieces[panel.piece].force != Variation::Zero;
+        let touches = |segment: &Segment| pieces[segment.piece].force != Variation::Zero;
         let mut motion = ContactMotion::NONE;
-        let mut before = self.panels.last().is_some_and(touches);
-        if before && self.panels.iter().all(touches) {
+        let always = self.cuts.segments().iter().all(touches);
+        let mut before = self.cuts.segments().last().is_some_and(touches);
+        if before && always {
             motion.count = 1;
         }
-        if self.panels.iter().any(touches) {
-            self.sample_rate(law, reader, base);
+        if self.cuts.segments().iter().any(touches) {
+            self.sample_rate(law, sampler, base);
         }
         let mut extremes = [f64::INFINITY, f64::NEG_INFINITY];
-        for panel in &self.panels {
-            let now = touches(panel);
-            let part = (panel.end - panel.start) / TAU;
-            on_pieces[panel.piece] += part;
+        for segment in self.cuts.segments() {
+            let now = touches(segment);
+            let part = (segment.end - segment.start) / TAU;
+            on_pieces[segment.piece] += part;
             let mut here = [0.0; 2];
             if now {
                 motion.fraction += part;
-                let (gaps, rates) = (reader.samples(), &self.rates[..]);
-                self.batch.take(panel, [gaps, rates], reader.series(), base);
-                let gap = reader.series();
-                here = self
-                    .batch
-                    .extremes(law, panel.piece, &self.arguments, gap, base);
+                let (gaps, rates) = (sampler.samples(), &self.rates[..]);
+                let gap = sampler.series();
+                let levels = &self.levels;
+                self.batch.take(segment, levels, [gaps, rates], gap, base);
+                let piece = segment.piece;
+                here = self.batch.extremes(law, piece, &self.arguments, gap, base);
             }
             extremes = [
                 -largest(-extremes[0], -here[0]),
@@ -87,15 +76,15 @@ impl ContactReader {
             motion.count += usize::from(now && !before);
             before = now;
         }
-        // The panels of contact that is never lost add up to the period but for rounding.
-        if before && self.panels.iter().all(touches) {
+        // The segments of contact that is never lost add up to the period but for rounding.
+        if before && always {
             motion.fraction = 1.0;
         }
         motion.fraction = motion.fraction.min(1.0);
         for part in on_pieces {
             *part = part.min(1.0);
         }
-        // A gap that is not a number is on no panel.
+        // A gap that is not a number is on no segment.
         if extremes[0] <= extremes[1] {
             [motion.minimum_force, motion.maximum_force] = extremes;
             motion.peak_force = largest(-extremes[0], extremes[1]);
@@ -103,32 +92,23 @@ impl ContactReader {
         motion
     }
 
-    fn sample_rate(&mut self, law: &dyn Law, reader: &mut Reader, base: f64) {
+    fn sample_rate(&mut self, law: &dyn Law, sampler: &mut Sampler, base: f64) {
         if law.facts().rate == RateDependence::None {
             self.rates.clear();
-            self.rates.resize(reader.samples().len(), 0.0);
+            self.rates.resize(sampler.samples().len(), 0.0);
             return;
         }
-        self.rate.resize(reader.series().len(), 0.0);
-        rate_series(reader.series(), base, &mut self.rate);
-        reader.sample(&self.rate, &mut self.rates);
+        self.rate.resize(sampler.series().len(), 0.0);
+        rate_series(sampler.series(), base, &mut self.rate);
+        sampler.sample(&self.rate, &mut self.rates);
     }
 
     /// Cuts the period at the levels.
-    fn cut(&mut self, law: &dyn Law, reader: &Reader) {
+    fn cut(&mut self, law: &dyn Law, sampler: &Sampler) {
         self.levels.resize(law.facts().levels.len(), 0.0);
         law.levels(&self.arguments, &mut self.levels);
         self.cuts
-            .apply(reader.finder(), reader.series(), &self.levels);
-        self.panels.clear();
-        let levels = &self.levels;
-        let panels = self.cuts.stretches().iter().map(|stretch| Panel {
-            start: stretch.start,
-            end: stretch.end,
-            piece: stretch.piece,
-            levels: stretch.levels.map(|ends| ends.map(|level| levels[level])),
-        });
-        self.panels.extend(panels);
+            .apply(sampler.finder(), sampler.series(), &self.levels);
     }
 }
 
@@ -145,11 +125,11 @@ mod tests {
     const BASE: f64 = 0.9;
 
     fn read(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> ContactMotion {
-        let (mut contact, mut reader) = (ContactReader::default(), Reader::default());
+        let (mut contact, mut sampler) = (ContactObserver::default(), Sampler::default());
         contact.arguments = arguments.to_vec();
-        reader.load(gap);
+        sampler.load(gap);
         let mut on_pieces = vec![0.0; law.facts().pieces.len()];
-        let motion = contact.read(law, &mut reader, BASE, &mut on_pieces);
+        let motion = contact.read(law, &mut sampler, BASE, &mut on_pieces);
         assert!((on_pieces.iter().sum::<f64>() - 1.0).abs() < 1e-13);
         let size = motion.maximum_force.abs().max(motion.minimum_force.abs());
         assert_eq!(motion.peak_force, size);
@@ -158,11 +138,11 @@ mod tests {
 
     /// Parts of the period on each piece.
     fn on_pieces(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> Vec<f64> {
-        let (mut contact, mut reader) = (ContactReader::default(), Reader::default());
+        let (mut contact, mut sampler) = (ContactObserver::default(), Sampler::default());
         contact.arguments = arguments.to_vec();
-        reader.load(gap);
+        sampler.load(gap);
         let mut on_pieces = vec![0.0; law.facts().pieces.len()];
-        contact.read(law, &mut reader, BASE, &mut on_pieces);
+        contact.read(law, &mut sampler, BASE, &mut on_pieces);
         on_pieces
     }
 
@@ -227,7 +207,7 @@ mod tests {
         gap
     }
 
-    /// By a scan of each stretch between crossings of zero, ends included, and golden sections about its best sample.
+    /// By a scan of each segment between crossings of zero, ends included, and golden sections about its best sample.
     /// Source: Kiefer (1953), Sequential minimax search for a maximum.
     fn scanned(law: &dyn Law, arguments: &[f64], gap: &[f64]) -> (f64, f64) {
         let size = |tau: f64| {
@@ -250,7 +230,7 @@ mod tests {
             let count = 4000;
             let at = |index: usize| a + (b - a) * index as f64 / f64::from(4000);
             if !found.is_empty() {
-                // At a switch itself, from the side of this stretch.
+                // At a switch itself, from the side of this segment.
                 let rate = |tau| BASE * series::value_and_derivatives(gap, tau).1;
                 let (gaps, mut force) = ([0.0; 2], [0.0; 2]);
                 let on = On::Piece(usize::from(middle > 0.0));
@@ -280,7 +260,7 @@ mod tests {
 
     #[test]
     fn peak_force_is_that_of_a_dense_scan() {
-        let mut random = Random::new(7);
+        let mut random = Random::seeded(7);
         let mut compared = 0;
         for one_sided in [true, false] {
             for alpha in [0.6, 1.0, 1.5, 3.0] {

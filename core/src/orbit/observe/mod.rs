@@ -2,23 +2,23 @@
 
 mod contact;
 mod peak;
-mod reader;
+mod sampler;
 
 use crate::balance::{Balance, gap_series, rate_series};
 pub use crate::branches::observed::{ContactMotion, Motion, Observed};
 use crate::numeric::fourier::series;
-use contact::ContactReader;
-use reader::Reader;
+use contact::ContactObserver;
+use sampler::Sampler;
 
 impl Motion {
     /// Reads the motion off a series; rest off an empty one.
     pub fn of(series: &[f64]) -> Self {
         let series = if series.is_empty() { &[0.0] } else { series };
-        Self::read(&mut Reader::default(), series)
+        Self::read(&mut Sampler::default(), series)
     }
 
-    fn read(reader: &mut Reader, series: &[f64]) -> Self {
-        let (minimum, maximum) = reader.extremes(series);
+    fn read(sampler: &mut Sampler, series: &[f64]) -> Self {
+        let (minimum, maximum) = sampler.extremes(series);
         Self {
             maximum,
             minimum,
@@ -52,8 +52,8 @@ pub fn phases(series: &[f64]) -> Vec<f64> {
 /// Reads orbits, one after the other. Beyond what it returns, it allocates for the first orbit only.
 #[derive(Debug, Default)]
 pub(crate) struct Observer {
-    reader: Reader,
-    contact: ContactReader,
+    sampler: Sampler,
+    contact: ContactObserver,
     gap: Vec<f64>,
     load: Vec<f64>,
     forces: Vec<f64>,
@@ -90,8 +90,8 @@ impl Observer {
         let motions = u
             .chunks_exact(length)
             .map(|series| {
-                let motion = Motion::read(&mut self.reader, series);
-                self.phases.push(self.reader.phases());
+                let motion = Motion::read(&mut self.sampler, series);
+                self.phases.push(self.sampler.phases());
                 motion
             })
             .collect();
@@ -115,8 +115,8 @@ impl Observer {
         balance.add_load(balance.coefficients(), 1.0, &mut self.load);
         balance.add_damping(balance.coefficients(), balance.base(), u, &mut self.forces);
         balance.add_stiffness(balance.coefficients(), u, &mut self.forces);
-        let room = series::length(balance.force_harmonics());
-        self.force.resize(room, 0.0);
+        let workspace = series::length(balance.force_harmonics());
+        self.force.resize(workspace, 0.0);
         for contact in 0..balance.layout().contacts.len() {
             if contact::is_idle(balance, contact) {
                 continue;
@@ -155,11 +155,11 @@ impl Observer {
             balance.length(),
             &mut self.gap,
         );
-        self.reader.load(&self.gap);
+        self.sampler.load(&self.gap);
         let law = balance.system().law(layout.law);
         self.contact.take_arguments(layout, coefficients);
         let base = balance.base();
-        self.contact.read(law, &mut self.reader, base, on_pieces)
+        self.contact.read(law, &mut self.sampler, base, on_pieces)
     }
 }
 
@@ -189,14 +189,14 @@ mod tests {
 
     #[test]
     fn extremes_are_those_of_a_dense_scan() {
-        let mut random = Random::new(3);
-        let mut reader = Reader::default();
+        let mut random = Random::seeded(3);
+        let mut sampler = Sampler::default();
         for harmonics in [1, 2, 3, 7, 12, 30] {
             for _ in 0..20 {
                 let coefficients =
                     (0..series::length(harmonics)).map(|_| random.between(-1.0, 1.0));
                 let series: Vec<f64> = coefficients.collect();
-                let motion = Motion::read(&mut reader, &series);
+                let motion = Motion::read(&mut sampler, &series);
                 let count = 100 * harmonics;
                 let values = (0..count)
                     .map(|j| series::value(&series, TAU * f64::from(j as u32) / count as f64));

@@ -1,4 +1,4 @@
-//! The largest force on a panel: by samples, both ends included, and then where the slope vanishes next to the best of them and to
+//! The largest force on a segment: by samples, both ends included, and then where the slope vanishes next to the best of them and to
 //! every other that might be exceeded by more.
 //!
 //! The slope by phase is `phi_g dg/dtau + phi_r dr/dtau`. The first step goes to the vertex of the parabola through the best
@@ -7,31 +7,31 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::contact::Panel;
-use super::reader::largest;
+use super::sampler::largest;
 use crate::balance::rate_series;
 use crate::law::{Derivatives, Law, On};
+use crate::numeric::fourier::crossings::levels::Segment;
 use crate::numeric::fourier::kernels::{LANES, evaluate};
 use crate::numeric::fourier::series;
 use crate::numeric::roots::{Guarded, Place, STEPS};
 
-/// A panel with fewer samples is sampled by itself.
+/// Samples below which a segment is sampled by itself.
 const FEWEST: usize = 8;
-/// Phases of a panel that is sampled by itself: two groups of lanes.
+/// Samples of such a segment: two groups of lanes.
 const OWN: usize = 2 * LANES;
-/// The slope at an end is taken this part of the distance to the next sample inside, where no power is on its level.
+/// Where the slope at an end is taken, in parts of the distance to the next sample: inside, where no power is on its level.
 const INSIDE: f64 = 1e-6;
-/// The search ends when the next step would gain no more than this part of the force.
+/// What the next step would gain, in parts of the force, when a search ends.
 const GAIN: f64 = 1e-14;
 
-/// The samples of one panel.
+/// The samples of one segment.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
     phases: Vec<f64>,
     gap: Vec<f64>,
     rate: Vec<f64>,
     force: Vec<f64>,
-    /// Series of the rate of a panel that is sampled by itself.
+    /// Series of the rate of a segment that is sampled by itself.
     series: Vec<f64>,
     /// The first and the last sample are not ends, but repeat those at the other end of the period.
     whole: bool,
@@ -58,7 +58,7 @@ struct Motion<'a> {
 
 impl Motion<'_> {
     fn at(&self, tau: f64) -> Slope {
-        let (gap, by_phase, bend) = series::value_and_derivatives(self.gap, tau);
+        let (gap, by_phase, curvature) = series::value_and_derivatives(self.gap, tau);
         let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
         let out = Derivatives {
             force: &mut force,
@@ -68,7 +68,7 @@ impl Motion<'_> {
         let rate = [self.base * by_phase];
         self.law
             .derivatives(On::Piece(self.piece), self.arguments, &[gap], &rate, out);
-        let slope = by_gap[0] * by_phase + by_rate[0] * self.base * bend;
+        let slope = by_gap[0] * by_phase + by_rate[0] * self.base * curvature;
         Slope {
             size: self.sign * force[0],
             slope: self.sign * slope,
@@ -77,32 +77,34 @@ impl Motion<'_> {
 }
 
 impl Batch {
-    /// Gathers the samples of a panel from those of the period.
+    /// Gathers the samples of a segment from those of the period.
     pub(super) fn take(
         &mut self,
-        panel: &Panel,
+        segment: &Segment,
+        levels: &[f64],
         [gaps, rates]: [&[f64]; 2],
         gap: &[f64],
         base: f64,
     ) {
+        let ends = segment.levels.map(|ends| ends.map(|level| levels[level]));
         let count = gaps.len() as isize;
         let step = TAU / count as f64;
-        self.whole = panel.levels.is_none();
+        self.whole = ends.is_none();
         let (first, last) = if self.whole {
             (-1, count)
         } else {
-            let first = (panel.start / step).floor() as isize + 1;
-            (first, (panel.end / step).ceil() as isize - 1)
+            let first = (segment.start / step).floor() as isize + 1;
+            (first, (segment.end / step).ceil() as isize - 1)
         };
         for buffer in [&mut self.phases, &mut self.gap, &mut self.rate] {
             buffer.clear();
         }
         if last - first + 1 < FEWEST as isize {
-            self.sample(panel, gap, base);
+            self.sample(segment, ends, gap, base);
             return;
         }
-        if let Some([level, _]) = panel.levels {
-            self.push(panel.start, level, gap, base);
+        if let Some([level, _]) = ends {
+            self.push(segment.start, level, gap, base);
         }
         self.phases
             .extend((first..=last).map(|index| index as f64 * step));
@@ -111,8 +113,8 @@ impl Batch {
             self.gap.push(gaps[index]);
             self.rate.push(rates[index]);
         }
-        if let Some([_, level]) = panel.levels {
-            self.push(panel.end, level, gap, base);
+        if let Some([_, level]) = ends {
+            self.push(segment.end, level, gap, base);
         }
     }
 
@@ -124,12 +126,12 @@ impl Batch {
         self.rate.push(base * by_phase);
     }
 
-    /// Samples a panel that is short, from end to end.
-    fn sample(&mut self, panel: &Panel, gap: &[f64], base: f64) {
-        let step = (panel.end - panel.start) / (OWN - 1) as f64;
+    /// Samples a segment that is short, from end to end.
+    fn sample(&mut self, segment: &Segment, levels: Option<[f64; 2]>, gap: &[f64], base: f64) {
+        let step = (segment.end - segment.start) / (OWN - 1) as f64;
         self.phases
-            .extend((0..OWN - 1).map(|index| panel.start + step * index as f64));
-        self.phases.push(panel.end);
+            .extend((0..OWN - 1).map(|index| segment.start + step * index as f64));
+        self.phases.push(segment.end);
         let (mut sines, mut cosines) = ([0.0; OWN], [0.0; OWN]);
         for (index, tau) in self.phases.iter().enumerate() {
             (sines[index], cosines[index]) = tau.sin_cos();
@@ -140,12 +142,12 @@ impl Batch {
         self.rate.resize(OWN, 0.0);
         let both = [gap, &self.series];
         evaluate(both, &cosines, &sines, &mut self.gap, &mut self.rate);
-        if let Some(levels) = panel.levels {
+        if let Some(levels) = levels {
             [self.gap[0], self.gap[OWN - 1]] = levels;
         }
     }
 
-    /// Smallest and largest force on the panel that was taken.
+    /// Smallest and largest force on the segment that was taken.
     pub(super) fn extremes(
         &mut self,
         law: &dyn Law,
@@ -189,7 +191,7 @@ impl Batch {
         peak
     }
 
-    /// The samples that are in the panel.
+    /// The samples that are in the segment.
     fn inside(&self) -> Range<usize> {
         let skip = usize::from(self.whole);
         skip..self.force.len() - skip

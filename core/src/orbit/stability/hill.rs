@@ -35,8 +35,9 @@ use super::orbit::Orbit;
 use crate::numeric::spectrum::{ITERATIONS, sort};
 use crate::numeric::triangular::eigenvectors;
 
-/// Two eigenvectors are copies if shifting one gives the other to this part, and their exponents agree as well.
+/// Overlap of an eigenvector, shifted, with another one from which on they are copies, of a unit.
 const OVERLAP: f64 = 0.7;
+/// Difference of their exponents up to which they agree.
 const AGREEMENT: f64 = 0.1;
 
 /// Computes eigenvalues of Hill matrices.

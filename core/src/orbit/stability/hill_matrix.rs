@@ -31,12 +31,13 @@ use nalgebra::DMatrix;
 
 use super::orbit::Orbit;
 use crate::balance::aft::{ContactDerivatives, ContactInput, Engine};
+use crate::balance::terms::{add_derivative, stretched};
 use crate::balance::{gap_series, rate_series};
 use crate::model::layout::{ContactLayout, Term};
 use crate::numeric::fourier::series;
 use crate::system::Wave;
 
-/// More rows of a Hill matrix would take too long, and too much room: its exponential needs ten of them at once.
+/// Rows of a Hill matrix, at most: more take too long, and too much memory, since its exponential needs ten of them at once.
 const MOST_ROWS: usize = 4000;
 
 /// Fourier coefficients of `S - T'` and `T`.
@@ -83,12 +84,12 @@ impl Coefficients {
         if 2 * n * Lattice::Whole.length(harmonics) > MOST_ROWS {
             return None;
         }
-        let room = || vec![vec![0.0; series::length(2 * harmonics)]; n * n];
+        let zeros = || vec![vec![0.0; series::length(2 * harmonics)]; n * n];
         let mut all = Self {
             coordinates: n,
             harmonics,
-            stiffness: room(),
-            damping: room(),
+            stiffness: zeros(),
+            damping: zeros(),
             contacts: 0,
         };
         for entry in &orbit.layout.stiffness {
@@ -106,7 +107,7 @@ impl Coefficients {
         }
         all.divide(orbit)?;
         for (stiffness, damping) in all.stiffness.iter_mut().zip(&all.damping) {
-            subtract_slope(stiffness, damping);
+            add_derivative(damping, -1.0, stiffness);
         }
         let entries = all.stiffness.iter().chain(&all.damping);
         let finite = entries.flatten().all(|x| x.is_finite());
@@ -155,7 +156,7 @@ impl Coefficients {
         let value = |term: &Term| orbit.coefficients[term.coefficient];
         for e in &contact.force {
             for d in &contact.gap {
-                let waves = (stretched(e.wave, period), stretched(d.wave, period));
+                let waves = [e.wave, d.wave].map(|wave| stretched(wave, period));
                 let factor = value(e) * value(d);
                 let (stiffness, damping) = (
                     &mut self.stiffness[e.index * n + d.index],
@@ -163,10 +164,11 @@ impl Coefficients {
                 );
                 add_twice(&by_gap, waves, factor, stiffness);
                 add_twice(&by_rate, waves, factor, damping);
-                if waves.1.harmonic > 0 {
-                    let (slope, sign) = waves.1.derivative();
-                    let turn = sign * f64::from(waves.1.harmonic) * orbit.base;
-                    add_twice(&by_rate, (waves.0, slope), factor * turn, stiffness);
+                let [e, d] = waves;
+                if d.harmonic > 0 {
+                    let (slope, sign) = d.derivative();
+                    let turn = sign * f64::from(d.harmonic) * orbit.base;
+                    add_twice(&by_rate, [e, slope], factor * turn, stiffness);
                 }
             }
         }
@@ -175,11 +177,7 @@ impl Coefficients {
     /// Divides by the mass matrix, and by the base frequency to make derivatives those by phase.
     fn divide(&mut self, orbit: &Orbit<'_>) -> Option<()> {
         let n = self.coordinates;
-        let mut mass: DMatrix<f64> = DMatrix::zeros(n, n);
-        for entry in &orbit.layout.mass {
-            mass[(entry.row, entry.column)] += orbit.coefficients[entry.coefficient];
-        }
-        let inverse = mass.try_inverse()?;
+        let inverse = orbit.layout.mass(orbit.coefficients).try_inverse()?;
         let base = orbit.base;
         for (matrix, unit) in [
             (&mut self.stiffness, base * base),
@@ -256,13 +254,9 @@ impl Coefficients {
         for i in 0..n {
             for j in 0..n {
                 let (stiffness, damping) = (&self.stiffness[i * n + j], &self.damping[i * n + j]);
-                self.subtract(
-                    stiffness,
-                    lattice,
-                    &mut matrix,
-                    (half + i * length, j * length),
-                );
-                self.subtract(damping, lattice, &mut matrix, (i * length, j * length));
+                let [above, below] = [i * length, half + i * length];
+                self.subtract(stiffness, lattice, &mut matrix, [below, j * length]);
+                self.subtract(damping, lattice, &mut matrix, [above, j * length]);
             }
         }
         matrix
@@ -274,7 +268,7 @@ impl Coefficients {
         series: &[f64],
         lattice: Lattice,
         matrix: &mut DMatrix<f64>,
-        (top, left): (usize, usize),
+        [top, left]: [usize; 2],
     ) {
         let count = lattice.cosines(self.harmonics);
         let cosine = |k: isize| match k.unsigned_abs() {
@@ -332,33 +326,13 @@ fn subtract_derivative(matrix: &mut DMatrix<f64>, start: usize, length: usize, l
     }
 }
 
-/// Subtracts the phase derivative of another series.
-fn subtract_slope(from: &mut [f64], series: &[f64]) {
-    let pairs = from[1..]
-        .chunks_exact_mut(2)
-        .zip(series[1..].chunks_exact(2));
-    for (index, (to, pair)) in pairs.enumerate() {
-        let k = (index + 1) as f64;
-        to[0] -= k * pair[1];
-        to[1] += k * pair[0];
-    }
-}
-
-/// A wave of the declaration in harmonics of the orbit's own period.
-fn stretched(wave: Wave, period: usize) -> Wave {
-    Wave {
-        harmonic: wave.harmonic * period as u32,
-        part: wave.part,
-    }
-}
-
 /// Adds `factor e(tau) d(tau) series(tau)`.
-fn add_twice(from: &[f64], (e, d): (Wave, Wave), factor: f64, to: &mut [f64]) {
+fn add_twice(from: &[f64], [e, d]: [Wave; 2], factor: f64, to: &mut [f64]) {
     if d.harmonic == 0 {
         series::add_product(from, e, factor, to);
     } else {
-        let mut room = vec![0.0; from.len()];
-        series::add_product(from, d, factor, &mut room);
-        series::add_product(&room, e, 1.0, to);
+        let mut workspace = vec![0.0; from.len()];
+        series::add_product(from, d, factor, &mut workspace);
+        series::add_product(&workspace, e, 1.0, to);
     }
 }

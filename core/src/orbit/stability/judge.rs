@@ -29,19 +29,22 @@ use crate::balance::truncation::{BEYOND, Finer, NOTHING};
 use crate::numeric::spectrum::spread;
 use crate::numeric::spectrum::{distance, eigenvalues};
 
-/// Error of the method that is aimed at by default, and when it is asked for by name.
+/// Error of the multipliers that is aimed at by default.
 const TOLERANCE: f64 = 1e-6;
+/// The same of a method that is asked for by name.
 const TIGHT: f64 = 1e-10;
-/// The same, as a part of the error of the orbit; and the part that is accepted.
+/// The same, in parts of the error that the orbit makes.
 const PART: f64 = 0.3;
+/// The part that is accepted.
 const ACCEPTED: f64 = 1.0;
-/// A first attempt may miss the error aimed at by this factor.
+/// Error of a first attempt, in units of what is aimed at.
 const LENIENCE: f64 = 3.0;
-/// An orbit that its correction changes by more than this part of its size is not known well enough for a verdict: the change of
-/// the multipliers is proportional to their error for small corrections only.
+/// Change of an orbit by its correction, in parts of its size, beyond which it is not known well enough for a verdict: the change of the
+/// multipliers is proportional to their error for small corrections only.
 const FAR: f64 = 0.1;
-/// The same, as a part of the distance from a verdict's boundary, and at least.
+/// Error that is aimed at, in parts of the distance from a verdict's boundary.
 const MARGIN: f64 = 0.1;
+/// The same, at least.
 const LEAST: f64 = 1e-11;
 
 /// (1), from the multipliers and matrices of both orbits.
@@ -122,25 +125,7 @@ impl Judge {
         let orbit = Orbit::of(balance, &u[..u.len() - 1]);
         self.refined = None;
         let rests = self.rest.on_a_level(&orbit);
-        let plain;
-        let corrected = match finer {
-            None => {
-                plain = self.engine.multipliers(&orbit, self.aim);
-                None
-            }
-            Some(finer) if self.engine.knows_its_error() && finer.change() <= NOTHING => {
-                let by_truncation = |_: &Found| finer.change();
-                plain = self.sharp(&orbit, by_truncation);
-                Some((plain.clone(), finer.change()))
-            }
-            Some(finer) => {
-                let corrected = Orbit::of(finer.balance(), finer.series());
-                let (first, found, by_truncation) =
-                    self.both([&orbit, &corrected], finer.change() > FAR);
-                plain = first;
-                Some((found, by_truncation))
-            }
-        };
+        let (plain, corrected) = self.plain_and_corrected(&orbit, finer);
         let known = |found: &Found| !found.multipliers.is_empty();
         let corrected = if self.overlooks(balance, finer, u) {
             let series = finer.map_or(orbit.series, |finer| finer.series());
@@ -182,6 +167,24 @@ impl Judge {
         }
     }
 
+    /// Multipliers of an orbit as it is, and of the corrected one with what the truncation may leave in them.
+    fn plain_and_corrected(
+        &mut self,
+        orbit: &Orbit<'_>,
+        finer: Option<&Finer<'_>>,
+    ) -> (Found, Option<(Found, f64)>) {
+        let Some(finer) = finer else {
+            return (self.engine.multipliers(orbit, self.aim), None);
+        };
+        if self.engine.knows_its_error() && finer.change() <= NOTHING {
+            let plain = self.sharp(orbit, |_: &Found| finer.change());
+            return (plain.clone(), Some((plain, finer.change())));
+        }
+        let corrected = Orbit::of(finer.balance(), finer.series());
+        let (plain, found, by_truncation) = self.both([orbit, &corrected], finer.change() > FAR);
+        (plain, Some((found, by_truncation)))
+    }
+
     /// Whether a law changes between the nodes of the orbit where they do not see it; asked of the monodromy matrix if the method has
     /// no nodes.
     fn overlooks(&mut self, balance: &Balance<'_>, finer: Option<&Finer<'_>>, u: &[f64]) -> bool {
@@ -202,7 +205,7 @@ impl Judge {
     /// Multipliers of an orbit and of the corrected one, and what the truncation may leave in the latter; nothing is known of that
     /// if they are `far` from each other.
     fn both(&mut self, [orbit, corrected]: [&Orbit<'_>; 2], far: bool) -> (Found, Found, f64) {
-        let left = |plain: &Found, found: &Found| {
+        let error = |plain: &Found, found: &Found| {
             if far {
                 f64::INFINITY
             } else {
@@ -210,13 +213,13 @@ impl Judge {
             }
         };
         let mut plain = self.engine.multipliers(orbit, LENIENCE * self.aim);
-        let found = self.sharp(corrected, |found| left(&plain, found));
+        let found = self.sharp(corrected, |found| error(&plain, found));
         // What sufficed for the orbit before may be too little for this one.
         if self.engine.knows_its_error() && plain.error > LENIENCE * self.aim {
             plain = self.engine.multipliers(orbit, self.aim);
         }
-        let left = left(&plain, &found);
-        (plain, found, left)
+        let error = error(&plain, &found);
+        (plain, found, error)
     }
 
     /// Multipliers so exact that the method adds little to the error of the orbit, and does not stand between the largest of

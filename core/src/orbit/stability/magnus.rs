@@ -22,7 +22,7 @@ use crate::numeric::exponential::Exponential;
 /// Nodes of the three-point Gauss-Legendre rule on `[0, 1]`.
 pub(super) const NODES: [f64; 3] = [0.112_701_665_379_258_31, 0.5, 0.887_298_334_620_741_7];
 
-/// Room for steps of one order.
+/// Workspace for steps of one order.
 #[derive(Debug)]
 pub(super) struct Magnus {
     /// `A_1, A_2, A_3`, each times the step: what the caller writes.

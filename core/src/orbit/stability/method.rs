@@ -132,7 +132,7 @@ impl Found {
     };
 }
 
-/// Computes multipliers of one orbit after the other, and keeps its room.
+/// Computes multipliers of one orbit after the other, and keeps its workspace.
 pub(crate) trait Floquet: std::fmt::Debug {
     /// Multipliers of an orbit. An error below `aim` is of no use to the caller.
     fn multipliers(&mut self, orbit: &Orbit<'_>, aim: f64) -> Found;

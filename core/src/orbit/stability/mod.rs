@@ -20,6 +20,7 @@
 //!   [`Method::Hill`] has none, and does not.
 
 mod answer;
+mod fundamental;
 mod hill;
 mod hill_matrix;
 pub(crate) mod judge;
@@ -35,7 +36,6 @@ mod product;
 mod refined;
 mod rest;
 mod two;
-mod walk;
 
 pub use crate::branches::stability::{Stability, Verdict};
 pub use answer::Answer;

@@ -29,11 +29,11 @@
 
 use std::f64::consts::TAU;
 
+use super::fundamental::{Fundamental, FundamentalOfFactors, FundamentalOfMany, FundamentalOfTwo};
 use super::linearised::{Linearised, Panel};
 use super::method::{Cost, Floquet, Found};
 use super::orbit::Orbit;
 use super::path::Path;
-use super::walk::{Walk, WalkOfFactors, WalkOfMany, WalkOfTwo};
 use crate::laws::generic::scales::Sight;
 use crate::numeric::fourier::grading::Grading;
 use crate::numeric::spectrum::distance;
@@ -44,13 +44,13 @@ const FIRST_DENSITY: f64 = 8.0;
 const LARGEST_DENSITY: f64 = 2048.0;
 /// Steps per period up to which a law that is sharp may ask for more.
 const SHARPEST: f64 = 64.0;
-/// What half the step makes the error smaller by, at least; the order would be 64.
+/// Ratio of the errors with a step and with half of it, at least; the order would be 64.
 const HALVED: f64 = 8.0;
 /// Steps for each wave of a stiffness or a direction that varies in time, at least.
 const STEPS_PER_WAVE: f64 = 2.0;
 /// Numbers of steps on a panel; above, powers of two and half as many more.
 const COUNTS: [usize; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
-/// The next orbit shall have this part of the error aimed at.
+/// Error of the next orbit, in parts of what is aimed at.
 const TARGET: f64 = 0.15;
 /// Largest order of a matrix whose factors are asked for small multipliers in any case.
 const SMALL: usize = 8;
@@ -74,7 +74,7 @@ pub(crate) struct Monodromy {
     /// How many times the fewest steps are made on a graded panel.
     finer: usize,
     /// Of the last system of several coordinates.
-    many: Option<WalkOfMany>,
+    many: Option<FundamentalOfMany>,
     cost: Cost,
 }
 
@@ -100,10 +100,10 @@ impl Monodromy {
     pub(super) fn matrix(&mut self, orbit: &Orbit<'_>, density: f64) -> Vec<f64> {
         assert!(self.linearised.load(orbit));
         self.path.load(orbit);
-        let mut walk = WalkOfMany::new(2 * orbit.layout.coordinates);
-        walk.begin();
-        self.integrate(&mut walk, orbit, density);
-        walk.matrices()[0].to_vec()
+        let mut solution = FundamentalOfMany::new(2 * orbit.layout.coordinates);
+        solution.begin();
+        self.integrate(&mut solution, orbit, density);
+        solution.matrices()[0].to_vec()
     }
 
     /// Multipliers with this many steps per period, and the part of their error that more steps make smaller.
@@ -113,26 +113,29 @@ impl Monodromy {
         self.cost.order = self.cost.order.max(order);
         let (multipliers, [by_steps, by_rounding], matrix) = if order == 2 && orbit.rigid.is_none()
         {
-            let mut walk = WalkOfTwo::new();
-            self.integrate(&mut walk, orbit, density);
-            let (multipliers, errors) = walk.multipliers();
-            (multipliers, errors, walk.matrices()[0].to_vec())
+            let mut solution = FundamentalOfTwo::new();
+            self.integrate(&mut solution, orbit, density);
+            let (multipliers, errors) = solution.multipliers();
+            (multipliers, errors, solution.matrices()[0].to_vec())
         } else {
-            let kept = self.many.take().filter(|walk| walk.order() == order);
-            let mut walk = kept.unwrap_or_else(|| WalkOfMany::new(order));
-            walk.begin();
-            self.integrate(&mut walk, orbit, density);
+            let kept = self
+                .many
+                .take()
+                .filter(|solution| solution.order() == order);
+            let mut solution = kept.unwrap_or_else(|| FundamentalOfMany::new(order));
+            solution.begin();
+            self.integrate(&mut solution, orbit, density);
             if let Some(rigid) = orbit.rigid {
-                walk.take_out(rigid);
+                solution.take_out(rigid);
             }
-            let (mut multipliers, errors) = walk.multipliers();
-            let matrix = walk.matrices()[0].to_vec();
-            let lost = walk.has_lost(&multipliers)
+            let (mut multipliers, errors) = solution.multipliers();
+            let matrix = solution.matrices()[0].to_vec();
+            let lost = solution.has_lost(&multipliers)
                 && (self.complete || order <= SMALL)
                 && orbit.rigid.is_none();
-            self.many = Some(walk);
+            self.many = Some(solution);
             if lost {
-                let mut factors = WalkOfFactors::new(order);
+                let mut factors = FundamentalOfFactors::new(order);
                 self.integrate(&mut factors, orbit, density);
                 let (found, _) = factors.multipliers();
                 if !found.is_empty() {
@@ -167,19 +170,19 @@ impl Monodromy {
         (finer, changed)
     }
 
-    fn integrate(&mut self, walk: &mut impl Walk, orbit: &Orbit<'_>, density: f64) {
+    fn integrate(&mut self, solution: &mut impl Fundamental, orbit: &Orbit<'_>, density: f64) {
         self.path.begin();
         self.graded = false;
         if self.path.cuts.is_empty() {
-            self.panel(walk, orbit, (0.0, TAU), None, density);
+            self.panel(solution, orbit, [0.0, TAU], None, density);
         }
         for index in 0..self.path.cuts.len() {
             let (from, to) = (self.path.cuts[index], self.path.next(index));
             self.path.pass(&from);
             if to.tau > from.tau {
-                self.panel(walk, orbit, (from.tau, to.tau), Some(index), density);
+                self.panel(solution, orbit, [from.tau, to.tau], Some(index), density);
             }
-            let matrices = walk.matrices();
+            let matrices = solution.matrices();
             self.linearised.jump(orbit, &self.path, &to, matrices);
         }
     }
@@ -187,18 +190,18 @@ impl Monodromy {
     /// Goes from a cut to the next.
     fn panel(
         &mut self,
-        walk: &mut impl Walk,
+        solution: &mut impl Fundamental,
         orbit: &Orbit<'_>,
-        (start, end): (f64, f64),
+        [start, end]: [f64; 2],
         cut: Option<usize>,
         density: f64,
     ) {
         if self.linearised.is_constant(orbit, &self.path) {
             self.cost.slopes += self.linearised.evaluate_constant(orbit, &self.path);
             self.cost.exponentials += 1;
-            let to = walk.scaled(0);
+            let to = solution.scaled(0);
             self.linearised.constant_matrix(end - start, to);
-            walk.constant();
+            solution.constant();
             return;
         }
         let ends = cut.map_or([&[][..]; 2], |index| self.path.ends(index));
@@ -227,10 +230,10 @@ impl Monodromy {
         self.cost.exponentials += steps;
         for step in 0..steps {
             for node in 0..3 {
-                let to = walk.scaled(node);
+                let to = solution.scaled(node);
                 self.linearised.matrix(orbit, 3 * step + node, to);
             }
-            walk.step();
+            solution.step();
         }
     }
 }

@@ -1,7 +1,6 @@
 //! An orbit cut where a gap crosses a level, and where it nearly does.
 //!
-//! Between two cuts every contact stays on one piece of its law. Near an extremum that misses a level by a small distance, a
-//! broken power of the distance has its singularities beside the real axis; so there is a cut there too, without a jump.
+//! Between two cuts every contact stays on one piece of its law. A near miss is a cut without a jump.
 
 use std::f64::consts::TAU;
 
@@ -9,14 +8,10 @@ use super::orbit::Orbit;
 use crate::balance::{gap_series, rate_series};
 use crate::law::{LawFacts, PieceFacts, Quantity};
 use crate::model::layout::ContactLayout;
-use crate::numeric::fourier::crossings::{Crossing, CrossingFinder, NearMiss};
+use crate::numeric::fourier::crossings::CrossingFinder;
+use crate::numeric::fourier::crossings::levels::Cuts;
 use crate::numeric::fourier::grading::power_for;
 use crate::numeric::fourier::series;
-
-/// Singularities farther from the real axis than this do not need a cut.
-const NEAR: f64 = 0.15;
-/// Where near misses are looked for, in parts of the size of the gap's oscillation.
-const REACH: f64 = 0.05;
 
 /// What happens at a cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,7 +24,7 @@ pub(super) enum Event {
     Near,
 }
 
-/// Cuts no farther from each other than this switch together.
+/// Phase between cuts up to which they switch together.
 const TOGETHER: f64 = 1e-3;
 
 /// A phase at which the orbit is cut.
@@ -63,8 +58,8 @@ pub(super) struct Contact {
 pub(super) struct Path {
     pub(super) contacts: Vec<Contact>,
     pub(super) cuts: Vec<Cut>,
-    found: Vec<Crossing>,
-    misses: Vec<NearMiss>,
+    /// Those of one contact.
+    found: Cuts,
 }
 
 impl Path {
@@ -96,37 +91,30 @@ impl Path {
             .finder
             .get_or_insert_with(|| CrossingFinder::new(series::harmonics(&contact.gap)));
         finder.sample(&contact.gap);
-        let mut size = None;
+        let cut = |tau, level, event| Cut {
+            tau,
+            contact: index,
+            level,
+            event,
+        };
+        self.found
+            .apply(Some(finder), &contact.gap, &contact.levels);
+        self.cuts.extend(self.found.switches().iter().map(|found| {
+            let event = if found.rising {
+                Event::Rising
+            } else {
+                Event::Falling
+            };
+            cut(found.tau, found.level, event)
+        }));
         for (level, &value) in contact.levels.iter().enumerate() {
-            self.found.clear();
-            finder.crossings(value, &mut self.found);
-            self.cuts.extend(self.found.iter().map(|found| Cut {
-                tau: found.tau,
-                contact: index,
-                level,
-                event: if found.rising {
-                    Event::Rising
-                } else {
-                    Event::Falling
-                },
-            }));
             let broken =
                 |piece: usize| power(&facts.pieces[piece], &contact.arguments, piece == level) > 1;
-            if !(broken(level) || broken(level + 1)) {
-                continue;
+            if broken(level) || broken(level + 1) {
+                let misses = self.found.near_misses(finder, &contact.gap, value);
+                self.cuts
+                    .extend(misses.map(|tau| cut(tau, level, Event::Near)));
             }
-            let size =
-                *size.get_or_insert_with(|| contact.gap[1..].iter().map(|x| x.abs()).sum::<f64>());
-            self.misses.clear();
-            finder.near_misses(value, REACH * size, &mut self.misses);
-            let near = |miss: &&NearMiss| 2.0 * miss.distance < NEAR * NEAR * miss.curvature;
-            self.cuts
-                .extend(self.misses.iter().filter(near).map(|miss| Cut {
-                    tau: miss.tau,
-                    contact: index,
-                    level,
-                    event: Event::Near,
-                }));
         }
     }
 

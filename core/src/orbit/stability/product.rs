@@ -21,11 +21,11 @@ use nalgebra::{Complex, DMatrix, QR};
 use crate::numeric::spectrum::eigenvalues;
 use crate::numeric::spectrum::sort;
 
-/// Entries of an orthogonal matrix below this have vanished.
+/// Size of an entry of an orthogonal matrix that has vanished.
 const VANISHED: f64 = 1e-14;
 /// Sweeps at most.
 const SWEEPS: usize = 150;
-/// Moduli of a block that are no farther apart than this need not part: its product is as good.
+/// Relative difference of the moduli of a block that need not part: its product is as good.
 const CLOSE: f64 = 0.1;
 
 /// Eigenvalues of `factors[P - 1] ... factors[0]`, largest modulus first; empty if they are not finite.
@@ -111,7 +111,7 @@ mod tests {
 
     /// Factors `X_(j+1) D_j X_j^(-1)` with block diagonal `D_j`: the eigenvalues of their product are known.
     fn factors(moduli: &[f64], angles: &[f64], count: usize, seed: u32) -> Vec<DMatrix<f64>> {
-        let mut random = Random::new(seed.into());
+        let mut random = Random::seeded(seed.into());
         let order: usize = angles
             .iter()
             .map(|&angle| if angle == 0.0 { 1 } else { 2 })

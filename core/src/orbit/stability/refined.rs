@@ -26,17 +26,19 @@ use crate::numeric::spectrum::spread;
 use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::time::{Flow, Integrated, Tangent};
 
-/// Tolerances of the integration that finds the orbit, and of the one that is given.
+/// Relative tolerance of the integration that finds the orbit.
 const COARSE: f64 = 1e-8;
+/// The same of the one whose orbit is given.
 const FINE: f64 = 1e-11;
-/// Steps of Newton's method with either.
+/// Steps of Newton's method with either, at most.
 const STEPS: usize = 8;
-/// An update smaller than this part of the orbit ends the first; the second goes on as far as rounding lets it, or to the other.
+/// Update with which the first ends, in parts of the orbit.
 const NEAR: f64 = 1e-6;
+/// The same of the second, as far as rounding lets it.
 const CLOSED: f64 = 1e-12;
 /// Error of the states of a closed orbit, in parts of its size.
 const INTEGRATED: f64 = 1e-9;
-/// Farther from the series, in parts of the orbit's size, lies another orbit.
+/// Distance from the series, in parts of the orbit's size, beyond which an orbit is another one.
 const FAR: f64 = 0.1;
 /// Rounding errors of the matrix, relative to its largest entry.
 const ROUNDED: f64 = 1e-13;
@@ -78,18 +80,18 @@ impl<'a> Map<'a> {
             .advance(0.0, self.end, &mut end, tangent, None)
             .ok()?;
         let units = &self.units;
-        let left = DVector::from_fn(order, |i, _| (end[i] - state[i]) / units[i]);
+        let residual = DVector::from_fn(order, |i, _| (end[i] - state[i]) / units[i]);
         let columns = &self.tangent.columns;
         let matrix = DMatrix::from_fn(order, order, |i, j| {
             columns[j * order + i] * units[j] / units[i]
         });
-        let finite = left.iter().chain(&matrix).all(|x| x.is_finite());
-        finite.then_some((left, matrix))
+        let finite = residual.iter().chain(&matrix).all(|x| x.is_finite());
+        finite.then_some((residual, matrix))
     }
 
     /// One step of (1): its size, and `P` before it.
     fn step(&mut self, state: &mut [f64]) -> Option<(f64, DMatrix<f64>)> {
-        let (left, matrix) = self.at(state)?;
+        let (residual, matrix) = self.at(state)?;
         let order = state.len();
         let mut system = DMatrix::identity(order, order) - &matrix;
         if let Some(rigid) = self.rigid {
@@ -98,7 +100,7 @@ impl<'a> Map<'a> {
             let mut block = system.view_mut((n, 0), (n, n));
             block += rigid.projector();
         }
-        let change = system.lu().solve(&left)?;
+        let change = system.lu().solve(&residual)?;
         for ((x, change), unit) in state.iter_mut().zip(&change).zip(&self.units) {
             *x += change * unit;
         }
@@ -138,7 +140,7 @@ pub(crate) struct Refined {
     /// Size of its largest oscillation.
     size: f64,
     /// The last update of the state, relative to the size.
-    left: f64,
+    remaining: f64,
 }
 
 impl Refined {
@@ -166,18 +168,18 @@ impl Refined {
                 // Phases of series are of the orbit's own period, those of a flow of the declaration's.
                 flow.advance(0.0, phase * period, &mut state, None, None)
                     .ok()?;
-                let (value, _, bend) = series::value_and_derivatives(of, *phase);
+                let (value, _, curvature) = series::value_and_derivatives(of, *phase);
                 *difference = state[coordinate] - value;
                 let slope = state[coordinates + coordinate] / balance.base();
-                let rise = slope * slope / (2.0 * bend.abs());
+                let rise = slope * slope / (2.0 * curvature.abs());
                 beyond += if slope == 0.0 {
                     0.0
                 } else {
                     rise.min(self.size)
                 };
             }
-            let left = (INTEGRATED + 2.0 * self.left) * self.size;
-            let difference = (range[1] - range[0]).abs() + beyond + left;
+            let remaining = (INTEGRATED + 2.0 * self.remaining) * self.size;
+            let difference = (range[1] - range[0]).abs() + beyond + remaining;
             largest = largest.max(difference / units[coordinate]);
         }
         Some(largest)
@@ -226,8 +228,15 @@ pub(super) fn multipliers(balance: &Balance<'_>, orbit: &[f64]) -> Option<(Found
             let differ = |other: &DMatrix<f64>| distance(&found.multipliers, &eigenvalues(other));
             let error = differ(&other) + differ(&before);
             found.error += error;
-            let left = next / size;
-            return Some((found, Refined { state, size, left }));
+            let remaining = next / size;
+            return Some((
+                found,
+                Refined {
+                    state,
+                    size,
+                    remaining,
+                },
+            ));
         }
         (change, before) = (next, matrix);
     }

@@ -8,7 +8,7 @@ use crate::balance::gap_series;
 use crate::law::LevelFacts;
 use crate::numeric::fourier::series;
 
-/// A gap this near to a level, relative to its size and that of the orbit, is on it.
+/// Distance of a gap from a level that it is on, in parts of its size and that of the orbit.
 const ON: f64 = 1e-12;
 
 /// Whether force or slopes differ on the two sides of a level.
@@ -16,7 +16,7 @@ fn differs(level: LevelFacts) -> bool {
     level.force_jumps || level.by_gap_jumps || level.by_rate_jumps
 }
 
-/// Looks for gaps that rest, and keeps its room.
+/// Looks for gaps that rest, and keeps its workspace.
 #[derive(Debug, Default)]
 pub(super) struct Rest {
     gap: Vec<f64>,

@@ -10,7 +10,7 @@ use super::compute::{branch, orbit};
 use super::setting::{Setting, Source};
 use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
-use crate::branches::point::Point;
+use crate::branches::progress::Progress;
 use crate::branches::request::Guess;
 use crate::continuation::follow::Stop;
 use crate::continuation::jacobian::Jacobian;
@@ -71,13 +71,14 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting {
         stability: true,
         points: 2000,
         steps: StepControl::default(),
+        cancel: crate::cancel::Cancel::new(),
     }
 }
 
 /// The branch along a range from an orbit near a state.
 fn followed(setting: &Setting, state: [f64; 2], from: f64, to: f64) -> Branch {
     let guess = Guess::State(state.to_vec());
-    let go = &mut |_: &Point| ControlFlow::Continue(());
+    let go = &mut |_: Progress<'_>| ControlFlow::Continue(());
     branch(setting, &guess, [from, to], go).unwrap()
 }
 

@@ -13,10 +13,10 @@ impl Affine {
         mut tangent: Option<&mut Tangent>,
         see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
-        let model = &self.model;
+        let (model, cancel) = (&self.model, &self.cancel);
         let reversed = self
             .reversed
-            .get_or_insert_with(|| Box::new(Self::of(model.reversed())));
+            .get_or_insert_with(|| Box::new(Self::of(model.reversed()).until(cancel)));
         let before = reversed.work;
         turn(state);
         turn_all(tangent.as_deref_mut(), state.len());

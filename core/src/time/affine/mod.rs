@@ -27,6 +27,7 @@ use self::crossing::value_and_slope;
 use self::model::Model;
 use self::scalar::{Scalar, Span};
 use self::table::{COEFFICIENTS, Polynomial, Table};
+use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::system::{System, Variable};
 use crate::time::error::{admits, check_entries};
@@ -55,6 +56,7 @@ pub struct Affine {
     /// The flow of the reversed motion; made when it is needed.
     reversed: Option<Box<Self>>,
     work: Work,
+    cancel: Cancel,
 }
 
 impl std::fmt::Debug for Affine {
@@ -76,6 +78,17 @@ impl Affine {
         Model::new(system, parameters, omega).map(Self::of)
     }
 
+    /// The same, and motions end when this token is cancelled.
+    #[must_use]
+    pub fn until(self, cancel: &Cancel) -> Self {
+        Self {
+            cancel: cancel.clone(),
+            // It is made anew, with the token.
+            reversed: None,
+            ..self
+        }
+    }
+
     fn of(model: Model) -> Self {
         let (order, contacts) = (model.basis.order(), model.contacts.len());
         let most = order - 1 - model.basis.coordinates;
@@ -88,6 +101,7 @@ impl Affine {
             column: vec![0.0; order],
             next: vec![0.0; 2 * model.basis.coordinates],
             work: Work::default(),
+            cancel: Cancel::new(),
             scalar: Scalar::new(&model),
             filled: false,
             reversed: None,
@@ -113,6 +127,7 @@ impl Affine {
         self.choose_pieces(begin)?;
         loop {
             let phase = begin + done;
+            self.goes_on(phase)?;
             let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
             let table = &self.model.at(combination).table;
             let rows = &mut self.rows[..table.rows];
@@ -166,6 +181,14 @@ impl Affine {
                 self.cross(crossed, tangent.as_deref_mut());
             }
         }
+    }
+
+    /// Whether nobody has cancelled the motion.
+    fn goes_on(&self, phase: f64) -> Result<(), FlowError> {
+        if self.cancel.is_cancelled() {
+            return Err(FlowError::Cancelled { phase });
+        }
+        Ok(())
     }
 
     /// Takes a contact over one of its levels, upwards or downwards.
@@ -261,6 +284,8 @@ impl Flow for Affine {
         for span in spans(from, to) {
             match &self.scalar {
                 Some(scalar) if plain => {
+                    // A period of it takes no longer than a step of others.
+                    self.goes_on(span.begin)?;
                     let columns = tangent.as_mut().map(|tangent| &mut tangent.columns[..]);
                     let columns = columns.unwrap_or(&mut []).as_chunks_mut().0;
                     let (state, _) = state.as_chunks_mut();

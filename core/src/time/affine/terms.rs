@@ -1,7 +1,7 @@
 //! What the equations of motion are made of, at given coefficients: all that is linear in them, and the pieces of the laws.
 
 use crate::law::{Derivatives, Law, On};
-use crate::model::layout::{Entry, Layout, Term};
+use crate::model::layout::{Entry, Layout, Term, add_constant};
 use crate::system::{Part, Wave};
 
 /// What the entries of `z` are.
@@ -108,9 +108,7 @@ impl Terms {
         let n = layout.coordinates;
         let matrix = |entries: &[Entry], out: &mut [f64]| {
             out.fill(0.0);
-            for entry in entries {
-                out[entry.row * n + entry.column] += coefficients[entry.coefficient];
-            }
+            add_constant(entries, coefficients, n, out);
         };
         matrix(&layout.mass, &mut self.mass);
         matrix(&layout.damping, &mut self.damping);

@@ -15,8 +15,6 @@ pub(crate) mod slopes;
 
 use std::sync::Arc;
 
-use nalgebra::DMatrix;
-
 use super::FlowError;
 use super::error::check_value;
 use crate::law::{Law, On};
@@ -193,11 +191,7 @@ impl Field {
             self.mass.row_mut(entry.row)[entry.column] += self.coefficients[entry.coefficient];
         }
         if self.lu.factorise(&mut self.mass).is_err() {
-            let mut mass = DMatrix::zeros(n, n);
-            for entry in &self.layout.mass {
-                mass[(entry.row, entry.column)] += self.coefficients[entry.coefficient];
-            }
-            let determinant = mass.determinant();
+            let determinant = self.layout.mass(&self.coefficients).determinant();
             return Err(FlowError::SingularMass { determinant });
         }
         self.inverse_mass.clear();

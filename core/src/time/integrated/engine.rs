@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::cancel::Cancel;
 use crate::law::{Quantity, TermFacts};
 use crate::laws::generic::scales::{Scales, Sight};
 use crate::numeric::fourier::grading;
@@ -112,6 +113,7 @@ pub(super) struct Engine<const S: usize> {
     /// Steps, and where they began to be counted.
     pub(super) steps: (usize, f64),
     pub(super) work: Work,
+    pub(super) cancel: Cancel,
 }
 
 impl<const S: usize> Engine<S> {
@@ -186,6 +188,7 @@ impl<const S: usize> Engine<S> {
             switches: (0, 0.0),
             steps: (0, 0.0),
             work: Work::default(),
+            cancel: Cancel::new(),
             rule,
             field,
         }
@@ -394,8 +397,12 @@ impl<const S: usize> Engine<S> {
         self.work.forces += 1;
     }
 
-    /// Counts a step.
+    /// Counts a step, unless the motion was cancelled.
     pub(super) fn count_step(&mut self) -> Result<(), FlowError> {
+        if self.cancel.is_cancelled() {
+            let phase = self.phase();
+            return Err(FlowError::Cancelled { phase });
+        }
         if (self.here.passed - self.steps.1).abs() > TAU {
             self.steps = (0, self.here.passed);
         }

@@ -24,6 +24,7 @@ mod tests;
 use super::error::{admits, check_entries};
 use super::field::Field;
 use super::{Flow, FlowError, See, Tangent, Work};
+use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::model::error::ModelError;
 use crate::model::validate;
@@ -100,6 +101,13 @@ impl Integrated {
             _ => Rank::High(Box::new(Engine::new(field, tolerance))),
         };
         Ok(Self { engine })
+    }
+
+    /// The same, and motions end when this token is cancelled.
+    #[must_use]
+    pub fn until(mut self, cancel: &Cancel) -> Self {
+        engine!(&mut self.engine, engine => engine.cancel = cancel.clone());
+        self
     }
 }
 

@@ -1,8 +1,7 @@
 //! What a declaration must fulfil. One rule is one function, its sentence is its first line of documentation, and each has a
 //! case in `tests/tests/compile_fail`.
 //!
-//! Rules on what is written are here and in [`names`]; they run before lowering. The others need the lowered expressions and are
-//! called from there: [`powers`], [`pieces`], [`rates`], [`inertia`].
+//! These are the rules on what is written. The others need the lowered expressions, and are in `lower/rules`.
 
 mod calls;
 mod expressions;
@@ -10,12 +9,6 @@ mod loops;
 mod names;
 mod units;
 mod used;
-
-pub(crate) mod forcing;
-pub(crate) mod inertia;
-pub(crate) mod pieces;
-pub(crate) mod powers;
-pub(crate) mod rates;
 
 pub(crate) use names::{MOST_DECLARED, is_primitive};
 
@@ -179,7 +172,7 @@ fn holds_acceleration(expression: &Expr, accelerations: &[String]) -> bool {
 }
 
 /// A number of things, in words that fit it.
-pub(crate) fn counted(count: usize, thing: &str) -> String {
+fn counted(count: usize, thing: &str) -> String {
     if count == 1 {
         format!("1 {thing}")
     } else {

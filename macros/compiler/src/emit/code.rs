@@ -3,8 +3,8 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::tape::{Operation, Tape};
 use crate::dag::{Function, Variable};
+use crate::tape::{Operation, Tape};
 
 /// An expression that is used once is written in place if it has no more operations than this; a longer one is named.
 const MAX_INLINE: usize = 6;

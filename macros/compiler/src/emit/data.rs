@@ -2,13 +2,16 @@
 
 use std::str::FromStr;
 
+use hertzian_contract::data::{Node, PieceData};
+use hertzian_contract::law::{
+    ArgumentFacts, Exponent, LevelFacts, PieceFacts, Quantity, RateDependence, TermFacts, Variation,
+};
+use hertzian_contract::system::Bound;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::code::{number, position};
-use crate::facts::{Exponent, LevelFacts, PieceFacts, Quantity, RateDependence, Term, Variation};
-use crate::interpret::{LevelData, Member, Node, PieceData};
-use crate::ir::{Bound, Law};
+use crate::interpret::Member;
 
 /// A borrowed list.
 pub fn list(items: impl IntoIterator<Item = TokenStream>) -> TokenStream {
@@ -29,14 +32,14 @@ pub fn text(text: &str) -> TokenStream {
     quote!(__Cow::Borrowed(#text))
 }
 
-/// The nodes of a family and its levels, as constants.
-pub fn nodes(nodes: &[Node], levels: &[LevelData], law: &Law) -> TokenStream {
+/// The nodes of a family, with the arguments and the levels of a law of it, as constants.
+pub fn nodes(nodes: &[Node], member: &Member) -> TokenStream {
     let nodes = list(nodes.iter().map(node));
-    let levels = list(levels.iter().map(|level| {
+    let levels = list(member.level_data.iter().map(|level| {
         let (value, by) = (position(level.value), positions(&level.by_argument));
         quote!(level(#value, #by))
     }));
-    let arguments = list((0..law.arguments.len()).map(|index| argument(law, index)));
+    let arguments = list(member.facts.arguments.iter().map(argument));
     quote! {
         const ARGUMENTS: &[ArgumentFacts] = #arguments;
         const LEVELS: &[LevelData] = #levels;
@@ -45,15 +48,14 @@ pub fn nodes(nodes: &[Node], levels: &[LevelData], law: &Law) -> TokenStream {
 }
 
 /// An argument, and its range if it has one.
-fn argument(law: &Law, index: usize) -> TokenStream {
-    let name = &law.arguments[index];
-    match law.ranges.get(index) {
-        None | Some((Bound::Unbounded, Bound::Unbounded)) => quote!(free(#name)),
-        Some(&(minimum, maximum)) => {
-            let [minimum, maximum] = [minimum, maximum].map(bound);
-            quote!(ranged(#name, #minimum, #maximum))
-        }
+fn argument(argument: &ArgumentFacts) -> TokenStream {
+    let name = &argument.name;
+    let ends = [argument.minimum, argument.maximum];
+    if ends == [Bound::Unbounded; 2] {
+        return quote!(free(#name));
     }
+    let [minimum, maximum] = ends.map(bound);
+    quote!(ranged(#name, #minimum, #maximum))
 }
 
 /// One end of a range.
@@ -73,7 +75,7 @@ pub fn bound(bound: Bound) -> TokenStream {
 
 /// Constants and an expression that make a law of its facts and data.
 pub fn description(member: &Member) -> TokenStream {
-    let name = &member.law.name;
+    let name = &member.facts.name;
     let levels = list(member.facts.levels.iter().copied().map(level));
     let pieces = member.facts.pieces.iter().zip(&member.piece_data);
     let (facts, data): (Vec<_>, Vec<_>) = pieces
@@ -83,7 +85,7 @@ pub fn description(member: &Member) -> TokenStream {
     let rate = match member.facts.rate {
         RateDependence::None => quote!(INDEPENDENT),
         RateDependence::Linear => quote!(LINEAR),
-        RateDependence::General => quote!(GENERAL),
+        _ => quote!(GENERAL),
     };
     let odd = member.facts.odd;
     quote! {
@@ -129,11 +131,11 @@ fn variation(variation: Variation) -> TokenStream {
     match variation {
         Variation::Zero => quote!(Zero),
         Variation::Constant => quote!(Constant),
-        Variation::Varying => quote!(Varying),
+        _ => quote!(Varying),
     }
 }
 
-fn term(term: &Term) -> TokenStream {
+fn term(term: &TermFacts) -> TokenStream {
     let of = match term.of {
         Quantity::Force => quote!(Force),
         Quantity::ByGap => quote!(ByGap),
@@ -142,6 +144,7 @@ fn term(term: &Term) -> TokenStream {
             let index = position(index);
             quote!(ByArgument(#index))
         }
+        other => unreachable!("no terms of {other:?} are derived"),
     };
     let is_smooth = [term.lower, term.upper] == [Exponent::ZERO; 2];
     let [lower, upper] = [term.lower, term.upper].map(exponent);
@@ -156,7 +159,7 @@ fn exponent(exponent: Exponent) -> TokenStream {
     if exponent == Exponent::ZERO {
         return quote!(ZERO);
     }
-    let number = number(exponent.number.to_f64());
+    let number = number(exponent.number);
     if let Some(argument) = exponent.argument.map(position) {
         quote!(exponent_of(#number, #argument))
     } else {

@@ -1,9 +1,10 @@
 //! Documentation of the emitted type: what was declared, and what the compiler made of it.
 
+use hertzian_contract::law::{LawFacts, LevelFacts, RateDependence};
 use proc_macro2::Ident;
 
 use crate::dag::{Dag, Variable};
-use crate::facts::{LawFacts, LevelFacts, Piece, RateDependence, derive};
+use crate::facts::{Piece, derive};
 use crate::ir::{Law, Model};
 
 /// Documentation of the type: the user's own, the equation, and the pieces of every law.
@@ -71,7 +72,7 @@ fn of_law(dag: &mut Dag, law: &Law) -> String {
     for fact in facts_of(&facts) {
         text.extend(["  ", fact, "\n"]);
     }
-    for (level, facts) in law.levels.iter().zip(&facts.levels) {
+    for (level, facts) in law.levels.iter().zip(facts.levels.iter()) {
         let value = dag.display(level.value, &|variable| name(law, variable));
         text.extend(["  at gap = ", &value, ": ", &of_level(*facts), "\n"]);
     }
@@ -83,7 +84,7 @@ fn facts_of(facts: &LawFacts) -> Vec<&'static str> {
     let rate = match facts.rate {
         RateDependence::None => "does not depend on the rate",
         RateDependence::Linear => "linear in the rate",
-        RateDependence::General => "not linear in the rate",
+        _ => "not linear in the rate",
     };
     let affine = facts.pieces.iter().all(|piece| piece.affine);
     let mut text = vec![rate];

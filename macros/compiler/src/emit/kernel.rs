@@ -6,8 +6,8 @@ use quote::quote;
 use super::code::position;
 use super::law::Emitter;
 use super::pieces::Kernel;
-use super::powers::Plan;
 use crate::dag::{Dag, Id};
+use crate::tape::powers::Plan;
 
 impl Emitter<'_> {
     /// The type of the kernels. What a caller does not use of the values of a piece is not computed.

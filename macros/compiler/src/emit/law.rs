@@ -36,7 +36,7 @@ pub fn family(dag: &mut Dag, law: &Law, index: usize) -> TokenStream {
     let emitter = Emitter::of(dag, &family);
     let [arguments, levels, values] = emitter.sizes();
     let functions = emitter.kernels(dag, &kernels);
-    let nodes = data::nodes(&family.nodes, &family.whole.level_data, law);
+    let nodes = data::nodes(&family.nodes, &family.whole);
     let mut of_whole = data::description(&family.whole);
     let mut of_parts = TokenStream::new();
     if let Some([spring, primitive]) = &family.parts {

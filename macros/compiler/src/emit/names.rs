@@ -6,7 +6,7 @@ use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
 /// What `hertzian::emitted::constants` has.
-const CONSTANTS: [&str; 71] = [
+const CONSTANTS: [&str; 72] = [
     "Absolute",
     "Add",
     "Argument",
@@ -76,6 +76,7 @@ const CONSTANTS: [&str; 71] = [
     "sin",
     "smooth",
     "stiffness",
+    "system_facts",
     "term",
     "term_with_logarithm",
 ];

@@ -5,10 +5,10 @@ use quote::{format_ident, quote};
 
 use super::code::{Code, base, position};
 use super::law::Emitter;
-use super::powers::Plan;
 use super::raising::Raising;
-use super::tape::{Style, Tape};
 use crate::dag::{Dag, Id, Variable};
+use crate::tape::powers::Plan;
+use crate::tape::{Style, Tape};
 
 /// A kernel as code.
 pub struct Kernel {

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::code::{Code, logarithm, position, power};
-use super::powers::Plan;
+use crate::tape::powers::Plan;
 
 /// A kernel with powers, being written.
 pub struct Raising<'a> {

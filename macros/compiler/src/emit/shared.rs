@@ -7,8 +7,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::powers::{Root, root_of, varies};
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
+use crate::tape::powers::{Root, root_of, varies};
 
 /// The values of pieces, as they are computed together.
 pub struct Shared {

@@ -1,15 +1,16 @@
 //! The system: an implementation of `hertzian::system::System`.
 
+use hertzian_contract::system::{Part, Place, Wave};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::code::{Code, position};
 use super::data::{bound, list, text};
 use super::names::{imported, locals};
-use super::tape::{Style, Tape};
 use crate::dag::{Id, Variable};
 use crate::differentiate::differentiate;
-use crate::ir::{Model, Place, Wave};
+use crate::ir::Model;
+use crate::tape::{Style, Tape};
 
 /// The implementation for a model.
 pub fn system(model: &mut Model) -> TokenStream {
@@ -133,36 +134,30 @@ fn derivatives_by(model: &mut Model, roots: &[Id], by: Variable) -> TokenStream 
 }
 
 fn facts(model: &Model) -> TokenStream {
-    let name = text(&model.name.to_string());
-    let equation = text(&model.equation);
-    let coordinates = list(model.coordinates.iter().map(|name| text(name)));
-    let parameters = list(model.parameters.iter().map(|parameter| {
-        let (name, documentation) = (parameter.name.to_string(), &parameter.documentation);
+    let facts = model.facts();
+    let (name, equation) = (&facts.name, &facts.equation);
+    let coordinates = list(facts.coordinates.iter().map(|name| text(name)));
+    let parameters = list(facts.parameters.iter().map(|parameter| {
+        let (name, documentation) = (&parameter.name, &parameter.documentation);
         let [minimum, maximum] = [parameter.minimum, parameter.maximum].map(bound);
         quote!(parameter(#name, #documentation, #minimum, #maximum))
     }));
-    let divisor = Literal::u32_unsuffixed(model.divisor);
-    let laws = position(model.laws.len());
-    let contacts = list(model.contacts.iter().map(|contact| {
+    let divisor = Literal::u32_unsuffixed(facts.divisor);
+    let laws = position(facts.laws);
+    let contacts = list(facts.contacts.iter().map(|contact| {
         let law = position(contact.law);
         quote!(contact(#law))
     }));
-    let places = list(model.coefficients.iter().map(|&(at, _)| place(at)));
-    let names = imported(&quote!(#parameters #contacts #places));
+    let places = list(facts.places.iter().copied().map(place));
+    let facts = quote! {
+        system_facts(#name, #equation, #coordinates, PARAMETERS, #divisor, #laws, #contacts, #places)
+    };
+    let names = imported(&quote!(#parameters #facts));
     quote! {
         {
             #names
             const PARAMETERS: &[__system::ParameterFacts] = #parameters;
-            __system::SystemFacts {
-                name: #name,
-                equation: #equation,
-                coordinates: __Cow::Borrowed(#coordinates),
-                parameters: __Cow::Borrowed(PARAMETERS),
-                divisor: #divisor,
-                laws: #laws,
-                contacts: __Cow::Borrowed(#contacts),
-                places: __Cow::Borrowed(#places),
-            }
+            #facts
         }
     }
 }
@@ -183,6 +178,7 @@ fn place(place: Place) -> TokenStream {
         } => ("gap_direction", vec![contact, column], Some(wave)),
         Place::Offset { contact, wave } => ("offset", vec![contact], Some(wave)),
         Place::Argument { contact, index } => ("argument", vec![contact, index], None),
+        other => unreachable!("lowering makes no {other:?}"),
     };
     let name = format_ident!("{name}");
     let operands = positions
@@ -197,9 +193,9 @@ fn place(place: Place) -> TokenStream {
 
 fn wave(wave: Wave) -> TokenStream {
     let harmonic = Literal::u32_unsuffixed(wave.harmonic);
-    match (wave.harmonic, wave.sine) {
+    match (wave.harmonic, wave.part) {
         (0, _) => quote!(CONSTANT),
-        (_, false) => quote!(cos(#harmonic)),
-        (_, true) => quote!(sin(#harmonic)),
+        (_, Part::Cosine) => quote!(cos(#harmonic)),
+        (_, Part::Sine) => quote!(sin(#harmonic)),
     }
 }

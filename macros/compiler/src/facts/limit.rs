@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
+use hertzian_contract::system::Bound;
+
 use super::is_above;
 use crate::dag::{Dag, Id, Node, Rational, Variable};
-use crate::ir::Bound;
 use crate::simplify::expand;
 
 /// Ranges of the arguments of a law.

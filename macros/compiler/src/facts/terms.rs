@@ -2,57 +2,24 @@
 
 use std::collections::HashMap;
 
+use hertzian_contract::law::{Exponent, Quantity, TermFacts};
+
 use super::Piece;
 use super::limit::shifted_argument;
-use crate::dag::{Dag, Id, Node, Rational, Variable};
+use crate::dag::{Dag, Id, Node, Variable};
 use crate::differentiate::differentiate;
 use crate::simplify::{addends_of, expand, factors_of};
 
 /// A base is tried for a zero of up to this order at a level.
 const MAX_ORDER: i32 = 4;
 
-/// A force or one of its derivatives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum Quantity {
-    Force,
-    ByGap,
-    ByRate,
-    ByArgument(usize),
-}
-
-/// A number, plus an argument if there is one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Exponent {
-    /// The number.
-    pub number: Rational,
-    /// Position of the argument.
-    pub argument: Option<usize>,
-}
-
-/// One additive term: `|g - level|^exponent` times a smooth factor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Term {
-    /// What the term belongs to.
-    pub of: Quantity,
-    /// Exponent at the lower end.
-    pub lower: Exponent,
-    /// Exponent at the upper end.
-    pub upper: Exponent,
-    /// Whether it carries a logarithm.
-    pub logarithm: bool,
-}
-
-impl Exponent {
-    /// Smooth.
-    pub const ZERO: Self = Self {
-        number: Rational::ZERO,
-        argument: None,
-    };
-}
-
 /// The terms of force and derivatives of a piece, equal ones once.
-pub fn of_piece(dag: &mut Dag, piece: &Piece, lower: Option<Id>, upper: Option<Id>) -> Vec<Term> {
+pub fn of_piece(
+    dag: &mut Dag,
+    piece: &Piece,
+    lower: Option<Id>,
+    upper: Option<Id>,
+) -> Vec<TermFacts> {
     let mut quantities = vec![
         (Quantity::Force, piece.force),
         (Quantity::ByGap, piece.by_gap),
@@ -69,12 +36,7 @@ pub fn of_piece(dag: &mut Dag, piece: &Piece, lower: Option<Id>, upper: Option<I
             for (lower, lower_logarithm) in behaviours(dag, addend, lower) {
                 for &(upper, upper_logarithm) in &at_upper {
                     let logarithm = lower_logarithm || upper_logarithm;
-                    let term = Term {
-                        of,
-                        lower,
-                        upper,
-                        logarithm,
-                    };
+                    let term = TermFacts::new(of, lower, upper).logarithm(logarithm);
                     if !terms.contains(&term) {
                         terms.push(term);
                     }
@@ -175,17 +137,11 @@ fn as_exponent(dag: &mut Dag, exponent: Id) -> Exponent {
         return if smooth {
             Exponent::ZERO
         } else {
-            Exponent {
-                number,
-                argument: None,
-            }
+            Exponent::new(number.to_f64())
         };
     }
     match shifted_argument(dag, exponent) {
-        Some((argument, number, true)) => Exponent {
-            number,
-            argument: Some(argument),
-        },
+        Some((argument, number, true)) => Exponent::of_argument(number.to_f64(), argument),
         _ => Exponent::ZERO,
     }
 }

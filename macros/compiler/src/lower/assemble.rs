@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
+use hertzian_contract::system::{self, ContactFacts, Part, Place};
+
 use crate::dag::{Dag, Id, Rational, Variable};
-use crate::ir::{self, Place};
 
 use super::term::{Motion, Term};
 use super::wave::Wave;
@@ -35,7 +36,7 @@ pub struct Assembly {
     /// Coefficients with their places, one for each place.
     pub coefficients: Vec<(Place, Id)>,
     /// Contacts.
-    pub contacts: Vec<ir::Contact>,
+    pub contacts: Vec<ContactFacts>,
     /// The base frequency is `omega / divisor`.
     pub divisor: u32,
     positions: HashMap<Place, usize>,
@@ -92,12 +93,10 @@ impl Assembly {
         }
     }
 
-    fn wave(&self, wave: Wave) -> ir::Wave {
+    fn wave(&self, wave: Wave) -> system::Wave {
         let harmonic = harmonic(wave.multiple, i128::from(self.divisor)).unwrap_or_default();
-        ir::Wave {
-            harmonic,
-            sine: wave.sine,
-        }
+        let part = if wave.sine { Part::Sine } else { Part::Cosine };
+        system::Wave { harmonic, part }
     }
 
     fn add(&mut self, dag: &mut Dag, place: Place, value: Id) {
@@ -156,7 +155,7 @@ impl Assembly {
 
     fn contact(&mut self, dag: &mut Dag, action: &Action, key: ContactKey) -> usize {
         let contact = self.contacts.len();
-        self.contacts.push(ir::Contact { law: action.law });
+        self.contacts.push(ContactFacts::new(action.law));
         self.known.insert(key, contact);
         for term in &action.gap {
             let wave = self.wave(term.wave);

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use crate::ast::Declaration;
-use crate::check::forcing;
 use crate::dag::{Id, Variable};
 use crate::errors::Extent;
 use crate::ir;
@@ -12,6 +11,7 @@ use super::assemble::{self, Action, Assembly};
 use super::expand::Expander;
 use super::found::Found;
 use super::law::{self, Lowered};
+use super::rules::forcing;
 use super::term::{Motion, Term};
 use super::wave::Wave;
 

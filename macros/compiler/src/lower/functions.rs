@@ -1,7 +1,6 @@
 //! Powers and functions of terms: of constants, of waves, and of the motion.
 
 use crate::ast::Expr;
-use crate::check::powers;
 use crate::dag::{Function, Id, Node, Rational, Variable};
 use crate::differentiate::differentiate;
 use crate::errors::{Extent, shortened};
@@ -9,6 +8,7 @@ use crate::simplify::factors_of;
 
 use super::expand::Expander;
 use super::interval::Stretch;
+use super::rules::powers;
 use super::term::{Term, collect};
 use super::wave::Wave;
 use super::written::{Quote, Written};

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
+use hertzian_contract::system::Bound;
+
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
-use crate::ir::Bound;
 
 /// All values an expression may have. An end may be reached or only approached.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use crate::ast::{Comparison, Condition, Law};
-use crate::check::pieces::{self, Piece};
 use crate::dag::{Dag, Id, Node, Variable};
 use crate::errors::{Diagnostics, Extent};
 use crate::ir;
@@ -12,6 +11,7 @@ use super::algebra::{addends, affine, split_factor};
 use super::expand::{Expander, Meaning};
 use super::interval::{Interval, Stretch};
 use super::resolve::{MOST_SEGMENTS, Segment, TOO_MANY, resolve};
+use super::rules::pieces::{self, Piece};
 use super::written::{Written, followed};
 
 /// A law and what its arguments beyond the written ones stand for.

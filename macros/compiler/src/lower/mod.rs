@@ -9,28 +9,30 @@ mod gaps;
 mod law;
 mod polynomial;
 mod repeat;
+mod rules;
 
-pub(crate) mod algebra;
-pub(crate) mod expand;
-pub(crate) mod interval;
-pub(crate) mod resolve;
-pub(crate) mod term;
-pub(crate) mod wave;
-pub(crate) mod written;
+mod algebra;
+mod expand;
+mod interval;
+mod resolve;
+mod term;
+mod wave;
+mod written;
+
+use hertzian_contract::system::Bound;
 
 use crate::ast::{Declaration, Equation, Expr, Kind, Limit, Statement};
-use crate::check::{forcing, inertia};
 use crate::dag::{Dag, Id, Variable};
 use crate::errors::{Diagnostics, Extent};
 use crate::index::Constants;
-use crate::interpret::{Coefficients, Family};
-use crate::ir::{self, Bound, Model};
+use crate::ir::{self, Model};
 
 use self::build::Builder;
 use self::expand::{Expander, Meaning};
 use self::found::Gatherer;
 use self::interval::{Interval, Stretch};
 use self::law::Lowered;
+use self::rules::{forcing, inertia};
 use self::term::{Term, collect};
 
 /// What an equation with a few contacts is multiplied out to.
@@ -38,7 +40,7 @@ const TERMS_PER_COORDINATE: usize = 512;
 
 /// Operands that are read and written before a declaration is given up: less than a second, and several hundred times what any
 /// of the examples takes.
-const BUDGET: u64 = 3_000_000;
+pub(crate) const BUDGET: u64 = 3_000_000;
 
 /// Lowers a declaration that has passed [`check`](crate::check::check). `None` if something was reported.
 pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option<Model> {
@@ -58,27 +60,13 @@ pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option
     }
     let mut model = model?;
     model.dag = std::mem::take(&mut context.dag);
-    model.dag.set_budget(Some(BUDGET));
-    if !derivatives_fit(&model) {
-        diagnostics.only(expand::too_long(all_equations(declaration)));
-        return None;
-    }
     model.dag.set_budget(None);
     Some(model)
 }
 
-/// Whether the derivatives of laws and coefficients, and what is known of them, can be had within the budget: a product of many
-/// factors is short, and its second derivative is not.
-fn derivatives_fit(model: &Model) -> bool {
-    let mut trial = model.clone();
-    for law in &model.laws {
-        let _ = Family::of(&mut trial.dag, law);
-        if trial.dag.is_spent() {
-            return false;
-        }
-    }
-    let _ = Coefficients::of(&mut trial);
-    !trial.dag.is_spent()
+/// The fault of a declaration that multiplies out to more than can be handled.
+pub(crate) fn too_long(declaration: &Declaration) -> syn::Error {
+    expand::too_long(all_equations(declaration))
 }
 
 fn lowered(

@@ -3,13 +3,13 @@
 use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
-use crate::check::{pieces, powers, rates};
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
 use crate::errors::Extent;
 
 use super::algebra::affine;
 use super::expand::Expander;
 use super::interval::Stretch;
+use super::rules::{pieces, powers, rates};
 use super::written::{Written, followed, quote_of_switch};
 
 /// More levels than a law has.

@@ -4,8 +4,8 @@ use crate::models::Sketch;
 use hertzian_compiler::dag::{Dag, Function, Id, Rational, Variable};
 use hertzian_compiler::differentiate::differentiate;
 use hertzian_compiler::emit::emit;
-use hertzian_compiler::ir::Bound;
 use hertzian_compiler::simplify::{expand, factor, is_zero};
+use hertzian_contract::system::Bound;
 use proptest::prelude::*;
 use quote::quote;
 

@@ -1,11 +1,11 @@
 //! Facts and primitives of laws from the literature.
 
-use hertzian_compiler::dag::{Function, Rational, Variable};
-use hertzian_compiler::facts::{
-    Exponent, LawFacts, Piece, Quantity, RateDependence, Term, Variation, derive,
-};
-use hertzian_compiler::ir::{Bound, Law, Model};
+use hertzian_compiler::dag::{Function, Variable};
+use hertzian_compiler::facts::{Piece, derive};
+use hertzian_compiler::ir::{Law, Model};
 use hertzian_compiler::primitive;
+use hertzian_contract::law::{Exponent, LawFacts, Quantity, RateDependence, Variation};
+use hertzian_contract::system::Bound;
 
 fn facts(model: &mut Model) -> LawFacts {
     let law = model.laws[0].clone();
@@ -39,19 +39,12 @@ fn primitive_of(model: &mut Model) -> Vec<String> {
         .collect()
 }
 
-fn number(numerator: i128, denominator: i128) -> Exponent {
-    let number = Rational::new(numerator, denominator).expect("a small fraction");
-    Exponent {
-        number,
-        argument: None,
-    }
+fn number(numerator: f64, denominator: f64) -> Exponent {
+    Exponent::new(numerator / denominator)
 }
 
-fn argument(index: usize, number: i128) -> Exponent {
-    Exponent {
-        number: Rational::integer(number),
-        argument: Some(index),
-    }
+fn argument(index: usize, number: f64) -> Exponent {
+    Exponent::of_argument(number, index)
 }
 
 /// The exponents of a quantity at the lower end of a piece, with whether a logarithm goes with them.
@@ -60,13 +53,7 @@ fn lower(facts: &LawFacts, piece: usize, of: Quantity) -> Vec<(Exponent, bool)> 
         .terms
         .iter()
         .filter(|term| term.of == of);
-    terms
-        .map(
-            |&Term {
-                 lower, logarithm, ..
-             }| (lower, logarithm),
-        )
-        .collect()
+    terms.map(|term| (term.lower, term.logarithm)).collect()
 }
 
 #[test]
@@ -82,8 +69,11 @@ fn one_sided_damping_jumps_only_in_the_rate() {
     assert_eq!(facts.pieces[1].by_rate, Variation::Constant);
     assert_eq!(facts.pieces[0].force, Variation::Zero);
     let force = lower(&facts, 1, Quantity::Force);
-    assert!(force.contains(&(number(3, 2), false)) && force.contains(&(Exponent::ZERO, false)));
-    assert_eq!(lower(&facts, 1, Quantity::ByGap), [(number(1, 2), false)]);
+    assert!(force.contains(&(number(3.0, 2.0), false)) && force.contains(&(Exponent::ZERO, false)));
+    assert_eq!(
+        lower(&facts, 1, Quantity::ByGap),
+        [(number(1.0, 2.0), false)]
+    );
     assert_eq!(primitive_of(model), ["0", "2*zeta*gap"]);
 }
 
@@ -92,7 +82,10 @@ fn exponent_below_one_is_unbounded_stiffness() {
     let facts = facts(&mut crate::models::soft());
     let level = facts.levels[0];
     assert!(!level.force_jumps && level.by_gap_jumps && level.unbounded_by_gap);
-    assert_eq!(lower(&facts, 1, Quantity::ByGap), [(number(-2, 5), false)]);
+    assert_eq!(
+        lower(&facts, 1, Quantity::ByGap),
+        [(number(-2.0, 5.0), false)]
+    );
 }
 
 #[test]
@@ -104,20 +97,23 @@ fn runtime_exponent_carries_its_argument_and_a_logarithm() {
     assert_eq!(facts.rate, RateDependence::None);
     // alpha > 0: the force vanishes at the level; alpha - 1 may be negative.
     assert!(!level.force_jumps && level.unbounded_by_gap);
-    assert_eq!(lower(&facts, 1, Quantity::Force), [(argument(0, 0), false)]);
+    assert_eq!(
+        lower(&facts, 1, Quantity::Force),
+        [(argument(0, 0.0), false)]
+    );
     assert_eq!(
         lower(&facts, 1, Quantity::ByGap),
-        [(argument(0, -1), false)]
+        [(argument(0, -1.0), false)]
     );
     assert_eq!(
         lower(&facts, 1, Quantity::ByArgument(0)),
-        [(argument(0, 0), true)]
+        [(argument(0, 0.0), true)]
     );
     let upper = facts.pieces[0]
         .terms
         .iter()
         .find(|term| term.of == Quantity::ByGap);
-    assert_eq!(upper.map(|term| term.upper), Some(argument(0, -1)));
+    assert_eq!(upper.map(|term| term.upper), Some(argument(0, -1.0)));
     let law = model.laws[0].clone();
     assert!(primitive::parts(&mut model.dag, &law).is_none());
 }
@@ -126,12 +122,12 @@ fn runtime_exponent_carries_its_argument_and_a_logarithm() {
 fn backlash_is_affine_continuous_and_odd() {
     let facts = facts(&mut crate::models::backlash());
     assert!(facts.odd && facts.pieces.iter().all(|piece| piece.affine));
-    for level in &facts.levels {
+    for level in facts.levels.iter() {
         assert!(!level.force_jumps && level.by_gap_jumps && !level.unbounded_by_gap);
     }
     assert_eq!(facts.pieces[2].by_gap, Variation::Constant);
     assert_eq!(
-        facts.pieces[2].by_argument,
+        facts.pieces[2].by_argument[..],
         [Variation::Varying, Variation::Constant]
     );
 }
@@ -143,7 +139,10 @@ fn hunt_crossley_is_smooth_at_contact_and_has_a_primitive() {
     let level = facts.levels[0];
     assert!(!level.force_jumps && !level.by_gap_jumps && !level.by_rate_jumps);
     assert_eq!(facts.rate, RateDependence::Linear);
-    assert_eq!(lower(&facts, 1, Quantity::ByRate), [(number(3, 2), false)]);
+    assert_eq!(
+        lower(&facts, 1, Quantity::ByRate),
+        [(number(3.0, 2.0), false)]
+    );
     assert_eq!(primitive_of(model), ["0", "0.4*k*c*gap^2.5"]);
 }
 
@@ -177,7 +176,7 @@ fn rate_term_at_a_runtime_level_is_integrated_in_its_base() {
     // G is continuous, and so is G' = h.
     assert!(!facts.levels[0].force_jumps && !facts.levels[0].by_gap_jumps);
     let by_gap = lower(&facts, 1, Quantity::ByGap);
-    assert!(by_gap.contains(&(argument(2, 0), false)), "{by_gap:?}");
+    assert!(by_gap.contains(&(argument(2, 0.0), false)), "{by_gap:?}");
 }
 
 #[test]
@@ -188,8 +187,8 @@ fn a_power_inside_a_smooth_function_shows_among_the_terms() {
     let force = s.dag.call(Function::Tanh, power);
     let law = s.law("soft", &[(zero, false)], &[zero, force]);
     let facts = facts(&mut s.model("Nested", law));
-    assert!(lower(&facts, 1, Quantity::Force).contains(&(number(3, 2), false)));
-    assert!(lower(&facts, 1, Quantity::ByGap).contains(&(number(1, 2), false)));
+    assert!(lower(&facts, 1, Quantity::Force).contains(&(number(3.0, 2.0), false)));
+    assert!(lower(&facts, 1, Quantity::ByGap).contains(&(number(1.0, 2.0), false)));
     assert!(!facts.levels[0].by_gap_jumps);
 }
 

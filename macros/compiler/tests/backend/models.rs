@@ -3,7 +3,8 @@
 #![allow(dead_code)]
 
 use hertzian_compiler::dag::{Dag, Id, Rational, Variable};
-use hertzian_compiler::ir::{Bound, Contact, Law, Level, Model, Parameter, Place, Wave};
+use hertzian_compiler::ir::{Law, Level, Model, Parameter};
+use hertzian_contract::system::{Bound, ContactFacts, Place, Wave};
 
 const POSITIVE: (Bound, Bound) = (Bound::Excluded(0.0), Bound::Unbounded);
 const NOT_NEGATIVE: (Bound, Bound) = (Bound::Included(0.0), Bound::Unbounded);
@@ -67,10 +68,7 @@ impl Sketch {
         let mut coefficients = Vec::new();
         let one = self.dag.integer(1);
         coefficients.push((Place::Mass { row: 0, column: 0 }, one));
-        let constant = Wave {
-            harmonic: 0,
-            sine: false,
-        };
+        let constant = Wave::CONSTANT;
         coefficients.push((
             Place::ForceDirection {
                 contact: 0,
@@ -92,16 +90,7 @@ impl Sketch {
             let value = self.dag.variable(Variable::Parameter(index));
             coefficients.push((Place::Argument { contact: 0, index }, value));
         }
-        for (name, wave) in [
-            ("load", constant),
-            (
-                "drive",
-                Wave {
-                    harmonic: 1,
-                    sine: false,
-                },
-            ),
-        ] {
+        for (name, wave) in [("load", constant), ("drive", Wave::cosine(1))] {
             let value = self.dag.variable(Variable::Parameter(parameters.len()));
             parameters.push(parameter(name, ANY));
             coefficients.push((Place::Load { row: 0, wave }, value));
@@ -116,7 +105,7 @@ impl Sketch {
             parameters,
             divisor: 1,
             laws: vec![law],
-            contacts: vec![Contact { law: 0 }],
+            contacts: vec![ContactFacts::new(0)],
             coefficients,
         }
     }

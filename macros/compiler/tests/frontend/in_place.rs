@@ -1,7 +1,8 @@
 //! Forces written in the equation in place: what a law may be, they may be, and their faults are quoted as written.
 
 use hertzian_compiler::dag::{Id, Variable};
-use hertzian_compiler::ir::{Model, Place};
+use hertzian_compiler::ir::Model;
+use hertzian_contract::system::Place;
 
 use crate::{faults, model};
 

@@ -12,7 +12,8 @@ mod units;
 use std::str::FromStr;
 
 use hertzian_compiler::dag::{Id, Variable};
-use hertzian_compiler::ir::{Model, Place};
+use hertzian_compiler::ir::Model;
+use hertzian_contract::system::{Part, Place, Wave};
 use proc_macro2::TokenStream;
 
 fn compile(text: &str) -> Result<Model, String> {
@@ -34,8 +35,12 @@ fn summary(model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     for (place, id) in &model.coefficients {
         let value = model.dag.display(*id, &parameter);
-        let wave = |wave: &hertzian_compiler::ir::Wave| {
-            let name = if wave.sine { "sin" } else { "cos" };
+        let wave = |wave: &Wave| {
+            let name = if wave.part == Part::Sine {
+                "sin"
+            } else {
+                "cos"
+            };
             if wave.harmonic == 0 {
                 String::new()
             } else {
@@ -65,6 +70,7 @@ fn summary(model: &Model) -> Vec<String> {
             }
             Place::Offset { contact, wave: w } => format!("delta{contact}{} = {value}", wave(w)),
             Place::Argument { contact, index } => format!("a{contact} {index} = {value}"),
+            other => panic!("{other:?}"),
         });
     }
     for law in &model.laws {

@@ -1,7 +1,7 @@
 //! Declarations and what they are lowered to.
 
 use hertzian_compiler::dag::Variable;
-use hertzian_compiler::ir::Place;
+use hertzian_contract::system::Place;
 
 use crate::{assert_model, faults, model, summary};
 

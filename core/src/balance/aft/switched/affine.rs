@@ -17,7 +17,7 @@ use crate::law::{Derivatives, On};
 use crate::numeric::fourier::kernels::Product;
 use crate::numeric::fourier::series;
 
-/// Room for the series of `chi` and of the force on the piece.
+/// Workspace for the series of `chi` and of the force on the piece.
 #[derive(Debug, Default)]
 pub(super) struct Affine {
     indicator: Vec<f64>,
@@ -43,11 +43,11 @@ struct Place<'l> {
 }
 
 impl Affine {
-    /// Adds a piece that is affine and its panels.
+    /// Adds the panels of one piece that is affine.
     pub(super) fn add<'p>(
         &mut self,
         input: ContactInput<'_>,
-        (piece, levels): (usize, &[f64]),
+        levels: &[f64],
         panels: impl Iterator<Item = &'p Panel> + Clone,
         product: &mut Product,
         sums: &mut Sums<'_>,
@@ -56,6 +56,7 @@ impl Affine {
             return;
         };
         let point = series::value(input.gap, 0.5 * (first.start + first.end));
+        let piece = first.piece;
         let place = Place {
             piece,
             point,
@@ -196,9 +197,9 @@ fn by_arguments(input: ContactInput<'_>, changing: Changing<'_>, place: Place<'_
     let gaps = [gap, other, gap];
     let speed = input.base * (gap - other).abs();
     let rates = [0.0, 0.0, speed];
-    let mut room = [[0.0; 3]; 3];
+    let mut workspace = [[0.0; 3]; 3];
     for (argument, by) in changing.arguments() {
-        let [force, by_gap, by_rate] = &mut room;
+        let [force, by_gap, by_rate] = &mut workspace;
         let out = Derivatives {
             force,
             by_gap,

@@ -1,20 +1,12 @@
-//! The period of a gap, cut where it crosses a level, and where it nearly does.
-//!
-//! Near an extremum that misses a level by a small distance `d` with curvature `c`, a power of `g - level` has its
-//! singularities beside the real axis, at `tau +- i sqrt(2 d / c)`. A panel of a piece with such a power is cut there too.
+//! The period of a gap, cut where it crosses a level, and where it nearly does if the force has a broken power of the distance.
 
 use std::f64::consts::TAU;
 
 use super::panel::power_at;
 use crate::balance::aft::ContactInput;
-use crate::numeric::fourier::crossings::levels::{Cuts, Stretch, Switch};
-use crate::numeric::fourier::crossings::{CrossingFinder, NearMiss};
+use crate::numeric::fourier::crossings::CrossingFinder;
+use crate::numeric::fourier::crossings::levels::{Cuts, Segment, Switch};
 use crate::numeric::fourier::series;
-
-/// Singularities farther from the real axis than this cost fewer nodes than a cut.
-const NEAR: f64 = 0.15;
-/// Where near misses are looked for, in parts of the size of the gap's oscillation.
-const REACH: f64 = 0.05;
 
 /// What bounds a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,14 +38,14 @@ impl Panel {
     }
 }
 
-impl From<&Stretch> for Panel {
-    fn from(stretch: &Stretch) -> Self {
-        let &Stretch {
+impl From<&Segment> for Panel {
+    fn from(segment: &Segment) -> Self {
+        let &Segment {
             start,
             end,
             piece,
             levels,
-        } = stretch;
+        } = segment;
         let [from, to] = levels.map_or([End::Period; 2], |levels| levels.map(End::Level));
         Self {
             start,
@@ -72,7 +64,6 @@ pub(super) struct Cut {
     levels: Vec<f64>,
     levels_by: Vec<f64>,
     cuts: Cuts,
-    misses: Vec<NearMiss>,
     panels: Vec<Panel>,
 }
 
@@ -92,7 +83,7 @@ impl Cut {
         self.cuts.apply(finder, input.gap, &self.levels);
         self.panels.clear();
         self.panels
-            .extend(self.cuts.stretches().iter().map(Panel::from));
+            .extend(self.cuts.segments().iter().map(Panel::from));
         for level in 0..count {
             self.cut_near(input, level);
         }
@@ -118,61 +109,10 @@ impl Cut {
         let Some(finder) = &self.finder else {
             return;
         };
-        let size: f64 = input.gap[1..].iter().map(|x| x.abs()).sum();
-        self.misses.clear();
-        finder.near_misses(self.levels[level], REACH * size, &mut self.misses);
-        for index in 0..self.misses.len() {
-            let NearMiss {
-                tau,
-                distance,
-                curvature,
-            } = self.misses[index];
-            let near = 2.0 * distance < NEAR * NEAR * curvature;
-            if near {
-                self.cut_panel(tau, level, sides);
-            }
+        let value = self.levels[level];
+        for tau in self.cuts.near_misses(finder, input.gap, value) {
+            cut_panel(&mut self.panels, tau, level, sides);
         }
-    }
-
-    fn cut_panel(&mut self, tau: f64, level: usize, sides: [bool; 2]) {
-        let middle = End::Near(level);
-        let lies_in = |panel: &Panel| {
-            // Panels begin up to a period before the phases of near misses, and may end a period behind them.
-            let phases = [tau - TAU, tau, tau + TAU];
-            phases
-                .into_iter()
-                .find(|&tau| tau > panel.start && tau < panel.end)
-        };
-        let found = self
-            .panels
-            .iter()
-            .enumerate()
-            .find_map(|(index, panel)| lies_in(panel).map(|tau| (index, tau)));
-        let Some((index, tau)) = found else {
-            return;
-        };
-        let panel = self.panels[index];
-        let adjacent = panel.piece == level || panel.piece == level + 1;
-        if !adjacent || !sides[panel.piece - level] {
-            return;
-        }
-        if panel.is_period() {
-            self.panels[index] = Panel {
-                start: tau,
-                end: tau + TAU,
-                from: middle,
-                to: middle,
-                ..panel
-            };
-            return;
-        }
-        self.panels[index].end = tau;
-        self.panels[index].to = middle;
-        self.panels.push(Panel {
-            start: tau,
-            from: middle,
-            ..panel
-        });
     }
 
     pub(super) fn panels(&self) -> &[Panel] {
@@ -199,4 +139,41 @@ impl Cut {
         }
         sum
     }
+}
+
+/// Cuts the panel that a phase lies in, if its piece is beside a level on a side that needs it.
+fn cut_panel(panels: &mut Vec<Panel>, tau: f64, level: usize, sides: [bool; 2]) {
+    let middle = End::Near(level);
+    let lies_in = |panel: &Panel| {
+        // Panels begin up to a period before the phases of near misses, and may end a period behind them.
+        let phases = [tau - TAU, tau, tau + TAU];
+        phases
+            .into_iter()
+            .find(|&tau| tau > panel.start && tau < panel.end)
+    };
+    let mut found = panels.iter().enumerate();
+    let found = found.find_map(|(index, panel)| lies_in(panel).map(|tau| (index, tau)));
+    let Some((index, tau)) = found else {
+        return;
+    };
+    let panel = panels[index];
+    let adjacent = panel.piece == level || panel.piece == level + 1;
+    if !adjacent || !sides[panel.piece - level] {
+        return;
+    }
+    let behind = Panel {
+        start: tau,
+        from: middle,
+        ..panel
+    };
+    if panel.is_period() {
+        panels[index] = Panel {
+            end: tau + TAU,
+            to: middle,
+            ..behind
+        };
+        return;
+    }
+    (panels[index].end, panels[index].to) = (tau, middle);
+    panels.push(behind);
 }

@@ -44,7 +44,7 @@ use cut::Cut;
 use panel::Quadrature;
 use whole::Whole;
 
-/// Room for one contact after the other; after the first few calls nothing is allocated.
+/// Workspace for one contact after the other; after the first few calls nothing is allocated.
 #[derive(Debug, Default)]
 pub(crate) struct SwitchedAft {
     cut: Cut,
@@ -56,7 +56,7 @@ pub(crate) struct SwitchedAft {
     sharp: Vec<(usize, Option<Scales>)>,
 }
 
-/// So much of what [`Scales`] say may change from node to node: the coefficients of the force then fall, and tell the rest.
+/// Largest change from node to node, in the units of [`Scales`], with which the coefficients of the force fall and tell the rest.
 const SEEN: f64 = 1.5;
 
 /// Whether a law changes on a piece between nodes where they do not see it.
@@ -197,9 +197,9 @@ impl SwitchedAft {
                 continue;
             }
             if of.affine {
-                let place = (piece, self.cut.levels());
+                let levels = self.cut.levels();
                 self.affine
-                    .add(input, place, panels(), &mut self.product, sums);
+                    .add(input, levels, panels(), &mut self.product, sums);
             } else {
                 for panel in panels() {
                     self.quadrature

@@ -4,7 +4,7 @@
 //! an exponent. The map of [`grading`](crate::numeric::fourier::grading) makes all of them smooth at once, so one set of nodes serves
 //! the force and every derivative, whatever the exponents.
 //!
-//! How many nodes suffice, [`spectrum`](super::spectrum) tells. Where there is no rule of so many, the panel is cut in two.
+//! How many nodes suffice, [`spectrum`](super::spectrum) tells. Where there is no rule with that number, the panel is cut in two.
 
 use super::cut::{End, Panel};
 use super::spectrum::Spectrum;
@@ -23,12 +23,12 @@ use crate::numeric::fourier::taylor::Taylor;
 const MARGIN: f64 = 12.0;
 /// Error aimed at in the harmonics of the force, relative to the largest force on the panel.
 const FORCE_ERROR: f64 = 1e-15;
-/// Error aimed at in the harmonics of the derivatives.
+/// The same of the derivatives.
 const SLOPE_ERROR: f64 = 1e-11;
-/// Panels are cut in two at most so many times.
+/// Halvings of a panel, at most.
 const DEPTH: u32 = 12;
 
-/// Room for the nodes of one panel, and the graded rules met so far.
+/// Workspace for the nodes of one panel, and the graded rules met so far.
 #[derive(Debug, Default)]
 pub(super) struct Quadrature {
     rules: Vec<GradedRule>,
@@ -63,23 +63,24 @@ struct GradedRule {
     plain: &'static Rule,
 }
 
-/// A part of a panel.
+/// A part of a panel, and what is known of the part that it is a half of.
 #[derive(Debug, Clone, Copy)]
-struct Stretch {
+struct Part {
+    piece: usize,
     start: f64,
     end: f64,
     /// The powers that its ends need; one where it was only cut.
     ends: Grading,
-}
-
-/// A part of a panel, and what is known of the part that it is a half of.
-#[derive(Debug, Clone, Copy)]
-struct Part {
-    ends: (f64, f64),
-    grading: Grading,
-    /// It may be cut in two so many times.
+    /// Halvings that it may still have.
     depth: u32,
     spectra: [Spectrum; 4],
+}
+
+impl Part {
+    /// Degree of a polynomial that follows one harmonic on it.
+    fn degrees(&self) -> f64 {
+        0.5 * (self.end - self.start) * self.ends.balanced().stretch()
+    }
 }
 
 /// The harmonics that a panel must serve.
@@ -107,7 +108,7 @@ impl Quadrature {
         let with_arguments = sums.slopes.as_ref().map_or(&[][..], |s| s.arguments());
         let power =
             |end: End, upper: bool| power_at(facts, input.arguments, with_arguments, end, upper);
-        let grading = Grading {
+        let ends = Grading {
             start: power(panel.from, is_upper(panel.from, panel.piece)),
             end: power(panel.to, is_upper(panel.to, panel.piece)),
         };
@@ -125,42 +126,44 @@ impl Quadrature {
             own: series::harmonics(input.gap) as f64,
         };
         let part = Part {
-            ends: (panel.start, panel.end),
-            grading,
+            piece: panel.piece,
+            start: panel.start,
+            end: panel.end,
+            ends,
             depth: DEPTH,
             spectra: [Spectrum::UNKNOWN; 4],
         };
-        self.part((input, panel.piece), part, demand, sums, scales);
+        self.part(input, part, demand, sums, scales);
     }
 
     /// Adds the integrals over a part of a panel.
     fn part(
         &mut self,
-        (input, piece): (ContactInput<'_>, usize),
+        input: ContactInput<'_>,
         part: Part,
         demand: Demand,
         sums: &mut Sums<'_>,
         scales: &mut Option<Scales>,
     ) {
         let Part {
-            ends: (start, end),
-            grading: ends,
+            piece,
+            start,
+            end,
             depth,
             mut spectra,
+            ..
         } = part;
-        let width = end - start;
-        let grading = ends.balanced();
-        let stretch = Stretch { start, end, ends };
-        let degrees = 0.5 * width * grading.stretch();
+        let grading = part.ends.balanced();
+        let degrees = part.degrees();
         let facts = &input.law.facts().pieces[piece];
         let mut wanted = 0.5 * degrees * (demand.slopes + demand.own) + MARGIN;
         let largest = gauss::COUNTS[gauss::COUNTS.len() - 1] as f64;
         while wanted <= largest || depth == 0 {
             self.place(start, end, grading, wanted.ceil() as usize);
-            self.evaluate(input, piece, Wanted::of(sums), &stretch);
+            self.evaluate(input, Wanted::of(sums), &part);
             let count = self.rules[self.current].count as f64;
             let mut needed;
-            (needed, spectra) = self.needed(facts, (width, degrees), demand, sums, &part.spectra);
+            (needed, spectra) = self.needed(facts, &part, demand, sums);
             let nodes = count as usize;
             if depth > 0 && overlooks(scales, piece, [&self.gap[..nodes], &self.rate[..nodes]]) {
                 needed = needed.max(2.0 * count);
@@ -172,32 +175,29 @@ impl Quadrature {
             wanted = needed.max(count + 1.0);
         }
         let middle = 0.5 * (start + end);
-        let half = |ends, grading| Part {
-            ends,
-            grading,
-            depth: depth - 1,
-            spectra,
-        };
-        let first = half((start, middle), Grading { end: 1, ..ends });
-        let second = half((middle, end), Grading { start: 1, ..ends });
-        self.part((input, piece), first, demand, sums, scales);
-        self.part((input, piece), second, demand, sums, scales);
+        let (mut first, mut second) = (part, part);
+        (first.end, first.ends.end) = (middle, 1);
+        (second.start, second.ends.start) = (middle, 1);
+        for mut half in [first, second] {
+            (half.depth, half.spectra) = (depth - 1, spectra);
+            self.part(input, half, demand, sums, scales);
+        }
     }
 
     /// What the values at the nodes say, and how many nodes they ask for.
     fn needed(
         &self,
         piece: &PieceFacts,
-        (width, degrees): (f64, f64),
+        part: &Part,
         demand: Demand,
         sums: &Sums<'_>,
-        parent: &[Spectrum; 4],
     ) -> (f64, [Spectrum; 4]) {
         let rule = &self.rules[self.current];
+        let (width, degrees) = (part.end - part.start, part.degrees());
         let mut spectra = [Spectrum::UNKNOWN; 4];
         let mut most = 0.0_f64;
         let mut look = |which: usize, values: &[f64], harmonics: f64, error: f64| {
-            let parent = parent[which];
+            let parent = part.spectra[which];
             let spectrum = Spectrum::of(values, &rule.slopes, rule.plain, width, parent);
             most = most.max(spectrum.nodes(parent, degrees * harmonics, error));
             spectra[which] = spectrum;
@@ -221,7 +221,7 @@ impl Quadrature {
         let rule = &self.rules[index];
         let nodes = padded(rule.nodes.len());
         let [c, s] = &mut self.rotated;
-        for room in [
+        for workspace in [
             &mut self.cosines,
             &mut self.sines,
             &mut self.weights,
@@ -234,7 +234,7 @@ impl Quadrature {
             c,
             s,
         ] {
-            room.resize(nodes, 0.0);
+            workspace.resize(nodes, 0.0);
         }
         let width = end - start;
         for (j, (node, weight)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
@@ -280,13 +280,7 @@ impl Quadrature {
     }
 
     /// The law at the nodes, as far as wanted.
-    fn evaluate(
-        &mut self,
-        input: ContactInput<'_>,
-        piece: usize,
-        wanted: Wanted<'_>,
-        stretch: &Stretch,
-    ) {
+    fn evaluate(&mut self, input: ContactInput<'_>, wanted: Wanted<'_>, part: &Part) {
         // At each node two series and what is projected on harmonics, sine and cosine, and the law.
         self.operations += (self.gap.len() * (4 * input.gap.len() + 64)) as u64;
         evaluate(
@@ -296,8 +290,8 @@ impl Quadrature {
             &mut self.gap,
             &mut self.rate,
         );
-        self.sharpen(input, stretch);
-        let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
+        self.sharpen(input, part);
+        let (on, gap, rate) = (On::Piece(part.piece), &self.gap, &self.rate);
         let changing = match wanted {
             Wanted::Force => {
                 input
@@ -343,21 +337,21 @@ impl Quadrature {
 
     /// Replaces the gap close to a singular end by its Taylor polynomial there: a small distance from the level keeps all its
     /// digits then, which an exponent below one needs. (Where the level is not zero, the sum of both is rounded.)
-    fn sharpen(&mut self, input: ContactInput<'_>, stretch: &Stretch) {
+    fn sharpen(&mut self, input: ContactInput<'_>, part: &Part) {
         let near = Taylor::reach(input.gap);
-        let width = stretch.end - stretch.start;
+        let width = part.end - part.start;
         let rule = &self.rules[self.current];
         let [first, last] = self.levels;
-        if let Some(level) = first.filter(|_| stretch.ends.start > 1) {
-            let taylor = Taylor::at(input.gap, stretch.start);
+        if let Some(level) = first.filter(|_| part.ends.start > 1) {
+            let taylor = Taylor::at(input.gap, part.start);
             let nodes = rule.nodes.iter().zip(&mut self.gap);
             let close = |node: f64| !node.is_sign_negative() && node * width < near;
             for (node, gap) in nodes.take_while(|(node, _)| close(**node)) {
                 *gap = taylor.value(level, width * node);
             }
         }
-        if let Some(level) = last.filter(|_| stretch.ends.end > 1) {
-            let taylor = Taylor::at(input.gap, stretch.end);
+        if let Some(level) = last.filter(|_| part.ends.end > 1) {
+            let taylor = Taylor::at(input.gap, part.end);
             let nodes = rule.nodes.iter().zip(&mut self.gap).rev();
             let close = |node: f64| node.is_sign_negative() && -node * width < near;
             for (node, gap) in nodes.take_while(|(node, _)| close(**node)) {

@@ -18,7 +18,7 @@
 
 use crate::numeric::fourier::gauss;
 
-/// Coefficients below this part of the size are rounding if they do not fall where the part is halved.
+/// Size of a coefficient, in parts of the largest value, below which it is rounding if it does not fall where the part is halved.
 const SMALL: f64 = 1e-6;
 /// Noise weighs half as much in a part half as wide, a power `p` of the distance from somewhere inside `2^-p` times that.
 const FALLEN: f64 = 0.36;

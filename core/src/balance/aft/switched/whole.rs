@@ -15,7 +15,7 @@ use crate::numeric::fourier::series;
 /// asked for lie as far above Nyquist as those lie below, and are smaller still. It is the upper eighth, or twice the spacing of the gap's
 /// harmonics where that is more: an orbit of a shorter period than the balance's has a spectrum with holes.
 const RESOLVED: f64 = 1e-10;
-/// More samples are never taken.
+/// Samples of a period, at most.
 const MOST: usize = 1 << 15;
 
 /// Transforms of increasing length, made when they are first needed.
@@ -83,16 +83,16 @@ impl Whole {
 
 impl Grid {
     fn new(samples: usize) -> Self {
-        let room = || vec![0.0; samples];
+        let zeros = || vec![0.0; samples];
         Self {
             transform: SampledTransform::new(samples),
-            gap: room(),
-            rate: room(),
-            force: room(),
-            by_gap: room(),
-            by_rate: room(),
-            by_argument: room(),
-            by_parameter: room(),
+            gap: zeros(),
+            rate: zeros(),
+            force: zeros(),
+            by_gap: zeros(),
+            by_rate: zeros(),
+            by_argument: zeros(),
+            by_parameter: zeros(),
             series: vec![0.0; series::length((samples - 1) / 2)],
             window: samples / 16 + 1,
         }
@@ -189,21 +189,26 @@ impl Grid {
 
     /// Adds the harmonics of what was evaluated.
     fn add(&mut self, sums: &mut Sums<'_>) {
-        let (transform, room) = (&mut self.transform, &mut self.series);
-        add(transform, &self.force, room, sums.force);
+        let (transform, workspace) = (&mut self.transform, &mut self.series);
+        add(transform, &self.force, workspace, sums.force);
         if let Some(slopes) = &mut sums.slopes {
-            add(transform, &self.by_gap, room, slopes.by_gap);
-            add(transform, &self.by_rate, room, slopes.by_rate);
+            add(transform, &self.by_gap, workspace, slopes.by_gap);
+            add(transform, &self.by_rate, workspace, slopes.by_rate);
             if slopes.change.is_some() {
-                add(transform, &self.by_parameter, room, slopes.by_parameter);
+                add(
+                    transform,
+                    &self.by_parameter,
+                    workspace,
+                    slopes.by_parameter,
+                );
             }
         }
     }
 }
 
-fn add(transform: &mut SampledTransform, samples: &[f64], room: &mut [f64], sum: &mut [f64]) {
-    transform.analyse(samples, room);
-    for (to, from) in sum.iter_mut().zip(room) {
+fn add(transform: &mut SampledTransform, samples: &[f64], workspace: &mut [f64], sum: &mut [f64]) {
+    transform.analyse(samples, workspace);
+    for (to, from) in sum.iter_mut().zip(workspace) {
         *to += *from;
     }
 }

@@ -421,6 +421,10 @@ impl Problem for Resonance<'_> {
         jacobian.set_column(&self.column);
     }
 
+    fn is_cancelled(&self) -> bool {
+        self.balance.is_cancelled()
+    }
+
     fn weights(&self, weights: &mut [f64]) {
         let n = self.ahead.len();
         self.balance.weights(&mut weights[..n]);

@@ -62,7 +62,7 @@ impl CrossingFinder {
         };
         let before = found.len();
         let (last, _) = self.grid.interval(first);
-        let mut walk = Walk {
+        let mut search = Search {
             waves: &self.waves,
             target,
             above: last.x > target,
@@ -75,7 +75,7 @@ impl CrossingFinder {
             for index in range {
                 if low[index] <= target && target <= high[index] {
                     let (left, right) = self.grid.interval(start + index);
-                    walk.search(left, right);
+                    search.search(left, right);
                 }
             }
         }
@@ -115,13 +115,13 @@ impl CrossingFinder {
         if !has_extremum(a, b, shape) {
             return None;
         }
-        let (extremum, bend) = roots::extremum(&self.waves, a, b);
+        let (extremum, curvature) = roots::extremum(&self.waves, a, b);
         let side = if a.slope > 0.0 { -1.0 } else { 1.0 };
         let beyond = side * (extremum.x - target);
         (beyond >= -self.waves.bounds().tolerance && beyond.abs() <= reach).then(|| NearMiss {
             tau: extremum.tau,
             distance: self.waves.unscaled(beyond.abs()),
-            curvature: self.waves.unscaled((side * bend).max(0.0)),
+            curvature: self.waves.unscaled((side * curvature).max(0.0)),
         })
     }
 }
@@ -141,10 +141,10 @@ fn into_one_period<T>(found: &mut [T], tau: impl Fn(&mut T) -> &mut f64) {
 
 /// Slopes that are zero count as falling, at the end of one piece as at the start of the next.
 fn has_extremum(a: &Point, b: &Point, shape: Shape) -> bool {
-    matches!(shape, Shape::Bent | Shape::Flat) && (a.slope > 0.0) != (b.slope > 0.0)
+    matches!(shape, Shape::Curved | Shape::Flat) && (a.slope > 0.0) != (b.slope > 0.0)
 }
 
-struct Walk<'a> {
+struct Search<'a> {
     waves: &'a Waves,
     target: f64,
     /// The last phase that was decided, and its side.
@@ -153,7 +153,7 @@ struct Walk<'a> {
     found: &'a mut Vec<Crossing>,
 }
 
-impl Walk<'_> {
+impl Search<'_> {
     fn search(&mut self, left: Point, right: Point) {
         let (waves, target) = (self.waves, self.target);
         self.visit(&left);

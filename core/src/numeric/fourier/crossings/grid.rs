@@ -13,7 +13,7 @@ use crate::numeric::fourier::series;
 
 /// Intervals per shortest wave: the cubic through a lone highest harmonic is then off by 1/60 of it at most.
 const PER_WAVE: usize = 4;
-
+/// Intervals of a period, at least.
 const FEWEST: usize = 16;
 
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! Where a series crosses a level, and where it nearly does.
 //!
 //! The series is sampled with its derivative at equally spaced phases, and each interval between two samples is taken
-//! for what a bound on its fourth derivative proves about it (`pieces`): away from the level, monotone, bent to one
+//! for what a bound on its fourth derivative proves about it (`pieces`): away from the level, monotone, curved to one
 //! side, or none of these, and then it is halved. So every change of sign is found, however close to the next one. What
 //! remains is to find one root in a bracket (`roots`).
 //!

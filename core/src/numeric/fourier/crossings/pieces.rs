@@ -31,7 +31,7 @@ pub(super) enum Shape {
     Outside,
     Monotone,
     /// The curvature has one sign: at most one extremum.
-    Bent,
+    Curved,
     /// It varies no more than rounding may account for.
     Flat,
 }
@@ -123,11 +123,11 @@ fn shape(
     if one_sign(&[a.slope, middle, b.slope], error) {
         return Some(Shape::Monotone);
     }
-    let bends = [2.0 * (middle - a.slope) / h, 2.0 * (b.slope - middle) / h];
+    let curvatures = [2.0 * (middle - a.slope) / h, 2.0 * (b.slope - middle) / h];
     let error =
         bounds.fourth * h * h / 12.0 + 2.0 * (2.0 * bounds.slope + 6.0 * bounds.value / h) / h;
-    if one_sign(&bends, error) {
-        return Some(Shape::Bent);
+    if one_sign(&curvatures, error) {
+        return Some(Shape::Curved);
     }
     (high - low <= 4.0 * bounds.value).then_some(Shape::Flat)
 }

@@ -22,11 +22,15 @@ pub(super) fn crossing(waves: &Waves, target: f64, a: &Point, b: &Point) -> f64 
     let mut bracket = Guarded::new(a.tau, b.tau);
     let mut t = guess(target, a, b);
     for _ in 0..STEPS {
-        let Jet { x, slope, bend } = waves.at(t);
+        let Jet {
+            x,
+            slope,
+            curvature,
+        } = waves.at(t);
         let x = x - target;
         bracket.cut(t, (x > 0.0) == above);
         let inverse = 1.0 / slope;
-        let (newton, ratio) = (-x * inverse, bend * inverse);
+        let (newton, ratio) = (-x * inverse, curvature * inverse);
         let halley = newton / (1.0 + 0.5 * newton * ratio);
         let (next, good) = bracket.next(t, halley);
         let cube = halley.abs() * halley * halley;
@@ -69,16 +73,20 @@ pub(super) fn extremum(waves: &Waves, a: &Point, b: &Point) -> (Point, f64) {
     let mut t = a.tau + length * (a.slope / (a.slope - b.slope));
     let mut found = (*a, 0.0);
     for _ in 0..STEPS {
-        let Jet { x, slope, bend } = waves.at(t);
+        let Jet {
+            x,
+            slope,
+            curvature,
+        } = waves.at(t);
         bracket.cut(t, (slope > 0.0) == rising);
-        found = (Point { tau: t, x, slope }, bend);
-        let (next, good) = bracket.next(t, -slope / bend);
+        found = (Point { tau: t, x, slope }, curvature);
+        let (next, good) = bracket.next(t, -slope / curvature);
         let step = next - t;
         if bracket.is_closed() || slope == 0.0 {
             break;
         }
         // The step squares the error; the value changes by half of it times the slope.
-        if good && waves.bounds().third * step * step <= 2.0 * f64::EPSILON * bend.abs() {
+        if good && waves.bounds().third * step * step <= 2.0 * f64::EPSILON * curvature.abs() {
             found.0 = Point {
                 tau: next,
                 x: x + 0.5 * slope * step,

@@ -42,7 +42,7 @@ pub(super) struct Bounds {
 pub(super) struct Jet {
     pub x: f64,
     pub slope: f64,
-    pub bend: f64,
+    pub curvature: f64,
 }
 
 #[derive(Debug)]
@@ -156,14 +156,14 @@ impl Waves {
         let mut c = [cosine, c2, c3, c4];
         let mut s = [sine, s2, s3, s4];
         let mut k = [1.0, 2.0, 3.0, 4.0];
-        let (mut x, mut slope, mut bend) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let (mut x, mut slope, mut curvature) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for block in &self.blocks {
             for lane in 0..LANES {
                 let (a, b) = (block.cosine[lane], block.sine[lane]);
                 let in_phase = a * c[lane] + b * s[lane];
                 x[lane] += in_phase;
                 slope[lane] += k[lane] * (b * c[lane] - a * s[lane]);
-                bend[lane] -= k[lane] * k[lane] * in_phase;
+                curvature[lane] -= k[lane] * k[lane] * in_phase;
                 (c[lane], s[lane]) = (c[lane] * c4 - s[lane] * s4, s[lane] * c4 + c[lane] * s4);
                 k[lane] += LANES as f64;
             }
@@ -172,7 +172,7 @@ impl Waves {
         Jet {
             x: sum(x),
             slope: sum(slope),
-            bend: sum(bend),
+            curvature: sum(curvature),
         }
     }
 }

@@ -14,8 +14,6 @@
 mod nodes;
 mod pair;
 
-use nalgebra::DMatrix;
-
 use nodes::Nodes;
 use pair::{Pair, wave_at};
 
@@ -23,7 +21,7 @@ use super::orbit::Orbit;
 use super::path::{Cut, Event, Path};
 use crate::law::{On, Variation};
 use crate::laws::generic::scales::Sight;
-use crate::model::layout::Entry;
+use crate::model::layout::{Entry, add_constant};
 use crate::numeric::fourier::grading::Grading;
 use crate::numeric::fourier::series;
 
@@ -49,7 +47,7 @@ pub(super) struct Linearised {
     sight: Option<Sight>,
 }
 
-/// Phases no farther from each other than this are the same but for rounding.
+/// Difference of phases that are the same but for rounding.
 const SAME: f64 = 1e-12;
 
 /// A panel, and how it is to be integrated.
@@ -108,17 +106,14 @@ impl Linearised {
 
     fn invert_mass(&mut self, orbit: &Orbit<'_>) -> bool {
         let n = orbit.layout.coordinates;
-        let coefficient = |entry: &Entry| orbit.coefficients[entry.coefficient];
         self.inverse_mass.clear();
         if n == 1 {
-            let mass: f64 = orbit.layout.mass.iter().map(coefficient).sum();
-            self.inverse_mass.push(1.0 / mass);
-            return mass != 0.0;
+            let mut mass = [0.0];
+            add_constant(&orbit.layout.mass, orbit.coefficients, n, &mut mass);
+            self.inverse_mass.push(1.0 / mass[0]);
+            return mass != [0.0];
         }
-        let mut mass = DMatrix::zeros(n, n);
-        for entry in &orbit.layout.mass {
-            mass[(entry.row, entry.column)] += coefficient(entry);
-        }
+        let mass = orbit.layout.mass(orbit.coefficients);
         let Some(inverse) = mass.try_inverse() else {
             return false;
         };

@@ -42,14 +42,14 @@ impl Nodes {
         let rule = &self.rules[rule];
         let count = rule.distances.len();
         let filled = padded(count);
-        for room in [
+        for workspace in [
             &mut self.cosines,
             &mut self.sines,
             &mut self.gap,
             &mut self.rate,
             &mut self.force,
         ] {
-            room.resize(filled, 0.0);
+            workspace.resize(filled, 0.0);
         }
         let width = panel.end - panel.start;
         self.taus.clear();

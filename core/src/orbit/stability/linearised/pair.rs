@@ -26,7 +26,7 @@ pub(super) struct Pair {
     asked: bool,
 }
 
-/// So much of what [`Scales`] say may change from node to node: steps of order six then err by parts of `1e-4`, and show it.
+/// Largest change from node to node, in the units of [`Scales`]: steps of order six then err by parts of `1e-4`, and show it.
 const PART: f64 = 0.5;
 
 impl Pair {

@@ -16,24 +16,7 @@ use nalgebra::{Complex, DMatrix, Schur};
 
 use super::super::{Crossing, CrossingFinder};
 use crate::numeric::fourier::series;
-
-/// Knuth (1998), The Art of Computer Programming, volume 2, section 3.3.4, table 1.
-struct Congruential(u64);
-
-impl Congruential {
-    /// Between zero and one.
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / 2.0_f64.powi(53)
-    }
-
-    fn between(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * self.next()
-    }
-}
+use crate::testing::random::Random;
 
 /// Sum of sines and cosines, each by itself.
 fn value(series: &[f64], tau: f64) -> f64 {
@@ -106,13 +89,13 @@ fn expected(series: &[f64], level: f64) -> Option<Vec<f64>> {
             continue;
         }
         let middle = phase(z + zeros[other]);
-        let (_, _, bend) = series::value_and_derivatives(series, middle);
-        let beyond = (value(series, middle) - level) * -bend.signum();
+        let (_, _, curvature) = series::value_and_derivatives(series, middle);
+        let beyond = (value(series, middle) - level) * -curvature.signum();
         if beyond.abs() <= 16.0 * f64::EPSILON * (level.abs() + size(series)) {
             return None;
         }
         if beyond > 0.0 && index < other {
-            let half = (2.0 * beyond / bend.abs()).sqrt();
+            let half = (2.0 * beyond / curvature.abs()).sqrt();
             phases.extend([middle - half, middle + half].map(|tau| tau.rem_euclid(TAU)));
         }
     }
@@ -121,28 +104,28 @@ fn expected(series: &[f64], level: f64) -> Option<Vec<f64>> {
 }
 
 /// A series and a level; two of three times the level is close to an extremum.
-fn draw(random: &mut Congruential) -> (Vec<f64>, f64) {
-    let k = 1 + (12.0 * random.next()) as usize;
+fn draw(random: &mut Random) -> (Vec<f64>, f64) {
+    let k = 1 + (12.0 * random.between(0.0, 1.0)) as usize;
     let decay = random.between(0.0, 2.0);
     let mut series = vec![random.between(-1.0, 1.0)];
     for harmonic in 1..=k {
         let size = (harmonic as f64).powf(-decay);
         series.extend([random.between(-size, size), random.between(-size, size)]);
     }
-    if random.next() < 1.0 / 3.0 {
+    if random.between(0.0, 1.0) < 1.0 / 3.0 {
         let level = value(&series, random.between(0.0, TAU));
         return (series, level);
     }
     let mut slope = series.clone();
     series::differentiate(&series, &mut slope);
     let phase = |n: usize| TAU * n as f64 / (16 * k) as f64;
-    let start = (random.next() * (16 * k) as f64) as usize;
+    let start = (random.between(0.0, 1.0) * (16 * k) as f64) as usize;
     let rises = |n: usize| value(&slope, phase(n)) > 0.0;
     let turn = (start..start + 16 * k).find(|&n| rises(n) != rises(n + 1));
     let turn = turn.expect("a slope has no mean");
     let extremum = super::super::extremum(&series, phase(turn), phase(turn + 1));
     let epsilon = 10.0_f64.powf(random.between(-14.0, -2.0));
-    let side = if random.next() < 0.5 {
+    let side = if random.between(0.0, 1.0) < 0.5 {
         epsilon
     } else {
         -epsilon
@@ -172,7 +155,7 @@ fn check(series: &[f64], level: f64, phases: &[f64], found: &[Crossing]) {
             "{}",
             told()
         );
-        let (_, slope, bend) = series::value_and_derivatives(series, crossing.tau);
+        let (_, slope, curvature) = series::value_and_derivatives(series, crossing.tau);
         // The phase itself is rounded; what remains is a few rounding errors of a sum.
         let residual = value(series, crossing.tau) - level;
         let by_phase = 2.0 * f64::EPSILON * crossing.tau * slope.abs();
@@ -190,7 +173,7 @@ fn check(series: &[f64], level: f64, phases: &[f64], found: &[Crossing]) {
         let nearest = phases.iter().map(|&phase| distance(phase, crossing.tau));
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         let error = 1e4 * rounding;
-        let allowed = (error / slope.abs()).min((error / bend.abs()).sqrt()) + 1e-10;
+        let allowed = (error / slope.abs()).min((error / curvature.abs()).sqrt()) + 1e-10;
         assert!(nearest <= allowed, "{nearest:e} > {allowed:e} {}", told());
     }
 }
@@ -201,7 +184,7 @@ fn crossings_are_the_zeros_on_the_unit_circle() {
         .ok()
         .and_then(|text| text.parse().ok());
     let count: usize = count.unwrap_or(20_000);
-    let mut random = Congruential(20_240_229);
+    let mut random = Random::seeded(20_240_229);
     let mut finder = CrossingFinder::new(12);
     let mut found = Vec::new();
     let (mut undecidable, mut pairs) = (0, 0);

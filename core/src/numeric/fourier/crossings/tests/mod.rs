@@ -287,9 +287,9 @@ proptest! {
             .collect();
         prop_assert_eq!(found.len(), expected.len());
         for (miss, tau) in found.iter().zip(expected) {
-            let (x, _, bend) = series::value_and_derivatives(&series, tau);
+            let (x, _, curvature) = series::value_and_derivatives(&series, tau);
             // Where the curvature is small, the phase of an extremum is uncertain.
-            prop_assert!((miss.tau - tau).abs() < 1e-11 / bend.abs().min(1.0));
+            prop_assert!((miss.tau - tau).abs() < 1e-11 / curvature.abs().min(1.0));
             prop_assert!((miss.distance - (x - level).abs()).abs() < 1e-13);
             // It is taken one Newton step earlier, and that step is at most sqrt(2 epsilon |x''| / M_3).
             let third: f64 = series[1..]
@@ -297,8 +297,8 @@ proptest! {
                 .zip(1..)
                 .map(|(pair, k)| pair[0].hypot(pair[1]) * f64::from(k).powi(3))
                 .sum();
-            let allowed = (2.0 * f64::EPSILON * bend.abs() * third).sqrt() + 1e-12;
-            prop_assert!((miss.curvature - bend.abs()).abs() <= allowed);
+            let allowed = (2.0 * f64::EPSILON * curvature.abs() * third).sqrt() + 1e-12;
+            prop_assert!((miss.curvature - curvature.abs()).abs() <= allowed);
         }
     }
 }

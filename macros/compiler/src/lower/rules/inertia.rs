@@ -9,7 +9,7 @@ use crate::errors::{Diagnostics, Extent};
 use crate::lower::interval::{Interval, Ranges, Stretch};
 
 /// The mass matrix is regular: for some values of the parameters it can be inverted.
-pub(crate) fn mass_is_regular(
+pub fn mass_is_regular(
     declaration: &Declaration,
     dag: &Dag,
     masses: &[(usize, usize, Id)],
@@ -39,7 +39,7 @@ pub(crate) fn mass_is_regular(
 }
 
 /// An equation that holds one second derivative alone does not hold it with a negative mass, by number, by default or by range.
-pub(crate) fn masses_are_positive(
+pub fn masses_are_positive(
     declaration: &Declaration,
     dag: &mut Dag,
     masses: &[(usize, usize, Id)],
@@ -79,7 +79,7 @@ pub(crate) fn masses_are_positive(
 }
 
 /// No range admits a value at which a mass vanishes; a parameter without a range is left to the runtime.
-pub(crate) fn ranges_admit_no_singular_mass(
+pub fn ranges_admit_no_singular_mass(
     declaration: &Declaration,
     dag: &Dag,
     masses: &[(usize, usize, Id)],

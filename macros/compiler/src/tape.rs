@@ -1,10 +1,14 @@
 //! Expressions as straight-line code: a list of operations in which every operand comes before its use, each computed
 //! once.
 
+pub mod powers;
+#[cfg(test)]
+mod tests;
+
 use std::collections::HashMap;
 use std::mem::Discriminant;
 
-use super::powers::Plan;
+use self::powers::Plan;
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
 
 /// One operation; a `usize` is the position of an operand.

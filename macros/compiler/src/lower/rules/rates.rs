@@ -12,7 +12,7 @@ use crate::lower::written::Written;
 
 /// The force does not jump with the rate. (Across a level it may: the level is crossed at the same speed on both sides. A jump in the rate sticks and
 /// slides, which is another kind of mathematics.)
-pub(crate) fn force_does_not_jump_with_the_rate(
+pub fn force_does_not_jump_with_the_rate(
     context: &mut Expander,
     force: Id,
     written: &[Written],

@@ -7,7 +7,7 @@ use crate::lower::interval::Stretch;
 use crate::lower::written::{Quote, Written, place_of_power, quote_of_power};
 
 /// Every power in a force exists on its closed piece. Faults are at the power where its place is known, else at `extent`.
-pub(crate) fn powers_are_defined(
+pub fn powers_are_defined(
     context: &mut Expander,
     force: Id,
     stretch: Stretch,
@@ -26,7 +26,7 @@ pub(crate) fn powers_are_defined(
 }
 
 /// One power exists while the gap is in a stretch; the fault in words if not.
-pub(crate) fn power_is_defined(
+pub fn power_is_defined(
     context: &mut Expander,
     base: Id,
     exponent: Id,
@@ -181,7 +181,7 @@ fn where_it_holds(dag: &Dag, base: Id) -> &'static str {
 }
 
 /// Which range to declare so that an expression is bounded by zero.
-pub(crate) fn advice_on_ranges(context: &Expander, id: Id, relation: &str) -> String {
+pub fn advice_on_ranges(context: &Expander, id: Id, relation: &str) -> String {
     let names: Vec<String> = context
         .dag
         .variables(id)

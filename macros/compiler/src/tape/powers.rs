@@ -14,7 +14,7 @@
 
 use std::collections::HashMap;
 
-use super::tape::{Builder, Operation};
+use super::{Builder, Operation};
 use crate::dag::{Dag, Id, Node, Rational, Variable};
 
 /// Fractional powers above this one are computed by logarithm and exponential; beyond it no exponential is shared.

@@ -1,4 +1,4 @@
-//! The solution of the linearised equation as it is built up, step by step.
+//! The fundamental solution of the linearised equation as it is built up, step by step.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -15,12 +15,12 @@ const SAFETY: f64 = 1.5;
 /// Rounding errors of a matrix, relative to its entries. A double multiplier moves by their root.
 const ROUNDED: f64 = 1e-15;
 
-/// Multipliers smaller than this part of the matrix have lost half of their digits.
+/// Size of a multiplier, in parts of the matrix, below which it has lost half of its digits.
 const LOST: f64 = 1e-8;
 
 /// What has been integrated, for matrices of some order. Matrices are slices, column by column.
-pub(super) trait Walk {
-    /// Room for the matrix at one of the three nodes of a step, times the step.
+pub(super) trait Fundamental {
+    /// Workspace for the matrix at one of the three nodes of a step, times the step.
     fn scaled(&mut self, node: usize) -> &mut [f64];
 
     /// A step in which the matrix is constant: that of the first node.
@@ -65,14 +65,14 @@ impl Sums {
 
 /// Of one coordinate.
 #[derive(Debug)]
-pub(super) struct WalkOfTwo {
+pub(super) struct FundamentalOfTwo {
     scaled: [Square; 3],
     product: Square,
     lack: Square,
     sums: Sums,
 }
 
-impl WalkOfTwo {
+impl FundamentalOfTwo {
     pub(super) fn new() -> Self {
         Self {
             scaled: [[0.0; 4]; 3],
@@ -83,7 +83,7 @@ impl WalkOfTwo {
     }
 }
 
-impl Walk for WalkOfTwo {
+impl Fundamental for FundamentalOfTwo {
     fn scaled(&mut self, node: usize) -> &mut [f64] {
         &mut self.scaled[node]
     }
@@ -131,22 +131,22 @@ impl Walk for WalkOfTwo {
 
 /// Of several coordinates.
 #[derive(Debug)]
-pub(super) struct WalkOfMany {
+pub(super) struct FundamentalOfMany {
     magnus: Magnus,
     product: DMatrix<f64>,
     lack: DMatrix<f64>,
-    room: DMatrix<f64>,
+    workspace: DMatrix<f64>,
     sums: Sums,
 }
 
-impl WalkOfMany {
+impl FundamentalOfMany {
     pub(super) fn new(order: usize) -> Self {
         let zeros = || DMatrix::zeros(order, order);
         Self {
             magnus: Magnus::new(order),
             product: zeros(),
             lack: zeros(),
-            room: zeros(),
+            workspace: zeros(),
             sums: Sums::default(),
         }
     }
@@ -155,7 +155,7 @@ impl WalkOfMany {
         self.product.nrows()
     }
 
-    /// Whether a multiplier is so much smaller than the matrix that it has lost digits there.
+    /// Whether a multiplier has lost digits because it is smaller than the matrix.
     pub(super) fn has_lost(&self, multipliers: &[Complex<f64>]) -> bool {
         let lost = |last: &Complex<f64>| last.norm() < LOST * self.product.amax();
         multipliers.last().is_some_and(lost)
@@ -178,13 +178,14 @@ impl WalkOfMany {
     /// Multiplies by the propagator.
     fn advance(&mut self) {
         for matrix in [&mut self.product, &mut self.lack] {
-            self.room.gemm(1.0, &self.magnus.propagator, matrix, 0.0);
-            matrix.copy_from(&self.room);
+            self.workspace
+                .gemm(1.0, &self.magnus.propagator, matrix, 0.0);
+            matrix.copy_from(&self.workspace);
         }
     }
 }
 
-impl Walk for WalkOfMany {
+impl Fundamental for FundamentalOfMany {
     fn scaled(&mut self, node: usize) -> &mut [f64] {
         self.magnus.scaled[node].as_mut_slice()
     }
@@ -228,7 +229,7 @@ impl Walk for WalkOfMany {
 
 /// The factors of the solution, for multipliers that its matrix has lost.
 #[derive(Debug)]
-pub(super) struct WalkOfFactors {
+pub(super) struct FundamentalOfFactors {
     magnus: Magnus,
     done: Vec<DMatrix<f64>>,
     /// The product of the factors since, and the integral of its trace.
@@ -238,12 +239,12 @@ pub(super) struct WalkOfFactors {
     nothing: [f64; 0],
 }
 
-/// A factor is done when its largest entry exceeds the mean size of its eigenvalues by this.
+/// Ratio of the largest entry to the mean size of the eigenvalues with which a factor is done.
 const SPREAD: f64 = 30.0;
 /// Norm of an exponent beyond which the exponential is divided.
 const LONG: f64 = 2.0;
 
-impl WalkOfFactors {
+impl FundamentalOfFactors {
     pub(super) fn new(order: usize) -> Self {
         Self {
             magnus: Magnus::new(order),
@@ -273,7 +274,7 @@ fn frequency(a: &DMatrix<f64>) -> f64 {
     (size(0, half) * size(half, 0)).sqrt() + size(half, half)
 }
 
-impl Walk for WalkOfFactors {
+impl Fundamental for FundamentalOfFactors {
     fn scaled(&mut self, node: usize) -> &mut [f64] {
         self.magnus.scaled[node].as_mut_slice()
     }

@@ -1,19 +1,18 @@
 //! Declarations read from text at run time.
 
-mod convert;
-
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::fmt;
 use std::sync::Arc;
 
-use hertzian_compiler::interpret::{Coefficients, Family};
+use hertzian_compiler::interpret::{Coefficients, Family, Member};
 use hertzian_compiler::text::compile_text;
 
 pub use hertzian_compiler::text::Fault;
 
-use super::InterpretedLaw;
 use super::law::{constant, evaluate_constant};
 use super::program::Program;
+use super::{InterpretedLaw, Node};
 use crate::error::{Error, ErrorKind};
 use crate::law::Law;
 use crate::model::validate;
@@ -68,17 +67,16 @@ impl Declaration {
     /// Every fault, with its place in the text.
     pub fn parse(text: &str) -> Result<Self, DeclarationError> {
         let mut model = compile_text(text).map_err(|faults| DeclarationError { faults })?;
-        let facts = convert::system(&model);
+        let facts = model.facts();
         let laws = model.laws.clone();
         let laws = laws
             .iter()
-            .map(|law| convert::law(Family::of(&mut model.dag, law)))
+            .map(|law| interpreted(Family::of(&mut model.dag, law)))
             .collect();
         let coefficients = Coefficients::of(&mut model);
         let parameters = model.parameters.iter();
         let defaults = parameters.map(|parameter| parameter.default.unwrap_or(f64::NAN));
-        let nodes = convert::nodes(&coefficients.nodes);
-        let program = |outputs: &Vec<usize>| constant(&nodes, outputs);
+        let program = |outputs: &Vec<usize>| constant(&coefficients.nodes, outputs);
         Ok(Self {
             values: defaults.collect(),
             coefficients: program(&coefficients.values),
@@ -154,6 +152,23 @@ fn run(program: &Program, parameters: &[f64], omega: f64, out: &mut [f64]) {
         arguments.push(omega);
         evaluate_constant(program, arguments, out);
     });
+}
+
+/// A law of what the compiler knows of it.
+fn interpreted(family: Family) -> InterpretedLaw {
+    let Family {
+        nodes,
+        whole,
+        parts,
+    } = family;
+    let nodes: Cow<'static, [Node]> = nodes.into();
+    let member =
+        |member: Member| InterpretedLaw::compiled(member.facts.clone(), member.data(nodes.clone()));
+    let law = member(whole);
+    match parts.map(|parts| parts.map(member)) {
+        Some([spring, primitive]) => law.with_parts(spring, primitive),
+        None => law,
+    }
 }
 
 /// Every fault on a line of its own.

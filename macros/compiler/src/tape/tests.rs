@@ -1,7 +1,7 @@
 //! Operations, run by the letter, against the expressions they were lowered from.
 
 use super::powers::Plan;
-use super::tape::{Operation, Style, Tape};
+use super::{Operation, Style, Tape};
 use crate::dag::{Dag, Function, Id, Rational, Variable};
 
 /// Runs a tape at a gap, a rate and one argument, with the guards of `hertzian::emitted`; bases and powers are planned.

@@ -10,12 +10,13 @@ use crate::numeric::fourier::series;
 
 /// Samples per shortest wave.
 const PER_WAVE: usize = 4;
+/// Samples of a period, at least.
 const FEWEST: usize = 32;
 
 /// The series loaded last, its samples and the search of it.
 #[derive(Debug, Default)]
-pub(super) struct Reader {
-    rooms: Option<Rooms>,
+pub(super) struct Sampler {
+    workspace: Option<Workspace>,
     series: Vec<f64>,
     samples: Vec<f64>,
     misses: Vec<NearMiss>,
@@ -23,13 +24,13 @@ pub(super) struct Reader {
 }
 
 #[derive(Debug)]
-struct Rooms {
+struct Workspace {
     harmonics: usize,
     finder: CrossingFinder,
     transform: SampledTransform,
 }
 
-impl Rooms {
+impl Workspace {
     fn new(harmonics: usize) -> Self {
         Self {
             harmonics,
@@ -46,7 +47,7 @@ fn quick_size(least: usize) -> usize {
     if between >= least { between } else { power }
 }
 
-impl Reader {
+impl Sampler {
     /// Takes a series.
     pub(super) fn load(&mut self, series: &[f64]) {
         if self.series == series {
@@ -55,13 +56,19 @@ impl Reader {
         self.series.clear();
         self.series.extend_from_slice(series);
         let harmonics = series::harmonics(series);
-        if self.rooms.as_ref().is_some_and(|r| r.harmonics < harmonics) {
-            self.rooms = None;
+        if self
+            .workspace
+            .as_ref()
+            .is_some_and(|r| r.harmonics < harmonics)
+        {
+            self.workspace = None;
         }
-        let rooms = self.rooms.get_or_insert_with(|| Rooms::new(harmonics));
-        rooms.finder.sample(series);
-        self.samples.resize(rooms.transform.samples(), 0.0);
-        rooms.transform.sample(series, &mut self.samples);
+        let workspace = self
+            .workspace
+            .get_or_insert_with(|| Workspace::new(harmonics));
+        workspace.finder.sample(series);
+        self.samples.resize(workspace.transform.samples(), 0.0);
+        workspace.transform.sample(series, &mut self.samples);
     }
 
     pub(super) fn series(&self) -> &[f64] {
@@ -75,14 +82,14 @@ impl Reader {
 
     /// The search, once a series has been loaded.
     pub(super) fn finder(&self) -> Option<&CrossingFinder> {
-        self.rooms.as_ref().map(|rooms| &rooms.finder)
+        self.workspace.as_ref().map(|workspace| &workspace.finder)
     }
 
     /// Writes the samples of another series with as many harmonics at the same phases.
     pub(super) fn sample(&mut self, other: &[f64], samples: &mut Vec<f64>) {
         samples.resize(self.samples.len(), 0.0);
-        if let Some(rooms) = &mut self.rooms {
-            rooms.transform.sample(other, samples);
+        if let Some(workspace) = &mut self.workspace {
+            workspace.transform.sample(other, samples);
         }
     }
 
@@ -121,11 +128,11 @@ impl Reader {
         // As the finder computes it, rounded in the same way.
         let level = mean + bound;
         let target = sign * (level - mean);
-        let Some(rooms) = &self.rooms else {
+        let Some(workspace) = &self.workspace else {
             return (sign * farthest, 0.0);
         };
         self.misses.clear();
-        rooms
+        workspace
             .finder
             .near_misses(level, target - farthest, &mut self.misses);
         let mut phase = 0.0;

@@ -9,7 +9,7 @@ use crate::lower::interval::Stretch;
 
 /// Where a piece holds, as far as it says so: ends of the gap, and whether they are included.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Piece {
+pub struct Piece {
     /// Lower end.
     pub low: Option<(Id, bool)>,
     /// Upper end.
@@ -21,7 +21,7 @@ pub(crate) struct Piece {
 }
 
 /// Which of two levels is the higher one, by the declared ranges. Levels that may coincide count as ordered.
-pub(crate) fn order(context: &mut Expander, a: Id, b: Id) -> Option<Ordering> {
+pub fn order(context: &mut Expander, a: Id, b: Id) -> Option<Ordering> {
     if a == b {
         return Some(Ordering::Equal);
     }
@@ -39,7 +39,7 @@ pub(crate) fn order(context: &mut Expander, a: Id, b: Id) -> Option<Ordering> {
 }
 
 /// The order of two levels is known.
-pub(crate) fn order_is_known(
+pub fn order_is_known(
     context: &mut Expander,
     a: Id,
     b: Id,
@@ -56,7 +56,7 @@ pub(crate) fn order_is_known(
 }
 
 /// Sorts the pieces, and fills what they leave with the piece `rest`, if there is one.
-pub(crate) fn arranged(
+pub fn arranged(
     context: &mut Expander,
     mut pieces: Vec<Piece>,
     rest: Option<(usize, Extent)>,
