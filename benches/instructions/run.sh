@@ -47,18 +47,17 @@ trap 'rm -rf "$folder"' EXIT
 # The C library chooses its functions by the processor too, unless it is told to take those that every one can run.
 export GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-AVX_Fast_Unaligned_Load,-ERMS
 
-# Instruction set and accuracy of powers.
-kinds=(baseline:full)
+kinds=(baseline)
 if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
-    kinds+=(avx2:full avx2:fast)
+    kinds+=(avx2)
 else
     echo 'this processor has no AVX2: its counts are not checked'
 fi
 
-# One line for each call: instruction set and accuracy, law, batch, call, count.
+# One line for each call: instruction set, law, batch, call, count.
 for kind in "${kinds[@]}"; do
     mkdir "$folder/$kind"
-    HERTZIAN_INSTRUCTIONS=${kind%:*} HERTZIAN_POWERS=${kind#*:} valgrind --tool=callgrind \
+    HERTZIAN_INSTRUCTIONS=$kind valgrind --tool=callgrind \
         --toggle-collect=measured --dump-after=measured --callgrind-out-file="$folder/$kind/counts" \
         "$CARGO_TARGET_DIR/release/hertzian-instructions" >"$folder/$kind/names" 2>"$folder/$kind/log" || {
         cat "$folder/$kind/log" >&2
@@ -72,7 +71,7 @@ for kind in "${kinds[@]}"; do
             echo "nothing was counted of call $call, $name" >&2
             exit 1
         fi
-        printf '%s %s\t%s\t%s\n' "${kind%:*}" "${kind#*:}" "$name" "$count"
+        printf '%s\t%s\t%s\n' "$kind" "$name" "$count"
     done <"$folder/$kind/names"
 done >"$folder/found"
 

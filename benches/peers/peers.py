@@ -67,17 +67,6 @@ class Compiled:
         return self.timer(*self.arguments)
 
 
-class Fast(Compiled):
-    """Ours with the fast variant of powers, which is chosen for a process."""
-
-    def seconds(self):
-        self.library.choose_fast(1)
-        try:
-            return super().seconds()
-        finally:
-            self.library.choose_fast(0)
-
-
 class Interpreted:
     """CasADi's own evaluation on buffers, which is its cheapest way of being called."""
 
@@ -113,8 +102,6 @@ def contenders(exponent, ours, folder, samples):
     timer = timer_library.timed
     timer.restype = ctypes.c_double
     found = {"hertzian": Compiled(ours, exponent, timer, samples)}
-    if exponent == "power":
-        found["hertzian, fast"] = Fast(ours, exponent, timer, samples)
     by_hand = (HERE / "by_hand.c").read_text()
     sources = {"C by hand": ("c", by_hand.replace(f"void {exponent}(", "void kernel("))}
     if exponent == "power":
@@ -183,8 +170,6 @@ def ratios(exponent, times):
         found.append(("hertzian / C by hand with fast-math", ratio))
         ratio = ours / times["C by hand, in blocks, fast-math"]
         found.append(("hertzian / C by hand in blocks with fast-math", ratio))
-        ratio = times["hertzian, fast"] / times["C by hand, fast-math"]
-        found.append(("fast variant / C by hand with fast-math", ratio))
     else:
         name, best = least({n: t for n, t in times.items() if not n.startswith("hertzian")})
         found.append((f"hertzian / best of all ({name})", ours / best))

@@ -40,7 +40,7 @@
 //! | what can go wrong, and what is unusual about a system | [`error`], [`remarks`] |
 //! | the contract of generated code, for systems and laws by hand | [`system`], [`law`](mod@law), [`fourier::series`] |
 //! | the same declarations interpreted, or read from text | [`generic`] |
-//! | how powers are computed, and how to pin that | [`power`] |
+//! | how powers are computed, and on which instruction set | [`power`] |
 //!
 //! # Features
 //!

@@ -6,64 +6,57 @@ use hertzian::power::Instructions;
 
 use super::laws::{Call, Subject};
 use super::samples::Samples;
-use super::{by_hand, processor, scalar};
+use super::{by_hand, scalar};
 
-/// A name, an instruction set, and what is computed on it.
+/// A name, and what is computed.
 pub struct Contender {
     pub name: &'static str,
-    pub instructions: Instructions,
     pub evaluate: Box<dyn Fn(&mut Samples)>,
 }
 
-/// Generated and interpreted law on every instruction set, and whom else the compared call of the law is put to.
+/// Generated and interpreted law, and whom else the compared call of the law is put to.
 pub fn contenders(subject: &'static Subject, call: Call) -> Vec<Contender> {
     let mut contenders = Vec::new();
-    for instructions in processor::instructions() {
-        let mut add = |name, evaluate| {
-            contenders.push(Contender {
-                name,
-                instructions,
-                evaluate,
-            });
-        };
-        let arguments = subject.arguments;
-        let generated = move |s: &mut Samples| evaluate(subject.law, call, arguments, s);
-        add("generated", Box::new(generated));
-        let law = InterpretedLaw::of(subject.law).expect("a generated law");
+    let mut add = |name, evaluate| {
+        contenders.push(Contender { name, evaluate });
+    };
+    let arguments = subject.arguments;
+    let generated = move |s: &mut Samples| evaluate(subject.law, call, arguments, s);
+    add("generated", Box::new(generated));
+    let law = InterpretedLaw::of(subject.law).expect("a generated law");
+    add(
+        "interpreted",
+        Box::new(move |s| evaluate(&law, call, arguments, s)),
+    );
+    let (true, Some(sides)) = (call == subject.compared, subject.sides) else {
+        return contenders;
+    };
+    if let [zeta, alpha] = *arguments {
         add(
-            "interpreted",
-            Box::new(move |s| evaluate(&law, call, arguments, s)),
+            "powf",
+            Box::new(move |s| scalar::powf(sides, [zeta, alpha], s)),
         );
-        let (true, Some(sides)) = (call == subject.compared, subject.sides) else {
-            continue;
-        };
-        if let [zeta, alpha] = *arguments {
-            add("fast", Box::new(generated));
+        add(
+            "num-dual",
+            Box::new(move |s| scalar::duals(sides, [zeta, alpha], s)),
+        );
+    } else {
+        let zeta = arguments[0];
+        let instructions = Instructions::in_use();
+        add(
+            "by hand",
+            Box::new(move |s| by_hand::run(sides, instructions, zeta, s)),
+        );
+        add(
+            "num-dual",
+            Box::new(move |s| scalar::duals_three_halves(sides, zeta, s)),
+        );
+        #[cfg(target_arch = "x86_64")]
+        if instructions == Instructions::Avx512 {
             add(
-                "powf",
-                Box::new(move |s| scalar::powf(sides, [zeta, alpha], s)),
+                "Newton",
+                Box::new(move |s| super::newton::run(sides, zeta, s)),
             );
-            add(
-                "num-dual",
-                Box::new(move |s| scalar::duals(sides, [zeta, alpha], s)),
-            );
-        } else {
-            let zeta = arguments[0];
-            add(
-                "by hand",
-                Box::new(move |s| by_hand::run(sides, instructions, zeta, s)),
-            );
-            add(
-                "num-dual",
-                Box::new(move |s| scalar::duals_three_halves(sides, zeta, s)),
-            );
-            #[cfg(target_arch = "x86_64")]
-            if instructions == Instructions::Avx512 {
-                add(
-                    "Newton",
-                    Box::new(move |s| super::newton::run(sides, zeta, s)),
-                );
-            }
         }
     }
     contenders

@@ -1,8 +1,8 @@
 //! Generated laws beside what a person would write instead: `cargo bench -p hertzian --bench kernels`.
 //!
 //! One core, 1024 samples: one period of an orbit that crosses the levels, in order, evaluated on all pieces by selection.
-//! The contenders of a law run in turns, on all instruction sets that the processor has, so that a change of its frequency
-//! meets all alike; medians are compared.
+//! The contenders of a law run in turns, so that a change of the processor's frequency meets all alike; medians are compared. Each
+//! instruction set that the processor has is a process of its own, since generated laws have one in a process.
 //!
 //! Compared are force, derivatives by gap and rate, and by the exponent where it is an argument:
 //!
@@ -24,5 +24,9 @@ mod samples;
 mod scalar;
 
 fn main() {
-    report::print(&race::run());
+    if std::env::var_os(race::CHILD).is_some() {
+        race::run_and_write();
+    } else {
+        report::print(&race::run_all());
+    }
 }

@@ -53,7 +53,7 @@ fn three_halves(times: &Times) {
 
 /// An exponent that is an argument, against what evaluates sample by sample or node by node.
 fn exponents(times: &Times) {
-    let columns = "law | instructions | generated | fast | powf | num-dual | interpreted | powf / generated | \
+    let columns = "law | instructions | generated | powf | num-dual | interpreted | powf / generated | \
                    num-dual / generated | interpreted / generated";
     head(columns);
     for (subject, set) in rows(2) {
@@ -64,7 +64,7 @@ fn exponents(times: &Times) {
                 .map_or(f64::NAN, |(a, b)| a / b)
         };
         let ratios = ["powf", "num-dual", "interpreted"].map(ratio);
-        let names = ["generated", "fast", "powf", "num-dual", "interpreted"];
+        let names = ["generated", "powf", "num-dual", "interpreted"];
         println!(
             "{} {} | {} |",
             start(subject, set),

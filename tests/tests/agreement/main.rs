@@ -5,8 +5,8 @@
 //! derivatives that the compiler found symbolically; and dual numbers (num-dual), which differentiate the data of the
 //! *force* alone and so check the compiler's differentiation too. Gaps lie at distances from 1e-300 to 1e6 on both
 //! sides of every level, and at the level itself and its neighbours among floating-point numbers. How far two results
-//! may differ is computed along with them, see [`bound`]. Batches run on the instruction sets of the processor in
-//! turns, and with both accuracies of powers.
+//! may differ is computed along with them, see [`bound`]. A process has one instruction set, so that each set of the processor has a
+//! process of its own, with as many points.
 
 mod bound;
 mod dual;
@@ -17,7 +17,7 @@ mod tree;
 use bound::Bound;
 use hertzian::generic::{Interpreted, LawData, PieceData};
 use hertzian::law::{Derivatives, Law, On, Parts};
-use hertzian::power::{Accuracy, Instructions};
+use hertzian::power::Instructions;
 use hertzian::system::{Place, System};
 use hertzian_tests::random::Random;
 use models::MODELS;
@@ -28,16 +28,39 @@ const DEFAULT_POINTS: usize = 100_000;
 /// Points that share the parameters of the model.
 const BATCH: usize = 1000;
 
+/// The test that a process for one set runs.
+const ON_ONE_SET: &str = "generated_interpreted_and_dual_numbers_agree";
+
+#[test]
+fn they_agree_on_the_other_instruction_sets() {
+    let program = std::env::current_exe().expect("this program");
+    let others = Instructions::ALL.into_iter();
+    for set in others.filter(|set| set.is_available() && *set != Instructions::in_use()) {
+        let run = std::process::Command::new(&program)
+            .env("HERTZIAN_INSTRUCTIONS", set.name())
+            .args(["--exact", ON_ONE_SET, "--nocapture"])
+            .output();
+        let run = run.expect("this program can be run");
+        let text = [run.stdout, run.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+        let name = set.name();
+        assert!(run.status.success(), "{name}: {}", text.concat());
+        assert!(text[0].contains("1 passed"), "{name}: {}", text[0]);
+        assert!(text[0].contains(&on(set)), "{name}: {}", text[0]);
+    }
+}
+
+/// What a process says that it runs on.
+fn on(set: Instructions) -> String {
+    format!("on {}", set.name())
+}
+
 #[test]
 fn generated_interpreted_and_dual_numbers_agree() {
+    println!("{}", on(Instructions::in_use()));
     let batches = points().div_ceil(BATCH);
     for (name, model) in MODELS {
         let mut random = Random::seeded(20_210_603);
-        for batch in 0..batches {
-            // On those that the processor has, in turns, with both accuracies: the bound holds for either.
-            let sets = Instructions::ALL;
-            sets[batch % sets.len()].pin();
-            [Accuracy::Full, Accuracy::Fast][batch / sets.len() % 2].choose();
+        for _ in 0..batches {
             let system = model(&mut random);
             let interpreted = Interpreted::of(system.as_ref());
             assert!(!system.facts().contacts.is_empty(), "{name}: no contacts");

@@ -5,7 +5,6 @@ use std::slice::{from_raw_parts, from_raw_parts_mut};
 
 use hertzian::law;
 use hertzian::law::{Derivatives, Law, On};
-use hertzian::power::Accuracy;
 
 law! {
     /// A spring of exponent 3/2 of either sign, with damping.
@@ -21,17 +20,6 @@ law! {
         gap > 0 => 2*zeta*dot(gap) + gap^alpha,
         else    => 2*zeta*dot(gap) - (-gap)^alpha,
     }
-}
-
-/// Chooses the fast variant of powers, or the accurate one.
-#[unsafe(no_mangle)]
-pub extern "C" fn choose_fast(fast: c_int) {
-    let accuracy = if fast == 0 {
-        Accuracy::Full
-    } else {
-        Accuracy::Fast
-    };
-    accuracy.choose();
 }
 
 /// Exponent 3/2: force, by gap, by rate.

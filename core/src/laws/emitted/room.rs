@@ -5,8 +5,7 @@ use std::ops::Range;
 
 use super::batch::{Group, Uses};
 use crate::numeric::power::{
-    Accuracy, Available, Bases, LANES, Target, Work, cube_roots, logarithms, multiply, powers,
-    two_powers,
+    Available, Bases, LANES, Target, Work, cube_roots, logarithms, multiply, powers, two_powers,
 };
 
 /// Samples per block. A column takes two kilobytes, so those of one or two bases and their powers stay in the first level of
@@ -87,14 +86,11 @@ pub(super) fn raise(set: Available, columns: &mut [Column], count: usize, plan: 
     for base in &mut columns[..plan.bases] {
         base.0[count..padded].fill(0.0);
     }
-    match Accuracy::in_use() {
-        Accuracy::Full => fill::<false>(set, columns, padded, plan),
-        Accuracy::Fast => fill::<true>(set, columns, padded, plan),
-    }
+    fill(set, columns, padded, plan);
 }
 
 /// Every loop is work of its own: of several in one function, the constants of all would compete for registers.
-fn fill<const FAST: bool>(set: Available, columns: &mut [Column], count: usize, plan: Plan<'_>) {
+fn fill(set: Available, columns: &mut [Column], count: usize, plan: Plan<'_>) {
     let (base, columns) = columns.split_at_mut(plan.bases);
     let (whole, columns) = columns.split_at_mut(plan.bases);
     let (part, power) = columns.split_at_mut(plan.bases);
@@ -111,7 +107,7 @@ fn fill<const FAST: bool>(set: Available, columns: &mut [Column], count: usize, 
         );
         let needed = || plan.needed_of(position);
         if plan.needs.logarithm(position) || needed().any(|(group, _)| !group.cube_root) {
-            set.run(Logarithms::<FAST> { base, whole, part });
+            set.run(Logarithms { base, whole, part });
         }
         let of = Bases { base, whole, part };
         for (group, last) in needed() {
@@ -124,14 +120,14 @@ fn fill<const FAST: bool>(set: Available, columns: &mut [Column], count: usize, 
                     root: &mut power[0].0[at.clone()],
                 });
             } else {
-                raise_group::<FAST>(set, of, exponents, power, &at);
+                raise_group(set, of, exponents, power, &at);
             }
         }
     }
 }
 
 /// The lowest power of a group is an exponential, the others are products with the base.
-fn raise_group<const FAST: bool>(
+fn raise_group(
     set: Available,
     of: Bases<'_>,
     exponents: &[f64],
@@ -155,7 +151,7 @@ fn raise_group<const FAST: bool>(
         // The two of a force and its derivative at once.
         match above.first_mut().filter(|_| exponent >= LOWEST_SHARED) {
             Some(next) => {
-                set.run(TwoPowers::<FAST> {
+                set.run(TwoPowers {
                     of,
                     exponent,
                     power,
@@ -163,7 +159,7 @@ fn raise_group<const FAST: bool>(
                 });
                 member += 1;
             }
-            None => set.run(Powers::<FAST> {
+            None => set.run(Powers {
                 of,
                 exponent,
                 power,
@@ -172,43 +168,43 @@ fn raise_group<const FAST: bool>(
     }
 }
 
-struct Logarithms<'a, const FAST: bool> {
+struct Logarithms<'a> {
     base: &'a [f64],
     whole: &'a mut [f64],
     part: &'a mut [f64],
 }
 
-impl<const FAST: bool> Work for Logarithms<'_, FAST> {
+impl Work for Logarithms<'_> {
     #[inline(always)]
     fn run<T: Target>(self) {
-        logarithms::<T, FAST>(self.base, self.whole, self.part);
+        logarithms::<T>(self.base, self.whole, self.part);
     }
 }
 
-struct Powers<'a, const FAST: bool> {
+struct Powers<'a> {
     of: Bases<'a>,
     exponent: f64,
     power: &'a mut [f64],
 }
 
-impl<const FAST: bool> Work for Powers<'_, FAST> {
+impl Work for Powers<'_> {
     #[inline(always)]
     fn run<T: Target>(self) {
-        powers::<T, FAST>(self.of, self.exponent, self.power);
+        powers::<T>(self.of, self.exponent, self.power);
     }
 }
 
-struct TwoPowers<'a, const FAST: bool> {
+struct TwoPowers<'a> {
     of: Bases<'a>,
     exponent: f64,
     power: &'a mut [f64],
     next: &'a mut [f64],
 }
 
-impl<const FAST: bool> Work for TwoPowers<'_, FAST> {
+impl Work for TwoPowers<'_> {
     #[inline(always)]
     fn run<T: Target>(self) {
-        two_powers::<T, FAST>(self.of, self.exponent, self.power, self.next);
+        two_powers::<T>(self.of, self.exponent, self.power, self.next);
     }
 }
 

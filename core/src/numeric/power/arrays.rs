@@ -28,14 +28,10 @@ pub(crate) struct Bases<'a> {
 
 /// Logarithms to base two, in two parts; zero where a base is not positive.
 #[inline(always)]
-pub(crate) fn logarithms<T: Target, const FAST: bool>(
-    base: &[f64],
-    whole: &mut [f64],
-    part: &mut [f64],
-) {
-    let keys = each_logarithm(base, whole, part, logarithm::<T, FAST>);
+pub(crate) fn logarithms<T: Target>(base: &[f64], whole: &mut [f64], part: &mut [f64]) {
+    let keys = each_logarithm(base, whole, part, logarithm::<T>);
     if keys & UNUSUAL != 0 {
-        each_logarithm(base, whole, part, careful_logarithm::<T, FAST>);
+        each_logarithm(base, whole, part, careful_logarithm::<T>);
     }
 }
 
@@ -61,7 +57,7 @@ fn each_logarithm(
 
 /// Powers. That of a base that is not positive is some number.
 #[inline(always)]
-pub(crate) fn powers<T: Target, const FAST: bool>(of: Bases<'_>, exponent: f64, power: &mut [f64]) {
+pub(crate) fn powers<T: Target>(of: Bases<'_>, exponent: f64, power: &mut [f64]) {
     if exponent == 0.0 {
         power.fill(1.0);
         return;
@@ -71,14 +67,14 @@ pub(crate) fn powers<T: Target, const FAST: bool>(of: Bases<'_>, exponent: f64, 
         of,
         power,
         #[inline(always)]
-        |log| raise::<T, FAST>(&exponent, log),
+        |log| raise::<T>(&exponent, log),
     );
     if keys & UNUSUAL != 0 {
         each_power(
             of,
             power,
             #[inline(always)]
-            |log| careful_raise::<T, FAST>(&exponent, log),
+            |log| careful_raise::<T>(&exponent, log),
         );
     }
 }
@@ -98,7 +94,7 @@ fn each_power(of: Bases<'_>, power: &mut [f64], raise: impl Fn([f64; 2]) -> Rais
 
 /// Powers, and those of an exponent one higher, which is positive. Those of a base that is not positive are some numbers.
 #[inline(always)]
-pub(crate) fn two_powers<T: Target, const FAST: bool>(
+pub(crate) fn two_powers<T: Target>(
     of: Bases<'_>,
     exponent: f64,
     power: &mut [f64],
@@ -115,7 +111,7 @@ pub(crate) fn two_powers<T: Target, const FAST: bool>(
         power,
         next,
         #[inline(always)]
-        |log| raise::<T, FAST>(&exponent, log),
+        |log| raise::<T>(&exponent, log),
         #[inline(always)]
         |power, base| power * base,
     );
@@ -125,7 +121,7 @@ pub(crate) fn two_powers<T: Target, const FAST: bool>(
             power,
             next,
             #[inline(always)]
-            |log| careful_raise::<T, FAST>(&exponent, log),
+            |log| careful_raise::<T>(&exponent, log),
             times,
         );
     }

@@ -24,8 +24,7 @@
 //! ```
 //!
 //! and that of the power relative to itself, in units of `2 u = 2^-52`, `1.2 + 2.2 |a l|`: it does not grow with `k`,
-//! as it would if the two parts of the logarithm were added first. The fast variant does add them. It also saves a
-//! coefficient of each polynomial, with errors of `2^-52.3` and `2^-52.0`. Together, `2 + 3.8 |a ln x|` such units.
+//! as it would if the two parts of the logarithm were added first.
 
 // Short functions that are meaningless unless merged into the loop that calls them.
 #![allow(clippy::inline_always)]
@@ -68,17 +67,6 @@ const P: [f64; 8] = [
     f64::from_bits(0x3fcb_9ff1_18d0_cc49),
 ];
 
-/// `P` of (1), fast.
-const P_FAST: [f64; 7] = [
-    f64::from_bits(0x4007_1547_652b_82ff),
-    f64::from_bits(0x3fee_c709_dc39_cd0a),
-    f64::from_bits(0x3fe2_776c_5167_3e06),
-    f64::from_bits(0x3fda_6175_6a7b_ba18),
-    f64::from_bits(0x3fd4_84fa_15f4_94a7),
-    f64::from_bits(0x3fd0_bb8e_2399_9d2d),
-    f64::from_bits(0x3fcf_16ce_5936_caaa),
-];
-
 /// `Q` of (3).
 const Q: [f64; 11] = [
     f64::from_bits(0x3fe6_2e42_fefa_39ef),
@@ -94,25 +82,11 @@ const Q: [f64; 11] = [
     f64::from_bits(0x3dfe_9731_78d3_5d07),
 ];
 
-/// `Q` of (3), fast.
-const Q_FAST: [f64; 10] = [
-    f64::from_bits(0x3fe6_2e42_fefa_3a12),
-    f64::from_bits(0x3fce_bfbd_ff82_c431),
-    f64::from_bits(0x3fac_6b08_d703_e18e),
-    f64::from_bits(0x3f83_b2ab_6fbd_6dbf),
-    f64::from_bits(0x3f55_d87f_e9b8_d2a9),
-    f64::from_bits(0x3f24_3091_26be_01bb),
-    f64::from_bits(0x3eef_fcb5_8ce7_c325),
-    f64::from_bits(0x3eb6_2c14_7eea_03b1),
-    f64::from_bits(0x3e7b_671a_f720_b3ec),
-    f64::from_bits(0x3e3e_3a88_f4fb_a7ff),
-];
-
 /// A logarithm to base two, in parts.
 pub(super) struct Logarithm {
-    /// `k`; fast: nothing.
+    /// `k`
     pub(super) whole: f64,
-    /// `l`; fast: `k + l`.
+    /// `l`
     pub(super) part: f64,
     /// Says whether the number was an ordinary one, see [`UNUSUAL`].
     pub(super) key: u64,
@@ -120,13 +94,13 @@ pub(super) struct Logarithm {
 
 /// (1) for an ordinary number, or zero for one that is not positive.
 #[inline(always)]
-pub(super) fn logarithm<T: Target, const FAST: bool>(x: f64) -> Logarithm {
-    normal_logarithm::<T, FAST, false>(x)
+pub(super) fn logarithm<T: Target>(x: f64) -> Logarithm {
+    normal_logarithm::<T, false>(x)
 }
 
 /// (1) for a number that is not subnormal; `ANY`: for those that are not ordinary too.
 #[inline(always)]
-fn normal_logarithm<T: Target, const FAST: bool, const ANY: bool>(x: f64) -> Logarithm {
+fn normal_logarithm<T: Target, const ANY: bool>(x: f64) -> Logarithm {
     let x = if x <= 0.0 { 1.0 } else { x };
     let shifted = x.to_bits().wrapping_add(SHIFT);
     let exponent = shifted >> 52;
@@ -138,37 +112,25 @@ fn normal_logarithm<T: Target, const FAST: bool, const ANY: bool>(x: f64) -> Log
     };
     let z = f64::from_bits((shifted & FRACTION).wrapping_add(LOWEST));
     let s = (z - 1.0) / (z + 1.0);
-    let (whole, part) = if FAST {
-        (
-            0.0,
-            T::add_product(s, polynomial::<T, 7>(&P_FAST, s * s), k),
-        )
-    } else {
-        (k, s * polynomial::<T, 8>(&P, s * s))
-    };
     Logarithm {
-        whole,
-        part,
+        whole: k,
+        part: s * polynomial::<T, 8>(&P, s * s),
         key: exponent,
     }
 }
 
 /// (1) for any number: minus infinity is never asked for, zero for one that is not positive.
 #[inline(always)]
-pub(super) fn careful_logarithm<T: Target, const FAST: bool>(x: f64) -> Logarithm {
+pub(super) fn careful_logarithm<T: Target>(x: f64) -> Logarithm {
     const SCALE: f64 = (1_u64 << 54) as f64;
     let subnormal = x < f64::MIN_POSITIVE;
     let scaled = if subnormal { x * SCALE } else { x };
-    let mut log = normal_logarithm::<T, FAST, true>(scaled);
+    let mut log = normal_logarithm::<T, true>(scaled);
     let correction = if subnormal && x > 0.0 { 54.0 } else { 0.0 };
     // An infinite number, and what is not a number, is its own logarithm.
     let own = x == f64::INFINITY || x.is_nan();
-    if FAST {
-        log.part = if own { x } else { log.part - correction };
-    } else {
-        log.whole = if own { x } else { log.whole - correction };
-        log.part = if own { 0.0 } else { log.part };
-    }
+    log.whole = if own { x } else { log.whole - correction };
+    log.part = if own { 0.0 } else { log.part };
     log
 }
 
@@ -198,12 +160,9 @@ pub(super) struct Raised {
 
 /// (2) and (3) for an ordinary power.
 #[inline(always)]
-pub(super) fn raise<T: Target, const FAST: bool>(
-    exponent: &Exponent,
-    [whole, part]: [f64; 2],
-) -> Raised {
-    let Reduced { rounded, r, .. } = reduce::<T, FAST>(exponent, [whole, part]);
-    let fraction = power_of_two::<T, FAST>(r);
+pub(super) fn raise<T: Target>(exponent: &Exponent, [whole, part]: [f64; 2]) -> Raised {
+    let Reduced { rounded, r, .. } = reduce::<T>(exponent, [whole, part]);
+    let fraction = power_of_two::<T>(r);
     let bits = rounded.to_bits();
     Raised {
         power: f64::from_bits(fraction.to_bits().wrapping_add(bits << 52)),
@@ -213,12 +172,9 @@ pub(super) fn raise<T: Target, const FAST: bool>(
 
 /// (2) and (3) for any power.
 #[inline(always)]
-pub(super) fn careful_raise<T: Target, const FAST: bool>(
-    exponent: &Exponent,
-    [whole, part]: [f64; 2],
-) -> Raised {
+pub(super) fn careful_raise<T: Target>(exponent: &Exponent, [whole, part]: [f64; 2]) -> Raised {
     let infinite = whole + part == f64::INFINITY;
-    let reduced = reduce::<T, FAST>(exponent, [whole, part]);
+    let reduced = reduce::<T>(exponent, [whole, part]);
     // A product with an infinite logarithm may be the difference of two infinite ones when it is taken in parts.
     let y = if infinite {
         exponent.value * f64::INFINITY
@@ -236,7 +192,7 @@ pub(super) fn careful_raise<T: Target, const FAST: bool>(
     let r = if within { reduced.r } else { 0.0 };
     // In two halves, each of which is a number where the whole is not.
     let half = (0.5 * n + ROUNDS) - ROUNDS;
-    let power = power_of_two::<T, FAST>(r) * scale(half) * scale(n - half);
+    let power = power_of_two::<T>(r) * scale(half) * scale(n - half);
     let power = if y.is_nan() { y } else { power };
     Raised { power, key: 0 }
 }
@@ -257,17 +213,8 @@ struct Reduced {
 }
 
 #[inline(always)]
-fn reduce<T: Target, const FAST: bool>(exponent: &Exponent, [whole, part]: [f64; 2]) -> Reduced {
+fn reduce<T: Target>(exponent: &Exponent, [whole, part]: [f64; 2]) -> Reduced {
     let a = exponent.value;
-    if FAST {
-        let y = a * part;
-        let rounded = y + ROUNDS;
-        return Reduced {
-            y,
-            rounded,
-            r: y - (rounded - ROUNDS),
-        };
-    }
     if T::FUSED {
         let of_part = a * part;
         let y = a.mul_add(whole, of_part);
@@ -285,11 +232,6 @@ fn reduce<T: Target, const FAST: bool>(exponent: &Exponent, [whole, part]: [f64;
 
 /// (3)
 #[inline(always)]
-fn power_of_two<T: Target, const FAST: bool>(r: f64) -> f64 {
-    let q = if FAST {
-        polynomial::<T, 10>(&Q_FAST, r)
-    } else {
-        polynomial::<T, 11>(&Q, r)
-    };
-    T::add_product(r, q, 1.0)
+fn power_of_two<T: Target>(r: f64) -> f64 {
+    T::add_product(r, polynomial::<T, 11>(&Q, r), 1.0)
 }

@@ -52,26 +52,39 @@ impl Instructions {
         }
     }
 
-    /// The instruction set that generated laws use. It is the last that the processor has, unless [`Instructions::pin`]
-    /// or, when it is first asked for, the environment variable `HERTZIAN_INSTRUCTIONS` (`baseline`, `avx2` or
-    /// `avx512`) says otherwise.
+    /// The instruction set that generated laws use, from the first evaluation until the process ends: the last that the processor
+    /// has, unless [`Instructions::initialise`] or the environment variable `HERTZIAN_INSTRUCTIONS` (`baseline`, `avx2` or `avx512`) said
+    /// otherwise before.
     pub fn in_use() -> Self {
         Available::in_use().0
     }
 
-    /// Makes all generated laws of this process use this instruction set from now on, or, where the processor does not
-    /// have it, the last before it that it has. Returns the one in use.
+    /// Makes all generated laws of this process use this instruction set, or, where the processor does not have it, the last before it
+    /// that it has. To be called once, before any law is evaluated; what is in use is never changed. Returns the set in use.
     ///
     /// Forces differ between instruction sets in their last digits, because products and sums are fused where that is
-    /// possible. So it is to be called before a run, not during one.
-    #[allow(
-        clippy::return_self_not_must_use,
-        reason = "who pins the baseline knows what is returned"
-    )]
-    pub fn pin(self) -> Self {
-        let available = Available::at_most(self);
-        IN_USE.store(available.0 as u8 + 1, Ordering::Relaxed);
-        available.0
+    /// possible.
+    ///
+    /// ```
+    /// use hertzian::power::Instructions;
+    ///
+    /// assert_eq!(Instructions::Baseline.initialise(), Ok(Instructions::Baseline));
+    /// // Whoever asks for another one later is told so.
+    /// if Instructions::Avx2.is_available() {
+    ///     assert_eq!(Instructions::Avx2.initialise(), Err(Instructions::Baseline));
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// If another one is in use already: that one.
+    pub fn initialise(self) -> Result<Self, Self> {
+        let wanted = Available::at_most(self);
+        let Available(found) = wanted.unless_chosen();
+        if found == wanted.0 {
+            Ok(found)
+        } else {
+            Err(found)
+        }
     }
 }
 
@@ -106,12 +119,14 @@ impl Available {
     #[cold]
     fn first() -> Self {
         let named = std::env::var(VARIABLE).ok();
-        let chosen = Self::at_most(wanted(named.as_deref()));
-        // A set that was pinned in the meantime stays.
-        let free =
-            IN_USE.compare_exchange(0, chosen.0 as u8 + 1, Ordering::Relaxed, Ordering::Relaxed);
-        match free {
-            Ok(_) => chosen,
+        Self::at_most(wanted(named.as_deref())).unless_chosen()
+    }
+
+    /// Puts this set into use, unless there is one; the one in use.
+    fn unless_chosen(self) -> Self {
+        let (new, order) = (self.0 as u8 + 1, Ordering::Relaxed);
+        match IN_USE.compare_exchange(0, new, order, order) {
+            Ok(_) => self,
             Err(_) => Self::in_use(),
         }
     }

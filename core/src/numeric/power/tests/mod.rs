@@ -10,30 +10,17 @@ use table::TABLE;
 use super::*;
 use crate::testing::random::Random;
 
-/// How powers are computed.
-#[derive(Debug, Clone, Copy)]
-struct Choice {
-    set: Available,
-    accuracy: Accuracy,
-}
-
-/// Instruction sets that are present, with both accuracies.
-fn choices() -> Vec<Choice> {
+/// Instruction sets that are present.
+fn choices() -> Vec<Available> {
     let sets = Instructions::ALL.into_iter();
-    let sets = sets
-        .filter(|set| set.is_available())
-        .map(Available::at_most);
-    sets.flat_map(|set| [Accuracy::Full, Accuracy::Fast].map(|accuracy| Choice { set, accuracy }))
+    sets.filter(|set| set.is_available())
+        .map(Available::at_most)
         .collect()
 }
 
 /// The stated bound of the error of `x^a`, in units of the last place.
-fn bound(accuracy: Accuracy, x: f64, a: f64) -> f64 {
-    let size = (a * x.ln()).abs();
-    match accuracy {
-        Accuracy::Full => 1.5 + (1.2 * a.abs()).min(3.2 * size),
-        Accuracy::Fast => 2.0 + 4.0 * size,
-    }
+fn bound(x: f64, a: f64) -> f64 {
+    1.5 + (1.2 * a.abs()).min(3.2 * (a * x.ln()).abs())
 }
 
 /// What is computed of an array of bases.
@@ -49,27 +36,27 @@ struct Results {
     cube_root: Vec<f64>,
 }
 
-struct Evaluation<'a, const FAST: bool> {
+struct Evaluation<'a> {
     base: &'a [f64],
     exponent: f64,
     to: &'a mut Results,
 }
 
-impl<const FAST: bool> Work for Evaluation<'_, FAST> {
+impl Work for Evaluation<'_> {
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "compiled anew for each set")]
     fn run<T: Target>(self) {
         let Self { base, exponent, to } = self;
         let [whole, part] = &mut to.logarithm;
-        logarithms::<T, FAST>(base, whole, part);
+        logarithms::<T>(base, whole, part);
         let of = Bases { base, whole, part };
-        two_powers::<T, FAST>(of, exponent, &mut to.power, &mut to.next);
-        powers::<T, FAST>(of, exponent, &mut to.alone);
+        two_powers::<T>(of, exponent, &mut to.power, &mut to.next);
+        powers::<T>(of, exponent, &mut to.alone);
         cube_roots::<T>(base, &mut to.cube_root);
     }
 }
 
-fn evaluate(Choice { set, accuracy }: Choice, base: &[f64], exponent: f64) -> Results {
+fn evaluate(set: Available, base: &[f64], exponent: f64) -> Results {
     let unset = || vec![f64::NAN; base.len()];
     let mut to = Results {
         logarithm: [unset(), unset()],
@@ -78,19 +65,11 @@ fn evaluate(Choice { set, accuracy }: Choice, base: &[f64], exponent: f64) -> Re
         alone: unset(),
         cube_root: unset(),
     };
-    let results = &mut to;
-    match accuracy {
-        Accuracy::Full => set.run(Evaluation::<false> {
-            base,
-            exponent,
-            to: results,
-        }),
-        Accuracy::Fast => set.run(Evaluation::<true> {
-            base,
-            exponent,
-            to: results,
-        }),
-    }
+    set.run(Evaluation {
+        base,
+        exponent,
+        to: &mut to,
+    });
     assert!(
         same_bits(&to.power, &to.alone),
         "a power depends on whether the next is asked for"
@@ -105,14 +84,14 @@ fn same_bits(a: &[f64], b: &[f64]) -> bool {
 }
 
 /// Whether powers of positive bases are within the stated bound. Returns the greatest error beside its bound.
-fn check(choice: Choice, base: &[f64], exponent: f64) -> f64 {
+fn check(choice: Available, base: &[f64], exponent: f64) -> f64 {
     let found = evaluate(choice, base, exponent).power;
     let mut worst: f64 = 0.0;
     for (&x, &found) in base.iter().zip(&found) {
         let error = ulps(found, x, exponent);
         // A subnormal result is rounded once more.
         let subnormal = if found < f64::MIN_POSITIVE { 1.0 } else { 0.0 };
-        let bound = bound(choice.accuracy, x, exponent) + subnormal;
+        let bound = bound(x, exponent) + subnormal;
         assert!(
             error <= bound,
             "{choice:?}: {x:e}^{exponent:e} = {found:e} is off by {error} of {bound}"
@@ -342,14 +321,5 @@ fn the_logarithm_of_what_is_not_positive_is_zero() {
     for choice in choices() {
         let [whole, part] = evaluate(choice, &base, 1.7).logarithm;
         assert_eq!([whole, part], [[0.0; 6]; 2]);
-    }
-}
-
-#[test]
-fn what_is_asked_for_in_the_environment() {
-    assert_eq!(wanted(Some("fast")), Accuracy::Fast);
-    assert_eq!(wanted(Some("FAST")), Accuracy::Fast);
-    for other in [None, Some("full"), Some(""), Some("faster")] {
-        assert_eq!(wanted(other), Accuracy::Full);
     }
 }
