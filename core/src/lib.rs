@@ -28,11 +28,11 @@
 //! | What is wanted | Where it is |
 //! |---|---|
 //! | curves of periodic orbits, by harmonic balance | [`FrequencyResponse`], which gives a [`Branch`]: module [`branch`] |
-//! | the same in the time domain, without truncation | [`Shooting`], which gives a [`Branch`]: module [`shooting`] |
+//! | the same in the time domain, without truncation | [`FrequencyResponse::by`] with [`Shooting`], which gives a [`Branch`] too: module [`shooting`] |
 //! | what an orbit is like: amplitudes, phases, contact, power | [`observe`] |
 //! | multipliers by other methods, and what they cost | [`stability`] |
 //! | all branches connected by bifurcations | [`Bifurcations`], which gives a [`Diagram`](bifurcation::Diagram) |
-//! | curves of bifurcations in two parameters | [`Shooting::track`] |
+//! | curves of bifurcations in two parameters | [`FrequencyResponse::track`], [`Branch::track`] |
 //! | free oscillation, phase resonance | [`backbone`] |
 //! | motions in time, and what they settle to | [`time`]: histories, sections; [`attractors`]: sweeps, Lyapunov exponents, basins |
 //! | a structure given as matrices, with contacts | [`structure`], whose laws [`law!`] declares |
@@ -49,6 +49,7 @@
 //! - `parallel` (default): basins of attraction on several threads.
 //! - `plot` (default): draws branches as SVG.
 //! - `text`: reads declarations from text at run time; brings the compiler in.
+//! - `serde`: results are written and read by serde.
 //!
 //! The matrices and complex numbers of [`nalgebra`] are part of this interface.
 //!
@@ -58,7 +59,7 @@
 //! can be returned from a function and sent to another thread.
 //!
 //! Time has the unit that the equation has it in; frequencies are angles per time. Orbits are Fourier series, laid out as
-//! [`fourier::series`] says. Nothing panics on the values of parameters or options: what is wrong comes back as an
+//! [`fourier::series`] says, or states along them, by shooting. Nothing panics on the values of parameters or options: what is wrong comes back as an
 //! [`Error`] before any work, and a branch that ends early comes back with what was computed and with the reason.
 //!
 //! The modules [`system`] and [`law`](mod@law) are the contract between generated code and the runtime; a system written by hand
