@@ -120,21 +120,25 @@ impl Follow for HarmonicBalance {
         let mut statistics = Statistics::default();
         options.from = value;
         let first = first(asked, &follower, options, &mut statistics)?;
-        options.from = from;
-        let mut part = |side: f64| {
-            let point = follower.along(&first, side, value)?;
+        // Each part ends where the range does.
+        let mut part = |[from, to]: [f64; 2]| {
+            let point = follower.along(&first, (to - from).signum(), value)?;
+            let options = FollowOptions {
+                from,
+                to,
+                ..options
+            };
             let run = Run::new(&follower, options, &first);
             let followed = run.follow(Start::Along(Box::new(point)), &mut *visit)?;
             Ok::<_, Error>(as_branch(asked, follower.clone(), followed))
         };
-        let forwards = (to - from).signum();
-        let forth = part(forwards)?;
+        let forth = part([from, to])?;
         // Once around, or interrupted: there is no other side.
         let whole = matches!(forth.stopped, Stop::Closed | Stop::Interrupted);
         let mut branch = if whole {
             forth
         } else {
-            Branch::joined(part(-forwards)?, forth)
+            Branch::joined(part([to, from])?, forth)
         };
         branch.statistics += statistics;
         branch.elapsed = started.elapsed();

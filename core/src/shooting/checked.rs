@@ -36,7 +36,7 @@ impl Asked<'_> {
     pub(crate) fn belongs(&self, point: &Point) -> Result<(), Error> {
         let facts = self.request.system.facts();
         let expected = 2 * facts.coordinates.len();
-        let entries = 2 * point.observed.motions.len();
+        let entries = 2 * point.orbit.coordinates;
         if entries != expected {
             return Err(RequestError::State { entries, expected }.into());
         }

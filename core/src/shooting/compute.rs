@@ -80,20 +80,21 @@ pub(crate) fn branch_through(
     [from, to]: [f64; 2],
     visit: See<'_>,
 ) -> Result<Branch, Error> {
-    let mut part = |side: f64| {
+    // Each part ends where the range does.
+    let mut part = |[from, to]: [f64; 2]| {
+        let side = (to - from).signum();
         let started = Instant::now();
         let found = first(setting, guess, value, setting.omega_at(value))?;
         let Begun { first, point } = switch::resume(setting, found, side, (to - from).abs())?;
         let along = |_| Start::Along(Box::new(point));
         followed(setting, (first, along), [from, to], &mut *visit, started)
     };
-    let forwards = (to - from).signum();
-    let forth = part(forwards)?;
+    let forth = part([from, to])?;
     // Once around, or interrupted: there is no other side.
     if matches!(forth.stopped, Stop::Closed | Stop::Interrupted) {
         return Ok(forth);
     }
-    Ok(Branch::joined(part(-forwards)?, forth))
+    Ok(Branch::joined(part([to, from])?, forth))
 }
 
 /// A frequency that velocities count by.

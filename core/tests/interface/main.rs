@@ -1,6 +1,7 @@
 //! What a user of the runtime alone meets: messages, results to keep, structures given as matrices, declarations read from text.
 
 mod cancelled;
+mod either;
 mod messages;
 mod owned;
 mod structure;
