@@ -33,7 +33,7 @@ mod spectrum;
 mod tests;
 mod whole;
 
-use super::{Change, ContactDerivatives, ContactInput};
+use super::{Change, ContactDerivatives, ContactForces, ContactInput};
 use crate::law::{On, Variation};
 use crate::laws::generic::scales::{Scales, Sight};
 use crate::numeric::fourier::crossings::levels::Switch;
@@ -132,14 +132,12 @@ impl<'s> Slopes<'s> {
     }
 }
 
-impl SwitchedAft {
-    /// About how many multiplications all evaluations so far have taken.
-    pub(crate) fn operations(&self) -> u64 {
+impl ContactForces for SwitchedAft {
+    fn operations(&self) -> u64 {
         self.affine.operations + self.quadrature.operations + self.whole.operations
     }
 
-    /// Writes the series of the force.
-    pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
+    fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
         force.fill(0.0);
         self.integrate(
             input,
@@ -150,8 +148,7 @@ impl SwitchedAft {
         );
     }
 
-    /// Writes the series of the force and of its derivatives.
-    pub(crate) fn derivatives(
+    fn derivatives(
         &mut self,
         input: ContactInput<'_>,
         change: Option<Change<'_>>,
@@ -177,7 +174,9 @@ impl SwitchedAft {
         );
         self.add_jumps(input, change, out);
     }
+}
 
+impl SwitchedAft {
     fn integrate(&mut self, input: ContactInput<'_>, sums: &mut Sums<'_>) {
         let facts = input.law.facts();
         self.cut.apply(input);
