@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::balance::block::{Block, Part};
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::start::{Motion, StartRequest};
-use crate::balance::truncation::Finer;
+use crate::balance::truncation::RefinedBalance;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::balance_branch::reader::Reader;
 use crate::branches::branch::Branch;
@@ -88,7 +88,7 @@ impl Follower {
 
     /// A reader of orbits of that resolution.
     pub(crate) fn reader(&self, resolution: Resolution) -> Reader<'_> {
-        let finer = Finer::new(
+        let finer = RefinedBalance::new(
             self.system.as_ref(),
             &self.parameters,
             self.omega,
