@@ -24,7 +24,7 @@
 //! `[mean, cos 1, sin 1, ..., cos K, sin K]`.
 
 pub(crate) mod aft;
-pub(crate) mod block;
+pub(crate) mod critical_block;
 pub(crate) mod resolution;
 pub(crate) mod start;
 pub(crate) mod subharmonics;
