@@ -155,7 +155,7 @@ impl Path {
         }
     }
 
-    /// The cuts at both ends of the panel behind a cut: of several contacts that switch together all count, also those that are a
+    /// The cuts at both ends of the panel after a cut: of several contacts that switch together all count, also those that are a
     /// little farther away. The one at the end itself is the last and the first of them.
     pub(super) fn ends(&self, index: usize) -> [&[Cut]; 2] {
         let cuts = &self.cuts;
