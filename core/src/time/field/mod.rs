@@ -18,6 +18,7 @@ use std::sync::Arc;
 use super::FlowError;
 use super::error::check_value;
 use crate::law::{Law, On};
+use crate::laws::single;
 use crate::model::layout::{Entry, Layout, Term};
 use crate::model::validate::in_order;
 use crate::numeric::linear::{Lu, Matrix};
@@ -307,16 +308,9 @@ impl Field {
         piece: usize,
         rate: f64,
     ) -> f64 {
-        let mut force = [0.0];
         let contact = &self.contacts[contact];
-        self.system.law(contact.law).force(
-            On::Piece(piece),
-            &contact.arguments,
-            &[contact.levels[level]],
-            &[rate],
-            &mut force,
-        );
-        force[0]
+        let (law, at) = (self.system.law(contact.law), contact.levels[level]);
+        single::force(law, On::Piece(piece), &contact.arguments, [at, rate])
     }
 
     /// How much a gap moves, beside a level, with a tangent column and with a variable.

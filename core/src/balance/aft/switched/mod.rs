@@ -36,6 +36,7 @@ mod whole;
 use super::{Change, ContactDerivatives, ContactForces, ContactInput};
 use crate::law::{On, Variation};
 use crate::laws::generic::scales::{Scales, Sight};
+use crate::laws::single;
 use crate::numeric::fourier::crossings::levels::Switch;
 use crate::numeric::fourier::kernels::Product;
 use crate::numeric::fourier::series;
@@ -239,15 +240,8 @@ impl SwitchedAft {
             let slope = series::value_and_derivatives(input.gap, tau).1;
             let rate = input.base * slope;
             let at_level = |piece| {
-                let mut force = [0.0];
-                input.law.force(
-                    On::Piece(piece),
-                    input.arguments,
-                    &[gap],
-                    &[rate],
-                    &mut force,
-                );
-                force[0]
+                let on = On::Piece(piece);
+                single::force(input.law, on, input.arguments, [gap, rate])
             };
             let weight = (at_level(level + 1) - at_level(level)) / slope.abs();
             if !weight.is_finite() {
