@@ -1,41 +1,32 @@
-//! One step after the other along a curve: the state behind [`follow`](super::follow::follow).
+//! One step after the other along a curve, for [`follow`](super::follow::follow).
 //!
 //! Numbers of equations are those of [`follow`](super::follow).
 
-use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
+use super::follow::{CurvePoint, FollowOptions, Stop};
 use super::problem::{Norm, Problem, Scale};
 use crate::continuation::newton::{Border, Newton, NewtonError};
 
 /// Least scale of what oscillates, in sizes of what rounding makes of an update.
 const ROUNDINGS: f64 = 1e3;
 
-/// A walk that has its first point.
-pub(super) struct Begun {
-    pub(super) walk: Walk,
-    pub(super) point: CurvePoint,
-    pub(super) first: CurvePoint,
-    pub(super) previous: Option<CurvePoint>,
-    pub(super) passed: usize,
-    pub(super) ended: Option<Stop>,
-}
-
-/// State of a walk along a curve; its buffers are reused.
-pub(super) struct Walk {
-    options: FollowOptions,
-    step: f64,
+/// What makes the steps; its buffers are reused.
+pub(super) struct Stepper {
+    pub(super) options: FollowOptions,
+    /// Length of the next step.
+    pub(super) step: f64,
     border: Vec<f64>,
     trial: Vec<f64>,
     scale: Scale,
     /// Largest oscillation and mean so far.
-    largest: [f64; 2],
+    pub(super) largest: [f64; 2],
     /// The point before the one from which the next step goes, where the curve between them was smooth.
-    before: Option<Vec<f64>>,
+    pub(super) before: Option<Vec<f64>>,
     /// Half the second derivative by arc length of the curve there.
     bend: Vec<f64>,
 }
 
-impl Walk {
-    fn new(problem: &dyn Problem, options: FollowOptions, u: Vec<f64>) -> Self {
+impl Stepper {
+    pub(super) fn new(problem: &dyn Problem, options: FollowOptions, u: Vec<f64>) -> Self {
         let parameter = (options.to - options.from).abs();
         Self {
             options,
@@ -52,67 +43,9 @@ impl Walk {
         }
     }
 
-    /// Finds the first point, or corrects the one where a walk was halted.
-    pub(super) fn begin(
-        problem: &mut dyn Problem,
-        newton: &mut Newton,
-        start: Start,
-        options: FollowOptions,
-    ) -> Result<Begun, NewtonError> {
-        match start {
-            Start::Near(u) => {
-                let mut walk = Self::new(problem, options, u);
-                let point = walk.first(problem, newton)?;
-                Ok(Begun {
-                    walk,
-                    first: point.clone(),
-                    point,
-                    previous: None,
-                    passed: 0,
-                    ended: None,
-                })
-            }
-            Start::Along(along) => {
-                let mut walk = Self::new(problem, options, along.u.clone());
-                let point = walk.again(problem, newton, &along, false)?;
-                Ok(Begun {
-                    walk,
-                    first: point.clone(),
-                    point,
-                    previous: None,
-                    passed: 0,
-                    ended: None,
-                })
-            }
-            Start::At(halted) => {
-                let Halted {
-                    point,
-                    previous,
-                    before,
-                    first,
-                    step,
-                    largest,
-                    count,
-                    ended,
-                } = *halted;
-                let mut walk = Self::new(problem, options, point.u.clone());
-                (walk.step, walk.largest, walk.before) = (step, largest, before);
-                let point = walk.again(problem, newton, &point, ended.is_some())?;
-                Ok(Begun {
-                    walk,
-                    point,
-                    first,
-                    previous,
-                    passed: count,
-                    ended,
-                })
-            }
-        }
-    }
-
     /// Corrects a point of another number of unknowns, in the plane across its tangent; at an end of the range, there. Without a
     /// tangent the branch goes towards the end of the range.
-    fn again(
+    pub(super) fn again(
         &mut self,
         problem: &mut dyn Problem,
         newton: &mut Newton,
@@ -150,55 +83,8 @@ impl Walk {
         Ok(again)
     }
 
-    pub(super) fn halted(
-        &self,
-        halt: Halt,
-        point: CurvePoint,
-        previous: Option<CurvePoint>,
-        first: CurvePoint,
-        count: usize,
-        ended: Option<Stop>,
-    ) -> Outcome {
-        if halt == Halt::Stop {
-            return Outcome::Stopped(Stop::Interrupted);
-        }
-        Outcome::Halted(Box::new(Halted {
-            point,
-            previous,
-            before: self.before.clone(),
-            first,
-            step: self.step,
-            largest: self.largest,
-            count,
-            ended,
-        }))
-    }
-
-    /// Where no step led on: to go on with the first step again. What was between this point and the one before has been seen. The
-    /// direction at the start of the range is that of the matrix that led nowhere, and forgotten.
-    pub(super) fn stuck(
-        &self,
-        mut point: CurvePoint,
-        first: CurvePoint,
-        count: usize,
-    ) -> Box<Halted> {
-        if count == 0 && point.parameter() == self.options.from {
-            point.tangent.fill(0.0);
-        }
-        Box::new(Halted {
-            point,
-            previous: None,
-            before: None,
-            first,
-            step: self.options.steps.initial,
-            largest: self.largest,
-            count,
-            ended: None,
-        })
-    }
-
     /// Solves at the first parameter and points the tangent towards the end of the range.
-    fn first(
+    pub(super) fn first(
         &mut self,
         problem: &mut dyn Problem,
         newton: &mut Newton,
