@@ -143,11 +143,8 @@ impl Newton {
         u: &[f64],
         values: &mut [f64],
     ) -> f64 {
-        let work = Work {
-            statistics: &mut self.statistics,
-            operations: &mut self.operations,
-        };
-        residual(problem, u, values, work);
+        let (statistics, operations) = (&mut self.statistics, &mut self.operations);
+        residual(problem, u, values, statistics, operations);
         norm(values)
     }
 
@@ -371,11 +368,8 @@ impl Newton {
         border: Border<'_>,
     ) -> Result<(), NewtonError> {
         let n = self.norm.unknowns();
-        let work = Work {
-            statistics: &mut self.statistics,
-            operations: &mut self.operations,
-        };
-        residual(problem, u, &mut self.residual[..n], work);
+        let (statistics, operations) = (&mut self.statistics, &mut self.operations);
+        residual(problem, u, &mut self.residual[..n], statistics, operations);
         self.close(u, border)
     }
 
@@ -401,11 +395,14 @@ impl Newton {
             }
             self.trial.copy_from_slice(u);
             subtract(&mut self.trial, &self.update, factor);
-            let work = Work {
-                statistics: &mut self.statistics,
-                operations: &mut self.operations,
-            };
-            residual(problem, &self.trial, &mut self.residual[..n], work);
+            let (statistics, operations) = (&mut self.statistics, &mut self.operations);
+            residual(
+                problem,
+                &self.trial,
+                &mut self.residual[..n],
+                statistics,
+                operations,
+            );
             self.residual[n] = dot(border.row, &self.trial) - border.value;
             if norm(&self.residual) < (1.0 - 1e-4 * factor) * before {
                 break;
@@ -428,17 +425,17 @@ fn left(size: f64, previous: f64) -> f64 {
 }
 
 /// Evaluates the residual alone, and counts that.
-fn residual(problem: &mut dyn Problem, u: &[f64], residual: &mut [f64], work: Work<'_>) {
+fn residual(
+    problem: &mut dyn Problem,
+    u: &[f64],
+    residual: &mut [f64],
+    statistics: &mut Statistics,
+    operations: &mut u64,
+) {
     let before = problem.operations();
     problem.evaluate(u, residual, None);
-    work.statistics.residuals += 1;
-    *work.operations += problem.operations() - before;
-}
-
-/// Where the work of an evaluation is counted.
-struct Work<'n> {
-    statistics: &'n mut Statistics,
-    operations: &'n mut u64,
+    statistics.residuals += 1;
+    *operations += problem.operations() - before;
 }
 
 /// From units of the scale to the units of the unknowns.

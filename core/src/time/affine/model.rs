@@ -235,8 +235,8 @@ impl Model {
                     *sum += factor * by;
                 }
                 for (piece, line) in contact.lines_by.iter_mut().enumerate() {
-                    let by = (argument, factor);
-                    line.add_derivative(law, arguments, &contact.levels, piece, by);
+                    let levels = &contact.levels;
+                    line.add_derivative(law, arguments, levels, piece, argument, factor);
                 }
             }
             if self.backwards {
@@ -316,9 +316,8 @@ impl Model {
             return Err(FlowError::StepTooShort { phase, step: cell });
         }
         if derivatives {
-            let (lines, lines_by) = (&self.lines[..], &self.lines_by[..]);
-            let by = (&self.terms_by, lines_by);
-            self.assembly.differentiate(basis, (terms, lines), by);
+            self.assembly
+                .differentiate(basis, terms, &self.lines, &self.terms_by, &self.lines_by);
         }
         for watch in &mut combination.table.watches {
             let contact = &terms.contacts[watch.contact];

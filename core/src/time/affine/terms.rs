@@ -187,7 +187,8 @@ impl Line {
         arguments: &[f64],
         levels: &[f64],
         piece: usize,
-        (argument, factor): (usize, f64),
+        argument: usize,
+        factor: f64,
     ) {
         let at = end_of(levels, piece);
         // Another gap of the same piece.

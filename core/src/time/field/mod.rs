@@ -258,7 +258,9 @@ impl Field {
     pub(crate) fn gap_acceleration(
         &self,
         contact: usize,
-        (q, v, a): (&[f64], &[f64], &[[f64; 1]]),
+        q: &[f64],
+        v: &[f64],
+        a: &[[f64; 1]],
         phase: f64,
     ) -> f64 {
         let contact = &self.contacts[contact];
@@ -319,7 +321,8 @@ impl Field {
         contact: usize,
         level: usize,
         column: &[f64],
-        (q, phase): (&[f64], f64),
+        q: &[f64],
+        phase: f64,
         by: Option<(Variable, Room<'_>)>,
     ) -> f64 {
         let item_at = |item: &Item| self.wave(item, phase).0;

@@ -64,7 +64,8 @@ enum Tried {
 impl<const S: usize> Engine<S> {
     pub(super) fn advance(
         &mut self,
-        (from, to): (f64, f64),
+        from: f64,
+        to: f64,
         state: &mut [f64],
         tangent: Option<&mut Tangent>,
         see: Option<See<'_>>,
@@ -77,7 +78,7 @@ impl<const S: usize> Engine<S> {
         self.begin(from, state, tangent.as_ref().and_then(|tangent| tangent.by));
         // Room for the columns at the end of a step, borrowed apart from the rest.
         let mut columns = std::mem::take(&mut self.columns);
-        let result = self.run(to - from, (tangent, &mut columns), see);
+        let result = self.run(to - from, tangent, &mut columns, see);
         self.columns = columns;
         state[..n].copy_from_slice(&self.here.q);
         state[n..].copy_from_slice(&self.here.v);
@@ -87,7 +88,8 @@ impl<const S: usize> Engine<S> {
     fn run(
         &mut self,
         span: f64,
-        (mut tangent, columns): (Option<&mut Tangent>, &mut Vec<f64>),
+        mut tangent: Option<&mut Tangent>,
+        columns: &mut Vec<f64>,
         mut see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
         if span == 0.0 {

@@ -64,6 +64,39 @@ pub(super) struct Trial {
     pub(super) sizes: Vec<[f64; 2]>,
 }
 
+impl Here {
+    fn new(coordinates: usize, contacts: usize) -> Self {
+        let zero = Gap {
+            value: 0.0,
+            rate: 0.0,
+            size: 0.0,
+        };
+        Self {
+            from: 0.0,
+            passed: 0.0,
+            q: vec![0.0; coordinates],
+            v: vec![0.0; coordinates],
+            pieces: vec![0; contacts],
+            on: vec![None; contacts],
+            gaps: vec![zero; contacts],
+            sizes: vec![[0.0; 2]; coordinates],
+        }
+    }
+}
+
+impl Trial {
+    fn new(coordinates: usize) -> Self {
+        Self {
+            width: 0.0,
+            table: 0,
+            landing: None,
+            q: vec![0.0; coordinates],
+            v: vec![0.0; coordinates],
+            sizes: vec![[0.0; 2]; coordinates],
+        }
+    }
+}
+
 pub(super) struct Engine<const S: usize> {
     pub(super) field: Field,
     pub(super) tolerance: f64,
@@ -121,12 +154,9 @@ impl<const S: usize> Engine<S> {
         let n = field.coordinates();
         let contacts = field.contacts.len();
         let rule = Box::new(Rule::new());
-        let zero = Gap {
-            value: 0.0,
-            rate: 0.0,
-            size: 0.0,
-        };
         let rows = || vec![[0.0; S]; n];
+        let (end, gap) = (End::Start, 0.0);
+        let anchor = Anchor { end, gap };
         let points = rule.points.len();
         let levels = field.contacts.iter().map(|contact| contact.levels.len());
         let levels = levels.max().unwrap_or(0);
@@ -141,33 +171,11 @@ impl<const S: usize> Engine<S> {
                 .map(|contact| Scales::of(field.law(contact)))
                 .collect(),
             powers_known: false,
-            here: Here {
-                from: 0.0,
-                passed: 0.0,
-                q: vec![0.0; n],
-                v: vec![0.0; n],
-                pieces: vec![0; contacts],
-                on: vec![None; contacts],
-                gaps: vec![zero; contacts],
-                sizes: vec![[0.0; 2]; n],
-            },
-            trial: Trial {
-                width: 0.0,
-                table: 0,
-                landing: None,
-                q: vec![0.0; n],
-                v: vec![0.0; n],
-                sizes: vec![[0.0; 2]; n],
-            },
+            here: Here::new(n, contacts),
+            trial: Trial::new(n),
             batch: Batch::new(&field),
             instant: Batch::new(&field),
-            anchors: vec![
-                Anchor {
-                    end: End::Start,
-                    gap: 0.0
-                };
-                contacts
-            ],
+            anchors: vec![anchor; contacts],
             before: [rows(), rows()],
             values: vec![0.0; points],
             motion: [vec![0.0; points], vec![0.0; points]],

@@ -134,7 +134,7 @@ impl Flow for Integrated {
     ) -> Result<(), FlowError> {
         check_entries(self.coordinates(), state, tangent.as_deref())?;
         let tangent = tangent.filter(|tangent| !tangent.columns.is_empty());
-        engine!(&mut self.engine, engine => engine.advance((from, to), state, tangent, see))
+        engine!(&mut self.engine, engine => engine.advance(from, to, state, tangent, see))
     }
 
     fn work(&self) -> Work {

@@ -137,7 +137,7 @@ impl<const S: usize> Engine<S> {
         let phase = self.phase();
         let here = &self.here;
         self.field
-            .gap_acceleration(contact, (&here.q, &here.v, a), phase)
+            .gap_acceleration(contact, &here.q, &here.v, a, phase)
     }
 
     /// (1)
@@ -172,8 +172,8 @@ impl<const S: usize> Engine<S> {
                 levels: &mut self.levels_by,
             };
             let by = by.map(|by| (by, room));
-            let at = (&self.here.q[..], phase);
-            let moved = self.field.gap_change(contact, level, column, at, by);
+            let q = &self.here.q;
+            let moved = self.field.gap_change(contact, level, column, q, phase, by);
             let (_, v) = column.split_at_mut(order / 2);
             self.field.push(contact, phase, -factor * moved, v);
         }
