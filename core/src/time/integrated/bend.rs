@@ -5,9 +5,9 @@
 //! absolute value, which is smooth, is followed as gaps are beside levels ([`crossing`](super::crossing)), and steps end where it changes
 //! its sign.
 
-use super::drive::SHORTEST;
 use super::engine::Engine;
 use super::roots;
+use super::step_control::SHORTEST;
 
 /// An operand smaller than this part of its largest value on the step is zero: the step begins or ends there.
 const ZERO: f64 = 1e-11;

@@ -13,9 +13,9 @@ use crate::time::field::slopes::Slopes;
 use crate::time::field::{Field, Gap};
 use crate::time::{FlowError, Work};
 
-use super::drive::{Aim, SHORTEST};
 use super::map::{Map, Tables};
 use super::rule::Rule;
+use super::step_control::{Aim, SHORTEST};
 
 /// A coordinate that hardly moves is held to this part of the accuracy of the one that moves most.
 const LEAST_SCALE: f64 = 1e-3;

@@ -10,12 +10,12 @@
 
 mod bend;
 mod crossing;
-mod drive;
 mod engine;
 mod map;
 mod roots;
 pub(super) mod rule;
 mod step;
+mod step_control;
 mod switch;
 mod tangent;
 #[cfg(test)]
