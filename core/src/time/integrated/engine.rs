@@ -32,7 +32,7 @@ const NARROW: f64 = 1e-9;
 
 /// The state of a motion from switch to switch.
 #[derive(Debug)]
-pub(super) struct Here {
+pub(super) struct StepState {
     /// Where the motion began.
     pub(super) from: f64,
     /// Phase since then: small, so that a short step is not lost in it.
@@ -64,7 +64,7 @@ pub(super) struct Trial {
     pub(super) sizes: Vec<[f64; 2]>,
 }
 
-impl Here {
+impl StepState {
     fn new(coordinates: usize, contacts: usize) -> Self {
         let zero = Gap {
             value: 0.0,
@@ -110,7 +110,7 @@ pub(super) struct Engine<const S: usize> {
     pub(super) sharp: Vec<Option<Scales>>,
     /// They belong to the present values.
     powers_known: bool,
-    pub(super) here: Here,
+    pub(super) here: StepState,
     pub(super) trial: Trial,
     pub(super) batch: Batch<S>,
     pub(super) instant: Batch<1>,
@@ -171,7 +171,7 @@ impl<const S: usize> Engine<S> {
                 .map(|contact| Scales::of(field.law(contact)))
                 .collect(),
             powers_known: false,
-            here: Here::new(n, contacts),
+            here: StepState::new(n, contacts),
             trial: Trial::new(n),
             batch: Batch::new(&field),
             instant: Batch::new(&field),
@@ -255,7 +255,7 @@ impl<const S: usize> Engine<S> {
     /// for the level's own, and what is left would grow by the square of its angle from one level to the next.
     pub(super) fn put_on_level(&mut self, contact: usize, level: usize) {
         let phase = self.phase();
-        let Here { q, v, .. } = &mut self.here;
+        let StepState { q, v, .. } = &mut self.here;
         let gap = self.field.gap(contact, q, v, phase);
         let left = self.field.contacts[contact].levels[level] - gap.value;
         self.field.move_gap(contact, phase, left, q);

@@ -15,7 +15,7 @@
 use crate::time::field::Room;
 use crate::time::{FlowError, Tangent};
 
-use super::engine::{Engine, Here};
+use super::engine::{Engine, StepState};
 
 /// A rate below this part of the rates that it is a sum of is none.
 const AT_REST: f64 = 1e-14;
@@ -96,7 +96,7 @@ impl<const S: usize> Engine<S> {
 
     /// The gap has no rate, but for rounding.
     pub(super) fn is_at_rest(&self, contact: usize) -> bool {
-        let Here { q, v, gaps, .. } = &self.here;
+        let StepState { q, v, gaps, .. } = &self.here;
         let rate = gaps[contact].rate.abs();
         let size = self.field.rate_size(contact, |i| [q[i].abs(), v[i].abs()]);
         rate <= AT_REST * size.max(rate)
