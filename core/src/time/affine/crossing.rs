@@ -9,7 +9,7 @@
 //! d''(m) + b3 w < 0 and d >= 0 at the left end               concave: the same                               (3)
 //! ```
 //!
-//! and is divided otherwise, the left half first. StepState `b2 = |d''(m)| + b3 w` bounds the second derivative and `b3` the third.
+//! and is divided otherwise, the left half first. Here `b2 = |d''(m)| + b3 w` bounds the second derivative and `b3` the third.
 //! Where a zero is known to be single it is found by Newton's method, [guarded](Guarded) by the bracket. A touch, whose depth is below
 //! the rounding error of the distance, is no crossing.
 

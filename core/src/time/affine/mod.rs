@@ -167,7 +167,7 @@ impl Affine {
         let left = (span.length - done) / table.cell;
         let range = left.min(table.range());
         let at = &self.at;
-        let begins = |watch: &table::Watch| at[watch.contact] == Some(watch.level);
+        let begins = |exit: &table::ExitLevel| at[exit.contact] == Some(exit.level);
         let hit = table.first_hit(&self.z, range, begins, rows);
         let cells = hit.map_or(range, |hit| hit.at);
         let last = hit.is_none() && range == left;
@@ -197,11 +197,11 @@ impl Affine {
         }
         self.work.steps += 1;
         let switch = hit.map(|hit| {
-            let watch = &table.watches[hit.watch];
+            let exit = &table.exits[hit.exit];
             Switch {
-                contact: watch.contact,
-                level: watch.level,
-                upwards: watch.upper,
+                contact: exit.contact,
+                level: exit.level,
+                upwards: exit.upper,
             }
         });
         Ok(Passed {
@@ -263,10 +263,10 @@ impl Affine {
         let table = &self.model.at(combination).table;
         let rows = &mut self.rows[..table.rows];
         table.polynomials(0, &self.z, rows);
-        let mut watches = table.watches.iter();
-        let watch = watches.find(|watch| watch.contact == contact && watch.level == level);
-        Ok(watch
-            .is_some_and(|watch| crossing::derivatives(&table.distance(watch, rows), 0.0)[2] > 0.0))
+        let mut exits = table.exits.iter();
+        let exit = exits.find(|exit| exit.contact == contact && exit.level == level);
+        Ok(exit
+            .is_some_and(|exit| crossing::derivatives(&table.distance(exit, rows), 0.0)[2] > 0.0))
     }
 }
 

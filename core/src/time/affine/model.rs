@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use super::equations::Assembly;
 use super::exponential::Room;
-use super::table::{Table, Watch};
+use super::table::{ExitLevel, Table};
 use super::terms::{Basis, Line, Terms};
 use crate::error::Error;
 use crate::model::error::ModelError;
@@ -274,9 +274,9 @@ impl Model {
     }
 
     fn add(&mut self, pieces: &[usize]) -> usize {
-        let mut watches = Vec::new();
+        let mut exits = Vec::new();
         for (contact, &piece) in pieces.iter().enumerate() {
-            let watch = |level, upper| Watch {
+            let exit = |level, upper| ExitLevel {
                 contact,
                 level,
                 upper,
@@ -285,16 +285,16 @@ impl Model {
                 bound: Vec::new(),
             };
             if piece > 0 {
-                watches.push(watch(piece - 1, false));
+                exits.push(exit(piece - 1, false));
             }
             if piece < self.contacts[contact].levels.len() {
-                watches.push(watch(piece, true));
+                exits.push(exit(piece, true));
             }
         }
         let index = self.combinations.len();
         self.combinations.push(Combination {
             pieces: pieces.to_vec(),
-            table: Table::new(&self.basis, rows(&self.basis, self.moving), watches),
+            table: Table::new(&self.basis, rows(&self.basis, self.moving), exits),
             filled: false,
             differentiated: false,
         });
@@ -319,10 +319,10 @@ impl Model {
             self.assembly
                 .differentiate(basis, terms, &self.lines, &self.terms_by, &self.lines_by);
         }
-        for watch in &mut combination.table.watches {
-            let contact = &terms.contacts[watch.contact];
-            let level = self.contacts[watch.contact].levels[watch.level];
-            watch.set_row(&contact.gap, &contact.offset, level);
+        for exit in &mut combination.table.exits {
+            let contact = &terms.contacts[exit.contact];
+            let level = self.contacts[exit.contact].levels[exit.level];
+            exit.set_row(&contact.gap, &contact.offset, level);
         }
         let matrix = &self.assembly.matrix;
         let by = derivatives.then_some(&self.assembly.derivative[..]);

@@ -15,7 +15,7 @@
 //! divides by a difference of frequencies or by a stiffness: resonance, critical damping, no stiffness and the neighbourhood of
 //! each keep their digits.
 //!
-//! A *watch* is the distance of a gap from one end of its piece, positive inside. Its values at the beginning and at the ends of
+//! An *exit level* is the distance of a gap from one end of its piece, positive inside. Its values at the beginning and at the ends of
 //! the cells are tabulated too, and a bound on its second derivative, `|d''| <= bound . |z(0)|` in the unit of a cell.
 //!
 //! Source of (1): Van Loan (1978), Computing integrals involving the matrix exponential, IEEE Trans. Automatic Control 23.
@@ -35,7 +35,7 @@ pub(super) type Polynomial = [f64; COEFFICIENTS];
 
 /// The distance of a gap from one end of its piece.
 #[derive(Debug, Clone)]
-pub(super) struct Watch {
+pub(super) struct ExitLevel {
     pub(super) contact: usize,
     pub(super) level: usize,
     /// The level is the upper end of the piece: the distance is the level less the gap.
@@ -65,11 +65,11 @@ pub(super) struct Table {
     pub(super) series: Vec<Polynomial>,
     /// Their derivatives by a variable; empty until asked for.
     pub(super) series_by: Vec<Polynomial>,
-    pub(super) watches: Vec<Watch>,
+    pub(super) exits: Vec<ExitLevel>,
 }
 
 impl Table {
-    pub(super) fn new(basis: &Basis, rows: usize, watches: Vec<Watch>) -> Self {
+    pub(super) fn new(basis: &Basis, rows: usize, exits: Vec<ExitLevel>) -> Self {
         let order = basis.order();
         let cells = cells(order);
         Self {
@@ -80,7 +80,7 @@ impl Table {
             order,
             series: vec![[0.0; COEFFICIENTS]; cells * rows * order],
             series_by: Vec::new(),
-            watches,
+            exits,
         }
     }
 
@@ -99,15 +99,15 @@ impl Table {
         CELL / rate
     }
 
-    /// Fills the table from `A` and the rows of its watches, and its derivatives if that of `A` is given.
+    /// Fills the table from `A` and the rows of its exit levels, and its derivatives if that of `A` is given.
     pub(super) fn fill(&mut self, matrix: &[f64], by: Option<&[f64]>, cell: f64, room: &mut Room) {
         self.cell = cell;
         room.set(matrix, by, cell);
         room.exponentials(by.is_some());
         room.taylor(self, by.is_some());
         fill_series(&mut self.series, room);
-        for watch in &mut self.watches {
-            watch.fill(&self.series, self.rows, self.coordinates, room);
+        for exit in &mut self.exits {
+            exit.fill(&self.series, self.rows, self.coordinates, room);
         }
         if by.is_some() {
             let length = self.series.len();
@@ -175,7 +175,7 @@ fn add_combination(series: &[Polynomial], z: &[f64], out: &mut [Polynomial]) {
     }
 }
 
-impl Watch {
+impl ExitLevel {
     /// Sets the row from the direction and the waves of the gap, and from the level.
     pub(super) fn set_row(&mut self, gap: &[f64], offset: &[f64], level: f64) {
         let sign = if self.upper { -1.0 } else { 1.0 };

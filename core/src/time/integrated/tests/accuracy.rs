@@ -77,7 +77,7 @@ fn errors_are_proportional_to_the_tolerance() {
 }
 
 /// A method of order `p` needs `10^(8 / p)` times the steps for eight digits more. Beside a level with an exponent of 0.6, a method
-/// that does not know it is of order 1.6: a hundred thousand times. StepState it is a few times, as for the exponent one.
+/// that does not know it is of order 1.6: a hundred thousand times. Here it is a few times, as for the exponent one.
 #[test]
 fn an_exponent_below_one_keeps_the_order() {
     for (one_sided, alpha, load) in MOTIONS {
