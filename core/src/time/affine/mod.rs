@@ -379,7 +379,7 @@ struct Piece<'t> {
 }
 
 impl Piece<'_> {
-    /// The state after some cells. `rows` is room.
+    /// The state after some cells. `rows` is workspace.
     fn at(&self, cells: f64, rows: &mut [Polynomial], state: &mut [f64]) {
         let (cell, s) = self.table.place(cells);
         self.table.polynomials(cell, self.z, rows);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::equations::Assembly;
-use super::exponential::Room;
+use super::exponential::Workspace;
 use super::table::{ExitLevel, Table};
 use super::terms::{Basis, Line, Terms};
 use crate::error::Error;
@@ -70,7 +70,7 @@ pub(super) struct Model {
     lines: Vec<Line>,
     lines_by: Vec<Line>,
     assembly: Assembly,
-    room: Room,
+    workspace: Workspace,
 }
 
 impl Model {
@@ -125,7 +125,7 @@ impl Model {
             lines: vec![Line::default(); layout.contacts.len()],
             lines_by: vec![Line::default(); layout.contacts.len()],
             assembly: Assembly::new(&basis),
-            room: Room::new(&basis, rows(&basis, moving)),
+            workspace: Workspace::new(&basis, rows(&basis, moving)),
             basis,
             layout,
         }
@@ -326,7 +326,9 @@ impl Model {
         }
         let matrix = &self.assembly.matrix;
         let by = derivatives.then_some(&self.assembly.derivative[..]);
-        combination.table.fill(matrix, by, cell, &mut self.room);
+        combination
+            .table
+            .fill(matrix, by, cell, &mut self.workspace);
         combination.filled = true;
         combination.differentiated = derivatives;
         Ok(())

@@ -15,7 +15,7 @@ pub(super) struct Scalar {
     /// Between them.
     boundaries: Vec<Boundary>,
     harmonic: f64,
-    /// Room for the piece of every contact.
+    /// Workspace for the piece of every contact.
     pieces: Vec<usize>,
 }
 

@@ -31,12 +31,12 @@ impl Table {
         z: &[f64],
         range: f64,
         begins: impl Fn(&ExitLevel) -> bool,
-        room: &mut [Polynomial],
+        workspace: &mut [Polynomial],
     ) -> Option<Hit> {
         let mut first = None;
         let mut range = range;
         for (index, exit) in self.exits.iter().enumerate() {
-            let found = self.first_meeting(exit, z, range, begins(exit), room);
+            let found = self.first_meeting(exit, z, range, begins(exit), workspace);
             if let Some(at) = found.filter(|&at| first.is_none() || at < range) {
                 first = Some(Hit { exit: index, at });
                 range = at;
@@ -51,7 +51,7 @@ impl Table {
         z: &[f64],
         range: f64,
         begins: bool,
-        room: &mut [Polynomial],
+        workspace: &mut [Polynomial],
     ) -> Option<f64> {
         let width = self.cells + 1;
         let mut ends = [0.0; ENDS];
@@ -79,8 +79,8 @@ impl Table {
             if a >= 0.0 && b > 0.0 && a + b > bound {
                 continue;
             }
-            self.polynomials(cell, z, room);
-            let distance = self.distance(exit, room);
+            self.polynomials(cell, z, workspace);
+            let distance = self.distance(exit, workspace);
             let to = (range - middle).min(0.5);
             let noise = self.noise(exit, z, cell);
             let found = first_zero(&distance, from, to, begins && cell == 0, noise);

@@ -20,7 +20,7 @@
 //!
 //! Source of (1): Van Loan (1978), Computing integrals involving the matrix exponential, IEEE Trans. Automatic Control 23.
 
-use super::exponential::{Room, add_row_times, fill_derivatives, fill_series};
+use super::exponential::{Workspace, add_row_times, fill_derivatives, fill_series};
 use super::terms::Basis;
 
 /// Terms of the series (1).
@@ -100,19 +100,25 @@ impl Table {
     }
 
     /// Fills the table from `A` and the rows of its exit levels, and its derivatives if that of `A` is given.
-    pub(super) fn fill(&mut self, matrix: &[f64], by: Option<&[f64]>, cell: f64, room: &mut Room) {
+    pub(super) fn fill(
+        &mut self,
+        matrix: &[f64],
+        by: Option<&[f64]>,
+        cell: f64,
+        workspace: &mut Workspace,
+    ) {
         self.cell = cell;
-        room.set(matrix, by, cell);
-        room.exponentials(by.is_some());
-        room.taylor(self, by.is_some());
-        fill_series(&mut self.series, room);
+        workspace.set(matrix, by, cell);
+        workspace.exponentials(by.is_some());
+        workspace.taylor(self, by.is_some());
+        fill_series(&mut self.series, workspace);
         for exit in &mut self.exits {
-            exit.fill(&self.series, self.rows, self.coordinates, room);
+            exit.fill(&self.series, self.rows, self.coordinates, workspace);
         }
         if by.is_some() {
             let length = self.series.len();
             self.series_by.resize(length, [0.0; COEFFICIENTS]);
-            fill_derivatives(&mut self.series_by, room);
+            fill_derivatives(&mut self.series_by, workspace);
         }
     }
 
@@ -190,18 +196,24 @@ impl ExitLevel {
     }
 
     /// Tabulates the distance at the ends of cells, and the bound on its second derivative.
-    fn fill(&mut self, series: &[Polynomial], rows: usize, coordinates: usize, room: &mut Room) {
-        let (order, width) = (self.row.len(), room.middles.len() + 1);
-        room.row.copy_from_slice(&self.row);
-        add_row_times(&self.row, &room.half.value, &mut room.row);
+    fn fill(
+        &mut self,
+        series: &[Polynomial],
+        rows: usize,
+        coordinates: usize,
+        workspace: &mut Workspace,
+    ) {
+        let (order, width) = (self.row.len(), workspace.middles.len() + 1);
+        workspace.row.copy_from_slice(&self.row);
+        add_row_times(&self.row, &workspace.half.value, &mut workspace.row);
         self.ends.resize(order * width, 0.0);
         for (m, &x) in self.row.iter().enumerate() {
             self.ends[m * width] = x;
         }
-        for (j, middle) in room.middles.iter().enumerate() {
-            room.other.copy_from_slice(&room.row);
-            add_row_times(&room.row, &middle.value, &mut room.other);
-            for (m, &x) in room.other.iter().enumerate() {
+        for (j, middle) in workspace.middles.iter().enumerate() {
+            workspace.other.copy_from_slice(&workspace.row);
+            add_row_times(&workspace.row, &middle.value, &mut workspace.other);
+            for (m, &x) in workspace.other.iter().enumerate() {
                 self.ends[m * width + j + 1] = x;
             }
         }

@@ -35,7 +35,7 @@ pub(crate) struct Field {
     coefficients: Vec<f64>,
     /// The entries of `M^-1` that are not zero: row, column, value.
     inverse_mass: Vec<(usize, usize, f64)>,
-    /// Room for the mass matrix, its factors, and a column of its inverse.
+    /// Workspace for the mass matrix, its factors, and a column of its inverse.
     mass: Matrix,
     lu: Lu,
     column: Vec<f64>,
@@ -69,9 +69,9 @@ pub(crate) struct Contact {
     moving: bool,
 }
 
-/// Room for derivatives of the coefficients, and of the levels of a contact.
+/// Workspace for derivatives of the coefficients, and of the levels of a contact.
 #[derive(Debug)]
-pub(crate) struct Room<'r> {
+pub(crate) struct Workspace<'r> {
     pub(crate) by: &'r mut [f64],
     pub(crate) levels: &'r mut [f64],
 }
@@ -323,7 +323,7 @@ impl Field {
         column: &[f64],
         q: &[f64],
         phase: f64,
-        by: Option<(Variable, Room<'_>)>,
+        by: Option<(Variable, Workspace<'_>)>,
     ) -> f64 {
         let item_at = |item: &Item| self.wave(item, phase).0;
         let (facts, layout) = (&self.contacts[contact], &self.layout.contacts[contact]);
@@ -331,7 +331,7 @@ impl Field {
         let mut change: f64 = gap
             .map(|d| self.coefficients[d.coefficient] * item_at(d) * column[d.row])
             .sum();
-        let Some((variable, Room { by, levels })) = by else {
+        let Some((variable, Workspace { by, levels })) = by else {
             return change;
         };
         self.coefficients_by(variable, by);

@@ -123,7 +123,7 @@ pub(super) struct Engine<const S: usize> {
     pub(super) coefficients: Vec<f64>,
     pub(super) weights: Vec<f64>,
     pub(super) slopes: Slopes<S>,
-    /// Room for derivatives of the levels of one contact.
+    /// Workspace for derivatives of the levels of one contact.
     pub(super) levels_by: Vec<f64>,
     pub(super) slopes_here: Slopes<1>,
     pub(super) matrix: Matrix,
@@ -131,7 +131,7 @@ pub(super) struct Engine<const S: usize> {
     pub(super) right: Vec<f64>,
     /// Sizes of the columns of the tangent so far, `(by q, by v)`.
     pub(super) column_sizes: Vec<[f64; 2]>,
-    /// Room for tangent columns.
+    /// Workspace for tangent columns.
     pub(super) columns: Vec<f64>,
     /// What errors of coordinates and rates are relative to.
     pub(super) scales: Vec<[f64; 2]>,

@@ -76,7 +76,7 @@ impl<const S: usize> Engine<S> {
             return Err(FlowError::NotFinite { phase: from });
         }
         self.begin(from, state, tangent.as_ref().and_then(|tangent| tangent.by));
-        // Room for the columns at the end of a step, borrowed apart from the rest.
+        // Workspace for the columns at the end of a step, borrowed apart from the rest.
         let mut columns = std::mem::take(&mut self.columns);
         let result = self.run(to - from, tangent, &mut columns, see);
         self.columns = columns;

@@ -12,7 +12,7 @@
 //!
 //! Source: Leine and Nijmeijer (2004), Dynamics and Bifurcations of Non-Smooth Mechanical Systems, chapter 7.
 
-use crate::time::field::Room;
+use crate::time::field::Workspace;
 use crate::time::{FlowError, Tangent};
 
 use super::engine::{Engine, StepState};
@@ -167,11 +167,11 @@ impl<const S: usize> Engine<S> {
         let last = tangent.columns.len() / order - 1;
         for (index, column) in tangent.columns.chunks_exact_mut(order).enumerate() {
             let by = tangent.by.filter(|_| index == last);
-            let room = Room {
+            let workspace = Workspace {
                 by: &mut self.slopes.coefficients,
                 levels: &mut self.levels_by,
             };
-            let by = by.map(|by| (by, room));
+            let by = by.map(|by| (by, workspace));
             let q = &self.here.q;
             let moved = self.field.gap_change(contact, level, column, q, phase, by);
             let (_, v) = column.split_at_mut(order / 2);
