@@ -22,7 +22,7 @@ pub(super) struct Stepper {
     /// The point before the one from which the next step goes, where the curve between them was smooth.
     pub(super) before: Option<Vec<f64>>,
     /// Half the second derivative by arc length of the curve there.
-    bend: Vec<f64>,
+    curvature: Vec<f64>,
 }
 
 impl Stepper {
@@ -39,7 +39,7 @@ impl Stepper {
             },
             largest: [0.0; 2],
             before: None,
-            bend: vec![0.0; problem.unknowns() + 1],
+            curvature: vec![0.0; problem.unknowns() + 1],
         }
     }
 
@@ -161,7 +161,7 @@ impl Stepper {
         newton: &mut Newton,
         from: &CurvePoint,
     ) -> Result<CurvePoint, Stop> {
-        self.bend_at(newton, from);
+        self.set_curvature(newton, from);
         loop {
             let steps = self.options.steps;
             let shorter = match self.corrected(problem, newton, from, self.step) {
@@ -194,27 +194,27 @@ impl Stepper {
                     })?
                 }
             };
-            self.bend.fill(0.0);
+            self.curvature.fill(0.0);
             self.step = shorter;
         }
     }
 
     /// The parabola through the point before, and this one with its tangent: at arc length `-h` before,
     /// `u_0 - h t_0 + h^2 b = u_(-1)`. Zero where there is none.
-    fn bend_at(&mut self, newton: &Newton, from: &CurvePoint) {
+    fn set_curvature(&mut self, newton: &Newton, from: &CurvePoint) {
         let Some(before) = self.before.take() else {
-            self.bend.fill(0.0);
+            self.curvature.fill(0.0);
             return;
         };
-        for (to, (x, y)) in self.bend.iter_mut().zip(before.iter().zip(&from.u)) {
+        for (to, (x, y)) in self.curvature.iter_mut().zip(before.iter().zip(&from.u)) {
             *to = x - y;
         }
-        let h = -newton.norm().product(from.scale, &from.tangent, &self.bend);
-        for (to, t) in self.bend.iter_mut().zip(&from.tangent) {
+        let h = -newton.norm().product(from.scale, &from.tangent, &self.curvature);
+        for (to, t) in self.curvature.iter_mut().zip(&from.tangent) {
             *to = (*to + h * t) / (h * h);
         }
-        if !(h > 0.0 && self.bend.iter().all(|x| x.is_finite())) {
-            self.bend.fill(0.0);
+        if !(h > 0.0 && self.curvature.iter().all(|x| x.is_finite())) {
+            self.curvature.fill(0.0);
         }
         self.before = Some(before);
     }
@@ -241,7 +241,7 @@ impl Stepper {
     ) -> Result<(CurvePoint, f64), NewtonError> {
         self.scale = from.scale;
         for (i, x) in self.trial.iter_mut().enumerate() {
-            *x = from.u[i] + step * (from.tangent[i] + step * self.bend[i]);
+            *x = from.u[i] + step * (from.tangent[i] + step * self.curvature[i]);
         }
         newton
             .norm()
