@@ -209,7 +209,9 @@ impl Stepper {
         for (to, (x, y)) in self.curvature.iter_mut().zip(before.iter().zip(&from.u)) {
             *to = x - y;
         }
-        let h = -newton.norm().product(from.scale, &from.tangent, &self.curvature);
+        let h = -newton
+            .norm()
+            .product(from.scale, &from.tangent, &self.curvature);
         for (to, t) in self.curvature.iter_mut().zip(&from.tangent) {
             *to = (*to + h * t) / (h * h);
         }

@@ -56,7 +56,7 @@ pub struct Converged {
     pub update: f64,
 }
 
-/// Room for one problem; no method allocates.
+/// Workspace for one problem; no method allocates.
 #[derive(Debug)]
 pub struct Newton {
     jacobian: Jacobian,
@@ -109,7 +109,7 @@ pub struct Border<'a> {
 }
 
 impl Newton {
-    /// Room for `n` unknowns and a parameter.
+    /// Workspace for `n` unknowns and a parameter.
     pub fn new(problem: &dyn Problem) -> Self {
         let n = problem.unknowns();
         Self {

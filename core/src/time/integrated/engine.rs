@@ -1,4 +1,4 @@
-//! Where the motion is, and the room that its steps need.
+//! Where the motion is, and the workspace of its steps.
 
 use std::f64::consts::TAU;
 
@@ -140,7 +140,7 @@ pub(super) struct Engine<const S: usize> {
     /// A level that the next step is to reach.
     pub(super) aim: Option<Aim>,
     /// The step is to end where a slope jumps.
-    pub(super) bends: bool,
+    pub(super) ends_at_kink: bool,
     /// Switches, and where they began to be counted.
     pub(super) switches: (usize, f64),
     /// Steps, and where they began to be counted.
@@ -192,7 +192,7 @@ impl<const S: usize> Engine<S> {
             scales: vec![[0.0; 2]; n],
             widths: [0.0; 3],
             aim: None,
-            bends: false,
+            ends_at_kink: false,
             switches: (0, 0.0),
             steps: (0, 0.0),
             work: Work::default(),

@@ -8,9 +8,9 @@
 //! Steps are explicit in that they are iterated: a vibration with an angle of more than about `S` on the step makes them
 //! shorter than accuracy would.
 
-mod bend;
 mod crossing;
 mod engine;
+mod kink;
 mod map;
 mod roots;
 pub(super) mod rule;

@@ -172,7 +172,7 @@ impl<const S: usize> Engine<S> {
     ) -> Result<(), FlowError> {
         let left = span - self.here.passed;
         self.accelerate_here();
-        self.bends = false;
+        self.ends_at_kink = false;
         let mut plan = self.first_plan(left);
         let (mut turned, mut landings) = (0, 0);
         for _ in 0..MOST_ATTEMPTS {
@@ -343,8 +343,8 @@ impl<const S: usize> Engine<S> {
         tangent: Option<&Tangent>,
         columns: &mut [f64],
     ) -> Result<Option<Plan>, FlowError> {
-        if let Some(part) = self.bend() {
-            self.bends = true;
+        if let Some(part) = self.kink() {
+            self.ends_at_kink = true;
             self.work.rejected += 1;
             return Ok(Some(Plan::Span(part * self.trial.width)));
         }
@@ -397,7 +397,7 @@ impl<const S: usize> Engine<S> {
             Map::FromStart(_) => 1,
             Map::ToEnd(_) => 2,
         };
-        let cut = self.trial.landing.is_some() || self.aim.is_some() || self.bends;
+        let cut = self.trial.landing.is_some() || self.aim.is_some() || self.ends_at_kink;
         let known = self.widths[kind];
         self.widths[kind] = if cut { next.max(known) } else { next };
         if kind == 1 {

@@ -16,7 +16,7 @@ const ENDS: f64 = 1e-10;
 
 impl<const S: usize> Engine<S> {
     /// The part of the trial after which the slope of a force first jumps.
-    pub(super) fn bend(&mut self) -> Option<f64> {
+    pub(super) fn kink(&mut self) -> Option<f64> {
         let map = self.tables[self.trial.table].map;
         let end = self.phase() + self.trial.width;
         let mut first: Option<f64> = None;
