@@ -132,6 +132,7 @@ pub fn all() -> Vec<Problem> {
 }
 
 /// A mass on one spring.
+#[derive(Clone, Copy)]
 struct Spring {
     id: &'static str,
     title: &'static str,
