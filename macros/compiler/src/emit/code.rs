@@ -105,7 +105,7 @@ fn atom(tokens: TokenStream, size: usize) -> Expression {
 }
 
 /// Two operands with a sign between them.
-fn binary(operands: [&Expression; 2], sign: TokenStream, binding: Binding) -> Expression {
+fn binary(operands: [&Expression; 2], sign: &TokenStream, binding: Binding) -> Expression {
     let [left, right] = operands;
     let size = left.size + right.size + 1;
     // The right operand needs brackets at equal binding: the order of operations is that of the tape.
@@ -159,10 +159,10 @@ fn write(
             let name = name(variable);
             atom(quote!(#name), 0)
         }
-        Operation::Add(a, b) => binary(two(a, b), quote!(+), Binding::Sum),
-        Operation::Subtract(a, b) => binary(two(a, b), quote!(-), Binding::Sum),
-        Operation::Multiply(a, b) => binary(two(a, b), quote!(*), Binding::Product),
-        Operation::Divide(a, b) => binary(two(a, b), quote!(/), Binding::Product),
+        Operation::Add(a, b) => binary(two(a, b), &quote!(+), Binding::Sum),
+        Operation::Subtract(a, b) => binary(two(a, b), &quote!(-), Binding::Sum),
+        Operation::Multiply(a, b) => binary(two(a, b), &quote!(*), Binding::Product),
+        Operation::Divide(a, b) => binary(two(a, b), &quote!(/), Binding::Product),
         Operation::Negate(a) => {
             let operand = bracketed(&written[a], written[a].binding < Binding::Atom);
             Expression {
