@@ -5,6 +5,7 @@ use std::fmt::Write;
 use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
 use hertzian::time::history;
 use hertzian::time::history::Span;
+use hertzian::time::stroboscope::Stroboscope;
 
 use super::output::{Results, Table, entries};
 use super::run::{Failure, Task};
@@ -42,24 +43,51 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         table.row(&[&[index as f64], &state[..]].concat());
         dots.push([index as f64, state[0]]);
     }
-    let from = window(&states, every);
-    let name = &facts.coordinates[0];
-    let looked = match every {
+    let whole = whole(task, dots)?;
+    let part = enlargement(task, &mut map, &states)?;
+    let svg = Page::new(1).chart(whole).chart(part).to_svg();
+    let mut summary = String::new();
+    let all = || states.iter().map(|state| state[0]);
+    // Writing to a string does not fail.
+    let _ = writeln!(
+        summary,
+        "periods    {}, {} at their beginnings from {:.6} to {:.6}",
+        states.len() - 1,
+        facts.coordinates[0],
+        all().fold(f64::INFINITY, f64::min),
+        all().fold(f64::NEG_INFINITY, f64::max)
+    );
+    Ok(table.with(svg, summary, states.len() == periods + 1))
+}
+
+/// All of the motion, as often as it is looked at.
+fn whole(task: &Task<'_>, dots: Vec<[f64; 2]>) -> Result<Chart, Failure> {
+    let name = &task.system.facts().coordinates[0];
+    let looked = match task.options.every.get() {
         1 => "at the beginning of each period".to_owned(),
         n => format!("at the beginning of every {n}th period"),
     };
-    let whole = Chart::new(task.title(None, "")?)
+    let chart = Chart::new(task.title(None, "")?)
         .x("time in excitation periods")
-        .y(format!("{name} {looked}"))
-        .cloud(Cloud {
-            label: String::new(),
-            points: dots,
-        });
-    let mut curve = Vec::new();
+        .y(format!("{name} {looked}"));
+    Ok(chart.cloud(Cloud {
+        label: String::new(),
+        points: dots,
+    }))
+}
+
+/// Some periods of the motion with the curve between their beginnings.
+fn enlargement(
+    task: &Task<'_>,
+    map: &mut Stroboscope,
+    states: &[Vec<f64>],
+) -> Result<Chart, Failure> {
+    let from = window(states, task.options.every.get());
     let last = (from + WINDOW).min(states.len() - 1);
+    let mut curve = Vec::new();
     let mut moving = states[from].clone();
     history::record(
-        &mut map,
+        map,
         &mut moving,
         Span {
             periods: last - from,
@@ -70,9 +98,10 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
         },
     )?;
     let shown = states.iter().enumerate().take(last + 1).skip(from);
-    let part = Chart::new(format!("enlargement: periods {from} to {last}"))
+    let chart = Chart::new(format!("enlargement: periods {from} to {last}"))
         .x("time in excitation periods")
-        .y(name.to_string())
+        .y(task.system.facts().coordinates[0].to_string());
+    Ok(chart
         .trace(Trace {
             label: String::new(),
             points: curve,
@@ -82,19 +111,7 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
             points: shown
                 .map(|(index, state)| [index as f64, state[0]])
                 .collect(),
-        });
-    let svg = Page::new(1).chart(whole).chart(part).to_svg();
-    let mut summary = String::new();
-    let all = || states.iter().map(|state| state[0]);
-    // Writing to a string does not fail.
-    let _ = writeln!(
-        summary,
-        "periods    {}, {name} at their beginnings from {:.6} to {:.6}",
-        states.len() - 1,
-        all().fold(f64::INFINITY, f64::min),
-        all().fold(f64::NEG_INFINITY, f64::max)
-    );
-    Ok(table.with(svg, summary, states.len() == periods + 1))
+        }))
 }
 
 /// Where the enlargement begins: so that the largest change from one point to the next is in its second half.

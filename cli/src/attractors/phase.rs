@@ -26,71 +26,26 @@ const POINTS: usize = 5000;
 pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     let facts = task.system.facts();
     let head = ["drive", "attractor", "period", "point"].map(str::to_owned);
-    let mut table = Table::new([head.to_vec(), entries(&facts.coordinates)].concat());
-    let mut charts = Vec::new();
-    let mut summary = String::new();
+    let mut gallery = Gallery {
+        table: Table::new([head.to_vec(), entries(&facts.coordinates)].concat()),
+        charts: Vec::new(),
+        summary: String::new(),
+        marked: marked(task)?,
+    };
     let mut complete = true;
-    let marked = marked(task)?;
     for drive in task.drives() {
         if !task.goes_on() {
             complete = false;
             break;
         }
-        let value = task.amplitude(drive)?;
-        let (basins, start) = settled(task, drive)?;
-        complete &= basins.complete;
-        let mut portrait = Portrait {
-            chart: Chart::new(task.title(drive, "")?)
-                .x(facts.coordinates[0].to_string())
-                .y(format!("rate of {}", facts.coordinates[0])),
-            map: task.map(drive)?,
-        };
-        // Writing to a string does not fail.
-        let _ = writeln!(summary, "{}", task.title(drive, "")?);
-        for (index, attractor) in basins.attractors.iter().enumerate() {
-            let label = name(&basins.attractors, index);
-            let _ = writeln!(
-                summary,
-                "{label:<10} from x = {:.9}",
-                attractor.points[0][0]
-            );
-            for (point, state) in attractor.points.iter().enumerate() {
-                let head = [value, index as f64, attractor.period as f64, point as f64];
-                table.row(&[&head, &state[..]].concat());
-            }
-            portrait = portrait.periodic(attractor, label)?;
-        }
-        let other = start.filter(|(fate, _)| {
-            let _ = writeln!(summary, "{}", other_label(*fate));
-            // Beside periodic orbits a long period is no portrait of its own.
-            *fate == Fate::Chaotic || basins.attractors.is_empty()
-        });
-        if let Some((fate, state)) = other {
-            let label = other_label(fate);
-            let (more, points) = portrait.other(task, state, label)?;
-            portrait = more;
-            complete &= points.len() > POINTS;
-            for (point, state) in points.iter().enumerate() {
-                let head = [value, f64::from(fate.label()), 0.0, point as f64];
-                table.row(&[&head, &state[..]].concat());
-            }
-        }
-        let same = |marked: &&Attractor| {
-            let mut periods = basins.attractors.iter().map(|attractor| attractor.period);
-            !periods.any(|period| period == marked.period)
-        };
-        if let Some(attractor) = marked.as_ref().filter(same) {
-            portrait.chart = portrait.chart.markers(Markers {
-                label: format!(
-                    "period {} at A = {}",
-                    attractor.period,
-                    task.options.mark.unwrap_or(value)
-                ),
-                points: attractor.points.iter().map(|state| place(state)).collect(),
-            });
-        }
-        charts.push(portrait.chart);
+        complete &= gallery.add(task, drive)?;
     }
+    let Gallery {
+        table,
+        mut charts,
+        summary,
+        ..
+    } = gallery;
     if let (&[left, right, low, high], Some(last)) = (&task.options.zoom[..], charts.last()) {
         let part = last.clone().limits([left, right], [low, high]);
         charts.push(part.title("enlargement of the last"));
@@ -98,6 +53,79 @@ pub fn run(task: &Task<'_>) -> Result<Results, Failure> {
     let columns = if charts.len() > 1 { 2 } else { 1 };
     let page = charts.into_iter().fold(Page::new(columns), Page::chart);
     Ok(table.with(page.to_svg(), summary, complete))
+}
+
+/// The portraits so far.
+struct Gallery {
+    table: Table,
+    charts: Vec<Chart>,
+    summary: String,
+    /// The orbit that is marked in all of them.
+    marked: Option<Attractor>,
+}
+
+impl Gallery {
+    /// Adds the portrait at an amplitude; false if it is not complete.
+    fn add(&mut self, task: &Task<'_>, drive: Option<f64>) -> Result<bool, Failure> {
+        let facts = task.system.facts();
+        let value = task.amplitude(drive)?;
+        let (basins, start) = settled(task, drive)?;
+        let mut complete = basins.complete;
+        let mut portrait = Portrait {
+            chart: Chart::new(task.title(drive, "")?)
+                .x(facts.coordinates[0].to_string())
+                .y(format!("rate of {}", facts.coordinates[0])),
+            map: task.map(drive)?,
+        };
+        // Writing to a string does not fail.
+        let _ = writeln!(self.summary, "{}", task.title(drive, "")?);
+        for (index, attractor) in basins.attractors.iter().enumerate() {
+            let label = name(&basins.attractors, index);
+            let first = attractor.points[0][0];
+            let _ = writeln!(self.summary, "{label:<10} from x = {first:.9}");
+            let head = [value, index as f64, attractor.period as f64];
+            self.rows(head, &attractor.points);
+            portrait = portrait.periodic(attractor, label)?;
+        }
+        if let Some((fate, state)) = start {
+            let label = other_label(fate);
+            let _ = writeln!(self.summary, "{label}");
+            // Beside periodic orbits a long period is no portrait of its own.
+            if fate == Fate::Chaotic || basins.attractors.is_empty() {
+                let (more, points) = portrait.other(task, state, label)?;
+                portrait = more;
+                complete &= points.len() > POINTS;
+                self.rows([value, f64::from(fate.label()), 0.0], &points);
+            }
+        }
+        self.mark(task, value, &basins, &mut portrait);
+        self.charts.push(portrait.chart);
+        Ok(complete)
+    }
+
+    /// A row for each point, behind what is the same for all.
+    fn rows(&mut self, [value, label, period]: [f64; 3], points: &[Vec<f64>]) {
+        for (point, state) in points.iter().enumerate() {
+            let head = [value, label, period, point as f64];
+            self.table.row(&[&head, &state[..]].concat());
+        }
+    }
+
+    /// Marks the orbit that is to be, unless one of its period is there.
+    fn mark(&self, task: &Task<'_>, value: f64, basins: &Basins, portrait: &mut Portrait) {
+        let Some(marked) = &self.marked else {
+            return;
+        };
+        let mut periods = basins.attractors.iter().map(|attractor| attractor.period);
+        if periods.any(|period| period == marked.period) {
+            return;
+        }
+        let drive = task.options.mark.unwrap_or(value);
+        portrait.chart = portrait.chart.clone().markers(Markers {
+            label: format!("period {} at A = {drive}", marked.period),
+            points: marked.points.iter().map(|state| place(state)).collect(),
+        });
+    }
 }
 
 /// A motion that is on no periodic orbit: what is known of it, and a state that it has settled to.

@@ -81,11 +81,12 @@ pub fn figure_10b(task: &Task<'_>) -> Result<Drawing, String> {
 }
 
 /// A time history, and the Lyapunov exponent of the same motion.
-fn history(
-    task: &Task<'_>,
-    name: &str,
-    (drive, exact, uncertain): (f64, f64, f64),
-) -> Result<Drawing, String> {
+fn history(task: &Task<'_>, name: &str, known: exact::Exponent) -> Result<Drawing, String> {
+    let exact::Exponent {
+        drive,
+        value: exact,
+        error: uncertain,
+    } = known;
     let results = attractors(task, &format!("--figure {name}"))?;
     let long = format!("--lyapunov --alpha 1 --drive {drive} --start -0.35 0.335");
     let exponents = attractors(task, &long)?;

@@ -5,7 +5,7 @@
 use hertzian::bifurcation::Bifurcations;
 use hertzian::chart::{Chart, Curve, Markers, Scale, event_markers};
 use hertzian::error::chain;
-use hertzian::{Branch, Event, EventKind, FrequencyResponse, OrbitError, Point, Shooting};
+use hertzian::{Branch, Error, Event, EventKind, FrequencyResponse, OrbitError, Point, Shooting};
 
 use super::exact;
 use super::figure::{Drawing, Table, Task, Value};
@@ -228,37 +228,12 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
     let mut values = Vec::new();
     let mut near = PERIOD_8.to_vec();
     for column in &exact::TABLE_1 {
-        let &exact::Column {
-            drive,
-            multipliers,
-            printed,
-        } = column;
-        let names = [format!("λ₁ at A = {drive}"), format!("λ₂ at A = {drive}")];
-        match shooting.clone().near_state(&near).orbit(drive) {
+        match shooting.clone().near_state(&near).orbit(column.drive) {
             Ok(point) => {
                 near = point.orbit.state();
-                for (index, name) in names.into_iter().enumerate() {
-                    let found = point
-                        .stability
-                        .multipliers
-                        .get(index)
-                        .map_or(f64::NAN, |m| m.re);
-                    let value = Value::of(name, found).stated(point.stability.error);
-                    let exact = multipliers.map(|exact| exact[index]);
-                    values.push(value.exact(exact).printed(printed[index]));
-                }
+                values.extend(beside(column, &point));
             }
-            Err(error) => {
-                let beyond = match error.downcast_ref() {
-                    Some(&OrbitError::Beyond { fold, .. }) if multipliers.is_none() => Some(fold),
-                    _ => None,
-                };
-                let fold = beyond.ok_or_else(|| chain(&error).to_string())?;
-                let value = Value::of(format!("fold before A = {drive}"), fold);
-                let exact = exact::AMPLITUDES.iter().find(|known| known.0 == 8);
-                let value = value.exact(exact.map(|known| known.2));
-                values.push(value.printed("1.0020 and 0.1833: there is no orbit"));
-            }
+            Err(error) => values.push(fold_before(column, &error)?),
         }
     }
     let mut drawing = figure.drawing;
@@ -279,6 +254,31 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
         .to_svg();
     drawing.values = values;
     Ok(drawing)
+}
+
+/// The multipliers of an orbit beside those of the table.
+fn beside(column: &exact::Column, point: &Point) -> [Value; 2] {
+    let found = &point.stability.multipliers;
+    [0, 1].map(|index| {
+        let name = format!("λ{} at A = {}", ["₁", "₂"][index], column.drive);
+        let found = found.get(index).map_or(f64::NAN, |m| m.re);
+        let value = Value::of(name, found).stated(point.stability.error);
+        let exact = column.multipliers.map(|exact| exact[index]);
+        value.exact(exact).printed(column.printed[index])
+    })
+}
+
+/// The fold before a column of the table at which there is no orbit.
+fn fold_before(column: &exact::Column, error: &Error) -> Result<Value, String> {
+    let beyond = match error.downcast_ref() {
+        Some(&OrbitError::Beyond { fold, .. }) if column.multipliers.is_none() => Some(fold),
+        _ => None,
+    };
+    let fold = beyond.ok_or_else(|| chain(error).to_string())?;
+    let value = Value::of(format!("fold before A = {}", column.drive), fold);
+    let exact = exact::AMPLITUDES.iter().find(|known| known.0 == 8);
+    let value = value.exact(exact.map(|known| known.2));
+    Ok(value.printed("1.0020 and 0.1833: there is no orbit"))
 }
 
 /// Amplitude and leading multiplier.

@@ -161,7 +161,29 @@ pub const TABLE_1: [Column; 4] = [
 ];
 
 /// Largest Lyapunov exponents per period at two amplitudes, with their standard errors.
-pub const LYAPUNOV: [(f64, f64, f64); 2] = [(1.78, 0.0129, 0.0005), (1.785, 0.214, 0.004)];
+pub const LYAPUNOV: [Exponent; 2] = [
+    Exponent {
+        drive: 1.78,
+        value: 0.0129,
+        error: 0.0005,
+    },
+    Exponent {
+        drive: 1.785,
+        value: 0.214,
+        error: 0.004,
+    },
+];
+
+/// The largest Lyapunov exponent per period at an amplitude, with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exponent {
+    /// Amplitude of the excitation.
+    pub drive: f64,
+    /// The exponent.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+}
 
 /// Frequency of the free vibration of amplitude one without load, for some exponents: the closed form.
 pub const BACKBONES: [(f64, f64); 4] = [

@@ -175,7 +175,7 @@ fn sides(
 /// # Errors
 /// If a curve does not begin.
 pub fn figure_6a(task: &Task<'_>) -> Result<Drawing, String> {
-    dampings(task, (1.5, 1.0), [0.5, 1.6])
+    dampings(task, 1.5, 1.0, [0.5, 1.6])
 }
 
 /// Damping of a one-sided contact of exponent 3/2 under load 2.
@@ -183,7 +183,7 @@ pub fn figure_6a(task: &Task<'_>) -> Result<Drawing, String> {
 /// # Errors
 /// If a curve does not begin.
 pub fn figure_6b(task: &Task<'_>) -> Result<Drawing, String> {
-    dampings(task, (1.5, 2.0), [0.7, 1.8])
+    dampings(task, 1.5, 2.0, [0.7, 1.8])
 }
 
 /// Damping of a one-sided contact of exponent 0.6 under load 1.
@@ -191,7 +191,7 @@ pub fn figure_6b(task: &Task<'_>) -> Result<Drawing, String> {
 /// # Errors
 /// If a curve does not begin.
 pub fn figure_7a(task: &Task<'_>) -> Result<Drawing, String> {
-    dampings(task, (0.6, 1.0), [0.45, 1.1])
+    dampings(task, 0.6, 1.0, [0.45, 1.1])
 }
 
 /// Damping of a one-sided contact of exponent 0.6 under load 2.
@@ -199,14 +199,10 @@ pub fn figure_7a(task: &Task<'_>) -> Result<Drawing, String> {
 /// # Errors
 /// If a curve does not begin.
 pub fn figure_7b(task: &Task<'_>) -> Result<Drawing, String> {
-    dampings(task, (0.6, 2.0), [0.4, 0.9])
+    dampings(task, 0.6, 2.0, [0.4, 0.9])
 }
 
-fn dampings(
-    task: &Task<'_>,
-    (alpha, load): (f64, f64),
-    range: [f64; 2],
-) -> Result<Drawing, String> {
+fn dampings(task: &Task<'_>, alpha: f64, load: f64, range: [f64; 2]) -> Result<Drawing, String> {
     let mut figure = Curves::new(task);
     let case = |zeta: f64| {
         Case::one_sided(format!("ζ = {zeta}"), alpha, range)

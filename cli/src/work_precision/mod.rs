@@ -103,10 +103,6 @@ pub fn run(
     cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<Vec<Section>, Failure> {
-    let failed = |path: &Path| {
-        let path = path.to_path_buf();
-        move |error| Failure::File(path, error)
-    };
     check(options).map_err(Failure::Option)?;
     files::make_folder(&options.out).map_err(failed(&options.out))?;
     let limits = Limits {
@@ -126,48 +122,57 @@ pub fn run(
             progress.update(|| format!("{}: {done} of {all} runs", problem.title));
             !cancel.is_cancelled()
         });
-        let fold = chart::chart(
-            &problem,
-            &measured,
-            "error of the fold of largest amplitude, ω",
-            |one| one.fold,
-        );
-        let size = chart::chart(
-            &problem,
-            &measured,
-            "relative error of peak-to-peak",
-            |one| one.peak_to_peak,
-        );
-        let svg = options
-            .out
-            .join(problem.id.replace('.', "_"))
-            .with_extension("svg");
-        let answers = multipliers::measure(&problem, &reference);
-        let peers = peer::on(&problem, &reference);
-        let mut page = Page::new(1);
-        if !reference.folds.is_empty() {
-            page = page.chart(chart::with_peers(fold, &peers, |peer| peer.fold));
-        }
-        let size = chart::with_peers(size, &peers, |peer| peer.peak_to_peak);
-        let page = page
-            .chart(size)
-            .chart(chart::multipliers(&problem, &answers));
-        export::write(&svg, page.to_svg()).map_err(failed(&svg))?;
-        sections.push(Section {
+        let section = Section {
+            answers: multipliers::measure(&problem, &reference),
+            peers: peer::on(&problem, &reference),
             problem,
             reference,
             measured,
-            answers,
-            peers,
-        });
-        let csv = options.out.join("work_precision.csv");
-        write_csv(&csv, &sections, &machine).map_err(failed(&csv))?;
-        let csv = options.out.join("multipliers.csv");
-        write_multipliers(&csv, &sections).map_err(failed(&csv))?;
-        let html = options.out.join("index.html");
-        export::write(&html, page::html(&sections, &machine)).map_err(failed(&html))?;
+        };
+        let name = section.problem.id.replace('.', "_");
+        let svg = options.out.join(name).with_extension("svg");
+        export::write(&svg, picture(&section).to_svg()).map_err(failed(&svg))?;
+        sections.push(section);
+        write(options, &sections, &machine)?;
     }
     Ok(sections)
+}
+
+/// A file cannot be written.
+fn failed(path: &Path) -> impl FnOnce(io::Error) -> Failure {
+    let path = path.to_path_buf();
+    move |error| Failure::File(path, error)
+}
+
+/// The charts of a problem.
+fn picture(section: &Section) -> Page {
+    let Section {
+        problem,
+        reference,
+        measured,
+        answers,
+        peers,
+    } = section;
+    let mut page = Page::new(1);
+    if !reference.folds.is_empty() {
+        let label = "error of the fold of largest amplitude, ω";
+        let fold = chart::chart(problem, measured, label, |one| one.fold);
+        page = page.chart(chart::with_peers(fold, peers, |peer| peer.fold));
+    }
+    let label = "relative error of peak-to-peak";
+    let size = chart::chart(problem, measured, label, |one| one.peak_to_peak);
+    page.chart(chart::with_peers(size, peers, |peer| peer.peak_to_peak))
+        .chart(chart::multipliers(problem, answers))
+}
+
+/// Writes what is known so far.
+fn write(options: &Options, sections: &[Section], machine: &str) -> Result<(), Failure> {
+    let csv = options.out.join("work_precision.csv");
+    write_csv(&csv, sections, machine).map_err(failed(&csv))?;
+    let csv = options.out.join("multipliers.csv");
+    write_multipliers(&csv, sections).map_err(failed(&csv))?;
+    let html = options.out.join("index.html");
+    export::write(&html, page::html(sections, machine)).map_err(failed(&html))
 }
 
 /// What the numbers must be.

@@ -86,48 +86,76 @@ pub const IDS: [&str; 5] = [
 /// 80-bit arithmetic, with errors below 1e-12.
 pub fn all() -> Vec<Problem> {
     vec![
-        problem(
-            ("one-sided-1", "one-sided, α = 1 (Fig. 5a)"),
-            (1.0, true, 0.032, 1.0),
-            [0.6, 1.4],
-            (&[0.715_119_549_676_419, 0.960_163_671_878_57], 0.8),
-        ),
-        problem(
-            ("one-sided-1.5", "one-sided, α = 1.5 (Fig. 5b)"),
-            (1.5, true, 0.032, 1.0),
-            [0.6, 1.6],
-            (&[0.685_842_253_572_486, 1.144_516_913_788_162], 0.8),
-        ),
-        problem(
-            ("one-sided-0.6", "one-sided, α = 0.6 (Fig. 5c)"),
-            (0.6, true, 0.032, 1.0),
-            [0.5, 1.2],
-            (
-                &[
-                    0.631_308_249_440_869,
-                    0.845_526_217_725_541,
-                    0.849_176_252_131_873,
-                    0.765_568_492_941_199,
-                ],
-                0.7,
-            ),
-        ),
-        problem(
-            ("continuous-1.5", "continuous, α = 1.5 (Fig. 2a)"),
-            (1.5, false, 0.01, 0.0),
-            [0.5, 1.7],
-            (&[1.332_696_002_393_464, 0.909_513_715_044_238], 1.2),
-        ),
+        problem(Spring {
+            id: "one-sided-1",
+            title: "one-sided, α = 1 (Fig. 5a)",
+            alpha: 1.0,
+            one_sided: true,
+            range: [0.6, 1.4],
+            folds: &[0.715_119_549_676_419, 0.960_163_671_878_57],
+            at: 0.8,
+        }),
+        problem(Spring {
+            id: "one-sided-1.5",
+            title: "one-sided, α = 1.5 (Fig. 5b)",
+            alpha: 1.5,
+            one_sided: true,
+            range: [0.6, 1.6],
+            folds: &[0.685_842_253_572_486, 1.144_516_913_788_162],
+            at: 0.8,
+        }),
+        problem(Spring {
+            id: "one-sided-0.6",
+            title: "one-sided, α = 0.6 (Fig. 5c)",
+            alpha: 0.6,
+            one_sided: true,
+            range: [0.5, 1.2],
+            folds: &[
+                0.631_308_249_440_869,
+                0.845_526_217_725_541,
+                0.849_176_252_131_873,
+                0.765_568_492_941_199,
+            ],
+            at: 0.7,
+        }),
+        problem(Spring {
+            id: "continuous-1.5",
+            title: "continuous, α = 1.5 (Fig. 2a)",
+            alpha: 1.5,
+            one_sided: false,
+            range: [0.5, 1.7],
+            folds: &[1.332_696_002_393_464, 0.909_513_715_044_238],
+            at: 1.2,
+        }),
         stiff_stop(),
     ]
 }
 
-fn problem(
-    (id, title): (&'static str, &'static str),
-    (alpha, one_sided, zeta, load): (f64, bool, f64, f64),
+/// A mass on one spring.
+#[derive(Clone, Copy)]
+struct Spring {
+    id: &'static str,
+    title: &'static str,
+    alpha: f64,
+    one_sided: bool,
     range: [f64; 2],
-    (folds, at): (&'static [f64], f64),
-) -> Problem {
+    folds: &'static [f64],
+    /// Where the size of the orbit is compared.
+    at: f64,
+}
+
+/// One-sided contacts are loaded, and damped more.
+fn problem(spring: Spring) -> Problem {
+    let Spring {
+        id,
+        title,
+        alpha,
+        one_sided,
+        range,
+        folds,
+        at,
+    } = spring;
+    let (zeta, load) = if one_sided { (0.032, 1.0) } else { (0.01, 0.0) };
     let options = ModelOptions {
         alpha,
         one_sided,

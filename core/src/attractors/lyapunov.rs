@@ -241,7 +241,7 @@ mod tests {
         }
     }
 
-    fn exponents(drive: f64, state: [f64; 2], (batches, periods): (usize, usize)) -> Exponents {
+    fn exponents(drive: f64, state: [f64; 2], batches: usize, periods: usize) -> Exponents {
         let model = OneSided {
             zeta: 0.032,
             load: 1.0,
@@ -303,7 +303,7 @@ mod tests {
     fn on_a_periodic_orbit_they_are_those_of_the_multipliers() {
         let start = [-31.334_287_816_436_888, 0.605_360_285_158_400_4];
         // Whole turns of the frame: batches of many periods, so that what the turning adds is small.
-        let found = exponents(1.0, start, (4, 3000));
+        let found = exponents(1.0, start, 4, 3000);
         let modulus = 0.380_774_924_593_537_2_f64.hypot(0.817_888_662_584_343_5);
         let expected = modulus.ln() / 3.0;
         for exponent in &found.exponents {
@@ -319,7 +319,7 @@ mod tests {
     /// Reference: 0.214 +- 0.004 per forcing period, from the closed-form flow in 80-bit arithmetic, independent of this project.
     #[test]
     fn beyond_the_interior_crisis() {
-        let found = exponents(1.785, [0.0, 0.0], (40, 5000));
+        let found = exponents(1.785, [0.0, 0.0], 40, 5000);
         let largest = found.exponents[0];
         let error = (largest.standard_error.powi(2) + 0.004_f64.powi(2)).sqrt();
         assert!(largest.standard_error < 0.01, "{largest}");
@@ -332,7 +332,7 @@ mod tests {
     fn in_intermittency() {
         let length = std::env::var("HERTZIAN_PERIODS").ok();
         let length = length.map_or(4000, |text| text.parse().expect("a number"));
-        let found = exponents(1.78, [-0.35, 0.335], (40, length));
+        let found = exponents(1.78, [-0.35, 0.335], 40, length);
         let largest = found.exponents[0];
         let error = (largest.standard_error.powi(2) + 0.0005_f64.powi(2)).sqrt();
         let most = 0.001 * (20_000.0 / length as f64).sqrt();

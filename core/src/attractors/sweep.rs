@@ -348,8 +348,8 @@ impl Sweep {
     /// Everything that was asked for.
     fn check(&self) -> Result<Checked, Error> {
         let facts = self.system.facts();
-        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
-        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
+        let from = self.from.ok_or(RequestError::no_end("from"))?;
+        let to = self.to.ok_or(RequestError::no_end("to"))?;
         validate::finite("from", from)?;
         validate::finite("to", to)?;
         let most = MOST_VALUES / if self.back { 2 } else { 1 };
@@ -386,7 +386,7 @@ impl Sweep {
                 .into());
             }
             (Variable::Parameter(_), None) => {
-                return Err(RequestError::Missing { name: "omega" }.into());
+                return Err(RequestError::no_omega().into());
             }
             (Variable::Parameter(index), Some(omega)) => {
                 parameters[index] = from;
@@ -604,10 +604,7 @@ mod tests {
             ));
         }
         let refused = Sweep::of(&MODEL).from(0.5).run().expect_err("no end");
-        assert_eq!(
-            refused.downcast_ref(),
-            Some(&RequestError::Missing { name: "to" })
-        );
+        assert_eq!(refused.downcast_ref(), Some(&RequestError::no_end("to")));
         let refused = sweep(0.0, 1.0, [0.0; 2]).start(&[0.0]).run();
         assert!(matches!(
             refused.expect_err("half a state").downcast_ref(),

@@ -103,6 +103,39 @@ impl Balance<'_> {
         }
     }
 
+    /// Evaluates the contact that has been loaded into the scratch series: where the base frequency changes by a number, with the change
+    /// that has been loaded; and if asked for, with slopes in full length.
+    fn evaluate_contact(&mut self, contact: usize, base_by: Option<f64>, full: bool) {
+        let base = self.base();
+        let layout = &self.layout.contacts[contact];
+        let s = &mut self.scratch;
+        let change = base_by.map(|base| Change {
+            gap: &s.change_gap,
+            rate: &s.change_rate,
+            arguments: &s.arguments_by[..layout.argument_count],
+            base,
+        });
+        let slopes = if full {
+            [&mut s.full_by_gap, &mut s.full_by_rate]
+        } else {
+            [&mut s.by_gap, &mut s.by_rate]
+        };
+        let [by_gap, by_rate] = slopes;
+        let mut out = ContactDerivatives {
+            by_gap,
+            by_rate,
+            by_parameter: &mut s.by_parameter,
+        };
+        let input = ContactInput {
+            law: self.system.law(layout.law),
+            arguments: &s.arguments[..layout.argument_count],
+            gap: &s.gap,
+            rate: &s.rate,
+            base,
+        };
+        self.aft.derivatives(input, change, &mut s.force, &mut out);
+    }
+
     /// Writes the series of the force of one contact at the variable set last.
     pub(crate) fn contact_force(&mut self, u: &[f64], contact: usize, force: &mut [f64]) {
         self.load_contact(u, contact);
@@ -128,7 +161,7 @@ impl Balance<'_> {
 
     /// Evaluates one contact and its derivatives into the scratch series. Returns whether it depends on the variable.
     pub(crate) fn contact_derivatives(&mut self, u: &[f64], contact: usize) -> bool {
-        let (base, base_by) = (self.base(), self.base_by());
+        let base_by = self.base_by();
         self.load_contact(u, contact);
         let layout = &self.layout.contacts[contact];
         let own = layout
@@ -139,28 +172,7 @@ impl Balance<'_> {
             self.load_change(u, contact);
             self.load_change_of_rate(1.0);
         }
-        let layout = &self.layout.contacts[contact];
-        let s = &mut self.scratch;
-        let change = Change {
-            gap: &s.change_gap,
-            rate: &s.change_rate,
-            arguments: &s.arguments_by[..layout.argument_count],
-            base: base_by,
-        };
-        let mut out = ContactDerivatives {
-            by_gap: &mut s.by_gap,
-            by_rate: &mut s.by_rate,
-            by_parameter: &mut s.by_parameter,
-        };
-        let input = ContactInput {
-            law: self.system.law(layout.law),
-            arguments: &s.arguments[..layout.argument_count],
-            gap: &s.gap,
-            rate: &s.rate,
-            base,
-        };
-        self.aft
-            .derivatives(input, changes.then_some(change), &mut s.force, &mut out);
+        self.evaluate_contact(contact, changes.then_some(base_by), false);
         changes
     }
 
@@ -201,7 +213,7 @@ impl Balance<'_> {
         contact: usize,
         derivative: &mut [f64],
     ) {
-        let (base, base_by) = (self.base(), self.base_by());
+        let base_by = self.base_by();
         let (length, period) = (self.length(), self.resolution.period);
         let by = direction[direction.len() - 1];
         self.load_contact(u, contact);
@@ -219,30 +231,11 @@ impl Balance<'_> {
             series::add_product(from, wave, value, &mut s.change_gap);
         }
         self.load_change_of_rate(by);
-        let layout = &self.layout.contacts[contact];
         let s = &mut self.scratch;
         s.full_by_gap.resize(s.full, 0.0);
         s.full_by_rate.resize(s.full, 0.0);
-        let change = Change {
-            gap: &s.change_gap,
-            rate: &s.change_rate,
-            arguments: &s.arguments_by[..layout.argument_count],
-            base: by * base_by,
-        };
-        let mut out = ContactDerivatives {
-            by_gap: &mut s.full_by_gap,
-            by_rate: &mut s.full_by_rate,
-            by_parameter: &mut s.by_parameter,
-        };
-        let input = ContactInput {
-            law: self.system.law(layout.law),
-            arguments: &s.arguments[..layout.argument_count],
-            gap: &s.gap,
-            rate: &s.rate,
-            base,
-        };
-        self.aft
-            .derivatives(input, Some(change), &mut s.force, &mut out);
+        self.evaluate_contact(contact, Some(by * base_by), true);
+        let (layout, s) = (&self.layout.contacts[contact], &self.scratch);
         for e in &layout.force {
             let wave = stretched(e.wave, period);
             let to = block_mut(derivative, e.index, length);

@@ -24,7 +24,7 @@
 //! `[mean, cos 1, sin 1, ..., cos K, sin K]`.
 
 pub(crate) mod aft;
-pub(crate) mod block;
+pub(crate) mod critical_block;
 pub(crate) mod resolution;
 pub(crate) mod start;
 pub(crate) mod subharmonics;
@@ -43,7 +43,7 @@ pub(crate) mod terms;
 #[cfg(test)]
 mod tests;
 
-use crate::balance::aft::{Aft, Engine};
+use crate::balance::aft::{Aft, ContactForces};
 use crate::cancel::Cancel;
 use crate::continuation::jacobian::Partition;
 use crate::model::layout::Layout;
@@ -114,7 +114,7 @@ pub struct Balance<'a> {
     omega: f64,
     variable: Variable,
     drive_factor: f64,
-    aft: Engine,
+    aft: Box<dyn ContactForces>,
     coefficients: Vec<f64>,
     coefficients_by: Vec<f64>,
     scratch: Scratch,
@@ -170,7 +170,7 @@ impl<'a> Balance<'a> {
             omega,
             variable,
             drive_factor: 1.0,
-            aft: Engine::new(resolution.aft, resolution.samples),
+            aft: resolution.aft.engine(resolution.samples),
             coefficients,
             coefficients_by: vec![0.0; layout.coefficients],
             scratch: Scratch::new(&layout, resolution, harmonics.coupling()),

@@ -22,14 +22,19 @@ pub(super) fn block_mut(u: &mut [f64], index: usize, length: usize) -> &mut [f64
     &mut u[index * length..][..length]
 }
 
+/// The pairs of two series of one length, by harmonic.
+fn pairs<'s>(
+    u: &'s [f64],
+    to: &'s mut [f64],
+) -> impl Iterator<Item = (f64, &'s [f64], &'s mut [f64])> {
+    let pairs = u[1..].chunks_exact(2).zip(to[1..].chunks_exact_mut(2));
+    let pairs = pairs.enumerate();
+    pairs.map(|(index, (pair, to))| ((index + 1) as f64, pair, to))
+}
+
 /// Adds `factor D^2 u`, with `D^2 u = -k^2 u` for harmonic `k`.
 pub(super) fn add_inertia(u: &[f64], factor: f64, to: &mut [f64]) {
-    for (index, (pair, to)) in u[1..]
-        .chunks_exact(2)
-        .zip(to[1..].chunks_exact_mut(2))
-        .enumerate()
-    {
-        let k = (index + 1) as f64;
+    for (k, pair, to) in pairs(u, to) {
         to[0] -= factor * k * k * pair[0];
         to[1] -= factor * k * k * pair[1];
     }
@@ -37,12 +42,7 @@ pub(super) fn add_inertia(u: &[f64], factor: f64, to: &mut [f64]) {
 
 /// Adds `factor D u`.
 pub(crate) fn add_derivative(u: &[f64], factor: f64, to: &mut [f64]) {
-    for (index, (pair, to)) in u[1..]
-        .chunks_exact(2)
-        .zip(to[1..].chunks_exact_mut(2))
-        .enumerate()
-    {
-        let k = (index + 1) as f64;
+    for (k, pair, to) in pairs(u, to) {
         to[0] += factor * k * pair[1];
         to[1] -= factor * k * pair[0];
     }

@@ -8,6 +8,7 @@ use super::*;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
 use crate::law::On;
+use crate::system::Place;
 use crate::testing::by_hand::PowerForm;
 
 hertzian::oscillator! {
@@ -62,7 +63,6 @@ fn equations(
     v: &[f64],
     a: &[f64],
 ) -> Vec<f64> {
-    use crate::system::Place;
     let facts = system.facts();
     let mut coefficients = vec![0.0; facts.places.len()];
     system.coefficients(&values(system), omega, &mut coefficients);

@@ -1,6 +1,6 @@
 //! From an event of a branch of the balance onto the branch that begins there.
 //!
-//! At the event the block of harmonics that the orbits do not have is singular ([`block`](crate::balance::block)). Its null vector is the
+//! At the event the block of harmonics that the orbits do not have is singular ([`critical_block`](crate::balance::critical_block)). Its null vector is the
 //! direction of the new branch, which leaves the old one at a right angle: for a step `e` the parameter changes by `e^2` only.
 //! So the first orbit is solved for with its component in that direction held. Where two branches of orbits with the same harmonics
 //! cross, the null vector is across the tangent of the known one, which has no component there but by its curvature; the other one
@@ -10,7 +10,7 @@
 //! Renson, Masset and Kerschen (2015), The harmonic balance method for bifurcation analysis, section 4.
 
 use crate::balance::Parity;
-use crate::balance::block::{Block, Part};
+use crate::balance::critical_block::{CriticalBlock, Part};
 use crate::balance::resolution::resize;
 use crate::balance_branch::follower::Follower;
 use crate::branches::error::OrbitError;
@@ -54,7 +54,7 @@ pub(crate) fn depart(
     };
     let mut old = follower.with_harmonics(orbit.harmonics(), orbit.harmonics());
     (old.parity, old.stride, old.period) = (parity, stride, orbit.period);
-    let mut block = Block::new(
+    let mut block = CriticalBlock::new(
         part,
         follower.system.as_ref(),
         &follower.parameters,

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::balance::block::{Block, Part};
+use crate::balance::critical_block::{CriticalBlock, Part};
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::start::{Motion, StartRequest};
-use crate::balance::truncation::Finer;
+use crate::balance::truncation::RefinedBalance;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::balance_branch::reader::Reader;
 use crate::branches::branch::Branch;
@@ -88,7 +88,7 @@ impl Follower {
 
     /// A reader of orbits of that resolution.
     pub(crate) fn reader(&self, resolution: Resolution) -> Reader<'_> {
-        let finer = Finer::new(
+        let finer = RefinedBalance::new(
             self.system.as_ref(),
             &self.parameters,
             self.omega,
@@ -101,7 +101,7 @@ impl Follower {
     /// What becomes singular at bifurcations of orbits of that resolution: the even harmonics where they have odd ones only, those
     /// of twice the period, which are harmonics of the declared one where an even number of them is in it, and all, where that is
     /// looked for.
-    pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<Block<'_>> {
+    pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<CriticalBlock<'_>> {
         let odd = resolution.parity == Parity::Odd;
         let all = self.sought == Sought::All;
         let halves = resolution.stride.is_multiple_of(2);
@@ -121,8 +121,8 @@ impl Follower {
     }
 
     /// One part of the Jacobian.
-    pub(crate) fn block(&self, part: Part, resolution: Resolution) -> Block<'_> {
-        Block::new(
+    pub(crate) fn block(&self, part: Part, resolution: Resolution) -> CriticalBlock<'_> {
+        CriticalBlock::new(
             part,
             self.system.as_ref(),
             &self.parameters,

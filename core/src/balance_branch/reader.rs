@@ -1,6 +1,6 @@
 //! Everything that is read off an orbit.
 
-use crate::balance::truncation::{BEYOND, Finer};
+use crate::balance::truncation::{BEYOND, RefinedBalance};
 use crate::balance::{Balance, Parity};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
@@ -23,7 +23,7 @@ const EXTREMES: f64 = 4.0;
 /// Reads orbits of one resolution.
 #[derive(Debug)]
 pub(crate) struct Reader<'a> {
-    pub(crate) finer: Finer<'a>,
+    pub(crate) finer: RefinedBalance<'a>,
     pub(crate) judge: Option<Judge>,
     observer: Observer,
     /// What errors of the coordinates are measured by.
@@ -39,7 +39,11 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub(crate) fn new(finer: Finer<'a>, stability: Option<Method>, estimate: bool) -> Self {
+    pub(crate) fn new(
+        finer: RefinedBalance<'a>,
+        stability: Option<Method>,
+        estimate: bool,
+    ) -> Self {
         Self {
             finer,
             judge: stability.map(Judge::new),

@@ -104,8 +104,8 @@ impl Request {
     /// # Errors
     /// If one was not given.
     pub(crate) fn range(&self) -> Result<[f64; 2], Error> {
-        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
-        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
+        let from = self.from.ok_or(RequestError::no_end("from"))?;
+        let to = self.to.ok_or(RequestError::no_end("to"))?;
         Ok([from, to])
     }
 
@@ -128,7 +128,7 @@ impl Request {
                 must: "is what is varied: it has its own value",
             }
             .into()),
-            (Variable::Parameter(_), None) => Err(RequestError::Missing { name: "omega" }.into()),
+            (Variable::Parameter(_), None) => Err(RequestError::no_omega().into()),
             (Variable::Parameter(_), Some(omega)) => Ok(Some(omega)),
         }
     }

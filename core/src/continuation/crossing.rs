@@ -10,8 +10,9 @@
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, SIAM Review 46, equation (4.2).
 
 use super::follow::CurvePoint;
+use super::locate::ArcLength;
 use super::problem::{AsProblem, Problem};
-use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::numeric::roots::{self, Place};
 
 /// Orbits on each side.
@@ -48,46 +49,70 @@ pub(crate) fn locate_crossing<P: AsProblem + ?Sized>(
     options: NewtonOptions,
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Crossing> {
-    let mut border = vec![0.0; a.u.len()];
-    newton.norm().linear_form(a.scale, &a.tangent, &mut border);
-    let dot = crate::numeric::linear::dot;
-    let origin = dot(&border, &a.u);
+    let arc = ArcLength::from(newton, a);
     let ends = [a, b].map(|point| {
-        let along = dot(&border, &point.tangent);
+        let along = arc.along(&point.tangent);
         Node {
-            s: dot(&border, &point.u) - origin,
+            s: arc.at(&point.u),
             u: point.u.clone(),
             slope: point.tangent.iter().map(|t| t / along).collect(),
             test: test(problem, point),
         }
     });
-    let length = ends[1].s;
-    let mut zero = length * ends[0].test / (ends[0].test - ends[1].test);
-    let mut nodes: Vec<Node> = Vec::new();
+    let mut search = Search {
+        arc,
+        like: a,
+        options,
+        zero: ends[1].s * ends[0].test / (ends[0].test - ends[1].test),
+        ends,
+        nodes: Vec::new(),
+    };
     for width in WIDTHS {
-        let width = width * length;
+        search.sample(problem, newton, width, &mut test)?;
+    }
+    let point = search.point(newton);
+    let solves = search
+        .newton_update(problem.problem(), newton, &point)
+        .is_some_and(|update| update <= options.tolerance);
+    let error = search.error(&point)?;
+    solves.then(|| Crossing {
+        test: test(problem, &point),
+        error: LEFT_OUT * error,
+        point,
+    })
+}
+
+/// A zero between two points, as it is closed in on.
+struct Search<'s> {
+    arc: ArcLength,
+    ends: [Node; 2],
+    /// Points have its scale.
+    like: &'s CurvePoint,
+    options: NewtonOptions,
+    /// Where the zero is.
+    zero: f64,
+    /// Solutions about it.
+    nodes: Vec<Node>,
+}
+
+impl Search<'_> {
+    /// Computes orbits about the zero, over a part of the step, and interpolates it anew. `None` if there are too few.
+    fn sample<P: AsProblem + ?Sized>(
+        &mut self,
+        problem: &mut P,
+        newton: &mut Newton,
+        width: f64,
+        test: &mut dyn FnMut(&mut P, &CurvePoint) -> f64,
+    ) -> Option<()> {
+        let width = width * self.ends[1].s;
         let mut found = Vec::with_capacity(2 * SIDE);
         for index in 1..=SIDE {
             for sign in [-1.0, 1.0] {
-                let s = zero + sign * width * index as f64;
-                let mut u = if nodes.is_empty() {
-                    cubic(&ends, s)
-                } else {
-                    interpolated(&nodes, s, |node| &node.u)
-                };
-                let row = Border {
-                    row: &border,
-                    value: origin + s,
-                };
-                if newton
-                    .correct(problem.problem(), &mut u, row, a.scale, options)
-                    .is_err()
-                {
+                let s = self.zero + sign * width * index as f64;
+                let Some((u, slope)) = self.solution(problem.problem(), newton, s) else {
                     continue;
-                }
-                let mut slope = vec![0.0; u.len()];
-                newton.tangent(problem.problem(), &u, &mut slope, true);
-                let point = normalised(newton, a, u, slope.clone());
+                };
+                let point = normalised(newton, self.like, u, slope.clone());
                 let test = test(problem, &point);
                 let u = point.u;
                 found.push(Node { s, u, slope, test });
@@ -96,55 +121,71 @@ pub(crate) fn locate_crossing<P: AsProblem + ?Sized>(
         if found.len() < FEWEST {
             return None;
         }
-        nodes = found;
-        zero = root(&nodes)?;
+        self.nodes = found;
+        self.zero = root(&self.nodes)?;
+        Some(())
     }
-    let u = interpolated(&nodes, zero, |node| &node.u);
-    let slope = interpolated(&nodes, zero, |node| &node.slope);
-    let point = normalised(newton, a, u, slope);
-    let solves = newton_update(
-        problem.problem(),
-        newton,
-        &point,
-        (&border, &nodes),
-        options,
-    )
-    .is_some_and(|update| update <= options.tolerance);
-    let mut error = 0.0_f64;
-    for left_out in 0..nodes.len() {
-        let node = nodes.remove(left_out);
-        let zero = root(&nodes)?;
-        let other = interpolated(&nodes, zero, |node| &node.u);
-        error = error.max((other[other.len() - 1] - point.parameter()).abs());
-        nodes.insert(left_out, node);
-    }
-    solves.then(|| Crossing {
-        test: test(problem, &point),
-        error: LEFT_OUT * error,
-        point,
-    })
-}
 
-/// Length of the update that Newton's method would make at a point, with the matrix of the first node: at the point itself it is
-/// singular, and a residual has units that say nothing of how far a solution is. The first node is the nearest to the zero.
-fn newton_update(
-    problem: &mut dyn Problem,
-    newton: &mut Newton,
-    point: &CurvePoint,
-    (border, nodes): (&[f64], &[Node]),
-    options: NewtonOptions,
-) -> Option<f64> {
-    let mut near = nodes.first()?.u.clone();
-    let value = crate::numeric::linear::dot(border, &near);
-    let row = Border { row: border, value };
-    let corrected = newton.correct(problem, &mut near, row, point.scale, options);
-    corrected.ok()?;
-    let mut update = vec![0.0; point.u.len()];
-    let last = update.len() - 1;
-    problem.evaluate(&point.u, &mut update[..last], None);
-    newton.statistics.residuals += 1;
-    newton.solve(&mut update);
-    Some(newton.norm().length(point.scale, &update))
+    /// The solution at a place, and its tangent.
+    fn solution(
+        &self,
+        problem: &mut dyn Problem,
+        newton: &mut Newton,
+        s: f64,
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let mut u = if self.nodes.is_empty() {
+            cubic(&self.ends, s)
+        } else {
+            interpolated(&self.nodes, s, |node| &node.u)
+        };
+        let row = self.arc.border(s);
+        let corrected = newton.correct(problem, &mut u, row, self.like.scale, self.options);
+        corrected.ok()?;
+        let mut slope = vec![0.0; u.len()];
+        newton.tangent(problem, &u, &mut slope, true);
+        Some((u, slope))
+    }
+
+    /// The point at the zero.
+    fn point(&self, newton: &Newton) -> CurvePoint {
+        let u = interpolated(&self.nodes, self.zero, |node| &node.u);
+        let slope = interpolated(&self.nodes, self.zero, |node| &node.slope);
+        normalised(newton, self.like, u, slope)
+    }
+
+    /// What the parameter changes by, at most, where one of the nodes is left out.
+    fn error(&mut self, point: &CurvePoint) -> Option<f64> {
+        let nodes = &mut self.nodes;
+        let mut error = 0.0_f64;
+        for left_out in 0..nodes.len() {
+            let node = nodes.remove(left_out);
+            let zero = root(nodes)?;
+            let other = interpolated(nodes, zero, |node| &node.u);
+            error = error.max((other[other.len() - 1] - point.parameter()).abs());
+            nodes.insert(left_out, node);
+        }
+        Some(error)
+    }
+
+    /// Length of the update that Newton's method would make at a point, with the matrix of the first node: at the point itself it is
+    /// singular, and a residual has units that say nothing of how far a solution is. The first node is the nearest to the zero.
+    fn newton_update(
+        &self,
+        problem: &mut dyn Problem,
+        newton: &mut Newton,
+        point: &CurvePoint,
+    ) -> Option<f64> {
+        let mut near = self.nodes.first()?.u.clone();
+        let row = self.arc.border_at(&near);
+        let corrected = newton.correct(problem, &mut near, row, point.scale, self.options);
+        corrected.ok()?;
+        let mut update = vec![0.0; point.u.len()];
+        let last = update.len() - 1;
+        problem.evaluate(&point.u, &mut update[..last], None);
+        newton.statistics.residuals += 1;
+        newton.solve(&mut update);
+        Some(newton.norm().length(point.scale, &update))
+    }
 }
 
 /// A point in the scale of another, with its tangent made a unit.

@@ -12,9 +12,9 @@
 //!
 //! Source: Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems.
 
+use super::position::Position;
 use super::problem::{AsProblem, Scale};
 use super::step::StepControl;
-use super::walk::{Begun, Walk};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::numeric::decimal::Decimal;
 use crate::time::FlowError;
@@ -218,98 +218,58 @@ pub(crate) fn follow<P: AsProblem + ?Sized>(
     options: FollowOptions,
     visit: &mut dyn FnMut(&mut P, &mut Newton, Visit<'_>) -> Continue,
 ) -> Result<Outcome, NewtonError> {
-    follow_until_stuck(problem, newton, start, options, visit, &mut None)
+    follow_until_stuck(problem, newton, start, options, visit).map(|walked| walked.outcome)
 }
 
-/// The same, and where no step led on, as it is to be resumed with another matrix.
+/// How a walk ended, and how it is to be resumed with another matrix where no step led on.
+pub(crate) struct Walked {
+    pub(crate) outcome: Outcome,
+    pub(crate) stuck: Option<Box<Halted>>,
+}
+
+impl From<Outcome> for Walked {
+    fn from(outcome: Outcome) -> Self {
+        let stuck = None;
+        Self { outcome, stuck }
+    }
+}
+
+/// The same, with what it takes to go on where no step led on.
 pub(crate) fn follow_until_stuck<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
     start: Start,
     options: FollowOptions,
     visit: &mut dyn FnMut(&mut P, &mut Newton, Visit<'_>) -> Continue,
-    stuck: &mut Option<Box<Halted>>,
-) -> Result<Outcome, NewtonError> {
-    let stopped = |stop| Ok(Outcome::Stopped(stop));
-    let resumed = matches!(start, Start::At(_));
-    let Begun {
-        mut walk,
-        mut point,
-        mut first,
-        mut previous,
-        passed,
-        ended,
-    } = Walk::begin(problem.problem(), newton, start, options)?;
-    let mut count = passed;
-    let mut stop = ended;
-    let mut again = resumed;
+) -> Result<Walked, NewtonError> {
+    let mut again = matches!(start, Start::At(_));
+    let mut position = Position::begin(problem.problem(), newton, start, options)?;
     loop {
+        let point = &position.point;
         let seen = if again {
-            Visit::Again(&point)
+            Visit::Again(point)
         } else {
-            Visit::Point(&point)
+            Visit::Point(point)
         };
         again = false;
         if let Continue::Break(halt) = visit(problem, newton, seen) {
-            return Ok(walk.halted(halt, point, previous, first, count, stop));
+            return Ok(position.halted(halt).into());
         }
-        if let Some(from) = &previous
-            && visit(problem, newton, Visit::Between(from, &point)).is_break()
+        if let Some(from) = &position.previous
+            && visit(problem, newton, Visit::Between(from, point)).is_break()
         {
-            return stopped(Stop::Interrupted);
+            return Ok(Outcome::Stopped(Stop::Interrupted).into());
         }
-        if problem.problem().is_cancelled() {
-            // What is between the two points may not have been looked at to its end.
-            return stopped(Stop::Interrupted);
+        if let Some(stop) = position.ends(problem.problem(), newton) {
+            return Ok(Outcome::Stopped(stop).into());
         }
-        if let Some(stop) = stop {
-            return stopped(stop);
-        }
-        if let Some(from) = &previous
-            && count > 10
-            && walk.closes(newton, &first, from, &point)
-        {
-            return stopped(Stop::Closed);
-        }
-        if count == 0 {
-            first = point.clone();
-        }
-        if let Some(stop) = unbounded(&first, &point) {
-            return stopped(stop);
-        }
-        count += 1;
-        if count >= options.points {
-            return stopped(Stop::PointLimit {
-                points: options.points,
+        if let Err(stop) = position.step(problem.problem(), newton) {
+            return Ok(Walked {
+                outcome: Outcome::Stopped(stop),
+                stuck: Some(position.stuck()),
             });
         }
-        let next = walk
-            .next(problem.problem(), newton, &point)
-            .and_then(|next| walk.cut_at_range(problem.problem(), newton, &point, next));
-        match next {
-            Ok((next, end)) => {
-                previous = Some(std::mem::replace(&mut point, next));
-                stop = end;
-            }
-            Err(stop) => {
-                *stuck = Some(walk.stuck(point, first, count - 1));
-                return stopped(stop);
-            }
-        }
     }
-}
-
-/// An oscillation that has grown so many times, while the branch goes on upwards, has no bound: beside a resonance with less damping
-/// than `1 / GROWTH` rounding of the frequency is all that is left.
-const GROWTH: f64 = 1e10;
-
-fn unbounded(first: &CurvePoint, point: &CurvePoint) -> Option<Stop> {
-    let growth = point.scale.oscillation / first.scale.oscillation;
-    let upwards = point.parameter_slope().abs() * GROWTH < point.scale.parameter.recip();
-    (growth > GROWTH && upwards).then(|| Stop::Unbounded {
-        value: point.parameter(),
-        growth,
-    })
 }
 
 /// What a visitor sees.

@@ -6,6 +6,7 @@
 use super::follow::CurvePoint;
 use super::problem::{AsProblem, Problem, Scale};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::numeric::linear::dot;
 use crate::numeric::roots::{Bracket, Place, STEPS};
 
 /// A point where the test function vanishes.
@@ -32,11 +33,8 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
     tolerance: f64,
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
-    let difference: Vec<f64> = b.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
-    let length = newton.norm().product(a.scale, &a.tangent, &difference);
-    let mut border = vec![0.0; a.u.len()];
-    newton.norm().linear_form(a.scale, &a.tangent, &mut border);
-    let origin = crate::numeric::linear::dot(&border, &a.u);
+    let arc = ArcLength::from(newton, a);
+    let length = arc.length(newton, a, b);
     let mut side = |x, point: &CurvePoint| Side {
         place: Place {
             x,
@@ -49,12 +47,8 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
     for _ in 0..STEPS {
         let mut at = |part: f64| {
             let s = bracket.at(part);
-            let trial = between((&near, &far), s, &border);
-            let row = Border {
-                row: &border,
-                value: origin + s,
-            };
-            let point = corrected(problem.problem(), newton, trial, row, a.scale, options)?;
+            let trial = between([&near, &far], s, &arc);
+            let point = arc.corrected(problem.problem(), newton, trial, s, options)?;
             Some((s, point))
         };
         // Where a correction fails, another place may do.
@@ -97,21 +91,91 @@ pub(crate) fn inside(
     part: f64,
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
-    let difference: Vec<f64> = b.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
-    let length = newton.norm().product(a.scale, &a.tangent, &difference);
-    let mut border = vec![0.0; a.u.len()];
-    newton.norm().linear_form(a.scale, &a.tangent, &mut border);
+    let arc = ArcLength::from(newton, a);
+    let length = arc.length(newton, a, b);
     let value = f64::NAN;
     let [from, to] = [(0.0, a), (length, b)].map(|(x, point)| Side {
         place: Place { x, value },
         point: point.clone(),
     });
-    let trial = between((&from, &to), part * length, &border);
-    let row = Border {
-        row: &border,
-        value: crate::numeric::linear::dot(&border, &a.u) + part * length,
-    };
-    corrected(problem, newton, trial, row, a.scale, options)
+    let trial = between([&from, &to], part * length, &arc);
+    arc.corrected(problem, newton, trial, part * length, options)
+}
+
+/// The parameter of the curve behind a point: the arc length along the tangent there.
+pub(super) struct ArcLength {
+    border: Vec<f64>,
+    /// The linear form at the point.
+    origin: f64,
+    scale: Scale,
+}
+
+impl ArcLength {
+    pub(super) fn from(newton: &Newton, a: &CurvePoint) -> Self {
+        let mut border = vec![0.0; a.u.len()];
+        newton.norm().linear_form(a.scale, &a.tangent, &mut border);
+        Self {
+            origin: dot(&border, &a.u),
+            border,
+            scale: a.scale,
+        }
+    }
+
+    /// Where another point is.
+    fn length(&self, newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
+        let difference: Vec<f64> = b.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
+        newton.norm().product(self.scale, &a.tangent, &difference)
+    }
+
+    /// The same, from the linear form.
+    pub(super) fn at(&self, u: &[f64]) -> f64 {
+        dot(&self.border, u) - self.origin
+    }
+
+    /// How fast it grows in a direction.
+    pub(super) fn along(&self, direction: &[f64]) -> f64 {
+        dot(&self.border, direction)
+    }
+
+    /// What holds a solution where it is.
+    pub(super) fn border_at(&self, u: &[f64]) -> Border<'_> {
+        Border {
+            row: &self.border,
+            value: dot(&self.border, u),
+        }
+    }
+
+    /// What holds a solution at a place.
+    pub(super) fn border(&self, s: f64) -> Border<'_> {
+        Border {
+            row: &self.border,
+            value: self.origin + s,
+        }
+    }
+
+    /// The solution near `u` at a place, with the tangent of the whole system.
+    fn corrected(
+        &self,
+        problem: &mut dyn Problem,
+        newton: &mut Newton,
+        mut u: Vec<f64>,
+        s: f64,
+        options: NewtonOptions,
+    ) -> Option<CurvePoint> {
+        let scale = self.scale;
+        newton
+            .correct(problem, &mut u, self.border(s), scale, options)
+            .ok()?;
+        let mut tangent = vec![0.0; u.len()];
+        if !newton.tangent(problem, &u, &mut tangent, true) {
+            return None;
+        }
+        let norm = newton.norm().length(scale, &tangent);
+        for t in &mut tangent {
+            *t /= norm;
+        }
+        Some(CurvePoint { u, tangent, scale })
+    }
 }
 
 /// A point at one side of the zero.
@@ -121,34 +185,11 @@ struct Side {
     point: CurvePoint,
 }
 
-/// The solution near `u`, with the tangent of the whole system.
-fn corrected(
-    problem: &mut dyn Problem,
-    newton: &mut Newton,
-    mut u: Vec<f64>,
-    border: Border<'_>,
-    scale: Scale,
-    options: NewtonOptions,
-) -> Option<CurvePoint> {
-    newton
-        .correct(problem, &mut u, border, scale, options)
-        .ok()?;
-    let mut tangent = vec![0.0; u.len()];
-    if !newton.tangent(problem, &u, &mut tangent, true) {
-        return None;
-    }
-    let norm = newton.norm().length(scale, &tangent);
-    for t in &mut tangent {
-        *t /= norm;
-    }
-    Some(CurvePoint { u, tangent, scale })
-}
-
 /// The cubic through two points with their tangents; a straight line where a tangent hardly follows the arc length.
-fn between((a, b): (&Side, &Side), s: f64, border: &[f64]) -> Vec<f64> {
+fn between([a, b]: [&Side; 2], s: f64, arc: &ArcLength) -> Vec<f64> {
     let width = b.place.x - a.place.x;
     let x = (s - a.place.x) / width;
-    let ahead = |side: &Side| crate::numeric::linear::dot(border, &side.point.tangent);
+    let ahead = |side: &Side| arc.along(&side.point.tangent);
     let (first, last) = (ahead(a), ahead(b));
     let (share, start, end) = if first.min(last) > 0.5 * first.max(last) {
         let y = 1.0 - x;

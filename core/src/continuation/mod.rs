@@ -7,8 +7,9 @@ pub(crate) mod statistics;
 pub(crate) mod crossing;
 pub(crate) mod follow;
 pub(crate) mod locate;
+mod position;
 pub mod problem;
 pub(crate) mod step;
+mod stepper;
 #[cfg(test)]
 mod tests;
-mod walk;

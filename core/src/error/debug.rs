@@ -63,7 +63,10 @@ mod tests {
         assert_eq!(format!("{error:?}"), sentence);
         let boxed: Box<dyn std::error::Error> = error.into();
         assert_eq!(format!("{boxed:?}"), sentence);
-        assert_eq!(format!("{boxed:#?}"), "Missing {\n    name: \"to\",\n}");
+        assert_eq!(
+            format!("{boxed:#?}"),
+            "Missing {\n    name: \"to\",\n    why: \"the range is not complete\",\n}"
+        );
     }
 
     /// What each source says is said once, however deep it lies.

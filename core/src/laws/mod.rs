@@ -3,3 +3,4 @@
 #[doc(hidden)]
 pub mod emitted;
 pub mod generic;
+pub(crate) mod single;

@@ -36,10 +36,12 @@ pub enum RequestError {
         must: &'static str,
     },
     /// An option that has no default has not been given: an end of the range, or the frequency at which a parameter is varied.
-    #[error("{}", missing(.name))]
+    #[error("{why}: `{name}(...)` has not been called")]
     Missing {
         /// The option.
         name: &'static str,
+        /// What is not known without it.
+        why: &'static str,
     },
     /// What was asked for cannot be varied.
     #[error("what is varied is {name}: it {must}")]
@@ -121,7 +123,7 @@ crate::error::sentence_as_debug! {
     Parameter { name, value, range }
     UnknownParameter { name, known }
     Option { name, value, must }
-    Missing { name }
+    Missing { name, why }
     Varied { name, must }
     EmptyRange { value }
     Samples { samples, least, harmonics }
@@ -141,11 +143,20 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-fn missing(name: &str) -> String {
-    match name {
-        "omega" => "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`".to_owned(),
-        "from" | "to" => format!("the range is not complete: `{name}(...)` has not been called"),
-        _ => format!("`{name}` has not been given"),
+impl RequestError {
+    /// An end of the range is missing: `from` or `to`.
+    pub(crate) fn no_end(name: &'static str) -> Self {
+        let why = "the range is not complete";
+        Self::Missing { name, why }
+    }
+
+    /// The frequency is missing at which something else is varied or moves.
+    pub(crate) fn no_omega() -> Self {
+        let (name, why) = (
+            "omega",
+            "there is one excitation frequency, and it is not known",
+        );
+        Self::Missing { name, why }
     }
 }
 

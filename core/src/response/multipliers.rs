@@ -1,6 +1,6 @@
 //! What a method says of an orbit of a branch.
 
-use crate::balance::truncation::Finer;
+use crate::balance::truncation::RefinedBalance;
 use crate::balance_branch::follower::Follower;
 use crate::branches::branch::Branch;
 use crate::branches::point::Point;
@@ -39,7 +39,7 @@ impl Branch {
         let mut balance = follower.balance(resolution);
         let mut u = point.orbit.series.clone();
         u.push(point.value);
-        let mut finer = Finer::new(
+        let mut finer = RefinedBalance::new(
             follower.system.as_ref(),
             &point.parameters,
             point.orbit.omega,

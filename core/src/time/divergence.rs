@@ -26,7 +26,8 @@ use super::Stretch;
 use super::gap::{Gap, value};
 use super::integrated::rule::Rule;
 use crate::error::Error;
-use crate::law::{Derivatives, LawFacts, On, Quantity, Variation};
+use crate::law::{LawFacts, On, Quantity, Variation};
+use crate::laws::single::Single;
 use crate::model::error::ModelError;
 use crate::model::layout::{ContactLayout, Layout, Term};
 use crate::model::validate;
@@ -156,17 +157,11 @@ impl Divergence {
             contact.arguments(&self.coefficients, arguments);
             let wave = |term: &Term| self.coefficients[term.coefficient] * value(term.wave, phase);
             let (gap, rate) = gap.at(phase, state);
-            let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
-            let out = Derivatives {
-                force: &mut force,
-                by_gap: &mut by_gap,
-                by_rate: &mut by_rate,
-            };
             let law = self.system.law(contact.law);
-            law.derivatives(On::AllPieces, arguments, &[gap], &[rate], out);
+            let by_rate = Single::of(law, On::AllPieces, arguments, [gap, rate]).by_rate;
             for e in &contact.force {
                 for d in &contact.gap {
-                    sum -= self.inverse[(d.index, e.index)] * wave(e) * wave(d) * by_rate[0];
+                    sum -= self.inverse[(d.index, e.index)] * wave(e) * wave(d) * by_rate;
                 }
             }
         }

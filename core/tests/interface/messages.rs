@@ -25,7 +25,7 @@ fn a_missing_end_is_named() {
         ),
         (
             of().vary("drive").from(0.1).to(0.2),
-            "a parameter is varied at one excitation frequency, which is missing: give it, as in `omega(1.2)`",
+            "there is one excitation frequency, and it is not known: `omega(...)` has not been called",
         ),
     ] {
         let error = request.run().expect_err("something is missing");

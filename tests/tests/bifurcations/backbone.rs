@@ -307,10 +307,10 @@ fn what_cannot_be_followed_is_said() {
     let request = PhaseResonance::of(&model).to(0.08).between(0.45, 1.4);
     let vary = |name: &str| request.clone().vary(name).run().unwrap_err();
     let missing = request.run().unwrap_err();
-    assert_eq!(
+    assert!(matches!(
         missing.downcast_ref(),
-        Some(&RequestError::Missing { name: "vary" })
-    );
+        Some(RequestError::Missing { name: "vary", .. })
+    ));
     assert!(matches!(
         vary("omega").downcast_ref(),
         Some(RequestError::Varied { .. })
@@ -328,10 +328,10 @@ fn what_cannot_be_followed_is_said() {
     assert_eq!(error.downcast_ref(), Some(&expected));
     let free = FreeOscillation::of(&model).from(0.5);
     let error = free.run().unwrap_err();
-    assert_eq!(
+    assert!(matches!(
         error.downcast_ref(),
-        Some(&RequestError::Missing { name: "to" })
-    );
+        Some(RequestError::Missing { name: "to", .. })
+    ));
     let mut seen = 0;
     let stopped = request.vary("drive").run_with(|_| {
         seen += 1;

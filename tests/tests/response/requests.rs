@@ -16,14 +16,14 @@ fn refused<E: std::error::Error + Clone + 'static>(request: &FrequencyResponse) 
 #[test]
 fn bad_requests_are_refused_before_any_work() {
     let good = || FrequencyResponse::of(&CONTACT).from(0.6).to(1.6);
-    assert_eq!(
-        refused::<RequestError>(&FrequencyResponse::of(&CONTACT)),
-        RequestError::Missing { name: "from" }
-    );
-    assert_eq!(
-        refused::<RequestError>(&FrequencyResponse::of(&CONTACT).from(1.0)),
-        RequestError::Missing { name: "to" }
-    );
+    assert!(matches!(
+        refused(&FrequencyResponse::of(&CONTACT)),
+        RequestError::Missing { name: "from", .. }
+    ));
+    assert!(matches!(
+        refused(&FrequencyResponse::of(&CONTACT).from(1.0)),
+        RequestError::Missing { name: "to", .. }
+    ));
     assert_eq!(
         refused::<RequestError>(&good().to(0.6)),
         RequestError::EmptyRange { value: 0.6 }
@@ -95,10 +95,10 @@ fn bad_requests_are_refused_before_any_work() {
         refused(&good().vary("lode")),
         RequestError::UnknownParameter { .. }
     ));
-    assert_eq!(
-        refused::<RequestError>(&good().vary("drive")),
-        RequestError::Missing { name: "omega" }
-    );
+    assert!(matches!(
+        refused(&good().vary("drive")),
+        RequestError::Missing { name: "omega", .. }
+    ));
     assert!(matches!(
         refused(&good().vary("zeta").omega(1.0).from(-1.0)),
         RequestError::Parameter { .. }

@@ -72,7 +72,8 @@ impl Ball {
     pub(super) fn grow(
         map: &mut Stroboscope,
         centre: &[f64],
-        (period, jacobian): (usize, &DMatrix<f64>),
+        period: usize,
+        jacobian: &DMatrix<f64>,
         size: &[f64],
     ) -> Option<Self> {
         let order = centre.len();
@@ -234,7 +235,7 @@ mod tests {
         map.map_with(&mut [0.0, 0.0], &mut tangent)
             .expect("a motion");
         let jacobian = DMatrix::from_vec(2, 2, tangent.columns);
-        let ball = Ball::grow(&mut map, &[0.0; 2], (1, &jacobian), &[1.0; 2]).expect("a ball");
+        let ball = Ball::grow(&mut map, &[0.0; 2], 1, &jacobian, &[1.0; 2]).expect("a ball");
         assert!(ball.contains(&[1e50, -1e50]));
         let mut writer = Writer::default();
         ball.written(&mut writer);

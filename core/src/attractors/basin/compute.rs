@@ -67,7 +67,8 @@ pub(super) fn compute(
     for (round, cells) in grid.rounds().iter().enumerate() {
         shared.round(
             &threads,
-            (round, cells),
+            round,
+            cells,
             &mut catalogue,
             &mut kept,
             &mut basins,
@@ -90,7 +91,8 @@ impl Shared<'_> {
     fn round(
         &self,
         threads: &Threads,
-        (round, cells): (usize, &[usize]),
+        round: usize,
+        cells: &[usize],
         catalogue: &mut Catalogue,
         kept: &mut Kept,
         basins: &mut Basins,

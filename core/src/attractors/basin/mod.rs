@@ -269,7 +269,7 @@ impl Basin {
 
     /// A flow for each thread.
     fn flows(&self) -> Result<Vec<Box<dyn Flow>>, Error> {
-        let omega = self.omega.ok_or(RequestError::Missing { name: "omega" })?;
+        let omega = self.omega.ok_or(RequestError::no_omega())?;
         self.check()?;
         let mut values = vec![0.0; self.system.facts().parameters.len()];
         self.system.values(&mut values);

@@ -98,7 +98,7 @@ impl Finder {
         let mut balls = Vec::new();
         for centre in points.iter().step_by(step) {
             let jacobian = self.jacobian(map, centre, period)?.1;
-            balls.extend(Ball::grow(map, centre, (period, &jacobian), &size));
+            balls.extend(Ball::grow(map, centre, period, &jacobian, &size));
         }
         let attractor = Attractor {
             period,

@@ -4,6 +4,7 @@
 
 mod primitive;
 mod sampled;
+mod samples;
 mod switched;
 
 use crate::law::Law;
@@ -35,53 +36,30 @@ impl std::fmt::Display for Aft {
     }
 }
 
-/// The method chosen, with its workspace.
-#[derive(Debug)]
-pub(crate) enum Engine {
-    Switched(Box<SwitchedAft>),
-    Sampled(Box<SampledAft>),
-    Primitive(Box<PrimitiveAft>),
-}
-
-impl Engine {
-    pub(crate) fn new(method: Aft, samples: usize) -> Self {
-        match method {
-            Aft::Switched => Self::Switched(Box::default()),
-            Aft::Sampled => Self::Sampled(Box::new(SampledAft::new(samples))),
-            Aft::Primitive => Self::Primitive(Box::new(PrimitiveAft::new(samples))),
-        }
-    }
-
+/// A method, with its workspace.
+pub(crate) trait ContactForces: std::fmt::Debug + Send + Sync {
     /// About how many multiplications all evaluations so far have taken.
-    pub(crate) fn operations(&self) -> u64 {
-        match self {
-            Self::Switched(aft) => aft.operations(),
-            Self::Sampled(aft) => aft.operations(),
-            Self::Primitive(aft) => aft.operations(),
-        }
-    }
+    fn operations(&self) -> u64;
 
     /// Writes the series of the force.
-    pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
-        match self {
-            Self::Switched(aft) => aft.force(input, force),
-            Self::Sampled(aft) => aft.force(input, force),
-            Self::Primitive(aft) => aft.force(input, force),
-        }
-    }
+    fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]);
 
     /// Writes the series of the force and of its derivatives.
-    pub(crate) fn derivatives(
+    fn derivatives(
         &mut self,
         input: ContactInput<'_>,
         change: Option<Change<'_>>,
         force: &mut [f64],
         out: &mut ContactDerivatives<'_>,
-    ) {
+    );
+}
+
+impl Aft {
+    pub(crate) fn engine(self, samples: usize) -> Box<dyn ContactForces> {
         match self {
-            Self::Switched(aft) => aft.derivatives(input, change, force, out),
-            Self::Sampled(aft) => aft.derivatives(input, change, force, out),
-            Self::Primitive(aft) => aft.derivatives(input, change, force, out),
+            Self::Switched => Box::<SwitchedAft>::default(),
+            Self::Sampled => Box::new(SampledAft::new(samples)),
+            Self::Primitive => Box::new(PrimitiveAft::new(samples)),
         }
     }
 }

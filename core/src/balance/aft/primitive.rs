@@ -14,7 +14,7 @@
 //! steady-state response of nonlinear dynamic systems.
 
 use super::sampled::SampledAft;
-use super::{Change, ContactDerivatives, ContactInput};
+use super::{Change, ContactDerivatives, ContactForces, ContactInput};
 use crate::law::{Law, Parts};
 use crate::numeric::fourier::series;
 
@@ -40,14 +40,14 @@ impl PrimitiveAft {
             derivative: Vec::new(),
         }
     }
+}
 
-    /// About how many multiplications all evaluations so far have taken.
-    pub(crate) fn operations(&self) -> u64 {
+impl ContactForces for PrimitiveAft {
+    fn operations(&self) -> u64 {
         self.sampled.operations()
     }
 
-    /// Writes the series of the force.
-    pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
+    fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
         let Some(Parts {
             spring, primitive, ..
         }) = input.law.parts()
@@ -61,8 +61,7 @@ impl PrimitiveAft {
         add_derivative(&self.primitive, input.base, &mut self.derivative, force);
     }
 
-    /// Writes the series of the force and of its derivatives.
-    pub(crate) fn derivatives(
+    fn derivatives(
         &mut self,
         input: ContactInput<'_>,
         change: Option<Change<'_>>,

@@ -35,7 +35,7 @@ pub(crate) fn broken(from: &Orbit, u: &[f64]) -> Addition {
 /// Newton's method leaves.
 const BROKEN_SHARE: f64 = 1e-8;
 
-/// Whether an orbit, of series of a length each, lacks the odd symmetry. What comes behind the last whole series does not count.
+/// Whether an orbit, of series of a length each, lacks the odd symmetry. What comes after the last whole series does not count.
 pub(crate) fn is_broken(u: &[f64], length: usize) -> bool {
     broken_share(u, length) > BROKEN_SHARE
 }

@@ -11,7 +11,7 @@
 //!
 //! Source: Kelley (1995), Iterative Methods for Linear and Nonlinear Equations, section 5.4.1 (the chord method).
 
-use super::{Finer, NOTHING};
+use super::{NOTHING, RefinedBalance};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
 use crate::numeric::fourier::series;
@@ -28,7 +28,7 @@ const STEPS: usize = 6;
 /// Ratio of successive steps, at most, by which the sum of those that follow is extrapolated: steps that hardly fall tell no more.
 const SLOWEST: f64 = 0.9;
 
-impl Finer<'_> {
+impl RefinedBalance<'_> {
     /// How much the peak-to-peak of a coordinate is changed in its unit, at most, given the phases of the smallest and largest values, by
     /// the last correction of an orbit and by further steps of it, where it is not small.
     pub(crate) fn peak_to_peak_error(

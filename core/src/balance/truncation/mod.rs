@@ -58,7 +58,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A finer balance of the same system, and workspace for its vectors.
 #[derive(Debug)]
-pub(crate) struct Finer<'a> {
+pub(crate) struct RefinedBalance<'a> {
     balance: Balance<'a>,
     coarse: Resolution,
     /// The orbit with its tail, extended.
@@ -84,7 +84,7 @@ pub(crate) struct Finer<'a> {
     change: f64,
 }
 
-impl<'a> Finer<'a> {
+impl<'a> RefinedBalance<'a> {
     pub(crate) fn new(
         system: &'a dyn System,
         parameters: &[f64],

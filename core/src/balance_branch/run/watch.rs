@@ -2,7 +2,7 @@
 //!
 //! | event | test function |
 //! |---|---|
-//! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`block`](crate::balance::block)) |
+//! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`critical_block`](crate::balance::critical_block)) |
 //! | branch point ([`crossed`](super::crossed)) | the determinant of the Jacobian with the tangent as its border |
 //! | Neimark-Sacker | the product over pairs of multipliers ([`pairs`](crate::orbit::stability::pairs)), and a pair is complex |
 //! | grazing ([`grazing`](super::grazing)) | an extreme of a gap less the level ([`touch`](super::touch)) |
@@ -20,7 +20,7 @@ use std::cell::RefCell;
 
 use super::Run;
 use super::touch::{Extreme, Touches};
-use crate::balance::block::{Block, Part};
+use crate::balance::critical_block::{CriticalBlock, Part};
 use crate::balance::resolution::resize;
 use crate::balance::truncation::BEYOND;
 use crate::balance::{Balance, Resolution};
@@ -44,7 +44,7 @@ const NEAR_CIRCLE: f64 = 0.5;
 /// A function of orbits that vanishes at an event.
 pub(super) enum Test<'t, 'a> {
     /// In units of a size, given as its logarithm: that of the first if it is not given.
-    Block(&'t mut Block<'a>, Option<f64>),
+    Block(&'t mut CriticalBlock<'a>, Option<f64>),
     Pairs(&'t mut Pairs<'a>),
     /// Of one extreme, wherever it moves.
     Touch(&'t mut Touches<'a>, Extreme),
@@ -76,7 +76,7 @@ impl Test<'_, '_> {
 pub(super) struct Watch<'a> {
     /// Test functions: of the blocks, then of the pairs.
     pub(super) watched: Vec<Watched>,
-    pub(super) blocks: Vec<Block<'a>>,
+    pub(super) blocks: Vec<CriticalBlock<'a>>,
     pub(super) pairs: Option<Pairs<'a>>,
     pub(super) touches: Option<Touches<'a>>,
     /// Extremes at the ends of the step looked at.

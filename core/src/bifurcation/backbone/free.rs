@@ -233,8 +233,8 @@ impl FreeOscillation {
 
     /// Range and accuracy, checked.
     fn options(&self) -> Result<FollowOptions, Error> {
-        let from = self.from.ok_or(RequestError::Missing { name: "from" })?;
-        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
+        let from = self.from.ok_or(RequestError::no_end("from"))?;
+        let to = self.to.ok_or(RequestError::no_end("to"))?;
         for (name, value) in [("from", from), ("to", to)] {
             validate::option(name, value, -1e300..=1e300, "must be finite")?;
         }

@@ -25,7 +25,7 @@ pub(crate) use zero::Search;
 
 use super::problem::{BranchProblem, Change, Read, Step, Test, TestValue};
 use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit,
+    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, Walked,
     follow_until_stuck,
 };
 use crate::continuation::newton::{Newton, NewtonError};
@@ -95,7 +95,6 @@ pub(crate) fn run(
     loop {
         let begun = start.clone();
         let mut newton = Newton::new(problem.equations());
-        let mut stuck = None;
         let length = newton.norm().unknowns() + 1;
         engine.seen.retain(|seen| seen.point.u.len() == length);
         let outcome = follow_until_stuck(
@@ -104,17 +103,22 @@ pub(crate) fn run(
             start,
             options,
             &mut |problem, newton, seen| engine.visit(problem, newton, &seen),
-            &mut stuck,
         );
         problem.count(&newton);
         start = match outcome {
-            Ok(Outcome::Stopped(stop)) => {
+            Ok(Walked {
+                outcome: Outcome::Stopped(stop),
+                stuck,
+            }) => {
                 let Some(halted) = stuck.filter(|_| problem.strengthen()) else {
                     return Ok(engine.ended.unwrap_or(stop));
                 };
                 Start::At(halted)
             }
-            Ok(Outcome::Halted(halted)) => {
+            Ok(Walked {
+                outcome: Outcome::Halted(halted),
+                ..
+            }) => {
                 let mut resized = halted.clone();
                 problem.remap(&mut resized);
                 last = Some(halted);

@@ -16,9 +16,11 @@ mod rounding;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod updates;
 
 use broyden::Broyden;
 pub use error::NewtonError;
+use updates::Updates;
 
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::{Norm, Problem, Scale};
@@ -36,6 +38,13 @@ pub struct NewtonOptions {
     pub damped: bool,
 }
 
+impl NewtonOptions {
+    /// Updates at most.
+    fn most(&self) -> usize {
+        self.iterations * if self.damped { 1 } else { CHORD_PATIENCE }
+    }
+}
+
 /// A successful iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Converged {
@@ -47,7 +56,7 @@ pub struct Converged {
     pub update: f64,
 }
 
-/// Room for one problem; no method allocates.
+/// Workspace for one problem; no method allocates.
 #[derive(Debug)]
 pub struct Newton {
     jacobian: Jacobian,
@@ -100,7 +109,7 @@ pub struct Border<'a> {
 }
 
 impl Newton {
-    /// Room for `n` unknowns and a parameter.
+    /// Workspace for `n` unknowns and a parameter.
     pub fn new(problem: &dyn Problem) -> Self {
         let n = problem.unknowns();
         Self {
@@ -134,8 +143,8 @@ impl Newton {
         u: &[f64],
         values: &mut [f64],
     ) -> f64 {
-        let work = (&mut self.statistics, &mut self.operations);
-        residual(problem, u, values, work);
+        let (statistics, operations) = (&mut self.statistics, &mut self.operations);
+        residual(problem, u, values, statistics, operations);
         norm(values)
     }
 
@@ -159,103 +168,106 @@ impl Newton {
         self.norm.write_units(scale, &mut self.units);
         self.memory.clear();
         self.rounding = 0.0;
-        // Until this correction shows its own, what is left out contracts as it did last.
-        let usual = self.contraction;
-        self.contraction = 0.0;
-        let (mut before, mut previous) = (f64::INFINITY, f64::INFINITY);
+        let mut updates = Updates::after(std::mem::take(&mut self.contraction));
         let mut size = f64::INFINITY;
         let mut renew = true;
-        let mut first = None;
-        let most = options.iterations * if options.damped { 1 } else { CHORD_PATIENCE };
-        let mut updates = 0;
-        for iteration in 0..most {
+        for _ in 0..options.most() {
             if problem.is_cancelled() {
-                return Err(NewtonError::Cancelled {
-                    iterations: iteration,
-                });
+                let iterations = updates.count;
+                return Err(NewtonError::Cancelled { iterations });
             }
-            let renewed = renew;
-            if renew {
-                self.linearise(problem, u, border)
-                    .map_err(|error| error.after(iteration))?;
-            } else {
-                self.evaluate(problem, u, border)
-                    .map_err(|error| error.after(iteration))?;
-            }
-            self.next_update(options.damped);
-            size = self.norm.length(scale, &self.update);
-            if !size.is_finite() {
-                return Err(NewtonError::NotFinite {
-                    iterations: iteration,
-                });
-            }
-            first = first.or(Some(size));
-            if size <= options.tolerance
-                && self.is_last(size, (previous, before), usual, options.tolerance)
-            {
-                self.contraction = self.contraction.max(usual * LASTING);
-                subtract(u, &self.update, 1.0);
-                self.drift += size;
-                self.left = left(size, previous);
-                return Ok(Converged {
-                    iterations: iteration + 1,
-                    first: first.unwrap_or(size),
-                    update: size,
-                });
-            }
-            let stagnates = size > options.tolerance && size > STEADY * previous;
-            if stagnates && self.is_rounding(problem, u, size, options.tolerance) {
-                subtract(u, &self.update, 1.0);
-                self.drift += size;
-                self.left = size.max(self.rounding);
-                return Ok(Converged {
-                    iterations: iteration + 1,
-                    first: first.unwrap_or(size),
-                    update: size,
-                });
+            size = self
+                .look(problem, u, border, renew, options.damped)
+                .map_err(|error| error.after(updates.count))?;
+            updates.first.get_or_insert(size);
+            if self.ends(problem, u, size, &updates, options.tolerance) {
+                updates.count += 1;
+                return Ok(updates.converged(size));
             }
             if options.damped {
                 self.damped_update(problem, u, border);
             } else {
-                // What core and tail leave out need not contract in every norm at once.
-                let grows = if self.jacobian.is_exact() {
-                    2.0 * previous
-                } else {
-                    4.0 * before.max(previous)
-                };
-                if iteration > 1 && size > grows {
+                if updates.grow_to(size, self.jacobian.is_exact()) {
                     break;
                 }
                 subtract(u, &self.update, 1.0);
                 self.memory.remember(&self.norm, scale, &self.update);
-                let ratio = size / previous;
-                renew = if previous.is_finite() {
-                    ratio > CHORD && (self.jacobian.is_exact() || !renewed)
-                } else {
-                    size > CHORD_START
-                };
-                if !self.jacobian.is_exact() && previous.is_finite() {
-                    self.contraction = self.contraction.max(ratio);
-                }
+                renew = self.renews(size, &updates, renew);
             }
             self.drift += size;
-            updates = iteration + 1;
-            (before, previous) = (previous, size);
+            updates.take(size);
         }
         if size <= options.tolerance {
             // They shrink slowly, but what was asked for is reached.
-            self.left = left(size, before);
-            return Ok(Converged {
-                iterations: updates,
-                first: first.unwrap_or(size),
-                update: size,
-            });
+            self.left = left(size, updates.before);
+            return Ok(updates.converged(size));
         }
         Err(NewtonError::NotConverged {
-            iterations: updates,
+            iterations: updates.count,
             update: size,
             residual: largest(&self.residual),
         })
+    }
+
+    /// Evaluates the equations, with a new matrix or without, and writes the update that they ask for; returns its size.
+    fn look(
+        &mut self,
+        problem: &mut dyn Problem,
+        u: &[f64],
+        border: Border<'_>,
+        renew: bool,
+        plain: bool,
+    ) -> Result<f64, NewtonError> {
+        if renew {
+            self.linearise(problem, u, border)?;
+        } else {
+            self.evaluate(problem, u, border)?;
+        }
+        self.next_update(plain);
+        let size = self.norm.length(self.scale, &self.update);
+        if size.is_finite() {
+            Ok(size)
+        } else {
+            Err(NewtonError::NotFinite { iterations: 0 })
+        }
+    }
+
+    /// Makes the update and ends with it, if nothing worth another one is left then, or rounding is all that the residual is.
+    fn ends(
+        &mut self,
+        problem: &mut dyn Problem,
+        u: &mut [f64],
+        size: f64,
+        updates: &Updates,
+        tolerance: f64,
+    ) -> bool {
+        let previous = updates.previous;
+        if size <= tolerance && self.is_last(size, updates, tolerance) {
+            self.contraction = self.contraction.max(updates.usual * LASTING);
+            self.left = left(size, previous);
+        } else if size > tolerance
+            && size > STEADY * previous
+            && self.is_rounding(problem, u, size, tolerance)
+        {
+            self.left = size.max(self.rounding);
+        } else {
+            return false;
+        }
+        subtract(u, &self.update, 1.0);
+        self.drift += size;
+        true
+    }
+
+    /// Whether the next update needs a new matrix, after one of a size with a matrix that was `renewed` for it or not.
+    fn renews(&mut self, size: f64, updates: &Updates, renewed: bool) -> bool {
+        if !updates.previous.is_finite() {
+            return size > CHORD_START;
+        }
+        let ratio = size / updates.previous;
+        if !self.jacobian.is_exact() {
+            self.contraction = self.contraction.max(ratio);
+        }
+        ratio > CHORD && (self.jacobian.is_exact() || !renewed)
     }
 
     /// Writes the update that the residual asks for.
@@ -271,13 +283,13 @@ impl Newton {
 
     /// Whether an update is the last one worth making: what is left after it, as the updates shrink, is far below the
     /// tolerance, or rounding keeps them from shrinking. What the Jacobian leaves out need not contract in every norm at once.
-    fn is_last(
-        &self,
-        size: f64,
-        (previous, before): (f64, f64),
-        usual: f64,
-        tolerance: f64,
-    ) -> bool {
+    fn is_last(&self, size: f64, updates: &Updates, tolerance: f64) -> bool {
+        let &Updates {
+            previous,
+            before,
+            usual,
+            ..
+        } = updates;
         if !previous.is_finite() {
             return size <= REMAINDER * tolerance;
         }
@@ -356,8 +368,8 @@ impl Newton {
         border: Border<'_>,
     ) -> Result<(), NewtonError> {
         let n = self.norm.unknowns();
-        let work = (&mut self.statistics, &mut self.operations);
-        residual(problem, u, &mut self.residual[..n], work);
+        let (statistics, operations) = (&mut self.statistics, &mut self.operations);
+        residual(problem, u, &mut self.residual[..n], statistics, operations);
         self.close(u, border)
     }
 
@@ -383,8 +395,14 @@ impl Newton {
             }
             self.trial.copy_from_slice(u);
             subtract(&mut self.trial, &self.update, factor);
-            let work = (&mut self.statistics, &mut self.operations);
-            residual(problem, &self.trial, &mut self.residual[..n], work);
+            let (statistics, operations) = (&mut self.statistics, &mut self.operations);
+            residual(
+                problem,
+                &self.trial,
+                &mut self.residual[..n],
+                statistics,
+                operations,
+            );
             self.residual[n] = dot(border.row, &self.trial) - border.value;
             if norm(&self.residual) < (1.0 - 1e-4 * factor) * before {
                 break;
@@ -411,7 +429,8 @@ fn residual(
     problem: &mut dyn Problem,
     u: &[f64],
     residual: &mut [f64],
-    (statistics, operations): (&mut Statistics, &mut u64),
+    statistics: &mut Statistics,
+    operations: &mut u64,
 ) {
     let before = problem.operations();
     problem.evaluate(u, residual, None);

@@ -299,18 +299,15 @@ where
                 fill::<K, A, V, B, G, P>(&mut column.0[..count], base, arguments, [gap, rate]);
             }
             raise(set, self.columns, count, plan);
-            let Some((base, columns)) = self.columns.split_first_chunk::<B>() else {
+            let Some(of) = Raised::<B, P>::among(self.columns) else {
                 return;
             };
-            let Some((whole, columns)) = columns.split_first_chunk::<B>() else {
-                return;
-            };
-            let Some((part, columns)) = columns.split_first_chunk::<B>() else {
-                return;
-            };
-            let Some((power, _)) = columns.split_first_chunk::<P>() else {
-                return;
-            };
+            let Raised {
+                base,
+                whole,
+                part,
+                power,
+            } = of;
             outputs.write(
                 start,
                 count,
@@ -335,6 +332,30 @@ where
                 },
             );
         }
+    }
+}
+
+/// The columns of a block: bases, both parts of their logarithms, and powers.
+struct Raised<'a, const B: usize, const P: usize> {
+    base: &'a [Column; B],
+    whole: &'a [Column; B],
+    part: &'a [Column; B],
+    power: &'a [Column; P],
+}
+
+impl<'a, const B: usize, const P: usize> Raised<'a, B, P> {
+    #[inline(always)]
+    fn among(columns: &'a [Column]) -> Option<Self> {
+        let (base, columns) = columns.split_first_chunk()?;
+        let (whole, columns) = columns.split_first_chunk()?;
+        let (part, columns) = columns.split_first_chunk()?;
+        let (power, _) = columns.split_first_chunk()?;
+        Some(Self {
+            base,
+            whole,
+            part,
+            power,
+        })
     }
 }
 

@@ -316,12 +316,9 @@ impl Law for ByHand {
 
 type Spoil = fn(&mut LawData);
 
-/// Whatever is written in the data of a law, an error says what does not fit, and nothing is known of the law by them.
-#[test]
-fn data_that_do_not_describe_their_law_are_refused() {
-    let law = hertz(None);
-    let good = law.data().expect("data").clone();
-    let rows: [(Spoil, DataError); 9] = [
+/// What may be wrong with the data of [`hertz`], and what is said of it.
+fn faults() -> [(Spoil, DataError); 9] {
+    [
         (
             |data| data.levels = Cow::Borrowed(&[]),
             DataError::Levels { facts: 1, data: 0 },
@@ -380,8 +377,15 @@ fn data_that_do_not_describe_their_law_are_refused() {
             |data| data.levels.to_mut()[0].value = 0,
             DataError::LevelVaries { level: 0 },
         ),
-    ];
-    for (spoil, expected) in rows {
+    ]
+}
+
+/// Whatever is written in the data of a law, an error says what does not fit, and nothing is known of the law by them.
+#[test]
+fn data_that_do_not_describe_their_law_are_refused() {
+    let law = hertz(None);
+    let good = law.data().expect("data").clone();
+    for (spoil, expected) in faults() {
         let mut data = good.clone();
         spoil(&mut data);
         let refused = InterpretedLaw::new(law.facts().clone(), data.clone());

@@ -126,7 +126,7 @@ impl Product {
     }
 }
 
-/// Writes the coefficients of `e^(i j tau)` for `j` from `-reach` to `reach`, real and imaginary parts, and zeros behind them
+/// Writes the coefficients of `e^(i j tau)` for `j` from `-reach` to `reach`, real and imaginary parts, and zeros after them
 /// for the last group of lanes to read.
 fn spread(series: &[f64], reach: usize, to: &mut [Vec<f64>; 2]) {
     let [re, im] = to;

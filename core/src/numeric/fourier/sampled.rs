@@ -71,23 +71,16 @@ impl SampledTransform {
         );
     }
 
-    /// Whether so many coefficients at the upper end of the spectrum of these samples are below a part of its largest.
+    /// Whether the last `window` coefficients of the spectrum of these samples are below a part of its largest.
     pub(crate) fn is_resolved(&mut self, samples: &[f64], part: f64, window: usize) -> bool {
-        self.input.copy_from_slice(samples);
-        let done = self.forward.process_with_scratch(
-            &mut self.input,
-            &mut self.spectrum,
-            &mut self.scratch,
-        );
-        debug_assert!(done.is_ok(), "lengths fit: {done:?}");
+        self.transform(samples);
         let largest = |bins: &[Complex64]| bins.iter().fold(0.0_f64, |m, b| m.max(b.norm_sqr()));
         let upper = self.spectrum.len().saturating_sub(window);
         let (all, end) = (largest(&self.spectrum), largest(&self.spectrum[upper..]));
         end <= part * part * all
     }
 
-    /// Writes the series of samples, as many harmonics as it has room for; those from `samples / 2` upwards are zero.
-    pub fn analyse(&mut self, samples: &[f64], series: &mut [f64]) {
+    fn transform(&mut self, samples: &[f64]) {
         self.input.copy_from_slice(samples);
         let done = self.forward.process_with_scratch(
             &mut self.input,
@@ -95,6 +88,11 @@ impl SampledTransform {
             &mut self.scratch,
         );
         debug_assert!(done.is_ok(), "lengths fit: {done:?}");
+    }
+
+    /// Writes the series of samples, as many harmonics as it has room for; those from `samples / 2` upwards are zero.
+    pub fn analyse(&mut self, samples: &[f64], series: &mut [f64]) {
+        self.transform(samples);
         let scale = 2.0 / self.samples as f64;
         let below_nyquist = (self.samples - 1) / 2;
         series.fill(0.0);

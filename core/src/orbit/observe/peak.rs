@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use super::sampler::largest;
 use crate::balance::rate_series;
-use crate::law::{Derivatives, Law, On};
+use crate::law::{Law, On};
+use crate::laws::single::Single;
 use crate::numeric::fourier::crossings::levels::Segment;
 use crate::numeric::fourier::kernels::{LANES, evaluate};
 use crate::numeric::fourier::series;
@@ -59,18 +60,11 @@ struct Motion<'a> {
 impl Motion<'_> {
     fn at(&self, tau: f64) -> Slope {
         let (gap, by_phase, curvature) = series::value_and_derivatives(self.gap, tau);
-        let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
-        let out = Derivatives {
-            force: &mut force,
-            by_gap: &mut by_gap,
-            by_rate: &mut by_rate,
-        };
-        let rate = [self.base * by_phase];
-        self.law
-            .derivatives(On::Piece(self.piece), self.arguments, &[gap], &rate, out);
-        let slope = by_gap[0] * by_phase + by_rate[0] * self.base * curvature;
+        let (on, rate) = (On::Piece(self.piece), self.base * by_phase);
+        let at = Single::of(self.law, on, self.arguments, [gap, rate]);
+        let slope = at.by_gap * by_phase + at.by_rate * self.base * curvature;
         Slope {
-            size: self.sign * force[0],
+            size: self.sign * at.force,
             slope: self.sign * slope,
         }
     }

@@ -52,6 +52,15 @@ impl Sums {
         self.sizes[1] += sizes[1];
     }
 
+    /// What the steps leave in the multipliers of a matrix, from what the fourth order lacks in it.
+    fn error(&self, multipliers: &[Complex<f64>], product: &[f64], lack: &[f64]) -> f64 {
+        let part = SAFETY * self.part();
+        if part == 0.0 {
+            return 0.0;
+        }
+        spread(multipliers, product, |index| part * lack[index])
+    }
+
     /// `q`
     fn part(&self) -> f64 {
         let [first, second] = self.sizes;
@@ -117,14 +126,9 @@ impl Fundamental for FundamentalOfTwo {
         let Some(multipliers) = of(self.product) else {
             return (Vec::new(), [f64::INFINITY; 2]);
         };
-        let spread = |error: &dyn Fn(usize) -> f64| spread(&multipliers, &self.product, error);
-        let part = SAFETY * self.sums.part();
-        let by_steps = if part == 0.0 {
-            0.0
-        } else {
-            spread(&|index| part * self.lack[index])
-        };
-        let by_rounding = spread(&|index| ROUNDED * self.product[index]);
+        let by_steps = self.sums.error(&multipliers, &self.product, &self.lack);
+        let rounded = |index: usize| ROUNDED * self.product[index];
+        let by_rounding = spread(&multipliers, &self.product, rounded);
         (multipliers.to_vec(), [by_steps, by_rounding])
     }
 }
@@ -212,17 +216,11 @@ impl Fundamental for FundamentalOfMany {
         if multipliers.is_empty() {
             return (multipliers, [f64::INFINITY; 2]);
         }
-        let product = self.product.as_slice();
-        let spread = |error: &dyn Fn(usize) -> f64| spread(&multipliers, product, error);
-        let part = SAFETY * self.sums.part();
-        let by_steps = if part == 0.0 {
-            0.0
-        } else {
-            spread(&|index| part * self.lack[index])
-        };
+        let (product, lack) = (self.product.as_slice(), self.lack.as_slice());
+        let by_steps = self.sums.error(&multipliers, product, lack);
         // Eigenvalues are those of a matrix that differs by rounding errors of the largest entry.
         let rounded = ROUNDED * self.product.amax();
-        let by_rounding = spread(&|_| rounded);
+        let by_rounding = spread(&multipliers, product, |_| rounded);
         (multipliers, [by_steps, by_rounding])
     }
 }

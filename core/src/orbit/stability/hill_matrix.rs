@@ -30,9 +30,9 @@
 use nalgebra::DMatrix;
 
 use super::orbit::Orbit;
-use crate::balance::aft::{ContactDerivatives, ContactInput, Engine};
+use crate::balance::aft::{ContactDerivatives, ContactForces, ContactInput};
+use crate::balance::rate_series;
 use crate::balance::terms::{add_derivative, stretched};
-use crate::balance::{gap_series, rate_series};
 use crate::model::layout::{ContactLayout, Term};
 use crate::numeric::fourier::series;
 use crate::system::Wave;
@@ -101,9 +101,9 @@ impl Coefficients {
         for entry in &orbit.layout.damping {
             all.damping[entry.row * n + entry.column][0] += orbit.coefficients[entry.coefficient];
         }
-        let mut aft = Engine::new(orbit.aft, orbit.samples);
+        let mut aft = orbit.aft.engine(orbit.samples);
         for contact in &orbit.layout.contacts {
-            all.add_contact(orbit, contact, &mut aft);
+            all.add_contact(orbit, contact, aft.as_mut());
         }
         all.divide(orbit)?;
         for (stiffness, damping) in all.stiffness.iter_mut().zip(&all.damping) {
@@ -115,21 +115,16 @@ impl Coefficients {
     }
 
     /// Adds `e (phi_g d + phi_r dd/dt)` to the stiffness and `e phi_r d` to the damping.
-    fn add_contact(&mut self, orbit: &Orbit<'_>, contact: &ContactLayout, aft: &mut Engine) {
+    fn add_contact(
+        &mut self,
+        orbit: &Orbit<'_>,
+        contact: &ContactLayout,
+        aft: &mut dyn ContactForces,
+    ) {
         let n = self.coordinates;
-        let length = orbit.series.len() / n;
         let period = orbit.period;
-        let offset = contact.offset_harmonic() * period;
-        let highest = (self.harmonics + contact.gap_harmonic() * period).max(offset);
-        let mut gap = vec![0.0; series::length(highest)];
-        gap_series(
-            contact,
-            orbit.coefficients,
-            period,
-            orbit.series,
-            length,
-            &mut gap,
-        );
+        let mut gap = Vec::new();
+        orbit.gap(contact, &mut gap);
         let mut rate = gap.clone();
         rate_series(&gap, orbit.base, &mut rate);
         let mut arguments = vec![0.0; contact.argument_count];

@@ -25,7 +25,7 @@ use super::refined::{self, Refined};
 use super::rest::Rest;
 use super::{Answer, Method, Stability};
 use crate::balance::Balance;
-use crate::balance::truncation::{BEYOND, Finer, NOTHING};
+use crate::balance::truncation::{BEYOND, NOTHING, RefinedBalance};
 use crate::numeric::spectrum::spread;
 use crate::numeric::spectrum::{distance, eigenvalues};
 
@@ -107,7 +107,7 @@ impl Judge {
     pub(crate) fn stability(
         &mut self,
         balance: &Balance<'_>,
-        finer: Option<&Finer<'_>>,
+        finer: Option<&RefinedBalance<'_>>,
         u: &[f64],
     ) -> Stability {
         self.answer(balance, finer, u).stability
@@ -117,7 +117,7 @@ impl Judge {
     pub(crate) fn answer(
         &mut self,
         balance: &Balance<'_>,
-        finer: Option<&Finer<'_>>,
+        finer: Option<&RefinedBalance<'_>>,
         u: &[f64],
     ) -> Answer {
         let started = Instant::now();
@@ -171,7 +171,7 @@ impl Judge {
     fn plain_and_corrected(
         &mut self,
         orbit: &Orbit<'_>,
-        finer: Option<&Finer<'_>>,
+        finer: Option<&RefinedBalance<'_>>,
     ) -> (Found, Option<(Found, f64)>) {
         let Some(finer) = finer else {
             return (self.engine.multipliers(orbit, self.aim), None);
@@ -187,7 +187,12 @@ impl Judge {
 
     /// Whether a law changes between the nodes of the orbit where they do not see it; asked of the monodromy matrix if the method has
     /// no nodes.
-    fn overlooks(&mut self, balance: &Balance<'_>, finer: Option<&Finer<'_>>, u: &[f64]) -> bool {
+    fn overlooks(
+        &mut self,
+        balance: &Balance<'_>,
+        finer: Option<&RefinedBalance<'_>>,
+        u: &[f64],
+    ) -> bool {
         if self.engine.knows_its_error() {
             return self.engine.overlooks();
         }

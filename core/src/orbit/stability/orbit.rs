@@ -2,8 +2,10 @@
 
 use crate::balance::Balance;
 use crate::balance::aft::Aft;
-use crate::model::layout::Layout;
+use crate::balance::gap_series;
+use crate::model::layout::{ContactLayout, Layout};
 use crate::model::rigid::Rigid;
+use crate::numeric::fourier::series;
 use crate::system::System;
 
 /// An orbit: the system, its coefficients, and the series of its coordinates.
@@ -26,6 +28,23 @@ pub(crate) struct Orbit<'a> {
 }
 
 impl<'a> Orbit<'a> {
+    /// Writes the series of a gap.
+    pub(super) fn gap(&self, layout: &ContactLayout, gap: &mut Vec<f64>) {
+        let length = self.series.len() / self.layout.coordinates;
+        let harmonics = length / 2 + layout.gap_harmonic() * self.period;
+        let highest = harmonics.max(layout.offset_harmonic() * self.period);
+        gap.resize(series::length(highest), 0.0);
+        let (coefficients, series) = (self.coefficients, self.series);
+        gap_series(layout, coefficients, self.period, series, length, gap);
+    }
+
+    /// Writes the levels of a contact's law at its arguments.
+    pub(super) fn levels(&self, layout: &ContactLayout, arguments: &[f64], levels: &mut Vec<f64>) {
+        let law = self.system.law(layout.law);
+        levels.resize(law.facts().levels.len(), 0.0);
+        law.levels(arguments, levels);
+    }
+
     /// The orbit with these series, at the variable that the balance was set to last.
     pub(crate) fn of(balance: &'a Balance<'_>, series: &'a [f64]) -> Self {
         Self {

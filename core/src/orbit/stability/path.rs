@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use super::orbit::Orbit;
-use crate::balance::{gap_series, rate_series};
+use crate::balance::rate_series;
 use crate::law::{LawFacts, PieceFacts, Quantity};
 use crate::model::layout::ContactLayout;
 use crate::numeric::fourier::crossings::CrossingFinder;
@@ -155,7 +155,7 @@ impl Path {
         }
     }
 
-    /// The cuts at both ends of the panel behind a cut: of several contacts that switch together all count, also those that are a
+    /// The cuts at both ends of the panel after a cut: of several contacts that switch together all count, also those that are a
     /// little farther away. The one at the end itself is the last and the first of them.
     pub(super) fn ends(&self, index: usize) -> [&[Cut]; 2] {
         let cuts = &self.cuts;
@@ -210,8 +210,7 @@ fn power(facts: &PieceFacts, arguments: &[f64], upper: bool) -> u32 {
 
 impl Contact {
     fn load(&mut self, orbit: &Orbit<'_>, layout: &ContactLayout) {
-        let law = orbit.system.law(layout.law);
-        let facts = law.facts();
+        let facts = orbit.system.law(layout.law).facts();
         std::mem::swap(&mut self.arguments, &mut self.before);
         self.arguments.resize(layout.argument_count, 0.0);
         layout.arguments(orbit.coefficients, &mut self.arguments);
@@ -222,21 +221,9 @@ impl Contact {
             self.powers
                 .extend(pieces.map(|piece| [power(piece, false), power(piece, true)]));
         }
-        self.levels.resize(facts.levels.len(), 0.0);
-        law.levels(&self.arguments, &mut self.levels);
-        let length = orbit.series.len() / orbit.layout.coordinates;
-        let harmonics = length / 2 + layout.gap_harmonic() * orbit.period;
-        let highest = harmonics.max(layout.offset_harmonic() * orbit.period);
-        self.gap.resize(series::length(highest), 0.0);
-        self.rate.resize(series::length(highest), 0.0);
-        gap_series(
-            layout,
-            orbit.coefficients,
-            orbit.period,
-            orbit.series,
-            length,
-            &mut self.gap,
-        );
+        orbit.levels(layout, &self.arguments, &mut self.levels);
+        orbit.gap(layout, &mut self.gap);
+        self.rate.resize(self.gap.len(), 0.0);
         rate_series(&self.gap, orbit.base, &mut self.rate);
     }
 }

@@ -4,9 +4,7 @@
 //! sides, perturbations see one of them or the other by their sign, and multipliers of either say nothing of the orbit.
 
 use super::orbit::Orbit;
-use crate::balance::gap_series;
 use crate::law::LevelFacts;
-use crate::numeric::fourier::series;
 
 /// Distance of a gap from a level that it is on, in parts of its size and that of the orbit.
 const ON: f64 = 1e-12;
@@ -27,24 +25,13 @@ pub(super) struct Rest {
 impl Rest {
     /// Whether a contact rests on a level of its law.
     pub(super) fn on_a_level(&mut self, orbit: &Orbit<'_>) -> bool {
-        let length = orbit.series.len() / orbit.layout.coordinates;
         let size = orbit.series.iter().map(|x| x.abs()).fold(0.0, f64::max);
         orbit.layout.contacts.iter().any(|layout| {
-            let law = orbit.system.law(layout.law);
-            let facts = law.facts();
+            let facts = orbit.system.law(layout.law).facts();
             if !facts.levels.iter().copied().any(differs) {
                 return false;
             }
-            let highest = layout.gap_harmonic().max(layout.offset_harmonic()) * orbit.period;
-            self.gap.resize(series::length(length / 2 + highest), 0.0);
-            gap_series(
-                layout,
-                orbit.coefficients,
-                orbit.period,
-                orbit.series,
-                length,
-                &mut self.gap,
-            );
+            orbit.gap(layout, &mut self.gap);
             let moves: f64 = self.gap[1..].iter().map(|x| x.abs()).sum();
             let near = ON * size.max(self.gap[0].abs());
             if moves > near {
@@ -52,8 +39,7 @@ impl Rest {
             }
             self.arguments.resize(layout.argument_count, 0.0);
             layout.arguments(orbit.coefficients, &mut self.arguments);
-            self.levels.resize(facts.levels.len(), 0.0);
-            law.levels(&self.arguments, &mut self.levels);
+            orbit.levels(layout, &self.arguments, &mut self.levels);
             let mut levels = self.levels.iter().zip(facts.levels.iter());
             levels.any(|(value, &level)| differs(level) && (self.gap[0] - value).abs() <= near)
         })

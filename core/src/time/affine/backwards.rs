@@ -8,7 +8,8 @@ impl Affine {
     /// Moves from a phase to an earlier one.
     pub(super) fn go_back(
         &mut self,
-        (from, to): (f64, f64),
+        from: f64,
+        to: f64,
         state: &mut [f64],
         mut tangent: Option<&mut Tangent>,
         see: Option<See<'_>>,

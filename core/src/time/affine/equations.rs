@@ -95,8 +95,10 @@ impl Assembly {
     pub(super) fn differentiate(
         &mut self,
         basis: &Basis,
-        (terms, lines): (&Terms, &[Line]),
-        (terms_by, lines_by): (&Terms, &[Line]),
+        terms: &Terms,
+        lines: &[Line],
+        terms_by: &Terms,
+        lines_by: &[Line],
     ) {
         let (n, order, nu) = (basis.coordinates, basis.order(), terms.base);
         let forces = &mut self.accelerations;

@@ -20,9 +20,9 @@ use super::terms::Basis;
 /// Terms of the exponential over half a cell: `0.225^14 / 14! = 1e-20` is left out.
 const TERMS: usize = 13;
 
-/// Room to make tables: matrices of the order of `z`.
+/// Workspace to make tables: matrices of the order of `z`.
 #[derive(Debug)]
-pub(super) struct Room {
+pub(super) struct Workspace {
     /// `A h`
     scaled: Vec<f64>,
     scaled_by: Vec<f64>,
@@ -47,7 +47,7 @@ pub(super) struct Pair {
     by: Vec<f64>,
 }
 
-impl Room {
+impl Workspace {
     pub(super) fn new(basis: &Basis, rows: usize) -> Self {
         let order = basis.order();
         let square = || vec![0.0; order * order];
@@ -163,21 +163,21 @@ fn sum(a: &[f64], b: &[f64], out: &mut [f64]) {
 }
 
 /// The series of every cell: rows times the exponential up to its middle.
-pub(super) fn fill_series(series: &mut [Polynomial], room: &Room) {
-    let cells = series.chunks_exact_mut(room.rows.len());
-    for (cell, middle) in cells.zip(&room.middles) {
-        cell.copy_from_slice(&room.rows);
-        add_series(cell, &room.rows, &middle.value);
+pub(super) fn fill_series(series: &mut [Polynomial], workspace: &Workspace) {
+    let cells = series.chunks_exact_mut(workspace.rows.len());
+    for (cell, middle) in cells.zip(&workspace.middles) {
+        cell.copy_from_slice(&workspace.rows);
+        add_series(cell, &workspace.rows, &middle.value);
     }
 }
 
 /// The derivatives of the series of every cell.
-pub(super) fn fill_derivatives(series: &mut [Polynomial], room: &Room) {
-    let cells = series.chunks_exact_mut(room.rows.len());
-    for (cell, middle) in cells.zip(&room.middles) {
-        cell.copy_from_slice(&room.rows_by);
-        add_series(cell, &room.rows_by, &middle.value);
-        add_series(cell, &room.rows, &middle.by);
+pub(super) fn fill_derivatives(series: &mut [Polynomial], workspace: &Workspace) {
+    let cells = series.chunks_exact_mut(workspace.rows.len());
+    for (cell, middle) in cells.zip(&workspace.middles) {
+        cell.copy_from_slice(&workspace.rows_by);
+        add_series(cell, &workspace.rows_by, &middle.value);
+        add_series(cell, &workspace.rows, &middle.by);
     }
 }
 

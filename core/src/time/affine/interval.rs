@@ -85,8 +85,9 @@ impl Interval {
     pub(super) fn fill(
         &mut self,
         table: &Table,
-        (harmonic, base): (f64, f64),
-        (lower, upper): (f64, f64),
+        harmonic: f64,
+        base: f64,
+        [lower, upper]: [f64; 2],
     ) {
         self.cell = table.cell;
         self.density = 1.0 / table.cell;
@@ -129,7 +130,7 @@ impl Interval {
         let mut first = None;
         let mut range = range;
         for end in &self.ends {
-            if let Some(meeting) = self.meeting_with(end, z, (range, curved), begins) {
+            if let Some(meeting) = self.meeting_with(end, z, range, curved, begins) {
                 range = meeting.cell as f64 + meeting.s;
                 first = Some(meeting);
             }
@@ -143,7 +144,8 @@ impl Interval {
         &self,
         end: &End,
         z: &[f64; ORDER],
-        (range, curved): (f64, f64),
+        range: f64,
+        curved: f64,
         begins: bool,
     ) -> Option<Meeting> {
         let table = &end.distances;
@@ -169,8 +171,7 @@ impl Interval {
             }
             let pair = [distances[cell], distances[cell + 1]];
             let begins = begins && cell == 0 && z[0] == end.at;
-            let motion = (cell, &self.series[cell]);
-            if let Some((s, slope)) = end.zero(motion, pair, z, begins) {
+            if let Some((s, slope)) = end.zero(cell, &self.series[cell], pair, z, begins) {
                 let sign = if end.upper { -1.0 } else { 1.0 };
                 return (cell as f64 + s <= range).then_some(Meeting {
                     cell,
@@ -234,7 +235,8 @@ impl End {
     #[inline]
     fn zero(
         &self,
-        (cell, series): (usize, &[Polynomial; ORDER]),
+        cell: usize,
+        series: &[Polynomial; ORDER],
         [a, b]: [f64; 2],
         z: &[f64; ORDER],
         begins: bool,

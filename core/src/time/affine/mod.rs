@@ -118,69 +118,97 @@ impl Affine {
         see: &mut Option<See<'_>>,
     ) -> Result<(), FlowError> {
         let n = self.model.basis.coordinates;
-        let by = tangent.as_ref().and_then(|tangent| tangent.by);
-        let (begin, first) = (span.begin, span.first);
         let mut done = 0.0;
         let mut switches = 0;
         self.z[..2 * n].copy_from_slice(state);
-        self.model.basis.write_waves(first, &mut self.z[2 * n..]);
-        self.choose_pieces(begin)?;
+        self.model
+            .basis
+            .write_waves(span.first, &mut self.z[2 * n..]);
+        self.choose_pieces(span.begin)?;
         loop {
-            let phase = begin + done;
-            self.goes_on(phase)?;
-            let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
-            let table = &self.model.at(combination).table;
-            let rows = &mut self.rows[..table.rows];
-            let left = (span.length - done) / table.cell;
-            let range = left.min(table.range());
-            let at = &self.at;
-            let begins = |watch: &table::Watch| at[watch.contact] == Some(watch.level);
-            let hit = table.first_hit(&self.z, range, begins, rows);
-            let cells = hit.map_or(range, |hit| hit.at);
-            let last = hit.is_none() && range == left;
-            let next = done + cells * table.cell;
-            let piece = Piece {
-                table,
-                z: &self.z,
-                phases: (phase, if last { span.end } else { begin + next }),
-                base: self.model.terms.base,
-            };
-            piece.at(cells, rows, &mut self.next);
-            if self.next.iter().any(|x| !x.is_finite()) {
-                return Err(FlowError::NotFinite { phase });
-            }
-            state.copy_from_slice(&self.next);
-            if let Some(tangent) = tangent.as_deref_mut() {
-                let rows_by = &mut self.rows_by[..table.rows];
-                let room = (&mut *rows, rows_by, &mut self.column[..]);
-                tangent::advance(&self.model, table, &self.z, cells, tangent, room);
-            }
-            if let Some(see) = see {
-                see(&piece);
-            }
-            self.work.steps += 1;
-            if last {
+            self.goes_on(span.begin + done)?;
+            let passed = self.pass_segment(span, done, state, tangent, see)?;
+            let Some(next) = passed.goes_on_at else {
                 return Ok(());
-            }
+            };
             done = next;
             self.z[..2 * n].copy_from_slice(state);
             let waves = &mut self.z[2 * n..];
-            self.model.basis.write_waves(first + done, waves);
-            if cells > 0.0 {
+            self.model.basis.write_waves(span.first + done, waves);
+            if passed.cells > 0.0 {
                 self.at.fill(None);
             }
-            if let Some(hit) = hit {
+            if let Some(switch) = passed.switch {
                 switches += 1;
                 self.work.switches += 1;
                 if switches > MOST_SWITCHES {
-                    let phase = begin + done;
+                    let phase = span.begin + done;
                     return Err(FlowError::TooManySwitches { phase, switches });
                 }
-                let watch = &table.watches[hit.watch];
-                let crossed = (watch.contact, watch.level, watch.upper);
-                self.cross(crossed, tangent.as_deref_mut());
+                self.cross(switch, tangent.as_deref_mut());
             }
         }
+    }
+
+    /// Moves on one combination of pieces, to the next switch or as far as its table reaches.
+    fn pass_segment(
+        &mut self,
+        span: Span,
+        done: f64,
+        state: &mut [f64],
+        tangent: &mut Option<&mut Tangent>,
+        see: &mut Option<See<'_>>,
+    ) -> Result<Passed, FlowError> {
+        let by = tangent.as_ref().and_then(|tangent| tangent.by);
+        let phase = span.begin + done;
+        let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
+        let table = &self.model.at(combination).table;
+        let rows = &mut self.rows[..table.rows];
+        let left = (span.length - done) / table.cell;
+        let range = left.min(table.range());
+        let at = &self.at;
+        let begins = |exit: &table::ExitLevel| at[exit.contact] == Some(exit.level);
+        let hit = table.first_hit(&self.z, range, begins, rows);
+        let cells = hit.map_or(range, |hit| hit.at);
+        let last = hit.is_none() && range == left;
+        let next = done + cells * table.cell;
+        let end = if last { span.end } else { span.begin + next };
+        let piece = Piece {
+            table,
+            z: &self.z,
+            phases: (phase, end),
+            base: self.model.terms.base,
+        };
+        piece.at(cells, rows, &mut self.next);
+        if self.next.iter().any(|x| !x.is_finite()) {
+            return Err(FlowError::NotFinite { phase });
+        }
+        state.copy_from_slice(&self.next);
+        if let Some(tangent) = tangent.as_deref_mut() {
+            let workspace = tangent::Workspace {
+                rows: &mut *rows,
+                rows_by: &mut self.rows_by[..table.rows],
+                column: &mut self.column,
+            };
+            tangent::advance(&self.model, table, &self.z, cells, tangent, workspace);
+        }
+        if let Some(see) = see {
+            see(&piece);
+        }
+        self.work.steps += 1;
+        let switch = hit.map(|hit| {
+            let exit = &table.exits[hit.exit];
+            Switch {
+                contact: exit.contact,
+                level: exit.level,
+                upwards: exit.upper,
+            }
+        });
+        Ok(Passed {
+            goes_on_at: (!last).then_some(next),
+            cells,
+            switch,
+        })
     }
 
     /// Whether nobody has cancelled the motion.
@@ -192,16 +220,12 @@ impl Affine {
     }
 
     /// Takes a contact over one of its levels, upwards or downwards.
-    fn cross(
-        &mut self,
-        (contact, level, upwards): (usize, usize, bool),
-        tangent: Option<&mut Tangent>,
-    ) {
+    fn cross(&mut self, switch: Switch, tangent: Option<&mut Tangent>) {
         if let Some(tangent) = tangent {
-            tangent::switch(&self.model, &self.z, (contact, level, upwards), tangent);
+            tangent::switch(&self.model, &self.z, switch, tangent);
         }
-        self.pieces[contact] = level + usize::from(upwards);
-        self.at[contact] = Some(level);
+        self.pieces[switch.contact] = switch.level + usize::from(switch.upwards);
+        self.at[switch.contact] = Some(switch.level);
     }
 
     /// Whether the arrays of fixed size serve the present values, and not only the pieces that a motion meets.
@@ -239,10 +263,10 @@ impl Affine {
         let table = &self.model.at(combination).table;
         let rows = &mut self.rows[..table.rows];
         table.polynomials(0, &self.z, rows);
-        let mut watches = table.watches.iter();
-        let watch = watches.find(|watch| watch.contact == contact && watch.level == level);
-        Ok(watch
-            .is_some_and(|watch| crossing::derivatives(&table.distance(watch, rows), 0.0)[2] > 0.0))
+        let mut exits = table.exits.iter();
+        let exit = exits.find(|exit| exit.contact == contact && exit.level == level);
+        Ok(exit
+            .is_some_and(|exit| crossing::derivatives(&table.distance(exit, rows), 0.0)[2] > 0.0))
     }
 }
 
@@ -273,7 +297,7 @@ impl Flow for Affine {
     ) -> Result<(), FlowError> {
         check_entries(self.coordinates(), state, tangent.as_deref())?;
         if to < from {
-            return self.go_back((from, to), state, tangent, see);
+            return self.go_back(from, to, state, tangent, see);
         }
         let by = tangent.as_ref().and_then(|tangent| tangent.by);
         self.model.refresh(by, from)?;
@@ -327,6 +351,23 @@ fn spans(from: f64, to: f64) -> impl Iterator<Item = Span> {
     })
 }
 
+/// What became of a motion on one combination of pieces.
+struct Passed {
+    /// Where it goes on, since the beginning of the span; nothing at its end.
+    goes_on_at: Option<f64>,
+    /// Cells of the table that it took.
+    cells: f64,
+    switch: Option<Switch>,
+}
+
+/// A contact that crosses one of its levels.
+#[derive(Debug, Clone, Copy)]
+struct Switch {
+    contact: usize,
+    level: usize,
+    upwards: bool,
+}
+
 /// A motion on one combination of pieces, from the phase where its table begins.
 struct Piece<'t> {
     table: &'t Table,
@@ -338,7 +379,7 @@ struct Piece<'t> {
 }
 
 impl Piece<'_> {
-    /// The state after some cells. `rows` is room.
+    /// The state after some cells. `rows` is workspace.
     fn at(&self, cells: f64, rows: &mut [Polynomial], state: &mut [f64]) {
         let (cell, s) = self.table.place(cells);
         self.table.polynomials(cell, self.z, rows);

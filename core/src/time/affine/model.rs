@@ -6,8 +6,8 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::equations::Assembly;
-use super::exponential::Room;
-use super::table::{Table, Watch};
+use super::exponential::Workspace;
+use super::table::{ExitLevel, Table};
 use super::terms::{Basis, Line, Terms};
 use crate::error::Error;
 use crate::model::error::ModelError;
@@ -70,7 +70,7 @@ pub(super) struct Model {
     lines: Vec<Line>,
     lines_by: Vec<Line>,
     assembly: Assembly,
-    room: Room,
+    workspace: Workspace,
 }
 
 impl Model {
@@ -125,7 +125,7 @@ impl Model {
             lines: vec![Line::default(); layout.contacts.len()],
             lines_by: vec![Line::default(); layout.contacts.len()],
             assembly: Assembly::new(&basis),
-            room: Room::new(&basis, rows(&basis, moving)),
+            workspace: Workspace::new(&basis, rows(&basis, moving)),
             basis,
             layout,
         }
@@ -235,8 +235,8 @@ impl Model {
                     *sum += factor * by;
                 }
                 for (piece, line) in contact.lines_by.iter_mut().enumerate() {
-                    let by = (argument, factor);
-                    line.add_derivative(law, arguments, &contact.levels, piece, by);
+                    let levels = &contact.levels;
+                    line.add_derivative(law, arguments, levels, piece, argument, factor);
                 }
             }
             if self.backwards {
@@ -274,9 +274,9 @@ impl Model {
     }
 
     fn add(&mut self, pieces: &[usize]) -> usize {
-        let mut watches = Vec::new();
+        let mut exits = Vec::new();
         for (contact, &piece) in pieces.iter().enumerate() {
-            let watch = |level, upper| Watch {
+            let exit = |level, upper| ExitLevel {
                 contact,
                 level,
                 upper,
@@ -285,16 +285,16 @@ impl Model {
                 bound: Vec::new(),
             };
             if piece > 0 {
-                watches.push(watch(piece - 1, false));
+                exits.push(exit(piece - 1, false));
             }
             if piece < self.contacts[contact].levels.len() {
-                watches.push(watch(piece, true));
+                exits.push(exit(piece, true));
             }
         }
         let index = self.combinations.len();
         self.combinations.push(Combination {
             pieces: pieces.to_vec(),
-            table: Table::new(&self.basis, rows(&self.basis, self.moving), watches),
+            table: Table::new(&self.basis, rows(&self.basis, self.moving), exits),
             filled: false,
             differentiated: false,
         });
@@ -316,18 +316,19 @@ impl Model {
             return Err(FlowError::StepTooShort { phase, step: cell });
         }
         if derivatives {
-            let (lines, lines_by) = (&self.lines[..], &self.lines_by[..]);
-            let by = (&self.terms_by, lines_by);
-            self.assembly.differentiate(basis, (terms, lines), by);
+            self.assembly
+                .differentiate(basis, terms, &self.lines, &self.terms_by, &self.lines_by);
         }
-        for watch in &mut combination.table.watches {
-            let contact = &terms.contacts[watch.contact];
-            let level = self.contacts[watch.contact].levels[watch.level];
-            watch.set_row(&contact.gap, &contact.offset, level);
+        for exit in &mut combination.table.exits {
+            let contact = &terms.contacts[exit.contact];
+            let level = self.contacts[exit.contact].levels[exit.level];
+            exit.set_row(&contact.gap, &contact.offset, level);
         }
         let matrix = &self.assembly.matrix;
         let by = derivatives.then_some(&self.assembly.derivative[..]);
-        combination.table.fill(matrix, by, cell, &mut self.room);
+        combination
+            .table
+            .fill(matrix, by, cell, &mut self.workspace);
         combination.filled = true;
         combination.differentiated = derivatives;
         Ok(())

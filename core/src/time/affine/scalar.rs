@@ -15,7 +15,7 @@ pub(super) struct Scalar {
     /// Between them.
     boundaries: Vec<Boundary>,
     harmonic: f64,
-    /// Room for the piece of every contact.
+    /// Workspace for the piece of every contact.
     pieces: Vec<usize>,
 }
 
@@ -72,7 +72,7 @@ impl Scalar {
             choose_pieces(model, inside(lower, upper), &mut self.pieces);
             let combination = model.combination(&self.pieces, phase, false)?;
             let table = &model.at(combination).table;
-            interval.fill(table, (self.harmonic, model.terms.base), (lower, upper));
+            interval.fill(table, self.harmonic, model.terms.base, [lower, upper]);
         }
         Ok(())
     }
@@ -108,6 +108,16 @@ impl Scalar {
         });
     }
 
+    /// A state at the beginning of a span, with the constant and the wave.
+    #[inline]
+    fn begin(&self, span: Span, [position, velocity]: [f64; 2]) -> [f64; ORDER] {
+        let (sine, cosine) = match span.first {
+            0.0 => (0.0, 1.0),
+            first => (self.harmonic * first).sin_cos(),
+        };
+        [position, velocity, 1.0, cosine, sine]
+    }
+
     /// Moves a state, and perturbations of it.
     #[inline]
     pub(super) fn advance(
@@ -117,11 +127,7 @@ impl Scalar {
         columns: &mut [[f64; 2]],
         work: &mut Work,
     ) -> Result<(), FlowError> {
-        let (sine, cosine) = match span.first {
-            0.0 => (0.0, 1.0),
-            first => (self.harmonic * first).sin_cos(),
-        };
-        let mut z = [state[0], state[1], 1.0, cosine, sine];
+        let mut z = self.begin(span, *state);
         let mut index = self.choose(&z);
         let mut begins = true;
         let mut done = 0.0;

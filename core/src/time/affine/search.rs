@@ -10,7 +10,7 @@
 //! [`crossing`](super::crossing).
 
 use super::crossing::first_zero;
-use super::table::{COEFFICIENTS, Polynomial, Table, Watch};
+use super::table::{COEFFICIENTS, ExitLevel, Polynomial, Table};
 
 /// Cells of the largest table, and one more.
 const ENDS: usize = 17;
@@ -18,27 +18,27 @@ const ENDS: usize = 17;
 /// An end of a piece is met.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hit {
-    /// Which of the watches.
-    pub(super) watch: usize,
+    /// Which of the exit levels.
+    pub(super) exit: usize,
     /// When, in cells.
     pub(super) at: f64,
 }
 
 impl Table {
-    /// The first end of a piece that is met within a range, in cells. `begins` tells of a watch whether the motion begins at it.
+    /// The first end of a piece that is met within a range, in cells. `begins` tells of an exit level whether the motion begins at it.
     pub(super) fn first_hit(
         &self,
         z: &[f64],
         range: f64,
-        begins: impl Fn(&Watch) -> bool,
-        room: &mut [Polynomial],
+        begins: impl Fn(&ExitLevel) -> bool,
+        workspace: &mut [Polynomial],
     ) -> Option<Hit> {
         let mut first = None;
         let mut range = range;
-        for (index, watch) in self.watches.iter().enumerate() {
-            let found = self.first_meeting(watch, z, range, begins(watch), room);
+        for (index, exit) in self.exits.iter().enumerate() {
+            let found = self.first_meeting(exit, z, range, begins(exit), workspace);
             if let Some(at) = found.filter(|&at| first.is_none() || at < range) {
-                first = Some(Hit { watch: index, at });
+                first = Some(Hit { exit: index, at });
                 range = at;
             }
         }
@@ -47,15 +47,15 @@ impl Table {
 
     fn first_meeting(
         &self,
-        watch: &Watch,
+        exit: &ExitLevel,
         z: &[f64],
         range: f64,
         begins: bool,
-        room: &mut [Polynomial],
+        workspace: &mut [Polynomial],
     ) -> Option<f64> {
         let width = self.cells + 1;
         let mut ends = [0.0; ENDS];
-        for (column, factor) in watch.ends.chunks_exact(width).zip(z) {
+        for (column, factor) in exit.ends.chunks_exact(width).zip(z) {
             for (end, x) in ends.iter_mut().zip(column) {
                 *end += x * factor;
             }
@@ -63,7 +63,7 @@ impl Table {
         if begins {
             ends[0] = 0.0;
         }
-        let sizes = watch.bound.iter().zip(z);
+        let sizes = exit.bound.iter().zip(z);
         let curved = 0.5 * sizes.map(|(bound, x)| bound * x.abs()).sum::<f64>();
         for cell in 0..self.cells {
             let (from, bound) = if cell == 0 {
@@ -79,10 +79,10 @@ impl Table {
             if a >= 0.0 && b > 0.0 && a + b > bound {
                 continue;
             }
-            self.polynomials(cell, z, room);
-            let distance = self.distance(watch, room);
+            self.polynomials(cell, z, workspace);
+            let distance = self.distance(exit, workspace);
             let to = (range - middle).min(0.5);
-            let noise = self.noise(watch, z, cell);
+            let noise = self.noise(exit, z, cell);
             let found = first_zero(&distance, from, to, begins && cell == 0, noise);
             if let Some(s) = found {
                 return Some(middle + s);
@@ -92,21 +92,21 @@ impl Table {
     }
 
     /// The polynomial of a distance from those of the rows.
-    pub(super) fn distance(&self, watch: &Watch, rows: &[Polynomial]) -> Polynomial {
+    pub(super) fn distance(&self, exit: &ExitLevel, rows: &[Polynomial]) -> Polynomial {
         let mut sum = [0.0; COEFFICIENTS];
         for (index, row) in rows.iter().enumerate() {
-            let weight = watch.row[self.entry(index)];
+            let weight = exit.row[self.entry(index)];
             for (sum, x) in sum.iter_mut().zip(row) {
                 *sum += weight * x;
             }
         }
-        sum[0] += watch.row[self.constant()];
+        sum[0] += exit.row[self.constant()];
         sum
     }
 
     /// The rounding error of a distance in a cell.
-    fn noise(&self, watch: &Watch, z: &[f64], cell: usize) -> f64 {
-        let columns = watch.ends.chunks_exact(self.cells + 1).zip(z);
+    fn noise(&self, exit: &ExitLevel, z: &[f64], cell: usize) -> f64 {
+        let columns = exit.ends.chunks_exact(self.cells + 1).zip(z);
         let sizes =
             columns.map(|(column, x)| (column[cell].abs() + column[cell + 1].abs()) * x.abs());
         4.0 * f64::EPSILON * sizes.sum::<f64>()

@@ -15,12 +15,12 @@
 //! divides by a difference of frequencies or by a stiffness: resonance, critical damping, no stiffness and the neighbourhood of
 //! each keep their digits.
 //!
-//! A *watch* is the distance of a gap from one end of its piece, positive inside. Its values at the beginning and at the ends of
+//! An *exit level* is the distance of a gap from one end of its piece, positive inside. Its values at the beginning and at the ends of
 //! the cells are tabulated too, and a bound on its second derivative, `|d''| <= bound . |z(0)|` in the unit of a cell.
 //!
 //! Source of (1): Van Loan (1978), Computing integrals involving the matrix exponential, IEEE Trans. Automatic Control 23.
 
-use super::exponential::{Room, add_row_times, fill_derivatives, fill_series};
+use super::exponential::{Workspace, add_row_times, fill_derivatives, fill_series};
 use super::terms::Basis;
 
 /// Terms of the series (1).
@@ -35,7 +35,7 @@ pub(super) type Polynomial = [f64; COEFFICIENTS];
 
 /// The distance of a gap from one end of its piece.
 #[derive(Debug, Clone)]
-pub(super) struct Watch {
+pub(super) struct ExitLevel {
     pub(super) contact: usize,
     pub(super) level: usize,
     /// The level is the upper end of the piece: the distance is the level less the gap.
@@ -65,11 +65,11 @@ pub(super) struct Table {
     pub(super) series: Vec<Polynomial>,
     /// Their derivatives by a variable; empty until asked for.
     pub(super) series_by: Vec<Polynomial>,
-    pub(super) watches: Vec<Watch>,
+    pub(super) exits: Vec<ExitLevel>,
 }
 
 impl Table {
-    pub(super) fn new(basis: &Basis, rows: usize, watches: Vec<Watch>) -> Self {
+    pub(super) fn new(basis: &Basis, rows: usize, exits: Vec<ExitLevel>) -> Self {
         let order = basis.order();
         let cells = cells(order);
         Self {
@@ -80,7 +80,7 @@ impl Table {
             order,
             series: vec![[0.0; COEFFICIENTS]; cells * rows * order],
             series_by: Vec::new(),
-            watches,
+            exits,
         }
     }
 
@@ -99,20 +99,26 @@ impl Table {
         CELL / rate
     }
 
-    /// Fills the table from `A` and the rows of its watches, and its derivatives if that of `A` is given.
-    pub(super) fn fill(&mut self, matrix: &[f64], by: Option<&[f64]>, cell: f64, room: &mut Room) {
+    /// Fills the table from `A` and the rows of its exit levels, and its derivatives if that of `A` is given.
+    pub(super) fn fill(
+        &mut self,
+        matrix: &[f64],
+        by: Option<&[f64]>,
+        cell: f64,
+        workspace: &mut Workspace,
+    ) {
         self.cell = cell;
-        room.set(matrix, by, cell);
-        room.exponentials(by.is_some());
-        room.taylor(self, by.is_some());
-        fill_series(&mut self.series, room);
-        for watch in &mut self.watches {
-            watch.fill(&self.series, self.rows, self.coordinates, room);
+        workspace.set(matrix, by, cell);
+        workspace.exponentials(by.is_some());
+        workspace.taylor(self, by.is_some());
+        fill_series(&mut self.series, workspace);
+        for exit in &mut self.exits {
+            exit.fill(&self.series, self.rows, self.coordinates, workspace);
         }
         if by.is_some() {
             let length = self.series.len();
             self.series_by.resize(length, [0.0; COEFFICIENTS]);
-            fill_derivatives(&mut self.series_by, room);
+            fill_derivatives(&mut self.series_by, workspace);
         }
     }
 
@@ -175,7 +181,7 @@ fn add_combination(series: &[Polynomial], z: &[f64], out: &mut [Polynomial]) {
     }
 }
 
-impl Watch {
+impl ExitLevel {
     /// Sets the row from the direction and the waves of the gap, and from the level.
     pub(super) fn set_row(&mut self, gap: &[f64], offset: &[f64], level: f64) {
         let sign = if self.upper { -1.0 } else { 1.0 };
@@ -190,18 +196,24 @@ impl Watch {
     }
 
     /// Tabulates the distance at the ends of cells, and the bound on its second derivative.
-    fn fill(&mut self, series: &[Polynomial], rows: usize, coordinates: usize, room: &mut Room) {
-        let (order, width) = (self.row.len(), room.middles.len() + 1);
-        room.row.copy_from_slice(&self.row);
-        add_row_times(&self.row, &room.half.value, &mut room.row);
+    fn fill(
+        &mut self,
+        series: &[Polynomial],
+        rows: usize,
+        coordinates: usize,
+        workspace: &mut Workspace,
+    ) {
+        let (order, width) = (self.row.len(), workspace.middles.len() + 1);
+        workspace.row.copy_from_slice(&self.row);
+        add_row_times(&self.row, &workspace.half.value, &mut workspace.row);
         self.ends.resize(order * width, 0.0);
         for (m, &x) in self.row.iter().enumerate() {
             self.ends[m * width] = x;
         }
-        for (j, middle) in room.middles.iter().enumerate() {
-            room.other.copy_from_slice(&room.row);
-            add_row_times(&room.row, &middle.value, &mut room.other);
-            for (m, &x) in room.other.iter().enumerate() {
+        for (j, middle) in workspace.middles.iter().enumerate() {
+            workspace.other.copy_from_slice(&workspace.row);
+            add_row_times(&workspace.row, &middle.value, &mut workspace.other);
+            for (m, &x) in workspace.other.iter().enumerate() {
                 self.ends[m * width + j + 1] = x;
             }
         }

@@ -13,10 +13,19 @@
 //!
 //! Source: Leine and Nijmeijer (2004), Dynamics and Bifurcations of Non-Smooth Mechanical Systems, chapter 7.
 
+use super::Switch;
 use super::crossing::value_and_slope;
 use super::model::Model;
 use super::table::{Polynomial, Table};
 use crate::time::Tangent;
+
+/// What moving a tangent writes into.
+pub(super) struct Workspace<'w> {
+    /// Motions, and their derivatives by a variable, as polynomials on a cell.
+    pub(super) rows: &'w mut [Polynomial],
+    pub(super) rows_by: &'w mut [Polynomial],
+    pub(super) column: &'w mut [f64],
+}
 
 /// Moves a tangent over some cells of a motion that begins at `z`.
 pub(super) fn advance(
@@ -25,16 +34,21 @@ pub(super) fn advance(
     z: &[f64],
     cells: f64,
     tangent: &mut Tangent,
-    (rows, rows_by, room): (&mut [Polynomial], &mut [Polynomial], &mut [f64]),
+    workspace: Workspace<'_>,
 ) {
+    let Workspace {
+        rows,
+        rows_by,
+        column: start,
+    } = workspace;
     let n = model.basis.coordinates;
     let (cell, s) = table.place(cells);
     let rate = model.terms.base / table.cell;
     let homogeneous = homogeneous(tangent, n);
-    room.fill(0.0);
+    start.fill(0.0);
     for (index, column) in tangent.columns.chunks_exact_mut(2 * n).enumerate() {
-        room[..2 * n].copy_from_slice(column);
-        table.polynomials(cell, room, rows);
+        start[..2 * n].copy_from_slice(column);
+        table.polynomials(cell, start, rows);
         let mut stretch = 0.0;
         if index >= homogeneous {
             table.add_derivatives(cell, z, rows);
@@ -53,12 +67,12 @@ pub(super) fn advance(
 }
 
 /// The saltation (1), where a contact crosses one of its levels, upwards or downwards.
-pub(super) fn switch(
-    model: &Model,
-    z: &[f64],
-    (contact, level, upwards): (usize, usize, bool),
-    tangent: &mut Tangent,
-) {
+pub(super) fn switch(model: &Model, z: &[f64], switch: Switch, tangent: &mut Tangent) {
+    let Switch {
+        contact,
+        level,
+        upwards,
+    } = switch;
     let n = model.basis.coordinates;
     let (force, by_rate) = model.jump(contact, level);
     if force == 0.0 && by_rate == 0.0 {

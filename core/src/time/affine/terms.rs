@@ -1,6 +1,7 @@
 //! What the equations of motion are made of, at given coefficients: all that is linear in them, and the pieces of the laws.
 
 use crate::law::{Derivatives, Law, On};
+use crate::laws::single::Single;
 use crate::model::layout::{Entry, Layout, Term, add_constant};
 use crate::system::{Part, Wave};
 
@@ -166,18 +167,16 @@ impl Line {
     /// A piece of a law.
     pub(super) fn of(law: &dyn Law, arguments: &[f64], levels: &[f64], piece: usize) -> Self {
         let at = end_of(levels, piece);
-        let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
-        let out = Derivatives {
-            force: &mut force,
-            by_gap: &mut by_gap,
-            by_rate: &mut by_rate,
-        };
-        law.derivatives(On::Piece(piece), arguments, &[at], &[0.0], out);
+        let Single {
+            force,
+            by_gap,
+            by_rate,
+        } = Single::of(law, On::Piece(piece), arguments, [at, 0.0]);
         Self {
             at,
-            force: force[0],
-            by_gap: by_gap[0],
-            by_rate: by_rate[0],
+            force,
+            by_gap,
+            by_rate,
         }
     }
 
@@ -188,7 +187,8 @@ impl Line {
         arguments: &[f64],
         levels: &[f64],
         piece: usize,
-        (argument, factor): (usize, f64),
+        argument: usize,
+        factor: f64,
     ) {
         let at = end_of(levels, piece);
         // Another gap of the same piece.

@@ -149,8 +149,9 @@ impl Field {
         batch: &mut Batch<S>,
         phase: f64,
         width: f64,
-        (passed, left): Parts<'_, S>,
+        parts: Parts<'_, S>,
     ) {
+        let (passed, left) = parts;
         let ends = [(phase, width, passed), (phase + width, -width, left)];
         for (changes, (from, width, parts)) in batch.changes.iter_mut().zip(ends) {
             for (changes, &harmonic) in changes.iter_mut().zip(&self.harmonics) {
@@ -213,7 +214,7 @@ impl Field {
             add_product(&mut samples.rate, d, v, row);
             let change = &batch.changes[end][wave][part as usize];
             add_times(&mut samples.rise, d * batch.ends[end][item.row], change);
-            let (factor, slope) = self.slope(&batch.waves, (wave, part));
+            let (factor, slope) = self.slope(&batch.waves, wave, part);
             let q = &batch.q[item.row];
             add_product(&mut samples.rate, d * self.base * factor, q, slope);
         }
@@ -236,7 +237,7 @@ impl Field {
             if let Some((wave, part)) = item.wave {
                 let delta = self.coefficients[item.coefficient];
                 add_times(&mut samples.rise, -delta, &changes[wave][part as usize]);
-                let (factor, slope) = self.slope(waves, (wave, part));
+                let (factor, slope) = self.slope(waves, wave, part);
                 add_times(&mut samples.rate, -delta * self.base * factor, slope);
             }
         }
@@ -247,7 +248,8 @@ impl Field {
     pub(super) fn slope<'b, const S: usize>(
         &self,
         waves: &'b [Waves<S>],
-        (index, part): (usize, Part),
+        index: usize,
+        part: Part,
     ) -> (f64, &'b [f64; S]) {
         let h = f64::from(self.harmonics[index]);
         match part {

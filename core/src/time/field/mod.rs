@@ -18,6 +18,7 @@ use std::sync::Arc;
 use super::FlowError;
 use super::error::check_value;
 use crate::law::{Law, On};
+use crate::laws::single;
 use crate::model::layout::{Entry, Layout, Term};
 use crate::model::validate::in_order;
 use crate::numeric::linear::{Lu, Matrix};
@@ -34,7 +35,7 @@ pub(crate) struct Field {
     coefficients: Vec<f64>,
     /// The entries of `M^-1` that are not zero: row, column, value.
     inverse_mass: Vec<(usize, usize, f64)>,
-    /// Room for the mass matrix, its factors, and a column of its inverse.
+    /// Workspace for the mass matrix, its factors, and a column of its inverse.
     mass: Matrix,
     lu: Lu,
     column: Vec<f64>,
@@ -68,9 +69,9 @@ pub(crate) struct Contact {
     moving: bool,
 }
 
-/// Room for derivatives of the coefficients, and of the levels of a contact.
+/// Workspace for derivatives of the coefficients, and of the levels of a contact.
 #[derive(Debug)]
-pub(crate) struct Room<'r> {
+pub(crate) struct Workspace<'r> {
     pub(crate) by: &'r mut [f64],
     pub(crate) levels: &'r mut [f64],
 }
@@ -257,7 +258,9 @@ impl Field {
     pub(crate) fn gap_acceleration(
         &self,
         contact: usize,
-        (q, v, a): (&[f64], &[f64], &[[f64; 1]]),
+        q: &[f64],
+        v: &[f64],
+        a: &[[f64; 1]],
         phase: f64,
     ) -> f64 {
         let contact = &self.contacts[contact];
@@ -307,16 +310,9 @@ impl Field {
         piece: usize,
         rate: f64,
     ) -> f64 {
-        let mut force = [0.0];
         let contact = &self.contacts[contact];
-        self.system.law(contact.law).force(
-            On::Piece(piece),
-            &contact.arguments,
-            &[contact.levels[level]],
-            &[rate],
-            &mut force,
-        );
-        force[0]
+        let (law, at) = (self.system.law(contact.law), contact.levels[level]);
+        single::force(law, On::Piece(piece), &contact.arguments, [at, rate])
     }
 
     /// How much a gap moves, beside a level, with a tangent column and with a variable.
@@ -325,8 +321,9 @@ impl Field {
         contact: usize,
         level: usize,
         column: &[f64],
-        (q, phase): (&[f64], f64),
-        by: Option<(Variable, Room<'_>)>,
+        q: &[f64],
+        phase: f64,
+        by: Option<(Variable, Workspace<'_>)>,
     ) -> f64 {
         let item_at = |item: &Item| self.wave(item, phase).0;
         let (facts, layout) = (&self.contacts[contact], &self.layout.contacts[contact]);
@@ -334,7 +331,7 @@ impl Field {
         let mut change: f64 = gap
             .map(|d| self.coefficients[d.coefficient] * item_at(d) * column[d.row])
             .sum();
-        let Some((variable, Room { by, levels })) = by else {
+        let Some((variable, Workspace { by, levels })) = by else {
             return change;
         };
         self.coefficients_by(variable, by);

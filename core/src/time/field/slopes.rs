@@ -53,28 +53,49 @@ impl Field {
             add_wave(&mut out.by_v[item.row * n + item.column], factor, &[], None);
         }
         for index in 0..self.contacts.len() {
-            self.slopes_of_law(&mut batch.contacts[index], index, pieces[index], None);
-            let contact = &self.contacts[index];
-            let samples = &batch.contacts[index];
-            for e in &contact.force {
-                let factor = -self.coefficients[e.coefficient];
-                let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
-                let waves = &batch.waves;
-                add_times_wave(&mut stiffness, factor, &samples.by_gap, waves, e.wave);
-                add_times_wave(&mut damping, factor, &samples.by_rate, waves, e.wave);
-                for d in &contact.gap {
-                    let value = self.coefficients[d.coefficient];
-                    let to = e.row * n + d.row;
-                    add_times_wave(&mut out.by_q[to], value, &stiffness, waves, d.wave);
-                    add_times_wave(&mut out.by_v[to], value, &damping, waves, d.wave);
-                    if let Some(wave) = d.wave {
-                        let (factor, slope) = self.slope(&batch.waves, wave);
-                        let factor = factor * value * self.base;
-                        add_product(&mut out.by_q[to], factor, &damping, slope);
-                    }
+            self.add_contact_slopes(batch, index, pieces[index], out);
+        }
+        self.divide_columns_by_mass(out);
+        if let Some(variable) = by {
+            self.by_variable(batch, pieces, variable, out);
+        }
+    }
+
+    /// Adds the derivatives of the force of a contact on a piece, before they are divided by the mass.
+    fn add_contact_slopes<const S: usize>(
+        &self,
+        batch: &mut Batch<S>,
+        index: usize,
+        piece: usize,
+        out: &mut Slopes<S>,
+    ) {
+        let n = self.coordinates();
+        self.slopes_of_law(&mut batch.contacts[index], index, piece, None);
+        let contact = &self.contacts[index];
+        let samples = &batch.contacts[index];
+        let waves = &batch.waves;
+        for e in &contact.force {
+            let factor = -self.coefficients[e.coefficient];
+            let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
+            add_times_wave(&mut stiffness, factor, &samples.by_gap, waves, e.wave);
+            add_times_wave(&mut damping, factor, &samples.by_rate, waves, e.wave);
+            for d in &contact.gap {
+                let value = self.coefficients[d.coefficient];
+                let to = e.row * n + d.row;
+                add_times_wave(&mut out.by_q[to], value, &stiffness, waves, d.wave);
+                add_times_wave(&mut out.by_v[to], value, &damping, waves, d.wave);
+                if let Some((wave, part)) = d.wave {
+                    let (factor, slope) = self.slope(waves, wave, part);
+                    let factor = factor * value * self.base;
+                    add_product(&mut out.by_q[to], factor, &damping, slope);
                 }
             }
         }
+    }
+
+    /// Forces become accelerations, column by column.
+    fn divide_columns_by_mass<const S: usize>(&self, out: &mut Slopes<S>) {
+        let n = self.coordinates();
         for j in 0..n {
             for matrix in [&mut out.by_q, &mut out.by_v] {
                 for i in 0..n {
@@ -87,9 +108,6 @@ impl Field {
                     add_times(&mut matrix[row * n + j], value, &out.rows[column]);
                 }
             }
-        }
-        if let Some(variable) = by {
-            self.by_variable(batch, pieces, variable, out);
         }
     }
 
@@ -191,8 +209,8 @@ impl Field {
             let (q, v) = (&batch.q[d.row], &batch.v[d.row]);
             add_times_wave(&mut gap, change, q, &batch.waves, d.wave);
             add_times_wave(&mut rate, change, v, &batch.waves, d.wave);
-            if let Some(wave) = d.wave {
-                let (factor, slope) = self.slope(&batch.waves, wave);
+            if let Some((wave, part)) = d.wave {
+                let (factor, slope) = self.slope(&batch.waves, wave, part);
                 let factor = factor * (change * self.base + value * base_by);
                 add_product(&mut rate, factor, q, slope);
             }
@@ -200,8 +218,8 @@ impl Field {
         for delta in &contact.offset {
             let (value, change) = (self.coefficients[delta.coefficient], by[delta.coefficient]);
             add_wave(&mut gap, -change, &batch.waves, delta.wave);
-            if let Some(wave) = delta.wave {
-                let (factor, slope) = self.slope(&batch.waves, wave);
+            if let Some((wave, part)) = delta.wave {
+                let (factor, slope) = self.slope(&batch.waves, wave, part);
                 let factor = factor * (change * self.base + value * base_by);
                 add_times(&mut rate, -factor, slope);
             }

@@ -50,13 +50,10 @@ impl<const S: usize> Engine<S> {
 
     /// Where `sign` times the distance from a level becomes negative.
     fn leaves(&mut self, contact: usize, level: usize, sign: f64, end: Gap) -> Option<Found> {
-        let value = self.field.contacts[contact].levels[level];
-        let start = self.here.gaps[contact];
         let starts = self.here.on[contact] == Some(level);
         let ends = self.trial.landing == Some((contact, level));
-        let time = self.time();
         let at_rest = starts && self.is_at_rest(contact);
-        let touches = starts && !at_rest && self.touches(contact, level);
+        let divided = starts && (at_rest || !self.touches(contact, level));
         let acceleration = if starts {
             self.acceleration_of(contact)
         } else {
@@ -64,42 +61,23 @@ impl<const S: usize> Engine<S> {
         };
         let doubtful = !at_rest && sign * acceleration > 0.0 && self.is_slow(contact);
         let rounding = self.rounding(contact, level);
-        let rounding = rounding.unwrap_or(ROUNDING * start.size.max(end.size));
-        let tables = &self.tables[self.trial.table];
-        let base = self.anchors[contact].gap - value;
-        let rise = &self.batch.contacts[contact].rise;
-        let values = &mut self.values;
-        for j in 0..S {
-            values[j + 1] = sign * (base + rise[j]);
-        }
-        values[0] = sign * (start.value - value);
-        values[S + 1] = sign * (end.value - value);
-        if starts && !touches {
-            // A gap that is at rest there goes away from the level as the square.
-            let parts = values[1..=S].iter_mut().zip(&tables.passed);
-            parts.for_each(|(distance, part)| {
-                *distance /= if at_rest { part * part } else { *part }
-            });
-            values[0] = sign
-                * if at_rest {
-                    0.5 * time * time * acceleration
-                } else {
-                    start.rate * time
-                };
+        let size = self.here.gaps[contact].size.max(end.size);
+        let rounding = rounding.unwrap_or(ROUNDING * size);
+        self.write_distances(contact, level, sign, end);
+        if divided {
+            self.divide_at_start(contact, sign, at_rest.then_some(acceleration));
         }
         if ends {
-            let parts = values[1..=S].iter_mut().zip(&tables.left);
-            parts.for_each(|(distance, part)| *distance /= part);
-            values[S + 1] = -sign * end.rate * time;
+            self.divide_at_end(sign * end.rate);
         }
-        let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let divided = ends || starts && !touches;
-        let noise = (ROUNDING * largest).max(if divided { 0.0 } else { rounding });
+        let largest = self.values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let rounding = if divided || ends { 0.0 } else { rounding };
+        let noise = (ROUNDING * largest).max(rounding);
         if largest == 0.0 {
             return None;
         }
         self.rule
-            .in_bernstein_form(values, noise, &mut self.coefficients);
+            .in_bernstein_form(&self.values, noise, &mut self.coefficients);
         let u = roots::first(&self.coefficients)?;
         let inside = roots::value(&self.coefficients, 0.5 * u) - noise;
         Some(Found {
@@ -109,5 +87,42 @@ impl<const S: usize> Engine<S> {
             at_once: starts && inside <= 2.0 * noise,
             doubtful,
         })
+    }
+
+    /// Writes `sign` times the distance of a gap from a level, at both ends and at the nodes.
+    fn write_distances(&mut self, contact: usize, level: usize, sign: f64, end: Gap) {
+        let value = self.field.contacts[contact].levels[level];
+        let base = self.anchors[contact].gap - value;
+        let rise = &self.batch.contacts[contact].rise;
+        for j in 0..S {
+            self.values[j + 1] = sign * (base + rise[j]);
+        }
+        self.values[0] = sign * (self.here.gaps[contact].value - value);
+        self.values[S + 1] = sign * (end.value - value);
+    }
+
+    /// Divides distances from a level on which the gap starts by the part that has passed; by its square where the gap goes away from
+    /// rest with an acceleration.
+    fn divide_at_start(&mut self, contact: usize, sign: f64, from_rest: Option<f64>) {
+        let time = self.time();
+        let tables = &self.tables[self.trial.table];
+        let parts = self.values[1..=S].iter_mut().zip(&tables.passed);
+        parts.for_each(|(distance, part)| {
+            *distance /= from_rest.map_or(*part, |_| part * part);
+        });
+        let limit = match from_rest {
+            Some(acceleration) => 0.5 * time * time * acceleration,
+            None => self.here.gaps[contact].rate * time,
+        };
+        self.values[0] = sign * limit;
+    }
+
+    /// Divides distances from a level on which the gap ends, with a rate, by the part that is left.
+    fn divide_at_end(&mut self, rate: f64) {
+        let time = self.time();
+        let tables = &self.tables[self.trial.table];
+        let parts = self.values[1..=S].iter_mut().zip(&tables.left);
+        parts.for_each(|(distance, part)| *distance /= part);
+        self.values[S + 1] = -rate * time;
     }
 }

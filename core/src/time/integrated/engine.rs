@@ -1,4 +1,4 @@
-//! Where the motion is, and the room that its steps need.
+//! Where the motion is, and the workspace of its steps.
 
 use std::f64::consts::TAU;
 
@@ -13,9 +13,9 @@ use crate::time::field::slopes::Slopes;
 use crate::time::field::{Field, Gap};
 use crate::time::{FlowError, Work};
 
-use super::drive::{Aim, SHORTEST};
 use super::map::{Map, Tables};
 use super::rule::Rule;
+use super::step_control::{Aim, SHORTEST};
 
 /// A coordinate that hardly moves is held to this part of the accuracy of the one that moves most.
 const LEAST_SCALE: f64 = 1e-3;
@@ -32,7 +32,7 @@ const NARROW: f64 = 1e-9;
 
 /// The state of a motion from switch to switch.
 #[derive(Debug)]
-pub(super) struct Here {
+pub(super) struct StepState {
     /// Where the motion began.
     pub(super) from: f64,
     /// Phase since then: small, so that a short step is not lost in it.
@@ -64,6 +64,39 @@ pub(super) struct Trial {
     pub(super) sizes: Vec<[f64; 2]>,
 }
 
+impl StepState {
+    fn new(coordinates: usize, contacts: usize) -> Self {
+        let zero = Gap {
+            value: 0.0,
+            rate: 0.0,
+            size: 0.0,
+        };
+        Self {
+            from: 0.0,
+            passed: 0.0,
+            q: vec![0.0; coordinates],
+            v: vec![0.0; coordinates],
+            pieces: vec![0; contacts],
+            on: vec![None; contacts],
+            gaps: vec![zero; contacts],
+            sizes: vec![[0.0; 2]; coordinates],
+        }
+    }
+}
+
+impl Trial {
+    fn new(coordinates: usize) -> Self {
+        Self {
+            width: 0.0,
+            table: 0,
+            landing: None,
+            q: vec![0.0; coordinates],
+            v: vec![0.0; coordinates],
+            sizes: vec![[0.0; 2]; coordinates],
+        }
+    }
+}
+
 pub(super) struct Engine<const S: usize> {
     pub(super) field: Field,
     pub(super) tolerance: f64,
@@ -77,7 +110,7 @@ pub(super) struct Engine<const S: usize> {
     pub(super) sharp: Vec<Option<Scales>>,
     /// They belong to the present values.
     powers_known: bool,
-    pub(super) here: Here,
+    pub(super) here: StepState,
     pub(super) trial: Trial,
     pub(super) batch: Batch<S>,
     pub(super) instant: Batch<1>,
@@ -90,7 +123,7 @@ pub(super) struct Engine<const S: usize> {
     pub(super) coefficients: Vec<f64>,
     pub(super) weights: Vec<f64>,
     pub(super) slopes: Slopes<S>,
-    /// Room for derivatives of the levels of one contact.
+    /// Workspace for derivatives of the levels of one contact.
     pub(super) levels_by: Vec<f64>,
     pub(super) slopes_here: Slopes<1>,
     pub(super) matrix: Matrix,
@@ -98,7 +131,7 @@ pub(super) struct Engine<const S: usize> {
     pub(super) right: Vec<f64>,
     /// Sizes of the columns of the tangent so far, `(by q, by v)`.
     pub(super) column_sizes: Vec<[f64; 2]>,
-    /// Room for tangent columns.
+    /// Workspace for tangent columns.
     pub(super) columns: Vec<f64>,
     /// What errors of coordinates and rates are relative to.
     pub(super) scales: Vec<[f64; 2]>,
@@ -107,7 +140,7 @@ pub(super) struct Engine<const S: usize> {
     /// A level that the next step is to reach.
     pub(super) aim: Option<Aim>,
     /// The step is to end where a slope jumps.
-    pub(super) bends: bool,
+    pub(super) ends_at_kink: bool,
     /// Switches, and where they began to be counted.
     pub(super) switches: (usize, f64),
     /// Steps, and where they began to be counted.
@@ -121,12 +154,9 @@ impl<const S: usize> Engine<S> {
         let n = field.coordinates();
         let contacts = field.contacts.len();
         let rule = Box::new(Rule::new());
-        let zero = Gap {
-            value: 0.0,
-            rate: 0.0,
-            size: 0.0,
-        };
         let rows = || vec![[0.0; S]; n];
+        let (end, gap) = (End::Start, 0.0);
+        let anchor = Anchor { end, gap };
         let points = rule.points.len();
         let levels = field.contacts.iter().map(|contact| contact.levels.len());
         let levels = levels.max().unwrap_or(0);
@@ -141,33 +171,11 @@ impl<const S: usize> Engine<S> {
                 .map(|contact| Scales::of(field.law(contact)))
                 .collect(),
             powers_known: false,
-            here: Here {
-                from: 0.0,
-                passed: 0.0,
-                q: vec![0.0; n],
-                v: vec![0.0; n],
-                pieces: vec![0; contacts],
-                on: vec![None; contacts],
-                gaps: vec![zero; contacts],
-                sizes: vec![[0.0; 2]; n],
-            },
-            trial: Trial {
-                width: 0.0,
-                table: 0,
-                landing: None,
-                q: vec![0.0; n],
-                v: vec![0.0; n],
-                sizes: vec![[0.0; 2]; n],
-            },
+            here: StepState::new(n, contacts),
+            trial: Trial::new(n),
             batch: Batch::new(&field),
             instant: Batch::new(&field),
-            anchors: vec![
-                Anchor {
-                    end: End::Start,
-                    gap: 0.0
-                };
-                contacts
-            ],
+            anchors: vec![anchor; contacts],
             before: [rows(), rows()],
             values: vec![0.0; points],
             motion: [vec![0.0; points], vec![0.0; points]],
@@ -184,7 +192,7 @@ impl<const S: usize> Engine<S> {
             scales: vec![[0.0; 2]; n],
             widths: [0.0; 3],
             aim: None,
-            bends: false,
+            ends_at_kink: false,
             switches: (0, 0.0),
             steps: (0, 0.0),
             work: Work::default(),
@@ -247,7 +255,7 @@ impl<const S: usize> Engine<S> {
     /// for the level's own, and what is left would grow by the square of its angle from one level to the next.
     pub(super) fn put_on_level(&mut self, contact: usize, level: usize) {
         let phase = self.phase();
-        let Here { q, v, .. } = &mut self.here;
+        let StepState { q, v, .. } = &mut self.here;
         let gap = self.field.gap(contact, q, v, phase);
         let left = self.field.contacts[contact].levels[level] - gap.value;
         self.field.move_gap(contact, phase, left, q);

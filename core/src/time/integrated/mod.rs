@@ -8,14 +8,14 @@
 //! Steps are explicit in that they are iterated: a vibration with an angle of more than about `S` on the step makes them
 //! shorter than accuracy would.
 
-mod bend;
 mod crossing;
-mod drive;
 mod engine;
+mod kink;
 mod map;
 mod roots;
 pub(super) mod rule;
 mod step;
+mod step_control;
 mod switch;
 mod tangent;
 #[cfg(test)]
@@ -134,7 +134,7 @@ impl Flow for Integrated {
     ) -> Result<(), FlowError> {
         check_entries(self.coordinates(), state, tangent.as_deref())?;
         let tangent = tangent.filter(|tangent| !tangent.columns.is_empty());
-        engine!(&mut self.engine, engine => engine.advance((from, to), state, tangent, see))
+        engine!(&mut self.engine, engine => engine.advance(from, to, state, tangent, see))
     }
 
     fn work(&self) -> Work {

@@ -249,8 +249,8 @@ impl<const S: usize> Engine<S> {
         for i in 0..self.here.q.len() {
             let (q, v) = (self.here.q[i], self.here.v[i]);
             let [start, end] = &mut batch.shift;
-            let rows = (&mut batch.v[i], &mut start[i]);
-            integrate(tables, time, v, &batch.a[i], rows);
+            let (rate, shift) = (&mut batch.v[i], &mut start[i]);
+            integrate(tables, time, v, &batch.a[i], rate, shift);
             batch.q[i] = start[i].map(|shift| q + shift);
             if self.trial.landing.is_some() {
                 integrate_left(tables, time, v, &batch.a[i], &mut end[i]);
@@ -411,7 +411,8 @@ fn integrate<const S: usize>(
     time: f64,
     v: f64,
     a: &[f64; S],
-    (rate, shift): (&mut [f64; S], &mut [f64; S]),
+    rate: &mut [f64; S],
+    shift: &mut [f64; S],
 ) {
     let (mut first, mut second) = ([0.0; S], [0.0; S]);
     for k in 0..S {

@@ -12,10 +12,10 @@
 //!
 //! Source: Leine and Nijmeijer (2004), Dynamics and Bifurcations of Non-Smooth Mechanical Systems, chapter 7.
 
-use crate::time::field::Room;
+use crate::time::field::Workspace;
 use crate::time::{FlowError, Tangent};
 
-use super::engine::{Engine, Here};
+use super::engine::{Engine, StepState};
 
 /// A rate below this part of the rates that it is a sum of is none.
 const AT_REST: f64 = 1e-14;
@@ -96,7 +96,7 @@ impl<const S: usize> Engine<S> {
 
     /// The gap has no rate, but for rounding.
     pub(super) fn is_at_rest(&self, contact: usize) -> bool {
-        let Here { q, v, gaps, .. } = &self.here;
+        let StepState { q, v, gaps, .. } = &self.here;
         let rate = gaps[contact].rate.abs();
         let size = self.field.rate_size(contact, |i| [q[i].abs(), v[i].abs()]);
         rate <= AT_REST * size.max(rate)
@@ -137,7 +137,7 @@ impl<const S: usize> Engine<S> {
         let phase = self.phase();
         let here = &self.here;
         self.field
-            .gap_acceleration(contact, (&here.q, &here.v, a), phase)
+            .gap_acceleration(contact, &here.q, &here.v, a, phase)
     }
 
     /// (1)
@@ -167,13 +167,13 @@ impl<const S: usize> Engine<S> {
         let last = tangent.columns.len() / order - 1;
         for (index, column) in tangent.columns.chunks_exact_mut(order).enumerate() {
             let by = tangent.by.filter(|_| index == last);
-            let room = Room {
+            let workspace = Workspace {
                 by: &mut self.slopes.coefficients,
                 levels: &mut self.levels_by,
             };
-            let by = by.map(|by| (by, room));
-            let at = (&self.here.q[..], phase);
-            let moved = self.field.gap_change(contact, level, column, at, by);
+            let by = by.map(|by| (by, workspace));
+            let q = &self.here.q;
+            let moved = self.field.gap_change(contact, level, column, q, phase, by);
             let (_, v) = column.split_at_mut(order / 2);
             self.field.push(contact, phase, -factor * moved, v);
         }

@@ -20,7 +20,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// What is remembered along a motion.
 pub(super) struct Search<'s, 'a> {
     section: &'s Section<'a>,
-    /// Room.
+    /// Workspace.
     state: Vec<f64>,
     /// Whether the motion was above the surface when last it was not on it.
     side: Option<bool>,

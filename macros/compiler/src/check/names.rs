@@ -162,16 +162,12 @@ pub(super) fn names_are_distinct(declaration: &Declaration, diagnostics: &mut Di
             law.into_iter()
                 .flat_map(local)
                 .chain(around.iter().copied())
-                .map(text),
+                .map(|(what, name)| (what, name.to_string())),
         );
         for (what, name) in own {
             distinct(what, name, &mut all, diagnostics);
         }
     });
-}
-
-fn text((what, name): (&'static str, &Ident)) -> (&'static str, String) {
-    (what, name.to_string())
 }
 
 fn distinct(

@@ -104,30 +104,47 @@ fn atom(tokens: TokenStream, size: usize) -> Expression {
     }
 }
 
+/// Two operands with a sign between them.
+fn binary(operands: [&Expression; 2], sign: &TokenStream, binding: Binding) -> Expression {
+    let [left, right] = operands;
+    let size = left.size + right.size + 1;
+    // The right operand needs brackets at equal binding: the order of operations is that of the tape.
+    let left = bracketed(left, left.binding < binding);
+    let right = bracketed(right, right.binding <= binding);
+    Expression {
+        tokens: quote!(#left #sign #right),
+        binding,
+        size,
+    }
+}
+
+/// A call of a function of the runtime.
+fn call(function: &str, operands: &[&Expression]) -> Expression {
+    let size: usize = operands.iter().map(|operand| operand.size).sum();
+    let operands = operands.iter().map(|operand| &operand.tokens);
+    let function = format_ident!("{function}");
+    atom(quote!(__emitted::#function(#(#operands),*)), size + 1)
+}
+
+/// The name of what the runtime calls for a function.
+fn name_of(function: Function) -> &'static str {
+    match function {
+        Function::Sign => "sign",
+        Function::Step => "step",
+        Function::Absolute => "absolute",
+        Function::Sine => "sine",
+        Function::Cosine => "cosine",
+        Function::Exponential => "exponential",
+        Function::Tanh => "tanh",
+    }
+}
+
 fn write(
     operation: Operation,
     written: &[Expression],
     name: &dyn Fn(Variable) -> Ident,
 ) -> Expression {
-    let binary = |a: usize, b: usize, sign: TokenStream, binding: Binding| {
-        // The right operand needs brackets at equal binding: the order of operations is that of the tape.
-        let left = bracketed(&written[a], written[a].binding < binding);
-        let right = bracketed(&written[b], written[b].binding <= binding);
-        Expression {
-            tokens: quote!(#left #sign #right),
-            binding,
-            size: written[a].size + written[b].size + 1,
-        }
-    };
-    let call = |function: TokenStream, operands: &[usize]| {
-        let size = operands
-            .iter()
-            .map(|&operand| written[operand].size)
-            .sum::<usize>()
-            + 1;
-        let operands = operands.iter().map(|&operand| &written[operand].tokens);
-        atom(quote!(__emitted::#function(#(#operands),*)), size)
-    };
+    let two = |a: usize, b: usize| [&written[a], &written[b]];
     match operation {
         Operation::Number(value) => Expression {
             tokens: number(value),
@@ -142,10 +159,10 @@ fn write(
             let name = name(variable);
             atom(quote!(#name), 0)
         }
-        Operation::Add(a, b) => binary(a, b, quote!(+), Binding::Sum),
-        Operation::Subtract(a, b) => binary(a, b, quote!(-), Binding::Sum),
-        Operation::Multiply(a, b) => binary(a, b, quote!(*), Binding::Product),
-        Operation::Divide(a, b) => binary(a, b, quote!(/), Binding::Product),
+        Operation::Add(a, b) => binary(two(a, b), &quote!(+), Binding::Sum),
+        Operation::Subtract(a, b) => binary(two(a, b), &quote!(-), Binding::Sum),
+        Operation::Multiply(a, b) => binary(two(a, b), &quote!(*), Binding::Product),
+        Operation::Divide(a, b) => binary(two(a, b), &quote!(/), Binding::Product),
         Operation::Negate(a) => {
             let operand = bracketed(&written[a], written[a].binding < Binding::Atom);
             Expression {
@@ -154,18 +171,10 @@ fn write(
                 size: written[a].size + 1,
             }
         }
-        Operation::Call(function, a) => match function {
-            Function::Sign => call(quote!(sign), &[a]),
-            Function::Step => call(quote!(step), &[a]),
-            Function::Absolute => call(quote!(absolute), &[a]),
-            Function::Sine => call(quote!(sine), &[a]),
-            Function::Cosine => call(quote!(cosine), &[a]),
-            Function::Exponential => call(quote!(exponential), &[a]),
-            Function::Tanh => call(quote!(tanh), &[a]),
-        },
-        Operation::Root(a) => call(quote!(root), &[a]),
-        Operation::CubeRoot(a) => call(quote!(cube_root), &[a]),
-        Operation::Reciprocal(a) => call(quote!(reciprocal), &[a]),
+        Operation::Call(function, a) => call(name_of(function), &[&written[a]]),
+        Operation::Root(a) => call("root", &[&written[a]]),
+        Operation::CubeRoot(a) => call("cube_root", &[&written[a]]),
+        Operation::Reciprocal(a) => call("reciprocal", &[&written[a]]),
         Operation::Logarithm(position) => {
             let name = logarithm(position);
             atom(quote!(#name), 0)
@@ -174,8 +183,8 @@ fn write(
             let name = power(position);
             atom(quote!(#name), 0)
         }
-        Operation::Power(base, exponent) => call(quote!(power), &[base, exponent]),
-        Operation::PowerLog(base, exponent) => call(quote!(power_log), &[base, exponent]),
+        Operation::Power(base, exponent) => call("power", &two(base, exponent)),
+        Operation::PowerLog(base, exponent) => call("power_log", &two(base, exponent)),
         Operation::Integer(base, exponent) => {
             let base = &written[base];
             let (tokens, size) = (&base.tokens, base.size + 1);

@@ -34,6 +34,13 @@ struct Part {
 /// The term as written, which a loop repeats.
 pub type Origin = *const Expr;
 
+/// Where a term stands: in which equation, and as what it is written.
+#[derive(Debug, Clone, Copy)]
+struct Site {
+    row: usize,
+    origin: Origin,
+}
+
 /// A law found in the equations and where its force acts.
 #[derive(Debug)]
 pub struct Found {
@@ -69,6 +76,7 @@ impl Gatherer {
             return Ok(vec![*term]);
         };
         context.work_is_left(term.extent)?;
+        let site = Site { row, origin };
         let mut linear = Vec::new();
         let whole = single_direction(&mut context.dag, id);
         let parts = if whole.is_some() {
@@ -96,7 +104,7 @@ impl Gatherer {
                 let direction = single_direction(&mut context.dag, part)
                     .ok_or_else(|| mixed(context, part, term.extent))?;
                 pivot_does_not_vanish(context, &direction, term.extent)?;
-                linear.extend(self.add_part(context, (row, origin), term, part, &direction));
+                linear.extend(self.add_part(context, site, term, part, &direction));
             }
         }
         Ok(linear)
@@ -105,7 +113,7 @@ impl Gatherer {
     fn add_part(
         &mut self,
         context: &mut Expander,
-        (row, origin): (usize, Origin),
+        site: Site,
         term: &Term,
         part: Id,
         direction: &Direction,
@@ -121,13 +129,13 @@ impl Gatherer {
                 linear.extend(in_coordinates(context, scaled, basis, direction));
             } else {
                 self.parts.push(Part {
-                    row,
+                    row: site.row,
                     wave: term.wave,
                     direction: direction.clone(),
                     coefficient: scaled.coefficient,
                     force: rest,
                     extent: term.extent,
-                    origin,
+                    origin: site.origin,
                     written: written.clone(),
                 });
             }

@@ -6,28 +6,60 @@ use hertzian_contract::system::Bound;
 
 use crate::dag::{Dag, Function, Id, Node, Rational, Variable};
 
+/// One end of an interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct End {
+    value: f64,
+    /// It is only approached, not reached.
+    is_open: bool,
+}
+
+impl End {
+    const ZERO: Self = Self::reached(0.0);
+
+    const fn reached(value: f64) -> Self {
+        Self {
+            value,
+            is_open: false,
+        }
+    }
+
+    const fn approached(value: f64) -> Self {
+        Self {
+            value,
+            is_open: true,
+        }
+    }
+
+    /// The same end of the interval of opposite numbers.
+    fn negated(self) -> Self {
+        Self {
+            value: -self.value,
+            ..self
+        }
+    }
+}
+
 /// All values an expression may have. An end may be reached or only approached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Lower end and whether it is only approached.
-    low: (f64, bool),
-    /// Upper end and whether it is only approached.
-    high: (f64, bool),
+    low: End,
+    high: End,
 }
 
 impl Interval {
     /// Every finite number.
     pub const ALL: Self = Self {
-        low: (f64::NEG_INFINITY, true),
-        high: (f64::INFINITY, true),
+        low: End::approached(f64::NEG_INFINITY),
+        high: End::approached(f64::INFINITY),
     };
 
     /// The range of a parameter.
     pub fn of_range(minimum: Bound, maximum: Bound) -> Self {
         let end = |bound, unbounded| match bound {
-            Bound::Unbounded => (unbounded, true),
-            Bound::Included(value) => (value, false),
-            Bound::Excluded(value) => (value, true),
+            Bound::Unbounded => End::approached(unbounded),
+            Bound::Included(value) => End::reached(value),
+            Bound::Excluded(value) => End::approached(value),
         };
         Self {
             low: end(minimum, f64::NEG_INFINITY),
@@ -37,34 +69,37 @@ impl Interval {
 
     /// The same as bounds.
     pub fn to_range(self) -> (Bound, Bound) {
-        let bound = |(value, open): (f64, bool)| match (value.is_infinite(), open) {
-            (true, _) => Bound::Unbounded,
-            (false, true) => Bound::Excluded(value),
-            (false, false) => Bound::Included(value),
+        let bound = |end: End| match end {
+            End { value, .. } if value.is_infinite() => Bound::Unbounded,
+            End {
+                value,
+                is_open: true,
+            } => Bound::Excluded(value),
+            End { value, .. } => Bound::Included(value),
         };
         (bound(self.low), bound(self.high))
     }
 
     fn point(value: f64) -> Self {
         Self {
-            low: (value, false),
-            high: (value, false),
+            low: End::reached(value),
+            high: End::reached(value),
         }
     }
 
     fn between(low: f64, high: f64) -> Self {
         Self {
-            low: (low, false),
-            high: (high, false),
+            low: End::reached(low),
+            high: End::reached(high),
         }
     }
 
     /// A value inside, at a fraction of a bounded interval or near the end of an unbounded one.
     pub fn inside(self, fraction: f64) -> f64 {
-        match (self.low.0.is_finite(), self.high.0.is_finite()) {
-            (true, true) => self.low.0 + fraction * (self.high.0 - self.low.0),
-            (true, false) => self.low.0 + 0.5 + fraction,
-            (false, true) => self.high.0 - 0.5 - fraction,
+        match (self.low.value.is_finite(), self.high.value.is_finite()) {
+            (true, true) => self.low.value + fraction * (self.high.value - self.low.value),
+            (true, false) => self.low.value + 0.5 + fraction,
+            (false, true) => self.high.value - 0.5 - fraction,
             (false, false) => 0.5 + fraction,
         }
     }
@@ -79,22 +114,22 @@ impl Interval {
 
     /// Never below zero.
     pub fn is_not_negative(self) -> bool {
-        self.low.0 >= 0.0
+        self.low.value >= 0.0
     }
 
     /// Never above zero.
     pub fn is_not_positive(self) -> bool {
-        self.high.0 <= 0.0
+        self.high.value <= 0.0
     }
 
     /// Always above zero.
     pub fn is_positive(self) -> bool {
-        self.low.0 > 0.0 || self.low == (0.0, true)
+        self.low.value > 0.0 || self.low == End::approached(0.0)
     }
 
     /// Always below zero.
     pub fn is_negative(self) -> bool {
-        self.high.0 < 0.0 || self.high == (0.0, true)
+        self.high.value < 0.0 || self.high == End::approached(0.0)
     }
 
     /// Zero is not among the values.
@@ -103,7 +138,10 @@ impl Interval {
     }
 
     fn add(self, other: Self) -> Self {
-        let end = |a: (f64, bool), b: (f64, bool)| (a.0 + b.0, a.1 || b.1);
+        let end = |a: End, b: End| End {
+            value: a.value + b.value,
+            is_open: a.is_open || b.is_open,
+        };
         Self {
             low: end(self.low, other.low),
             high: end(self.high, other.high),
@@ -127,8 +165,8 @@ impl Interval {
 
     fn negate(self) -> Self {
         Self {
-            low: (-self.high.0, self.high.1),
-            high: (-self.low.0, self.low.1),
+            low: self.high.negated(),
+            high: self.low.negated(),
         }
     }
 
@@ -138,9 +176,9 @@ impl Interval {
         } else if self.is_not_positive() {
             self.negate()
         } else {
-            let high = upper((-self.low.0, self.low.1), self.high);
+            let high = upper(self.low.negated(), self.high);
             Self {
-                low: (0.0, false),
+                low: End::ZERO,
                 high,
             }
         }
@@ -148,7 +186,7 @@ impl Interval {
 
     /// The values on one side of zero; zero for the others.
     fn on_side(self, positive: bool) -> Self {
-        let zero = (0.0, false);
+        let zero = End::ZERO;
         if positive {
             Self {
                 low: zero,
@@ -164,24 +202,28 @@ impl Interval {
 
     /// An increasing function of every value.
     fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        let end = |end: End| End {
+            value: function(end.value),
+            ..end
+        };
         Self {
-            low: (function(self.low.0), self.low.1),
-            high: (function(self.high.0), self.high.1),
+            low: end(self.low),
+            high: end(self.high),
         }
     }
 }
 
 /// The lower of two lower ends; of equal ones the one that is reached.
-fn lower(a: (f64, bool), b: (f64, bool)) -> (f64, bool) {
-    if a.0 < b.0 || (a.0 == b.0 && !a.1) {
+fn lower(a: End, b: End) -> End {
+    if a.value < b.value || (a.value == b.value && !a.is_open) {
         a
     } else {
         b
     }
 }
 
-fn upper(a: (f64, bool), b: (f64, bool)) -> (f64, bool) {
-    if a.0 > b.0 || (a.0 == b.0 && !a.1) {
+fn upper(a: End, b: End) -> End {
+    if a.value > b.value || (a.value == b.value && !a.is_open) {
         a
     } else {
         b
@@ -189,13 +231,16 @@ fn upper(a: (f64, bool), b: (f64, bool)) -> (f64, bool) {
 }
 
 /// Product of two ends. A zero that is reached makes a zero that is reached, whatever the other end.
-fn product(a: (f64, bool), b: (f64, bool)) -> (f64, bool) {
-    if a == (0.0, false) || b == (0.0, false) {
-        (0.0, false)
-    } else if a.0 == 0.0 || b.0 == 0.0 {
-        (0.0, true)
+fn product(a: End, b: End) -> End {
+    if [a, b].contains(&End::ZERO) {
+        End::ZERO
+    } else if a.value == 0.0 || b.value == 0.0 {
+        End::approached(0.0)
     } else {
-        (a.0 * b.0, a.1 || b.1)
+        End {
+            value: a.value * b.value,
+            is_open: a.is_open || b.is_open,
+        }
     }
 }
 
@@ -236,8 +281,8 @@ impl Ranges {
                 self.arguments.get(index).copied().unwrap_or(Interval::ALL)
             }
             Variable::Omega => Interval {
-                low: (0.0, true),
-                high: (f64::INFINITY, true),
+                low: End::approached(0.0),
+                high: End::approached(f64::INFINITY),
             },
             _ => Interval::ALL,
         }
@@ -289,12 +334,12 @@ impl Ranges {
                 Some(self.bounds(dag, value, Stretch::ALL))
             }
             None if slope.is_positive() => Some(Interval {
-                low: (outward, true),
-                high: (outward, true),
+                low: End::approached(outward),
+                high: End::approached(outward),
             }),
             None if slope.is_negative() => Some(Interval {
-                low: (-outward, true),
-                high: (-outward, true),
+                low: End::approached(-outward),
+                high: End::approached(-outward),
             }),
             None => None,
         };
@@ -359,8 +404,8 @@ fn is_step_of(dag: &mut Dag, step: Id, part: Id) -> Option<bool> {
 
 fn power(base: Interval, exponent: Interval, whole: Option<i32>) -> Interval {
     let positive = Interval {
-        low: (0.0, true),
-        high: (f64::INFINITY, true),
+        low: End::approached(0.0),
+        high: End::approached(f64::INFINITY),
     };
     match whole {
         Some(exponent) if exponent > 0 && exponent % 2 == 1 => {
@@ -371,12 +416,12 @@ fn power(base: Interval, exponent: Interval, whole: Option<i32>) -> Interval {
         Some(exponent) if base.is_negative() && exponent % 2 != 0 => positive.negate(),
         Some(exponent) if exponent % 2 != 0 => Interval::ALL,
         _ if base.is_positive() => positive,
-        _ if exponent.is_positive() && exponent == Interval::point(exponent.low.0) => {
-            base.absolute().map(|value| value.powf(exponent.low.0))
+        _ if exponent.is_positive() && exponent == Interval::point(exponent.low.value) => {
+            base.absolute().map(|value| value.powf(exponent.low.value))
         }
         _ => Interval {
-            low: (0.0, false),
-            high: (f64::INFINITY, true),
+            low: End::ZERO,
+            high: End::approached(f64::INFINITY),
         },
     }
 }
@@ -387,9 +432,12 @@ fn call(function: Function, operand: Interval) -> Interval {
         Function::Sign => operand.map(|value| if value == 0.0 { 0.0 } else { value.signum() }),
         Function::Step => operand.map(|value| f64::from(value > 0.0)),
         Function::Sine | Function::Cosine => Interval::between(-1.0, 1.0),
-        Function::Exponential if operand.low.0 == f64::NEG_INFINITY => Interval {
-            low: (0.0, true),
-            high: (operand.high.0.exp(), operand.high.1),
+        Function::Exponential if operand.low.value == f64::NEG_INFINITY => Interval {
+            low: End::approached(0.0),
+            high: End {
+                value: operand.high.value.exp(),
+                ..operand.high
+            },
         },
         Function::Exponential => operand.map(f64::exp),
         Function::Tanh => operand.map(f64::tanh),

@@ -70,39 +70,9 @@ fn segments(
         diagnostics.report(Extent::at(law.name.span()), TOO_MANY);
         return None;
     }
-    let mut sound = true;
-    let mut forces = Vec::new();
-    let mut bounded = Vec::new();
-    let mut rest = None;
-    for (index, piece) in law.pieces.iter().enumerate() {
-        let force = diagnostics.keep(force(context, &piece.force));
-        sound &= force.is_some();
-        forces.push(force);
-        match &piece.condition {
-            Condition::Else(extent) if rest.is_some() || index + 1 < law.pieces.len() => {
-                diagnostics.report(*extent, "`else` must be the last piece");
-                sound = false;
-            }
-            Condition::Else(extent) => rest = Some((index, *extent)),
-            Condition::Always => rest = Some((index, piece.force.extent)),
-            Condition::All(comparisons, extent) => {
-                match diagnostics.keep(ends(context, comparisons, index, *extent)) {
-                    Some(piece) => bounded.push(piece),
-                    None => sound = false,
-                }
-            }
-        }
-    }
-    if !sound {
-        return None;
-    }
-    let arranged = pieces::arranged(
-        context,
-        bounded,
-        rest,
-        Extent::at(law.name.span()),
-        diagnostics,
-    )?;
+    let written = Pieces::of(context, law, diagnostics)?;
+    let place = Extent::at(law.name.span());
+    let arranged = pieces::arranged(context, written.bounded, written.rest, place, diagnostics)?;
     let mut segments = Vec::new();
     let mut faulty = Vec::new();
     for piece in arranged {
@@ -110,7 +80,7 @@ fn segments(
         if faulty.contains(&piece.index) {
             continue;
         }
-        let (force, written) = forces[piece.index].clone()?;
+        let (force, written) = written.forces[piece.index].clone();
         let stretch = Stretch {
             low: piece.low.map(|low| low.0),
             high: piece.high.map(|high| high.0),
@@ -129,6 +99,49 @@ fn segments(
         }
     }
     faulty.is_empty().then_some(segments)
+}
+
+/// The pieces of a law as they are written.
+struct Pieces {
+    /// The force of each.
+    forces: Vec<Force>,
+    /// Those with conditions.
+    bounded: Vec<Piece>,
+    /// The one that holds everywhere else, and where that is written.
+    rest: Option<(usize, Extent)>,
+}
+
+impl Pieces {
+    /// `None` if something was reported.
+    fn of(context: &mut Expander, law: &Law, diagnostics: &mut Diagnostics) -> Option<Self> {
+        let mut forces = Vec::new();
+        let mut bounded = Vec::new();
+        let mut rest = None;
+        let mut sound = true;
+        for (index, piece) in law.pieces.iter().enumerate() {
+            let force = diagnostics.keep(force(context, &piece.force));
+            sound &= force.is_some();
+            forces.extend(force);
+            match &piece.condition {
+                Condition::Else(extent) if rest.is_some() || index + 1 < law.pieces.len() => {
+                    diagnostics.report(*extent, "`else` must be the last piece");
+                    sound = false;
+                }
+                Condition::Else(extent) => rest = Some((index, *extent)),
+                Condition::Always => rest = Some((index, piece.force.extent)),
+                Condition::All(comparisons, extent) => {
+                    let piece = diagnostics.keep(ends(context, comparisons, index, *extent));
+                    sound &= piece.is_some();
+                    bounded.extend(piece);
+                }
+            }
+        }
+        sound.then_some(Self {
+            forces,
+            bounded,
+            rest,
+        })
+    }
 }
 
 type Force = (Id, Vec<Written>);

@@ -61,33 +61,22 @@ pub fn powers_of_forms(
             _ => forms_of_many(degree, &exponents)?,
         };
         for (form, weight) in forms {
-            powers.push(power_of_form(
-                dag,
-                &variables,
-                &form,
-                degree,
-                (weight, factor),
-            ));
+            let power = power_of_form(dag, &variables, &form, degree);
+            let weight = dag.number(weight);
+            powers.push(dag.product(&[weight, factor, power]));
         }
     }
     Some(powers)
 }
 
-fn power_of_form(
-    dag: &mut Dag,
-    variables: &[Id],
-    form: &[Rational],
-    degree: i32,
-    (weight, factor): (Rational, Id),
-) -> Id {
+fn power_of_form(dag: &mut Dag, variables: &[Id], form: &[Rational], degree: i32) -> Id {
     let mut terms = Vec::new();
     for (&variable, &coefficient) in variables.iter().zip(form) {
         let coefficient = dag.number(coefficient);
         terms.push(dag.product(&[coefficient, variable]));
     }
-    let (sum, degree, weight) = (dag.sum(&terms), dag.integer(degree), dag.number(weight));
-    let power = dag.power(sum, degree);
-    dag.product(&[weight, factor, power])
+    let (sum, degree) = (dag.sum(&terms), dag.integer(degree));
+    dag.power(sum, degree)
 }
 
 /// The variables of a monomial and their exponents: only coordinates, or only velocities.

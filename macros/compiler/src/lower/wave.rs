@@ -63,7 +63,7 @@ impl Wave {
 mod tests {
     use super::*;
 
-    fn value((weight, wave): &(Rational, Wave), phase: f64) -> f64 {
+    fn value(weight: Rational, wave: Wave, phase: f64) -> f64 {
         let angle = wave.multiple.to_f64() * phase;
         weight.to_f64() * if wave.sine { angle.sin() } else { angle.cos() }
     }
@@ -96,8 +96,11 @@ mod tests {
                 );
                 let product = one.1.times(two.1).unwrap();
                 for phase in [0.3, 1.7, 4.0] {
-                    let sum: f64 = product.iter().map(|term| value(term, phase)).sum();
-                    assert!((sum - value(&one, phase) * value(&two, phase)).abs() < 1e-14);
+                    let sum: f64 = product.iter().map(|&(w, wave)| value(w, wave, phase)).sum();
+                    assert!(
+                        (sum - value(one.0, one.1, phase) * value(two.0, two.1, phase)).abs()
+                            < 1e-14
+                    );
                 }
             }
         }

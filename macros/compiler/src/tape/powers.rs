@@ -289,7 +289,8 @@ fn simple(exponent: Rational) -> Option<(i128, i128)> {
 impl Builder<'_> {
     pub(super) fn code_power(&mut self, base: Id, exponent: Id) -> usize {
         if let Some(exact) = self.dag.as_number(exponent).and_then(simple) {
-            return self.simple_power(base, exact);
+            let (numerator, denominator) = exact;
+            return self.simple_power(base, numerator, denominator);
         }
         match self.plan.power(base, exponent) {
             Some(planned) => self.push(Operation::Planned(planned)),
@@ -310,7 +311,7 @@ impl Builder<'_> {
     }
 
     /// `base^(k + j/n)` with `n` at most 4. The root is zero for a negative base, and so is the product.
-    fn simple_power(&mut self, base: Id, (numerator, denominator): (i128, i128)) -> usize {
+    fn simple_power(&mut self, base: Id, numerator: i128, denominator: i128) -> usize {
         let magnitude = numerator.saturating_abs();
         let (whole, part) = (magnitude / denominator, magnitude % denominator);
         let position = self.at[&base];

@@ -111,7 +111,8 @@ impl Sketch {
     }
 }
 
-fn parameter(name: &str, (minimum, maximum): (Bound, Bound)) -> Parameter {
+fn parameter(name: &str, range: (Bound, Bound)) -> Parameter {
+    let (minimum, maximum) = range;
     Parameter {
         name: quote::format_ident!("{name}"),
         documentation: String::new(),

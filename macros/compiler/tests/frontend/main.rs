@@ -25,6 +25,47 @@ fn model(text: &str) -> Model {
     compile(text).unwrap_or_else(|errors| panic!("{errors}\nin {text}"))
 }
 
+/// A coefficient with its place.
+fn coefficient(place: &Place, value: &str) -> String {
+    let wave = |wave: &Wave| {
+        let name = if wave.part == Part::Sine {
+            "sin"
+        } else {
+            "cos"
+        };
+        if wave.harmonic == 0 {
+            String::new()
+        } else {
+            format!(" {name}{}", wave.harmonic)
+        }
+    };
+    match place {
+        Place::Mass { row, column } => format!("M{row}{column} = {value}"),
+        Place::Damping { row, column } => format!("C{row}{column} = {value}"),
+        Place::Stiffness {
+            row,
+            column,
+            wave: w,
+        } => format!("K{row}{column}{} = {value}", wave(w)),
+        Place::Load { row, wave: w } => format!("f{row}{} = {value}", wave(w)),
+        Place::ForceDirection {
+            contact,
+            row,
+            wave: w,
+        } => format!("e{contact} row {row}{} = {value}", wave(w)),
+        Place::GapDirection {
+            contact,
+            column,
+            wave: w,
+        } => {
+            format!("d{contact} column {column}{} = {value}", wave(w))
+        }
+        Place::Offset { contact, wave: w } => format!("delta{contact}{} = {value}", wave(w)),
+        Place::Argument { contact, index } => format!("a{contact} {index} = {value}"),
+        other => panic!("{other:?}"),
+    }
+}
+
 /// Everything lowered, one line each.
 fn summary(model: &Model) -> Vec<String> {
     let parameter = |variable: Variable| match variable {
@@ -32,47 +73,10 @@ fn summary(model: &Model) -> Vec<String> {
         Variable::Omega => "omega".to_owned(),
         other => format!("{other:?}"),
     };
-    let mut lines = Vec::new();
-    for (place, id) in &model.coefficients {
-        let value = model.dag.display(*id, &parameter);
-        let wave = |wave: &Wave| {
-            let name = if wave.part == Part::Sine {
-                "sin"
-            } else {
-                "cos"
-            };
-            if wave.harmonic == 0 {
-                String::new()
-            } else {
-                format!(" {name}{}", wave.harmonic)
-            }
-        };
-        lines.push(match place {
-            Place::Mass { row, column } => format!("M{row}{column} = {value}"),
-            Place::Damping { row, column } => format!("C{row}{column} = {value}"),
-            Place::Stiffness {
-                row,
-                column,
-                wave: w,
-            } => format!("K{row}{column}{} = {value}", wave(w)),
-            Place::Load { row, wave: w } => format!("f{row}{} = {value}", wave(w)),
-            Place::ForceDirection {
-                contact,
-                row,
-                wave: w,
-            } => format!("e{contact} row {row}{} = {value}", wave(w)),
-            Place::GapDirection {
-                contact,
-                column,
-                wave: w,
-            } => {
-                format!("d{contact} column {column}{} = {value}", wave(w))
-            }
-            Place::Offset { contact, wave: w } => format!("delta{contact}{} = {value}", wave(w)),
-            Place::Argument { contact, index } => format!("a{contact} {index} = {value}"),
-            other => panic!("{other:?}"),
-        });
-    }
+    let coefficients = model.coefficients.iter();
+    let coefficients =
+        coefficients.map(|(place, id)| coefficient(place, &model.dag.display(*id, &parameter)));
+    let mut lines: Vec<String> = coefficients.collect();
     for law in &model.laws {
         let argument = |variable: Variable| match variable {
             Variable::Gap => "g".to_owned(),

@@ -14,6 +14,7 @@ use super::cut::Panel;
 use super::{Changing, Sums};
 use crate::balance::aft::ContactInput;
 use crate::law::{Derivatives, On};
+use crate::laws::single::Single;
 use crate::numeric::fourier::kernels::Product;
 use crate::numeric::fourier::series;
 
@@ -140,19 +141,11 @@ fn add_scaled(from: &[f64], factor: f64, to: &mut [f64]) {
 impl Form {
     /// Of the force on a piece, from its values near a gap that lies on the piece.
     fn of(input: ContactInput<'_>, piece: usize, gap: f64) -> Self {
-        let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
-        let out = Derivatives {
-            force: &mut force,
-            by_gap: &mut by_gap,
-            by_rate: &mut by_rate,
-        };
-        input
-            .law
-            .derivatives(On::Piece(piece), input.arguments, &[gap], &[0.0], out);
+        let at = Single::of(input.law, On::Piece(piece), input.arguments, [gap, 0.0]);
         Self {
-            constant: force[0] - by_gap[0] * gap,
-            by_gap: by_gap[0],
-            by_rate: by_rate[0],
+            constant: at.force - at.by_gap * gap,
+            by_gap: at.by_gap,
+            by_rate: at.by_rate,
         }
     }
 

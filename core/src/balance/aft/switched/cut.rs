@@ -145,7 +145,7 @@ impl Cut {
 fn cut_panel(panels: &mut Vec<Panel>, tau: f64, level: usize, sides: [bool; 2]) {
     let middle = End::Near(level);
     let lies_in = |panel: &Panel| {
-        // Panels begin up to a period before the phases of near misses, and may end a period behind them.
+        // Panels begin up to a period before the phases of near misses, and may end a period after them.
         let phases = [tau - TAU, tau, tau + TAU];
         phases
             .into_iter()
@@ -161,7 +161,7 @@ fn cut_panel(panels: &mut Vec<Panel>, tau: f64, level: usize, sides: [bool; 2]) 
     if !adjacent || !sides[panel.piece - level] {
         return;
     }
-    let behind = Panel {
+    let next = Panel {
         start: tau,
         from: middle,
         ..panel
@@ -170,10 +170,10 @@ fn cut_panel(panels: &mut Vec<Panel>, tau: f64, level: usize, sides: [bool; 2]) 
         panels[index] = Panel {
             end: tau + TAU,
             to: middle,
-            ..behind
+            ..next
         };
         return;
     }
     (panels[index].end, panels[index].to) = (tau, middle);
-    panels.push(behind);
+    panels.push(next);
 }

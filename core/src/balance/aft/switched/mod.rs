@@ -33,9 +33,10 @@ mod spectrum;
 mod tests;
 mod whole;
 
-use super::{Change, ContactDerivatives, ContactInput};
+use super::{Change, ContactDerivatives, ContactForces, ContactInput};
 use crate::law::{On, Variation};
 use crate::laws::generic::scales::{Scales, Sight};
+use crate::laws::single;
 use crate::numeric::fourier::crossings::levels::Switch;
 use crate::numeric::fourier::kernels::Product;
 use crate::numeric::fourier::series;
@@ -132,14 +133,12 @@ impl<'s> Slopes<'s> {
     }
 }
 
-impl SwitchedAft {
-    /// About how many multiplications all evaluations so far have taken.
-    pub(crate) fn operations(&self) -> u64 {
+impl ContactForces for SwitchedAft {
+    fn operations(&self) -> u64 {
         self.affine.operations + self.quadrature.operations + self.whole.operations
     }
 
-    /// Writes the series of the force.
-    pub(crate) fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
+    fn force(&mut self, input: ContactInput<'_>, force: &mut [f64]) {
         force.fill(0.0);
         self.integrate(
             input,
@@ -150,8 +149,7 @@ impl SwitchedAft {
         );
     }
 
-    /// Writes the series of the force and of its derivatives.
-    pub(crate) fn derivatives(
+    fn derivatives(
         &mut self,
         input: ContactInput<'_>,
         change: Option<Change<'_>>,
@@ -177,7 +175,9 @@ impl SwitchedAft {
         );
         self.add_jumps(input, change, out);
     }
+}
 
+impl SwitchedAft {
     fn integrate(&mut self, input: ContactInput<'_>, sums: &mut Sums<'_>) {
         let facts = input.law.facts();
         self.cut.apply(input);
@@ -240,15 +240,8 @@ impl SwitchedAft {
             let slope = series::value_and_derivatives(input.gap, tau).1;
             let rate = input.base * slope;
             let at_level = |piece| {
-                let mut force = [0.0];
-                input.law.force(
-                    On::Piece(piece),
-                    input.arguments,
-                    &[gap],
-                    &[rate],
-                    &mut force,
-                );
-                force[0]
+                let on = On::Piece(piece);
+                single::force(input.law, on, input.arguments, [gap, rate])
             };
             let weight = (at_level(level + 1) - at_level(level)) / slope.abs();
             if !weight.is_finite() {

@@ -4,9 +4,10 @@
 //! exponentially (Trefethen and Weideman (2014), The exponentially convergent trapezoidal rule). The samples are doubled until
 //! the upper end of the spectrum has fallen to rounding, or to the largest number.
 
-use super::{Changing, Sums, Wanted, overlooks};
+use super::{Sums, Wanted, overlooks};
+use crate::balance::aft::samples::Samples;
 use crate::balance::aft::{ContactInput, PER_SAMPLE};
-use crate::law::{Derivatives, On, Variation};
+use crate::law::{On, Variation};
 use crate::laws::generic::scales::Scales;
 use crate::numeric::fourier::sampled::SampledTransform;
 use crate::numeric::fourier::series;
@@ -28,16 +29,9 @@ pub(super) struct Whole {
 
 #[derive(Debug)]
 struct Grid {
-    transform: SampledTransform,
-    gap: Vec<f64>,
-    rate: Vec<f64>,
-    force: Vec<f64>,
-    by_gap: Vec<f64>,
-    by_rate: Vec<f64>,
-    by_argument: Vec<f64>,
-    by_parameter: Vec<f64>,
+    samples: Samples,
     series: Vec<f64>,
-    /// So much of the upper end of the spectrum must be empty.
+    /// Harmonics at the upper end of the spectrum that must be empty.
     window: usize,
 }
 
@@ -73,7 +67,7 @@ impl Whole {
         let known = self
             .grids
             .iter()
-            .position(|grid| grid.transform.samples() == samples);
+            .position(|grid| grid.samples.transform.samples() == samples);
         known.unwrap_or_else(|| {
             self.grids.push(Grid::new(samples));
             self.grids.len() - 1
@@ -83,16 +77,8 @@ impl Whole {
 
 impl Grid {
     fn new(samples: usize) -> Self {
-        let zeros = || vec![0.0; samples];
         Self {
-            transform: SampledTransform::new(samples),
-            gap: zeros(),
-            rate: zeros(),
-            force: zeros(),
-            by_gap: zeros(),
-            by_rate: zeros(),
-            by_argument: zeros(),
-            by_parameter: zeros(),
+            samples: Samples::new(samples),
             series: vec![0.0; series::length((samples - 1) / 2)],
             window: samples / 16 + 1,
         }
@@ -106,101 +92,43 @@ impl Grid {
         wanted: Wanted<'_>,
         scales: &mut Option<Scales>,
     ) -> bool {
-        self.transform.sample(input.gap, &mut self.gap);
-        self.transform.sample(input.rate, &mut self.rate);
-        let seen = !overlooks(scales, piece, [&self.gap, &self.rate]);
-        let (on, gap, rate) = (On::Piece(piece), &self.gap, &self.rate);
-        let changing = match wanted {
+        let Self {
+            samples: s, window, ..
+        } = self;
+        s.take(input);
+        let seen = !overlooks(scales, piece, [&s.gap, &s.rate]);
+        let on = On::Piece(piece);
+        let change = match wanted {
             Wanted::Force => {
-                input
-                    .law
-                    .force(on, input.arguments, gap, rate, &mut self.force);
-                return seen
-                    && self
-                        .transform
-                        .is_resolved(&self.force, RESOLVED, self.window);
+                s.evaluate(input, on);
+                return seen && s.transform.is_resolved(&s.force, RESOLVED, *window);
             }
             Wanted::Slopes => None,
-            Wanted::Changes(changing) => Some(changing),
+            Wanted::Changes(changing) => Some(changing.change),
         };
-        let out = Derivatives {
-            force: &mut self.force,
-            by_gap: &mut self.by_gap,
-            by_rate: &mut self.by_rate,
-        };
-        input.law.derivatives(on, input.arguments, gap, rate, out);
+        s.evaluate_slopes(input, on, change);
         let facts = &input.law.facts().pieces[piece];
         let varying = |variation| variation == Variation::Varying;
-        self.by_parameter(input, piece, changing);
-        seen && self
-            .transform
-            .is_resolved(&self.force, RESOLVED, self.window)
-            && (!varying(facts.by_gap)
-                || self
-                    .transform
-                    .is_resolved(&self.by_gap, RESOLVED, self.window))
-            && (!varying(facts.by_rate)
-                || self
-                    .transform
-                    .is_resolved(&self.by_rate, RESOLVED, self.window))
-            && self
-                .transform
-                .is_resolved(&self.by_parameter, RESOLVED, self.window)
-    }
-
-    /// `phi_g dg + phi_r dr + phi_a da`
-    fn by_parameter(
-        &mut self,
-        input: ContactInput<'_>,
-        piece: usize,
-        changing: Option<Changing<'_>>,
-    ) {
-        self.by_parameter.fill(0.0);
-        let Some(changing) = changing else {
-            return;
-        };
-        for (argument, by) in changing.arguments() {
-            let out = Derivatives {
-                force: &mut self.force,
-                by_gap: &mut self.by_gap,
-                by_rate: &mut self.by_rate,
-            };
-            input.law.derivatives_and_by(
-                argument,
-                On::Piece(piece),
-                input.arguments,
-                &self.gap,
-                &self.rate,
-                out,
-                &mut self.by_argument,
-            );
-            for (sum, slope) in self.by_parameter.iter_mut().zip(&self.by_argument) {
-                *sum += by * slope;
-            }
-        }
-        if changing.motion {
-            self.transform.sample(changing.change.gap, &mut self.gap);
-            self.transform.sample(changing.change.rate, &mut self.rate);
-            for (j, sum) in self.by_parameter.iter_mut().enumerate() {
-                *sum += self.by_gap[j] * self.gap[j] + self.by_rate[j] * self.rate[j];
-            }
-        }
+        let sampled = [
+            (true, &s.force),
+            (varying(facts.by_gap), &s.by_gap),
+            (varying(facts.by_rate), &s.by_rate),
+            (change.is_some(), &s.by_parameter),
+        ];
+        let mut sampled = sampled.into_iter().filter(|(matters, _)| *matters);
+        seen && sampled.all(|(_, samples)| s.transform.is_resolved(samples, RESOLVED, *window))
     }
 
     /// Adds the harmonics of what was evaluated.
     fn add(&mut self, sums: &mut Sums<'_>) {
-        let (transform, workspace) = (&mut self.transform, &mut self.series);
-        add(transform, &self.force, workspace, sums.force);
+        let (s, workspace) = (&mut self.samples, &mut self.series);
+        add(&mut s.transform, &s.force, workspace, sums.force);
         if let Some(slopes) = &mut sums.slopes {
-            add(transform, &self.by_gap, workspace, slopes.by_gap);
-            add(transform, &self.by_rate, workspace, slopes.by_rate);
+            add(&mut s.transform, &s.by_gap, workspace, slopes.by_gap);
+            add(&mut s.transform, &s.by_rate, workspace, slopes.by_rate);
             if slopes.change.is_some() {
-                add(
-                    transform,
-                    &self.by_parameter,
-                    workspace,
-                    slopes.by_parameter,
-                );
+                let to = &mut *slopes.by_parameter;
+                add(&mut s.transform, &s.by_parameter, workspace, to);
             }
         }
     }

@@ -229,7 +229,10 @@ impl PhaseResonance {
     fn options(&self) -> Result<(usize, Vec<f64>, FollowOptions), Error> {
         let facts = self.system.facts();
         let name = self.vary.as_deref();
-        let name = name.ok_or(RequestError::Missing { name: "vary" })?;
+        let name = name.ok_or(RequestError::Missing {
+            name: "vary",
+            why: "it is not known what varies",
+        })?;
         let Variable::Parameter(index) = validate::variable(facts, Some(name))? else {
             let name = name.to_owned();
             let must = "must be a parameter: the frequency follows from the resonance";
@@ -238,7 +241,7 @@ impl PhaseResonance {
         let mut parameters = vec![0.0; facts.parameters.len()];
         self.system.values(&mut parameters);
         let from = parameters[index];
-        let to = self.to.ok_or(RequestError::Missing { name: "to" })?;
+        let to = self.to.ok_or(RequestError::no_end("to"))?;
         validate::range(facts, Variable::Parameter(index), from, to)?;
         let harmonics = self.harmonics as f64;
         validate::option(
@@ -282,9 +285,10 @@ impl PhaseResonance {
 
     /// The orbit of the frequency response that is next to phase resonance, and what it cost.
     fn first(&self, parameters: &[f64], value: f64) -> Result<(Orbit, Statistics), Error> {
-        let [low, high] = self
-            .between
-            .ok_or(RequestError::Missing { name: "between" })?;
+        let [low, high] = self.between.ok_or(RequestError::Missing {
+            name: "between",
+            why: "it is not known where the resonance is looked for",
+        })?;
         let response = FrequencyResponse::of(&self.system).from(low).to(high);
         let response = response.harmonics(self.harmonics).stability(false);
         let branch = response.run()?;

@@ -1,7 +1,7 @@
 //! The period of a series, cut wherever it crosses one of several levels.
 //!
 //! Each crossing is found by itself, to rounding. So two levels that nearly coincide may seem to be crossed in the wrong
-//! order, and the piece behind them would be wrong for as long as the next segment. Continuity decides then: a series can cross
+//! order, and the piece after them would be wrong for as long as the next segment. Continuity decides then: a series can cross
 //! a level only from the piece beside it. One piece is certain, that of the longest segment, and from there every crossing
 //! that comes next is the first one that can.
 
@@ -30,7 +30,7 @@ impl Switch {
     }
 
     /// The piece that begins here.
-    fn behind(self) -> usize {
+    fn after(self) -> usize {
         self.level + usize::from(self.rising)
     }
 }
@@ -78,7 +78,7 @@ impl Cuts {
         }
         self.switches
             .sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau).then(a.level.cmp(&b.level)));
-        let broken = |(a, b): (&Switch, &Switch)| a.behind() != b.before();
+        let broken = |(a, b): (&Switch, &Switch)| a.after() != b.before();
         let next = self.switches.iter().cycle().skip(1);
         if self.switches.iter().zip(next).any(broken) {
             self.put_in_order(series, levels);
@@ -132,7 +132,7 @@ impl Cuts {
                 self.switches.swap(a, b);
                 (self.switches[a].tau, self.switches[b].tau) = (first, second);
             }
-            piece = self.switches[here].behind();
+            piece = self.switches[here].after();
         }
     }
 
@@ -157,7 +157,7 @@ impl Cuts {
                 self.segments.push(Segment {
                     start: from.tau,
                     end: to.tau,
-                    piece: from.behind(),
+                    piece: from.after(),
                     levels: Some([from.level, to.level]),
                 });
             }
@@ -197,7 +197,7 @@ mod tests {
             .iter()
             .zip(&cuts.switches()[1.min(cuts.switches().len())..])
         {
-            assert!(a.tau <= b.tau && a.behind() == b.before(), "{a:?} {b:?}");
+            assert!(a.tau <= b.tau && a.after() == b.before(), "{a:?} {b:?}");
         }
         cuts.switches().len()
     }

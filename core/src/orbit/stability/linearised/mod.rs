@@ -21,6 +21,7 @@ use super::orbit::Orbit;
 use super::path::{Cut, Event, Path};
 use crate::law::{On, Variation};
 use crate::laws::generic::scales::Sight;
+use crate::laws::single;
 use crate::model::layout::{Entry, add_constant};
 use crate::numeric::fourier::grading::Grading;
 use crate::numeric::fourier::series;
@@ -305,13 +306,8 @@ impl Linearised {
         }
         let contact = &path.contacts[cut.contact];
         let rate = series::value(&contact.rate, cut.tau);
-        let level = [contact.levels[cut.level]];
-        let force = |piece| {
-            let mut force = [0.0];
-            let on = On::Piece(piece);
-            law.force(on, &contact.arguments, &level, &[rate], &mut force);
-            force[0]
-        };
+        let at = [contact.levels[cut.level], rate];
+        let force = |piece| single::force(law, On::Piece(piece), &contact.arguments, at);
         let jump = force(cut.level + 1) - force(cut.level);
         let weight = jump / (self.base * rate.abs());
         if !weight.is_finite() || jump == 0.0 {

@@ -126,26 +126,29 @@ impl Dimension {
         let (above, below): (Vec<_>, Vec<_>) = factors
             .into_iter()
             .partition(|(base, exponent)| *base == "10" || !exponent.is_negative());
-        let mut text: Vec<String> = above.iter().map(power_text).collect();
+        let mut text: Vec<String> = above
+            .iter()
+            .map(|&(base, exponent)| power_text(base, exponent))
+            .collect();
         if text.is_empty() {
             text.push("1".to_owned());
         }
         let mut text = text.join("*");
         for (base, exponent) in below {
             let positive = exponent.absolute().unwrap_or(exponent);
-            text = format!("{text}/{}", power_text(&(base, positive)));
+            text = format!("{text}/{}", power_text(base, positive));
         }
         text
     }
 }
 
 /// `m^1.5`, with an exponent as one writes it.
-fn power_text((base, exponent): &(&str, Rational)) -> String {
-    if *exponent == Rational::ONE {
-        return (*base).to_owned();
+fn power_text(base: &str, exponent: Rational) -> String {
+    if exponent == Rational::ONE {
+        return base.to_owned();
     }
     let decimal = exponent.to_f64().to_string();
-    if Rational::from_decimal(&decimal) == Some(*exponent) {
+    if Rational::from_decimal(&decimal) == Some(exponent) {
         format!("{base}^{decimal}")
     } else {
         format!("{base}^({exponent})")

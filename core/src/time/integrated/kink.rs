@@ -5,9 +5,9 @@
 //! absolute value, which is smooth, is followed as gaps are beside levels ([`crossing`](super::crossing)), and steps end where it changes
 //! its sign.
 
-use super::drive::SHORTEST;
 use super::engine::Engine;
 use super::roots;
+use super::step_control::SHORTEST;
 
 /// An operand smaller than this part of its largest value on the step is zero: the step begins or ends there.
 const ZERO: f64 = 1e-11;
@@ -16,7 +16,7 @@ const ENDS: f64 = 1e-10;
 
 impl<const S: usize> Engine<S> {
     /// The part of the trial after which the slope of a force first jumps.
-    pub(super) fn bend(&mut self) -> Option<f64> {
+    pub(super) fn kink(&mut self) -> Option<f64> {
         let map = self.tables[self.trial.table].map;
         let end = self.phase() + self.trial.width;
         let mut first: Option<f64> = None;

@@ -56,7 +56,7 @@ impl Part {
 
 /// The block of one balance, or all of its Jacobian.
 #[derive(Debug)]
-pub(crate) struct Block<'a> {
+pub(crate) struct CriticalBlock<'a> {
     pub(crate) part: Part,
     balance: Balance<'a>,
     jacobian: Jacobian,
@@ -70,7 +70,7 @@ pub(crate) struct Block<'a> {
     pub(crate) computed: usize,
 }
 
-impl<'a> Block<'a> {
+impl<'a> CriticalBlock<'a> {
     /// For orbits of a balance of this resolution.
     pub(crate) fn new(
         part: Part,
@@ -163,7 +163,7 @@ const INVERSE: usize = 3;
 /// Parts of the value by which the matrix is taken beside the event, where it is singular to the last bit at the event itself.
 const NUDGES: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
 
-impl Block<'_> {
+impl CriticalBlock<'_> {
     /// The vector that the factorised matrix takes closest to zero.
     fn inverse_iteration(&mut self, v: &mut [f64]) {
         let n = v.len() - 1;

@@ -64,7 +64,8 @@ enum Tried {
 impl<const S: usize> Engine<S> {
     pub(super) fn advance(
         &mut self,
-        (from, to): (f64, f64),
+        from: f64,
+        to: f64,
         state: &mut [f64],
         tangent: Option<&mut Tangent>,
         see: Option<See<'_>>,
@@ -75,9 +76,9 @@ impl<const S: usize> Engine<S> {
             return Err(FlowError::NotFinite { phase: from });
         }
         self.begin(from, state, tangent.as_ref().and_then(|tangent| tangent.by));
-        // Room for the columns at the end of a step, borrowed apart from the rest.
+        // Workspace for the columns at the end of a step, borrowed apart from the rest.
         let mut columns = std::mem::take(&mut self.columns);
-        let result = self.run(to - from, (tangent, &mut columns), see);
+        let result = self.run(to - from, tangent, &mut columns, see);
         self.columns = columns;
         state[..n].copy_from_slice(&self.here.q);
         state[n..].copy_from_slice(&self.here.v);
@@ -87,7 +88,8 @@ impl<const S: usize> Engine<S> {
     fn run(
         &mut self,
         span: f64,
-        (mut tangent, columns): (Option<&mut Tangent>, &mut Vec<f64>),
+        mut tangent: Option<&mut Tangent>,
+        columns: &mut Vec<f64>,
         mut see: Option<See<'_>>,
     ) -> Result<(), FlowError> {
         if span == 0.0 {
@@ -170,7 +172,7 @@ impl<const S: usize> Engine<S> {
     ) -> Result<(), FlowError> {
         let left = span - self.here.passed;
         self.accelerate_here();
-        self.bends = false;
+        self.ends_at_kink = false;
         let mut plan = self.first_plan(left);
         let (mut turned, mut landings) = (0, 0);
         for _ in 0..MOST_ATTEMPTS {
@@ -341,8 +343,8 @@ impl<const S: usize> Engine<S> {
         tangent: Option<&Tangent>,
         columns: &mut [f64],
     ) -> Result<Option<Plan>, FlowError> {
-        if let Some(part) = self.bend() {
-            self.bends = true;
+        if let Some(part) = self.kink() {
+            self.ends_at_kink = true;
             self.work.rejected += 1;
             return Ok(Some(Plan::Span(part * self.trial.width)));
         }
@@ -395,7 +397,7 @@ impl<const S: usize> Engine<S> {
             Map::FromStart(_) => 1,
             Map::ToEnd(_) => 2,
         };
-        let cut = self.trial.landing.is_some() || self.aim.is_some() || self.bends;
+        let cut = self.trial.landing.is_some() || self.aim.is_some() || self.ends_at_kink;
         let known = self.widths[kind];
         self.widths[kind] = if cut { next.max(known) } else { next };
         if kind == 1 {

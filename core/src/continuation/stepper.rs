@@ -1,41 +1,32 @@
-//! One step after the other along a curve: the state behind [`follow`](super::follow::follow).
+//! One step after the other along a curve, for [`follow`](super::follow::follow).
 //!
 //! Numbers of equations are those of [`follow`](super::follow).
 
-use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
+use super::follow::{CurvePoint, FollowOptions, Stop};
 use super::problem::{Norm, Problem, Scale};
 use crate::continuation::newton::{Border, Newton, NewtonError};
 
 /// Least scale of what oscillates, in sizes of what rounding makes of an update.
 const ROUNDINGS: f64 = 1e3;
 
-/// A walk that has its first point.
-pub(super) struct Begun {
-    pub(super) walk: Walk,
-    pub(super) point: CurvePoint,
-    pub(super) first: CurvePoint,
-    pub(super) previous: Option<CurvePoint>,
-    pub(super) passed: usize,
-    pub(super) ended: Option<Stop>,
-}
-
-/// State of a walk along a curve; its buffers are reused.
-pub(super) struct Walk {
-    options: FollowOptions,
-    step: f64,
+/// What makes the steps; its buffers are reused.
+pub(super) struct Stepper {
+    pub(super) options: FollowOptions,
+    /// Length of the next step.
+    pub(super) step: f64,
     border: Vec<f64>,
     trial: Vec<f64>,
     scale: Scale,
     /// Largest oscillation and mean so far.
-    largest: [f64; 2],
+    pub(super) largest: [f64; 2],
     /// The point before the one from which the next step goes, where the curve between them was smooth.
-    before: Option<Vec<f64>>,
+    pub(super) before: Option<Vec<f64>>,
     /// Half the second derivative by arc length of the curve there.
-    bend: Vec<f64>,
+    curvature: Vec<f64>,
 }
 
-impl Walk {
-    fn new(problem: &dyn Problem, options: FollowOptions, u: Vec<f64>) -> Self {
+impl Stepper {
+    pub(super) fn new(problem: &dyn Problem, options: FollowOptions, u: Vec<f64>) -> Self {
         let parameter = (options.to - options.from).abs();
         Self {
             options,
@@ -48,71 +39,13 @@ impl Walk {
             },
             largest: [0.0; 2],
             before: None,
-            bend: vec![0.0; problem.unknowns() + 1],
-        }
-    }
-
-    /// Finds the first point, or corrects the one where a walk was halted.
-    pub(super) fn begin(
-        problem: &mut dyn Problem,
-        newton: &mut Newton,
-        start: Start,
-        options: FollowOptions,
-    ) -> Result<Begun, NewtonError> {
-        match start {
-            Start::Near(u) => {
-                let mut walk = Self::new(problem, options, u);
-                let point = walk.first(problem, newton)?;
-                Ok(Begun {
-                    walk,
-                    first: point.clone(),
-                    point,
-                    previous: None,
-                    passed: 0,
-                    ended: None,
-                })
-            }
-            Start::Along(along) => {
-                let mut walk = Self::new(problem, options, along.u.clone());
-                let point = walk.again(problem, newton, &along, false)?;
-                Ok(Begun {
-                    walk,
-                    first: point.clone(),
-                    point,
-                    previous: None,
-                    passed: 0,
-                    ended: None,
-                })
-            }
-            Start::At(halted) => {
-                let Halted {
-                    point,
-                    previous,
-                    before,
-                    first,
-                    step,
-                    largest,
-                    count,
-                    ended,
-                } = *halted;
-                let mut walk = Self::new(problem, options, point.u.clone());
-                (walk.step, walk.largest, walk.before) = (step, largest, before);
-                let point = walk.again(problem, newton, &point, ended.is_some())?;
-                Ok(Begun {
-                    walk,
-                    point,
-                    first,
-                    previous,
-                    passed: count,
-                    ended,
-                })
-            }
+            curvature: vec![0.0; problem.unknowns() + 1],
         }
     }
 
     /// Corrects a point of another number of unknowns, in the plane across its tangent; at an end of the range, there. Without a
     /// tangent the branch goes towards the end of the range.
-    fn again(
+    pub(super) fn again(
         &mut self,
         problem: &mut dyn Problem,
         newton: &mut Newton,
@@ -150,55 +83,8 @@ impl Walk {
         Ok(again)
     }
 
-    pub(super) fn halted(
-        &self,
-        halt: Halt,
-        point: CurvePoint,
-        previous: Option<CurvePoint>,
-        first: CurvePoint,
-        count: usize,
-        ended: Option<Stop>,
-    ) -> Outcome {
-        if halt == Halt::Stop {
-            return Outcome::Stopped(Stop::Interrupted);
-        }
-        Outcome::Halted(Box::new(Halted {
-            point,
-            previous,
-            before: self.before.clone(),
-            first,
-            step: self.step,
-            largest: self.largest,
-            count,
-            ended,
-        }))
-    }
-
-    /// Where no step led on: to go on with the first step again. What was between this point and the one before has been seen. The
-    /// direction at the start of the range is that of the matrix that led nowhere, and forgotten.
-    pub(super) fn stuck(
-        &self,
-        mut point: CurvePoint,
-        first: CurvePoint,
-        count: usize,
-    ) -> Box<Halted> {
-        if count == 0 && point.parameter() == self.options.from {
-            point.tangent.fill(0.0);
-        }
-        Box::new(Halted {
-            point,
-            previous: None,
-            before: None,
-            first,
-            step: self.options.steps.initial,
-            largest: self.largest,
-            count,
-            ended: None,
-        })
-    }
-
     /// Solves at the first parameter and points the tangent towards the end of the range.
-    fn first(
+    pub(super) fn first(
         &mut self,
         problem: &mut dyn Problem,
         newton: &mut Newton,
@@ -275,7 +161,7 @@ impl Walk {
         newton: &mut Newton,
         from: &CurvePoint,
     ) -> Result<CurvePoint, Stop> {
-        self.bend_at(newton, from);
+        self.set_curvature(newton, from);
         loop {
             let steps = self.options.steps;
             let shorter = match self.corrected(problem, newton, from, self.step) {
@@ -308,27 +194,29 @@ impl Walk {
                     })?
                 }
             };
-            self.bend.fill(0.0);
+            self.curvature.fill(0.0);
             self.step = shorter;
         }
     }
 
     /// The parabola through the point before, and this one with its tangent: at arc length `-h` before,
     /// `u_0 - h t_0 + h^2 b = u_(-1)`. Zero where there is none.
-    fn bend_at(&mut self, newton: &Newton, from: &CurvePoint) {
+    fn set_curvature(&mut self, newton: &Newton, from: &CurvePoint) {
         let Some(before) = self.before.take() else {
-            self.bend.fill(0.0);
+            self.curvature.fill(0.0);
             return;
         };
-        for (to, (x, y)) in self.bend.iter_mut().zip(before.iter().zip(&from.u)) {
+        for (to, (x, y)) in self.curvature.iter_mut().zip(before.iter().zip(&from.u)) {
             *to = x - y;
         }
-        let h = -newton.norm().product(from.scale, &from.tangent, &self.bend);
-        for (to, t) in self.bend.iter_mut().zip(&from.tangent) {
+        let h = -newton
+            .norm()
+            .product(from.scale, &from.tangent, &self.curvature);
+        for (to, t) in self.curvature.iter_mut().zip(&from.tangent) {
             *to = (*to + h * t) / (h * h);
         }
-        if !(h > 0.0 && self.bend.iter().all(|x| x.is_finite())) {
-            self.bend.fill(0.0);
+        if !(h > 0.0 && self.curvature.iter().all(|x| x.is_finite())) {
+            self.curvature.fill(0.0);
         }
         self.before = Some(before);
     }
@@ -355,7 +243,7 @@ impl Walk {
     ) -> Result<(CurvePoint, f64), NewtonError> {
         self.scale = from.scale;
         for (i, x) in self.trial.iter_mut().enumerate() {
-            *x = from.u[i] + step * (from.tangent[i] + step * self.bend[i]);
+            *x = from.u[i] + step * (from.tangent[i] + step * self.curvature[i]);
         }
         newton
             .norm()

@@ -1,0 +1,167 @@
+//! Where a walk along a curve is, how it begins, and when it ends.
+
+use super::follow::{CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop};
+use super::problem::Problem;
+use super::stepper::Stepper;
+use crate::continuation::newton::{Newton, NewtonError};
+
+/// Points before the curve may close upon itself.
+const CLOSES_AFTER: usize = 10;
+
+/// An oscillation that has grown so many times, while the branch goes on upwards, has no bound: beside a resonance with less damping
+/// than `1 / GROWTH` rounding of the frequency is all that is left.
+const GROWTH: f64 = 1e10;
+
+/// Where a walk is.
+pub(super) struct Position {
+    stepper: Stepper,
+    /// The last point, and the one before it.
+    pub(super) point: CurvePoint,
+    pub(super) previous: Option<CurvePoint>,
+    first: CurvePoint,
+    /// Number of points before the last one.
+    count: usize,
+    /// The last point is the end.
+    ended: Option<Stop>,
+}
+
+impl Position {
+    /// Finds the first point, or corrects the one where a walk was halted.
+    pub(super) fn begin(
+        problem: &mut dyn Problem,
+        newton: &mut Newton,
+        start: Start,
+        options: FollowOptions,
+    ) -> Result<Self, NewtonError> {
+        match start {
+            Start::Near(u) => {
+                let mut stepper = Stepper::new(problem, options, u);
+                let point = stepper.first(problem, newton)?;
+                Ok(Self::at(stepper, point))
+            }
+            Start::Along(along) => {
+                let mut stepper = Stepper::new(problem, options, along.u.clone());
+                let point = stepper.again(problem, newton, &along, false)?;
+                Ok(Self::at(stepper, point))
+            }
+            Start::At(halted) => {
+                let mut stepper = Stepper::new(problem, options, halted.point.u.clone());
+                (stepper.step, stepper.largest) = (halted.step, halted.largest);
+                stepper.before = halted.before;
+                let at_end = halted.ended.is_some();
+                let point = stepper.again(problem, newton, &halted.point, at_end)?;
+                Ok(Self {
+                    stepper,
+                    point,
+                    previous: halted.previous,
+                    first: halted.first,
+                    count: halted.count,
+                    ended: halted.ended,
+                })
+            }
+        }
+    }
+
+    /// At the first point.
+    fn at(stepper: Stepper, point: CurvePoint) -> Self {
+        Self {
+            stepper,
+            first: point.clone(),
+            point,
+            previous: None,
+            count: 0,
+            ended: None,
+        }
+    }
+
+    /// Why the walk ends at the last point, if it does; otherwise it is counted.
+    pub(super) fn ends(&mut self, problem: &dyn Problem, newton: &Newton) -> Option<Stop> {
+        if problem.is_cancelled() {
+            // What is between the last two points may not have been looked at to its end.
+            return Some(Stop::Interrupted);
+        }
+        if self.ended.is_some() {
+            return self.ended;
+        }
+        if let Some(from) = &self.previous
+            && self.count > CLOSES_AFTER
+            && self.stepper.closes(newton, &self.first, from, &self.point)
+        {
+            return Some(Stop::Closed);
+        }
+        if self.count == 0 {
+            self.first = self.point.clone();
+        }
+        if let Some(stop) = self.unbounded() {
+            return Some(stop);
+        }
+        self.count += 1;
+        let points = self.stepper.options.points;
+        (self.count >= points).then_some(Stop::PointLimit { points })
+    }
+
+    fn unbounded(&self) -> Option<Stop> {
+        let Self { first, point, .. } = self;
+        let growth = point.scale.oscillation / first.scale.oscillation;
+        let upwards = point.parameter_slope().abs() * GROWTH < point.scale.parameter.recip();
+        (growth > GROWTH && upwards).then(|| Stop::Unbounded {
+            value: point.parameter(),
+            growth,
+        })
+    }
+
+    /// Goes on to the next point.
+    ///
+    /// # Errors
+    /// If no step leads on.
+    pub(super) fn step(
+        &mut self,
+        problem: &mut dyn Problem,
+        newton: &mut Newton,
+    ) -> Result<(), Stop> {
+        let next = self.stepper.next(problem, newton, &self.point)?;
+        let (next, ended) = self
+            .stepper
+            .cut_at_range(problem, newton, &self.point, next)?;
+        self.previous = Some(std::mem::replace(&mut self.point, next));
+        self.ended = ended;
+        Ok(())
+    }
+
+    /// As a visitor has asked for it.
+    pub(super) fn halted(self, halt: Halt) -> Outcome {
+        if halt == Halt::Stop {
+            return Outcome::Stopped(Stop::Interrupted);
+        }
+        Outcome::Halted(Box::new(Halted {
+            point: self.point,
+            previous: self.previous,
+            before: self.stepper.before,
+            first: self.first,
+            step: self.stepper.step,
+            largest: self.stepper.largest,
+            count: self.count,
+            ended: self.ended,
+        }))
+    }
+
+    /// Where no step led on: to go on with the first step again. What was between this point and the one before has been seen. The
+    /// direction at the start of the range is that of the matrix that led nowhere, and forgotten.
+    pub(super) fn stuck(mut self) -> Box<Halted> {
+        let FollowOptions { from, steps, .. } = self.stepper.options;
+        let count = self.count - 1;
+        if count == 0 && self.point.parameter() == from {
+            self.point.tangent.fill(0.0);
+        }
+        Box::new(Halted {
+            point: self.point,
+            previous: None,
+            before: None,
+            first: self.first,
+            step: steps.initial,
+            largest: self.stepper.largest,
+            count,
+            ended: None,
+        })
+    }
+}
