@@ -27,7 +27,7 @@
 //!
 //! | What is wanted | Where it is |
 //! |---|---|
-//! | curves of periodic orbits, by harmonic balance | [`FrequencyResponse`], which gives a [`Branch`]: module [`branch`] |
+//! | curves of periodic orbits, by harmonic balance | [`FrequencyResponse`], which gives a [`Branch`] of [`Point`]s with its [`Event`]s |
 //! | the same in the time domain, without truncation | [`FrequencyResponse::by`] with [`Shooting`], which gives a [`Branch`] too: module [`shooting`] |
 //! | what an orbit is like: amplitudes, phases, contact, power | [`observe`] |
 //! | multipliers by other methods, and what they cost | [`stability`] |
@@ -134,14 +134,6 @@ pub use system::System;
 pub mod chart {
     pub use crate::report::picture::event_markers;
     pub use hertzian_chart::*;
-}
-
-/// Computed branches of periodic orbits.
-pub mod branch {
-    pub use crate::branches::branch::{Branch, Model};
-    pub use crate::branches::orbit::Orbit;
-    pub use crate::branches::point::{Event, Point};
-    pub use crate::event::{EventKind, Turn};
 }
 
 /// Declares a system of oscillators: a type with one public `f64` field per parameter, which implements

@@ -200,7 +200,7 @@ impl Record {
         let point = |point: &Point| PointRecord::of(point, facts);
         // A turn has no orbit of its own; what the branch does not vary is the same at every point.
         let fixed = branch.points.first().map(point);
-        let turn = |turn: &hertzian::branch::Turn| {
+        let turn = |turn: &hertzian::Turn| {
             let (omega, drive) = fixed
                 .as_ref()
                 .map_or((f64::NAN, f64::NAN), |p| (p.omega, p.drive));

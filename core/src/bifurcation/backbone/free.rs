@@ -160,7 +160,7 @@ impl FreeOscillation {
     /// # Errors
     /// If a parameter or an option is not usable, nothing oscillates at the first position, or a motion does not come back because
     /// the system has damping or an excitation. A curve that ends early is not an error: it comes back with what was computed and
-    /// with [`Backbone::end`].
+    /// with [`Backbone::stopped`].
     pub fn run(&self) -> Result<Backbone<FreePoint>, Error> {
         self.run_with(|_| ControlFlow::Continue(()))
     }

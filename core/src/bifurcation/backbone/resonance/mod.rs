@@ -168,7 +168,7 @@ impl PhaseResonance {
     ///
     /// # Errors
     /// If a parameter or an option is not usable, or no orbit in phase resonance is found at the first value. A curve that ends
-    /// early is not an error: it comes back with what was computed and with [`Backbone::end`].
+    /// early is not an error: it comes back with what was computed and with [`Backbone::stopped`].
     pub fn run(&self) -> Result<Backbone<ResonancePoint>, Error> {
         self.run_with(|_| ControlFlow::Continue(()))
     }
