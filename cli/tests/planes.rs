@@ -5,6 +5,7 @@ mod folder;
 use clap::Parser;
 use hertzian::Cancel;
 use hertzian::attractors::basin::Axis;
+use hertzian_cli::response::model_file::Varied;
 use hertzian_cli::response::models::model;
 use hertzian_cli::response::options::Options;
 use hertzian_cli::response::progress::Progress;
@@ -115,7 +116,11 @@ fn a_grid_is_as_large_as_flights_under_the_force_there() {
     let own = folder.with("own.txt", text);
     let grid = |command: &str, value: f64| {
         let options = options(command);
-        let model = model(&options.model, (&options.sweep, options.from)).expect("a model");
+        let varied = Varied {
+            name: &options.sweep,
+            value: options.from,
+        };
+        let model = model(&options.model, varied).expect("a model");
         let grid = search::grid(&options, &*model, value);
         [grid.columns, grid.rows].map(|Axis { from, to, .. }| [from, to])
     };

@@ -17,7 +17,7 @@ use super::output::{self, Results};
 use super::{basin, history, lyapunov, phase, sweep};
 use crate::model::FREQUENCY_VARIES;
 use crate::response::files;
-use crate::response::model_file::{self, ModelError};
+use crate::response::model_file::{self, ModelError, Varied};
 use crate::response::models;
 use crate::response::progress::Progress;
 use crate::values::{self, MOST_ROWS, MOST_THREADS};
@@ -134,8 +134,11 @@ pub fn compute(
         ..options.clone()
     };
     check(options)?;
-    let varied = options.sweep.map_or("omega", Swept::name);
-    let system = models::model(&options.model, (varied, options.from)).map_err(|error| {
+    let varied = Varied {
+        name: options.sweep.map_or("omega", Swept::name),
+        value: options.from,
+    };
+    let system = models::model(&options.model, varied).map_err(|error| {
         let path = options.model.file.clone().unwrap_or_default();
         Failure::Model(path, error)
     })?;

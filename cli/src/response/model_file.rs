@@ -67,6 +67,15 @@ pub fn text(path: &Path) -> io::Result<String> {
         .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
 }
 
+/// What is varied, and its first value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Varied<'v> {
+    /// A parameter, or `omega`.
+    pub name: &'v str,
+    /// Where the range begins.
+    pub value: f64,
+}
+
 /// Reads the oscillator and sets its parameters. `varied` needs no value: the range gives it one.
 ///
 /// # Errors
@@ -74,12 +83,12 @@ pub fn text(path: &Path) -> io::Result<String> {
 pub fn read(
     path: &Path,
     settings: &[(String, f64)],
-    varied: (&str, f64),
+    varied: Varied<'_>,
 ) -> Result<Declaration, ModelError> {
     let text = text(path).map_err(ModelError::Unreadable)?;
     let mut model = Declaration::parse(&text).map_err(ModelError::Faulty)?;
     // An unknown name is reported by the run itself.
-    let _ = model.set(varied.0, varied.1);
+    let _ = model.set(varied.name, varied.value);
     for (name, value) in settings {
         model
             .set(name, *value)

@@ -6,7 +6,7 @@
 
 use hertzian::System;
 
-use super::model_file::{self, ModelError};
+use super::model_file::{self, ModelError, Varied};
 use crate::model::ModelOptions;
 
 hertzian::oscillator! {
@@ -119,10 +119,10 @@ hertzian::oscillator! {
 ///
 /// # Errors
 /// If the file gives none.
-pub fn model(options: &ModelOptions, varied: (&str, f64)) -> Result<Box<dyn System>, ModelError> {
+pub fn model(options: &ModelOptions, varied: Varied<'_>) -> Result<Box<dyn System>, ModelError> {
     match &options.file {
         Some(path) => Ok(Box::new(model_file::read(path, &options.set, varied)?)),
-        None if varied.0 == "alpha" => Ok(of_any_exponent(options)),
+        None if varied.name == "alpha" => Ok(of_any_exponent(options)),
         None => Ok(declared(options)),
     }
 }

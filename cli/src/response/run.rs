@@ -15,7 +15,7 @@ use super::backbone;
 use super::bifurcations;
 use super::boundary::loss_of_contact;
 use super::files;
-use super::model_file::ModelError;
+use super::model_file::{ModelError, Varied};
 use super::models::model;
 use super::options::Options;
 use super::progress::Progress;
@@ -105,7 +105,10 @@ pub fn run(
         ..options.clone()
     };
     check(options)?;
-    let varied = (options.varied(), options.from);
+    let varied = Varied {
+        name: options.varied(),
+        value: options.from,
+    };
     let model = model(&options.model, varied).map_err(|error| {
         let path = options.model.file.clone().unwrap_or_default();
         Failure::Model(path, error)

@@ -9,56 +9,58 @@ use hertzian_cli::response::progress::Progress;
 
 use crate::{Folder, array, options, read, rows, run_in};
 
+/// A figure, options that shorten it, and what its picture says.
+const SHORTER: [(&str, &[&str], &[&str]); 5] = [
+    (
+        "8b",
+        &["--values", "40", "--transient", "50", "--periods", "8"],
+        &[
+            "excitation amplitude A",
+            "A rises",
+            "A falls",
+            "x at the beginning of each period",
+        ],
+    ),
+    (
+        "9b",
+        &["--starts", "12"],
+        &[
+            "period 1",
+            "period 2",
+            "period 3a",
+            "period 3b",
+            "period 4",
+            "period 5",
+            "rate of x",
+        ],
+    ),
+    (
+        "10a",
+        &["--transient", "100", "--periods", "400"],
+        &["enlargement", "every 8th period"],
+    ),
+    (
+        "10b",
+        &["--transient", "100", "--periods", "400"],
+        &["enlargement", "excitation periods"],
+    ),
+    (
+        "11",
+        &["--patience", "6000"],
+        &[
+            "period 8 at A = 1.77983",
+            "\"period 8\"",
+            "enlargement",
+            "A = 1.785",
+        ],
+    ),
+];
+
 /// Each figure from its command, shortened by options given after it.
 #[test]
 fn every_figure_has_a_command() {
     let folder = Folder::new("figures");
-    let shorter: [(&str, &[&str], &[&str]); 5] = [
-        (
-            "8b",
-            &["--values", "40", "--transient", "50", "--periods", "8"],
-            &[
-                "excitation amplitude A",
-                "A rises",
-                "A falls",
-                "x at the beginning of each period",
-            ],
-        ),
-        (
-            "9b",
-            &["--starts", "12"],
-            &[
-                "period 1",
-                "period 2",
-                "period 3a",
-                "period 3b",
-                "period 4",
-                "period 5",
-                "rate of x",
-            ],
-        ),
-        (
-            "10a",
-            &["--transient", "100", "--periods", "400"],
-            &["enlargement", "every 8th period"],
-        ),
-        (
-            "10b",
-            &["--transient", "100", "--periods", "400"],
-            &["enlargement", "excitation periods"],
-        ),
-        (
-            "11",
-            &["--patience", "6000"],
-            &[
-                "period 8 at A = 1.77983",
-                "\"period 8\"",
-                "enlargement",
-                "A = 1.785",
-            ],
-        ),
-    ];
-    for ((name, less, parts), (figure, _)) in shorter.into_iter().zip(FIGURES) {
+    for ((name, less, parts), (figure, _)) in SHORTER.into_iter().zip(FIGURES) {
         assert_eq!(name, figure);
         let outcome = run_in(&folder, name, &[&["--figure", name], less].concat());
         let outcome = outcome.unwrap_or_else(|failure| panic!("{name}: {failure}"));

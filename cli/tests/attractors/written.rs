@@ -1,6 +1,7 @@
 //! Results against values known from elsewhere.
 
 use hertzian::{FrequencyResponse, Shooting, Verdict};
+use hertzian_cli::response::model_file::Varied;
 use hertzian_cli::response::models::model;
 
 use crate::{Folder, array, options, rows, run_in};
@@ -141,7 +142,11 @@ fn other_exponents_are_integrated() {
         ];
         run_in(&folder, "hertz", &task).expect("a portrait");
         let table = rows(&folder.text("hertz.csv"));
-        let model = model(&options(&task).model, ("omega", 1.0)).expect("a model");
+        let varied = Varied {
+            name: "omega",
+            value: 1.0,
+        };
+        let model = model(&options(&task).model, varied).expect("a model");
         let omega = omega.parse().expect("a number");
         let mut found: Vec<f64> = Vec::new();
         for row in &table {

@@ -6,7 +6,6 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::failure;
 use super::log::{Log, Reader, Writer};
 use crate::branches::progress::{Progress, Stage};
 use crate::cancel::Cancel;
@@ -292,11 +291,18 @@ impl Sweep {
             mut map,
         } = self.check()?;
         let records = log.as_deref().map_or(&[][..], Log::records);
-        let known = records.iter().map_while(|record| Row::read(record));
-        let mut rows: Vec<Row> = known.take(values.len()).collect();
-        let last = rows.last().map(|row| row.last.clone());
-        let mut state = last.unwrap_or_else(|| start.clone());
-        for &value in &values[rows.len()..] {
+        let known: Vec<Known> = records
+            .iter()
+            .map_while(|record| Row::read(record))
+            .collect();
+        let mut rows: Vec<Row> = Vec::new();
+        let mut state = start.clone();
+        for (index, &value) in values.iter().enumerate() {
+            if let Some(Known::Seen(row)) = known.get(index) {
+                state.clone_from(&row.last);
+                rows.push(row.clone());
+                continue;
+            }
             let mut points = Vec::new();
             let ended = map.set(variable, value).map_err(Ended::from);
             let ended = ended.and_then(|()| self.row(&mut map, &mut state, &mut points));
@@ -314,7 +320,7 @@ impl Sweep {
                 ended,
                 last: state.clone(),
             };
-            if let Some(log) = &mut log {
+            if let Some(log) = log.as_mut().filter(|_| index >= known.len()) {
                 log.append(&row.written())?;
             }
             rows.push(row);
@@ -451,26 +457,34 @@ impl Row {
         writer.numbers(&match self.ended {
             None => vec![],
             Some(Ended::Escaped) => vec![0.0],
-            Some(Ended::Failed(error)) => failure::numbers(error).to_vec(),
+            Some(Ended::Failed(_)) => vec![1.0],
         });
         writer.numbers(&self.last);
         writer.0
     }
 
-    fn read(record: &[u8]) -> Option<Self> {
+    fn read(record: &[u8]) -> Option<Known> {
         let mut reader = Reader(record);
-        Some(Self {
-            value: *reader.numbers()?.first()?,
-            points: reader.numbers()?,
-            ended: match reader.numbers()?[..] {
-                [] => None,
-                [_] => Some(Ended::Escaped),
-                [kind, a, b] => Some(Ended::Failed(failure::of_numbers([kind, a, b])?)),
-                _ => return None,
-            },
+        let value = *reader.numbers()?.first()?;
+        let points = reader.numbers()?;
+        let ended = match reader.numbers()?[..] {
+            [] => None,
+            [0.0] => Some(Ended::Escaped),
+            _ => return Some(Known::Failed),
+        };
+        Some(Known::Seen(Self {
+            value,
+            points,
+            ended,
             last: reader.numbers()?,
-        })
+        }))
     }
+}
+
+/// What a log says of a value. Why a motion failed there, it says itself when it is computed again, and again in the same way.
+enum Known {
+    Seen(Row),
+    Failed,
 }
 
 #[cfg(test)]
@@ -572,6 +586,34 @@ mod tests {
         };
         assert_eq!(swept, all);
         assert_eq!(computed, all.rows.len());
+        let _ = std::fs::remove_dir_all(&folder);
+    }
+
+    /// A damping below zero is refused, value by value, and by the run that goes on in the same words.
+    #[test]
+    fn values_that_failed_are_the_same_when_a_run_goes_on() {
+        let sweep = Sweep::of(&MODEL).vary("zeta").omega(1.0).start(&[0.5, 0.0]);
+        let sweep = sweep.from(0.05).to(-0.03).values(5).back(true);
+        let sweep = sweep.transient(20).periods(2);
+        let all = sweep.run().expect("rows");
+        let failed = |row: &&Row| matches!(row.ended, Some(Ended::Failed(FlowError::Value { .. })));
+        assert_eq!(all.rows.iter().filter(failed).count(), 4);
+        let folder = std::env::temp_dir().join(format!("hertzian-failed-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let mut log = Log::open(folder.join("sweep"), "sweep").expect("a log");
+        let visit = |progress: Progress<'_>| match progress.done {
+            6 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        };
+        let part = sweep.resume(&mut log, visit).expect("rows");
+        assert_eq!(part.rows[..], all.rows[..6]);
+        let mut log = Log::open(folder.join("sweep"), "sweep").expect("a log");
+        assert_eq!(log.records().len(), 6);
+        let visit = |_: Progress<'_>| ControlFlow::Continue(());
+        assert_eq!(sweep.resume(&mut log, visit), Ok(all));
+        drop(log);
+        let log = Log::open(folder.join("sweep"), "sweep").expect("a log");
+        assert_eq!(log.records().len(), 10);
         let _ = std::fs::remove_dir_all(&folder);
     }
 

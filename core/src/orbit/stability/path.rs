@@ -97,8 +97,7 @@ impl Path {
             level,
             event,
         };
-        self.found
-            .apply(Some(finder), &contact.gap, &contact.levels);
+        self.found.find(Some(finder), &contact.gap, &contact.levels);
         self.cuts.extend(self.found.switches().iter().map(|found| {
             let event = if found.rising {
                 Event::Rising

@@ -66,6 +66,12 @@ impl Cuts {
         series: &[f64],
         levels: &[f64],
     ) {
+        self.find(finder, series, levels);
+        self.fill_segments(series[0], levels);
+    }
+
+    /// Finds the switches alone, as [`Cuts::apply`] does.
+    pub(crate) fn find(&mut self, finder: Option<&CrossingFinder>, series: &[f64], levels: &[f64]) {
         self.switches.clear();
         for (level, &value) in levels.iter().enumerate() {
             self.found.clear();
@@ -83,7 +89,6 @@ impl Cuts {
         if self.switches.iter().zip(next).any(broken) {
             self.put_in_order(series, levels);
         }
-        self.fill_segments(series[0], levels);
     }
 
     /// Phases near which a broken power of the distance from a level needs a cut although nothing switches. Near an extremum that misses
