@@ -3,7 +3,7 @@
 //! The engine knows the curve, test functions and what their changes of sign mean. A method knows its equations, how orbits are read
 //! off solutions, what errors it makes, and where its branches end because they become those of more regular orbits.
 
-use crate::continuation::follow::{CurvePoint, Halted, Stop};
+use crate::continuation::follow::{CurvePoint, Halted, Step, Stop};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{AsProblem, Problem};
@@ -144,13 +144,8 @@ pub(crate) trait BranchProblem {
 
     /// Ends the branch within the step to a point beyond its end. If it only seemed to be one, the point is kept, and how it was read
     /// returned: the walk cannot be halted there for other unknowns.
-    fn end(
-        &mut self,
-        newton: &mut Newton,
-        between: Step<'_>,
-        options: NewtonOptions,
-    ) -> Option<Read> {
-        let _ = (newton, between, options);
+    fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {
+        let _ = (newton, step, options);
         None
     }
 
@@ -158,14 +153,14 @@ pub(crate) trait BranchProblem {
     fn read(&mut self, newton: &mut Newton, at: &CurvePoint) -> Read;
 
     /// Reads a zero of a test function, whose factors Newton's method holds unless branches cross there, and keeps it.
-    fn keep(&mut self, newton: &mut Newton, between: Step<'_>, zero: &Zero) -> Kept;
+    fn keep(&mut self, newton: &mut Newton, step: Step<'_>, zero: &Zero) -> Kept;
 
     /// Keeps a place that is none.
     fn keep_turn(&mut self, turn: Turn);
 
     /// Looks for touches of levels in a step, where the branch may have `turned` without a fold.
-    fn graze(&mut self, newton: &mut Newton, between: Step<'_>, turned: Option<Turn>) {
-        let _ = (newton, between, turned);
+    fn graze(&mut self, newton: &mut Newton, step: Step<'_>, turned: Option<Turn>) {
+        let _ = (newton, step, turned);
     }
 
     /// Takes more of the equations into the matrix from here on. Says whether there was something to take.
@@ -190,9 +185,6 @@ pub(crate) trait BranchProblem {
     /// Adds up the work of a walk that ended or is resumed.
     fn count(&mut self, newton: &Newton);
 }
-
-/// Two successive points.
-pub(crate) type Step<'b> = (&'b CurvePoint, &'b CurvePoint);
 
 impl AsProblem for dyn BranchProblem + '_ {
     fn problem(&mut self) -> &mut dyn Problem {

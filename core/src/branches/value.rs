@@ -5,7 +5,7 @@
 
 use super::branch::Branch;
 use super::point::Point;
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
@@ -123,6 +123,10 @@ impl Chord {
             scale,
         });
         let offset = |_: &mut (dyn Problem + '_), at: &CurvePoint| (at.parameter() - value) / range;
-        locate(problem, newton, (&a, &b), options, tolerance, offset)
+        let chord = Step {
+            before: &a,
+            next: &b,
+        };
+        locate(problem, newton, chord, options, tolerance, offset)
     }
 }

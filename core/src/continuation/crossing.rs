@@ -9,7 +9,7 @@
 //!
 //! Source: Berrut and Trefethen (2004), Barycentric Lagrange interpolation, SIAM Review 46, equation (4.2).
 
-use super::follow::CurvePoint;
+use super::follow::{CurvePoint, Step};
 use super::locate::ArcLength;
 use super::problem::{AsProblem, Problem};
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -45,7 +45,7 @@ pub(crate) struct Crossing {
 pub(crate) fn locate_crossing<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
-    (a, b): (&CurvePoint, &CurvePoint),
+    Step { before: a, next: b }: Step<'_>,
     options: NewtonOptions,
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Crossing> {

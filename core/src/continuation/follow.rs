@@ -52,6 +52,26 @@ impl CurvePoint {
     }
 }
 
+/// The way between two successive points of a curve, or a part of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Step<'p> {
+    pub(crate) before: &'p CurvePoint,
+    pub(crate) next: &'p CurvePoint,
+}
+
+impl Step<'_> {
+    /// What the extended unknowns change by.
+    pub(crate) fn difference(&self) -> Vec<f64> {
+        let pairs = self.next.u.iter().zip(&self.before.u);
+        pairs.map(|(x, y)| x - y).collect()
+    }
+
+    /// The parameter at both ends.
+    pub(crate) fn parameters(&self) -> [f64; 2] {
+        [self.before, self.next].map(CurvePoint::parameter)
+    }
+}
+
 /// Why following ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]

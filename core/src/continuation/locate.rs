@@ -3,7 +3,7 @@
 //! The curve between them is parametrised by the arc length `s` of the chord's first tangent; every value of the test
 //! function is taken at a corrected solution. Where to look next is what [`Bracket`] says.
 
-use super::follow::CurvePoint;
+use super::follow::{CurvePoint, Step};
 use super::problem::{AsProblem, Problem, Scale};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::numeric::linear::dot;
@@ -22,17 +22,18 @@ pub(crate) struct Located {
 /// Points closer together than this part of the arc length are the same.
 const CLOSEST: f64 = 1e-14;
 
-/// Where a test function changes sign between `a` and `b`: its zero, or the place where it jumps.
+/// Where a test function changes sign between two points: its zero, or the place where it jumps.
 ///
 /// `None` if corrections fail on the way, or a tangent is not that of the whole system.
 pub(crate) fn locate<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
-    (a, b): (&CurvePoint, &CurvePoint),
+    step: Step<'_>,
     options: NewtonOptions,
     tolerance: f64,
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
+    let Step { before: a, next: b } = step;
     let arc = ArcLength::from(newton, a);
     let length = arc.length(newton, a, b);
     let mut side = |x, point: &CurvePoint| Side {
@@ -81,16 +82,17 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
     })
 }
 
-/// The point of the curve at a part of the way from `a` to `b`, as the arc length along the first tangent tells.
+/// The point of the curve at a part of a step, as the arc length along the first tangent tells.
 ///
 /// `None` if the correction fails.
 pub(crate) fn inside(
     problem: &mut dyn Problem,
     newton: &mut Newton,
-    (a, b): (&CurvePoint, &CurvePoint),
+    step: Step<'_>,
     part: f64,
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
+    let Step { before: a, next: b } = step;
     let arc = ArcLength::from(newton, a);
     let length = arc.length(newton, a, b);
     let value = f64::NAN;

@@ -6,7 +6,7 @@ use super::equations::Equations;
 use super::setting::Setting;
 use crate::branches::error::OrbitError;
 use crate::branches::solve;
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::locate;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Scale;
@@ -132,28 +132,36 @@ impl Search<'_> {
             if !self.solve(&mut u, self.held) {
                 return None;
             }
-            let behind = self.point(u, scale);
-            if let Some(found) = self.between(&before, &behind) {
+            let next = self.point(u, scale);
+            let step_to = Step {
+                before: &before,
+                next: &next,
+            };
+            if let Some(found) = self.between(step_to) {
                 return Some(found);
             }
-            before = behind;
+            before = next;
             step = (GROWTH * step).min(LONGEST);
         }
         None
     }
 
     /// The orbit at the value, or the fold, if one of them is between two points.
-    fn between(&mut self, before: &CurvePoint, behind: &CurvePoint) -> Option<Found> {
-        let mut end = behind.clone();
-        let turned = (behind.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0);
+    fn between(&mut self, step: Step<'_>) -> Option<Found> {
+        let Step { before, next } = step;
+        let mut end = next.clone();
+        let turned = (next.parameter_slope() < 0.0) != (before.parameter_slope() < 0.0);
         if turned {
             // From the one with the smaller value of what is held, as the tangents point.
             let held = self.held;
-            let forwards = before.u[held] < behind.u[held];
+            let forwards = before.u[held] < next.u[held];
             let between = if forwards {
-                (before, behind)
+                step
             } else {
-                (behind, before)
+                Step {
+                    before: next,
+                    next: before,
+                }
             };
             let slope = CurvePoint::parameter_slope;
             let options = self.options;

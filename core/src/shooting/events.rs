@@ -14,7 +14,7 @@ use super::tested::{Test, Tests};
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Change, Zero};
 use crate::continuation::crossing::locate_crossing;
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::locate;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::event::EventKind;
@@ -53,7 +53,7 @@ impl Run<'_> {
         &mut self,
         equations: &mut Equations,
         newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
+        step: Step<'_>,
         options: NewtonOptions,
         change: Change,
     ) -> Option<Place> {
@@ -68,13 +68,13 @@ impl Run<'_> {
             Tests::of(map.as_ref(), point.parameter_slope()).value(test)
         };
         let place = if change.kind == EventKind::BranchPoint {
-            locate_crossing(equations, newton, between, options, value).map(|crossing| Place {
+            locate_crossing(equations, newton, step, options, value).map(|crossing| Place {
                 point: crossing.point,
                 test: crossing.test,
                 error: crossing.error,
             })
         } else {
-            locate(equations, newton, between, options, VANISHED, value).map(|located| Place {
+            locate(equations, newton, step, options, VANISHED, value).map(|located| Place {
                 point: located.point,
                 test: located.test,
                 error: 0.0,
@@ -88,7 +88,7 @@ impl Run<'_> {
     pub(super) fn event_at(
         &mut self,
         equations: &mut Equations,
-        between: (&CurvePoint, &CurvePoint),
+        step: Step<'_>,
         zero: &Zero,
     ) -> Option<Event> {
         let change = zero.change;
@@ -98,7 +98,7 @@ impl Run<'_> {
             error: zero.error,
         };
         let (span, frame) = (equations.span, equations.frame.clone());
-        let size = between.0.scale.oscillation;
+        let size = step.before.scale.oscillation;
         let Companion {
             equations: mut others,
             mut newton,
@@ -107,7 +107,7 @@ impl Run<'_> {
             finer,
             noise,
         } = Companion::new(self.setting, span, frame, size).ok()?;
-        let moved = self.place(&mut others, &mut newton, between, options, change);
+        let moved = self.place(&mut others, &mut newton, step, options, change);
         self.statistics += newton.statistics;
         let (event, at) = match &moved {
             None => {

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use super::equations::Equations;
 use super::run::{Run, observe};
 use crate::branches::point::Event;
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::locate;
 use crate::continuation::newton::Newton;
 use crate::event::{EventKind, Turn};
@@ -19,11 +19,11 @@ const TOUCHED: f64 = 2e-12;
 /// So many levels may be touched in one step.
 const MOST: usize = 32;
 
-/// As near to a grazing as was looked: the last orbit before it, and the first behind it with its number of crossings, if its
+/// As near to a grazing as was looked: the last orbit before it, and the first next it with its number of crossings, if its
 /// motion is known.
 struct Bracket {
     before: CurvePoint,
-    behind: CurvePoint,
+    next: CurvePoint,
     switches: Option<usize>,
 }
 
@@ -33,23 +33,27 @@ impl Run<'_> {
         &mut self,
         equations: &mut Equations,
         newton: &mut Newton,
-        (before, behind): (&CurvePoint, &CurvePoint),
+        step: Step<'_>,
     ) {
         let after = self.points.len() - 1;
         let [first, last] =
             [after - 1, after].map(|index| self.points[index].observed.switches.unwrap_or(0));
         let mut switches = first;
-        let mut from = before.clone();
+        let mut from = step.before.clone();
         for _ in 0..MOST {
-            let Some(bracket) = self.bracket(equations, newton, (&from, behind), switches) else {
+            let rest = Step {
+                before: &from,
+                next: step.next,
+            };
+            let Some(bracket) = self.bracket(equations, newton, rest, switches) else {
                 return;
             };
-            self.grazing(equations, (before, behind), &bracket);
+            self.grazing(equations, step, &bracket);
             match bracket.switches {
                 Some(now) if now != last => switches = now,
                 _ => return,
             }
-            from = bracket.behind;
+            from = bracket.next;
         }
     }
 
@@ -58,14 +62,14 @@ impl Run<'_> {
         &mut self,
         equations: &mut Equations,
         newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
+        step: Step<'_>,
         many: usize,
     ) -> Option<Bracket> {
         let half = if equations.span.half { 2 } else { 1 };
         let other = RefCell::new(equations.again(self.setting).ok()?);
         let nearest = RefCell::new(Bracket {
-            before: between.0.clone(),
-            behind: between.1.clone(),
+            before: step.before.clone(),
+            next: step.next.clone(),
             switches: None,
         });
         let side = |_: &mut Equations, point: &CurvePoint| {
@@ -79,11 +83,11 @@ impl Run<'_> {
                 nearest.before = point.clone();
                 return 1.0;
             }
-            (nearest.behind, nearest.switches) = (point.clone(), switches);
+            (nearest.next, nearest.switches) = (point.clone(), switches);
             -1.0
         };
         // Near the place Newton's method may fail: then what is known is the bracket.
-        let _ = locate(equations, newton, between, self.options, 0.0, side);
+        let _ = locate(equations, newton, step, self.options, 0.0, side);
         self.work += other.borrow().flow.work();
         Some(nearest.into_inner())
     }
@@ -92,8 +96,8 @@ impl Run<'_> {
     fn grazing(
         &mut self,
         equations: &mut Equations,
-        between: (&CurvePoint, &CurvePoint),
-        Bracket { before, behind, .. }: &Bracket,
+        step: Step<'_>,
+        Bracket { before, next, .. }: &Bracket,
     ) {
         let after = self.points.len() - 1;
         let Ok((point, _)) = observe(self.setting, equations, &before.u) else {
@@ -107,14 +111,15 @@ impl Run<'_> {
             return;
         };
         // The orbits have the error of the flow: it is taken from states to the parameter by what both change in the step.
-        let change = (between.1.parameter() - between.0.parameter()).abs();
-        let rate = change / equations.apart(&between.0.u, &between.1.u);
-        let bracket = (behind.parameter() - before.parameter()).abs();
+        let [a, b] = step.parameters();
+        let change = (b - a).abs();
+        let rate = change / equations.apart(&step.before.u, &step.next.u);
+        let bracket = (next.parameter() - before.parameter()).abs();
         let of_orbit = self.state_error;
         let error = bracket + of_orbit * rate + TOUCHED * point.value.abs();
         self.events.push(Event {
             kind: EventKind::Grazing {
-                turns: before.parameter_slope() * behind.parameter_slope() < 0.0,
+                turns: before.parameter_slope() * next.parameter_slope() < 0.0,
             },
             point,
             error,

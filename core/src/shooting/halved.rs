@@ -14,10 +14,11 @@
 //! period, and its order of contact).
 
 use super::equations::Equations;
+use super::special_search::apart;
 use super::trace::{Special, SpecialKind};
 use super::track::Curve;
-use super::watch::{ROUNDING, Watch, apart};
-use crate::continuation::follow::CurvePoint;
+use super::watch::{ROUNDING, Watch};
+use crate::continuation::follow::{CurvePoint, Step};
 
 /// Two differences point opposite ways if the cosine of their angle is below this.
 const OPPOSITE: f64 = -0.9;
@@ -84,7 +85,7 @@ impl Halved {
 impl Watch<'_, '_> {
     /// Whether an orbit of half the period lies between the last point and this one.
     pub(super) fn passes_half_the_period(&mut self, curve: &Curve<'_>, at: &CurvePoint) -> bool {
-        if self.shift != Some(-1.0) {
+        if self.functions.shift != Some(-1.0) {
             return false;
         }
         let now = Halved::of(&curve.equations, &at.u);
@@ -121,8 +122,8 @@ impl Watch<'_, '_> {
     }
 
     /// The degenerate doubling between two points, from the nearer one; what the other one says of it is its error.
-    pub(super) fn end(&mut self, curve: &Curve<'_>, before: &CurvePoint, behind: &CurvePoint) {
-        let seen = [before, behind].map(|point| {
+    pub(super) fn end(&mut self, curve: &Curve<'_>, step: Step<'_>) {
+        let seen = [step.before, step.next].map(|point| {
             let halved = Halved::of(&curve.equations, &point.u)?;
             Some((halved.size(), halved.end(&curve.equations, point)?))
         });

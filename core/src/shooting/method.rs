@@ -6,11 +6,9 @@ use super::recurrence::{Recurrence, step_on_other_branch};
 use super::run::Run;
 use super::tested::{self, Tests};
 use crate::branches::engine::Search;
-use crate::branches::problem::{
-    BranchProblem, Change, Kept, Read, Step, Test, TestValue, Watched, Zero,
-};
+use crate::branches::problem::{BranchProblem, Change, Kept, Read, Test, TestValue, Watched, Zero};
 use crate::branches::progress::{Progress, See};
-use crate::continuation::follow::{CurvePoint, Stop};
+use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
@@ -153,22 +151,21 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         }
     }
 
-    fn end(
-        &mut self,
-        newton: &mut Newton,
-        (before, next): Step<'_>,
-        options: NewtonOptions,
-    ) -> Option<Read> {
+    fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {
         let equations = &mut self.equations;
-        let other = step_on_other_branch(equations, newton, before, next, options)?;
+        let other = step_on_other_branch(equations, newton, step, options)?;
         let change = Change {
             test: Test::Watched(0),
             kind: EventKind::BranchPoint,
         };
         if !self.watched.is_empty() {
-            let ends = [next, &other].map(|at| self.test(0, at, true));
+            let beyond = Step {
+                before: step.next,
+                next: &other,
+            };
+            let ends = [beyond.before, beyond.next].map(|at| self.test(0, at, true));
             let search = Search {
-                step: (next, &other),
+                step: beyond,
                 change,
                 ends,
                 after: self.run.points.len(),

@@ -23,7 +23,7 @@ mod recurrence;
 mod run;
 mod sampled_states;
 pub(crate) mod setting;
-
+mod special_search;
 mod start;
 mod switch;
 mod tested;

@@ -6,7 +6,7 @@
 
 use super::equations::Equations;
 use crate::branches::solve;
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::time::FlowError;
 
@@ -84,25 +84,24 @@ fn returns(equations: &Equations, state: &[f64], first: &[f64], most: f64) -> bo
     })
 }
 
-/// The step along the more regular branch that passes over the point where a step from `before` to `behind` came onto it: from
-/// beyond the parameter of `before`.
+/// The step along the more regular branch that passes over the point where a step came onto it: from beyond the
+/// parameter where the step begins.
 pub(super) fn step_on_other_branch(
     equations: &mut Equations,
     newton: &mut Newton,
-    before: &CurvePoint,
-    behind: &CurvePoint,
+    Step { before, next }: Step<'_>,
     options: NewtonOptions,
 ) -> Option<CurvePoint> {
-    let last = behind.u.len() - 1;
-    let slope = behind.tangent[last];
-    let distance = (1.0 + MARGIN) * (before.parameter() - behind.parameter());
+    let last = next.u.len() - 1;
+    let slope = next.tangent[last];
+    let distance = (1.0 + MARGIN) * (before.parameter() - next.parameter());
     let along = distance / slope;
-    let pairs = behind.u.iter().zip(&behind.tangent);
+    let pairs = next.u.iter().zip(&next.tangent);
     let mut u: Vec<f64> = pairs.map(|(x, t)| x + along * t).collect();
     solve::at_value(equations, newton, &mut u, options).ok()?;
     let mut tangent = vec![0.0; u.len()];
     newton.tangent(equations, &u, &mut tangent, true);
-    let scale = behind.scale;
+    let scale = next.scale;
     let length = newton.norm().length(scale, &tangent) * slope.signum();
     for t in &mut tangent {
         *t /= length;

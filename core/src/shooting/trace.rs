@@ -14,9 +14,7 @@ use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See, Stage};
 use crate::branches::solve;
-use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Outcome, Start, Stop, follow,
-};
+use crate::continuation::follow::{Continue, CurvePoint, FollowOptions, Halt, Start, Stop, follow};
 use crate::continuation::newton::Newton;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
@@ -165,6 +163,34 @@ struct Half {
     end: TrackEnd,
 }
 
+impl Half {
+    fn interrupted() -> Self {
+        Self {
+            points: Vec::new(),
+            special: Vec::new(),
+            end: TrackEnd::Stopped(Stop::Interrupted),
+        }
+    }
+
+    /// Points and special points of this half from its end to the event, and of the other one from there on.
+    fn joined(mut self, forth: Self) -> (Vec<TrackPoint>, Vec<Special>) {
+        let count = self.points.len();
+        self.points.reverse();
+        self.special.reverse();
+        // The first point of both is the event.
+        self.points.extend(forth.points.into_iter().skip(1));
+        for special in &mut self.special {
+            special.after = count - special.after;
+        }
+        let forth = forth.special.into_iter().map(|special| Special {
+            after: special.after + count - 1,
+            ..special
+        });
+        self.special.extend(forth);
+        (self.points, self.special)
+    }
+}
+
 /// The curve of bifurcations through an event.
 ///
 /// # Errors
@@ -175,6 +201,39 @@ pub(crate) fn track(
     plane: &Plane<'_>,
     visit: See<'_>,
 ) -> Result<Track, Error> {
+    check_inside(event, plane)?;
+    let mut back = half(setting, event, plane, -1.0, visit)?;
+    let track = |points, special, ends| Track {
+        kind: event.kind,
+        names: [setting.varied.clone(), plane.name.clone()],
+        period: event.point.orbit.period,
+        points,
+        special,
+        ends,
+    };
+    if back.end == TrackEnd::Closed {
+        // The other way leads through the same points.
+        let first = back.points.first().cloned();
+        back.points.extend(first);
+        return Ok(track(back.points, back.special, [TrackEnd::Closed; 2]));
+    }
+    let interrupted = matches!(back.end, TrackEnd::Stopped(Stop::Interrupted));
+    // Without the other half there is the event, where both begin.
+    let forth = if interrupted {
+        Half::interrupted()
+    } else {
+        match half(setting, event, plane, 1.0, visit) {
+            Err(_) if setting.cancel.is_cancelled() => Half::interrupted(),
+            forth => forth?,
+        }
+    };
+    let ends = [back.end, forth.end];
+    let (points, special) = back.joined(forth);
+    Ok(track(points, special, ends))
+}
+
+/// The event is inside the ranges of both parameters.
+fn check_inside(event: &Event, plane: &Plane<'_>) -> Result<(), Error> {
     let at = [event.point.value, second_of(event, plane.second)];
     for ((value, range), name) in at.into_iter().zip(plane.ranges).zip(["from", "within"]) {
         if value < range[0].min(range[1]) || value > range[0].max(range[1]) {
@@ -182,57 +241,7 @@ pub(crate) fn track(
             return Err(RequestError::Option { name, value, must }.into());
         }
     }
-    let mut back = half(setting, event, plane, -1.0, visit)?;
-    if back.end == TrackEnd::Closed {
-        // The other way leads through the same points.
-        let first = back.points.first().cloned();
-        back.points.extend(first);
-        return Ok(Track {
-            kind: event.kind,
-            names: [setting.varied.clone(), plane.name.clone()],
-            period: event.point.orbit.period,
-            points: back.points,
-            special: back.special,
-            ends: [TrackEnd::Closed; 2],
-        });
-    }
-    let interrupted = matches!(back.end, TrackEnd::Stopped(Stop::Interrupted));
-    let forth = if interrupted {
-        None
-    } else {
-        match half(setting, event, plane, 1.0, visit) {
-            Err(_) if setting.cancel.is_cancelled() => None,
-            forth => Some(forth?),
-        }
-    };
-    // Without the other half there is the event, where both begin.
-    let mut forth = forth.unwrap_or(Half {
-        points: Vec::new(),
-        special: Vec::new(),
-        end: TrackEnd::Stopped(Stop::Interrupted),
-    });
-    let count = back.points.len();
-    back.points.reverse();
-    back.special.reverse();
-    // The first point of both is the event.
-    let mut points = std::mem::take(&mut back.points);
-    points.extend(forth.points.drain(..).skip(1));
-    let mut special = std::mem::take(&mut back.special);
-    for special in &mut special {
-        special.after = count - special.after;
-    }
-    special.extend(forth.special.drain(..).map(|special| Special {
-        after: special.after + count - 1,
-        ..special
-    }));
-    Ok(Track {
-        kind: event.kind,
-        names: [setting.varied.clone(), plane.name.clone()],
-        period: event.point.orbit.period,
-        points,
-        special,
-        ends: [back.end, forth.end],
-    })
+    Ok(())
 }
 
 /// From the event towards larger values of the second parameter, or smaller ones.
@@ -245,42 +254,29 @@ fn half(
 ) -> Result<Half, Error> {
     let (mut curve, mut u) = curve(setting, event, plane)?;
     let mut newton = Newton::new(&curve);
-    let options = setting.newton(setting.source.tolerance, 1.0);
-    solve::at_value(&mut curve, &mut newton, &mut u, options)
-        .map_err(|reason| no_orbit(event.point.value, reason, curve.equations.failure))?;
-    let [_, second] = plane.ranges;
-    let range = (second[1] - second[0]).abs();
-    let scale = newton.norm().scale_at(&u, range, &mut [0.0; 2]);
-    let mut tangent = vec![0.0; u.len()];
-    newton.tangent(&mut curve, &u, &mut tangent, true);
-    let sign = side * tangent[tangent.len() - 1];
-    let length = newton.norm().length(scale, &tangent) * sign.signum();
-    for t in &mut tangent {
-        *t /= length;
-    }
-    let start = Start::Along(Box::new(CurvePoint { u, tangent, scale }));
+    let newton_options = setting.newton(setting.source.tolerance, 1.0);
+    let value = event.point.value;
+    solve::at_value(&mut curve, &mut newton, &mut u, newton_options)
+        .map_err(|reason| no_orbit(value, reason, curve.equations.failure))?;
+    let [_, [a, b]] = plane.ranges;
+    let first = first_point(&mut curve, &mut newton, u, side, (b - a).abs());
     let options = FollowOptions {
-        from: second[0].min(second[1]),
-        to: second[0].max(second[1]),
+        from: a.min(b),
+        to: a.max(b),
         points: setting.points.min(POINTS),
         steps: StepControl {
             smallest: SHORTEST,
             ..setting.steps
         },
-        newton: options,
+        newton: newton_options,
     };
-    let mut watch = Watch::new(
-        setting,
-        plane,
-        options.newton,
-        &curve,
-        event.point.orbit.symmetric,
-    );
+    let symmetric = event.point.orbit.symmetric;
+    let mut watch = Watch::new(setting, plane, newton_options, &curve, symmetric);
     let mut interrupted = false;
     let outcome = follow(
         &mut curve,
         &mut newton,
-        start,
+        Start::Along(Box::new(first)),
         options,
         &mut |curve, newton, seen| {
             let known = watch.points.len();
@@ -295,31 +291,35 @@ fn half(
             Continue::Continue(())
         },
     );
-    let stuck = matches!(outcome, Ok(Outcome::Stopped(Stop::StepTooShort { .. })));
-    if stuck && watch.is_at_half_the_period(&curve) {
-        watch.joined = true;
-    }
-    let failure = watch.failure.or(curve.equations.failure);
-    let end = match (outcome, failure) {
-        _ if interrupted => TrackEnd::Stopped(Stop::Interrupted),
-        (Ok(_), Some(FlowError::Cancelled { .. })) => TrackEnd::Stopped(Stop::Interrupted),
-        _ if watch.left => TrackEnd::Left,
-        _ if watch.joined => TrackEnd::Joined,
-        (Err(reason), failure) => return Err(no_orbit(event.point.value, reason, failure)),
-        (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {
-            TrackEnd::Motion(reason)
-        }
-        (Ok(Outcome::Stopped(Stop::ReachedEnd | Stop::LeftAtStart)), _) => TrackEnd::Left,
-        (Ok(Outcome::Stopped(Stop::Closed)), _) => TrackEnd::Closed,
-        (Ok(Outcome::Stopped(stop)), _) => TrackEnd::Stopped(stop),
-        // A curve is never resized.
-        (Ok(Outcome::Halted(_)), _) => TrackEnd::Stopped(Stop::Interrupted),
+    let end = if interrupted {
+        TrackEnd::Stopped(Stop::Interrupted)
+    } else {
+        watch.end_of(&curve, outcome, value)?
     };
     Ok(Half {
         points: watch.points,
         special: watch.special,
         end,
     })
+}
+
+/// The solution `u` with its tangent, towards larger values of the second parameter, whose range has this length, for a positive side.
+fn first_point(
+    curve: &mut Curve<'_>,
+    newton: &mut Newton,
+    u: Vec<f64>,
+    side: f64,
+    range: f64,
+) -> CurvePoint {
+    let scale = newton.norm().scale_at(&u, range, &mut [0.0; 2]);
+    let mut tangent = vec![0.0; u.len()];
+    newton.tangent(curve, &u, &mut tangent, true);
+    let sign = side * tangent[tangent.len() - 1];
+    let length = newton.norm().length(scale, &tangent) * sign.signum();
+    for t in &mut tangent {
+        *t /= length;
+    }
+    CurvePoint { u, tangent, scale }
 }
 
 /// The value of the second parameter at an event.

@@ -1,12 +1,12 @@
 //! Where another branch crosses, which no zero of a test function can be driven to: see [`continuation::crossing`](crate::continuation::crossing).
 
 use super::Run;
-use super::watch::{Between, ROUNDING, Test, known, three_quarters};
+use super::watch::{ROUNDING, Test, known, three_quarters};
 use crate::balance::Balance;
 use crate::balance::truncation::BEYOND;
 use crate::branches::point::Event;
 use crate::branches::problem::Zero;
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton};
 
 /// Derivatives along the branch are differences over this part of the step: close by, the matrix of a step is singular.
@@ -20,11 +20,11 @@ impl<'a> Run<'a> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        between: Between<'_>,
+        step: Step<'_>,
         (zero, test): (&Zero, &mut Test<'_, 'a>),
     ) {
         let at = &zero.located.point;
-        let shift = self.crossing_shift(balance, newton, between, at, test);
+        let shift = self.crossing_shift(balance, newton, step, at, test);
         let error = BEYOND * shift + zero.error + ROUNDING * at.parameter().abs();
         let point = self.reader.read(balance, newton, &at.u);
         self.events.push(Event {
@@ -45,17 +45,14 @@ impl<'a> Run<'a> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        (before, behind): Between<'_>,
+        step: Step<'_>,
         at: &CurvePoint,
         test: &mut Test<'_, 'a>,
     ) -> f64 {
+        let scale = step.before.scale;
         let mut row = vec![0.0; at.u.len()];
-        newton
-            .norm()
-            .linear_form(before.scale, &at.tangent, &mut row);
-        let pairs = behind.u.iter().zip(&before.u);
-        let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
-        let width = BESIDE * newton.norm().length(before.scale, &step);
+        newton.norm().linear_form(scale, &at.tangent, &mut row);
+        let width = BESIDE * newton.norm().length(scale, &step.difference());
         let fine = self.reader.finer.balance().resolution();
         let resolutions = [fine, three_quarters(fine)];
         let mut watches = resolutions.map(|of| self.watch_like(test, of));
@@ -69,7 +66,7 @@ impl<'a> Run<'a> {
                 value: crate::numeric::linear::dot(&row, &u),
             };
             let options = self.options.newton;
-            let corrected = newton.correct(balance, &mut u, border, before.scale, options);
+            let corrected = newton.correct(balance, &mut u, border, scale, options);
             if corrected.is_err() || !self.reader.finer.correct(&u, newton) {
                 return f64::INFINITY;
             }

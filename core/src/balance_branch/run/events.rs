@@ -6,7 +6,7 @@ use crate::balance::symmetry::{broken, broken_share};
 use crate::balance::{Balance, Resolution};
 use crate::branches::point::Event;
 use crate::branches::problem::{Kept, Zero};
-use crate::continuation::follow::{CurvePoint, Stop};
+use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Norm;
@@ -32,19 +32,14 @@ impl Run<'_> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        between: (&CurvePoint, &CurvePoint),
+        step: Step<'_>,
         test: impl Fn(&CurvePoint) -> f64,
         mut read: impl FnMut(&mut Self, &mut Balance<'_>, &mut Newton, &Located),
     ) -> Result<(), Option<Located>> {
         let options = self.options.newton;
-        let found = locate(
-            balance,
-            newton,
-            between,
-            options,
-            FOLD_TOLERANCE,
-            |_, at| test(at),
-        );
+        let found = locate(balance, newton, step, options, FOLD_TOLERANCE, |_, at| {
+            test(at)
+        });
         if let Some(zero) = found.as_ref().filter(|located| located.vanishes) {
             read(self, balance, newton, zero);
             return Ok(());
@@ -59,7 +54,7 @@ impl Run<'_> {
             let again = locate(
                 &mut balance,
                 &mut newton,
-                between,
+                step,
                 options,
                 FOLD_TOLERANCE,
                 |_, at| test(at),
@@ -143,25 +138,24 @@ impl Run<'_> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        (before, behind): (&CurvePoint, &CurvePoint),
+        step: Step<'_>,
     ) -> bool {
         let Some(last) = self.points.last() else {
             return false;
         };
-        let joined = passes_shorter_period(&last.orbit, &behind.u);
+        let joined = passes_shorter_period(&last.orbit, &step.next.u);
         let addition = |point: &CurvePoint| match joined {
             Some(joined) => joined.addition(&last.orbit, &point.u),
             None => broken(&last.orbit, &point.u),
         };
         let period = joined.map_or(last.orbit.period, |joined| joined.period);
         let options = self.options.newton;
-        let between = (before, behind);
         let along = |_: &mut Balance<'_>, point: &CurvePoint| addition(point).along();
-        let value = match locate(balance, newton, between, options, JOINED, along) {
+        let value = match locate(balance, newton, step, options, JOINED, along) {
             // It turned, and did not vanish: the branch goes on.
             Some(located) if addition(&located.point).size() > LEFT => return false,
             Some(located) => located.point.parameter(),
-            None => vertex(newton.norm(), before, behind),
+            None => vertex(newton.norm(), step),
         };
         self.ended = Some(Stop::Joined {
             period,
@@ -174,13 +168,13 @@ impl Run<'_> {
 
 /// The parameter where it turns back between two points, on the cubic through both with their slopes (Hermite's); in the middle if
 /// that does not turn.
-fn vertex(norm: &Norm, before: &CurvePoint, behind: &CurvePoint) -> f64 {
-    let pairs = behind.u.iter().zip(&before.u);
-    let difference: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+fn vertex(norm: &Norm, step: Step<'_>) -> f64 {
+    let Step { before, next } = step;
+    let difference = step.difference();
     let length = norm.length(before.scale, &difference);
     let last = difference.len() - 1;
     let change = difference[last];
-    let [a, b] = [before, behind]
+    let [a, b] = [before, next]
         .map(|point| length * point.tangent[last] / norm.length(before.scale, &point.tangent));
     // The slope is a + 2 c x + 3 d x^2 for x from 0 to 1.
     let (c, d) = (3.0 * change - 2.0 * a - b, a + b - 2.0 * change);
@@ -192,6 +186,6 @@ fn vertex(norm: &Norm, before: &CurvePoint, behind: &CurvePoint) -> f64 {
     if inside.is_some() {
         turned
     } else {
-        0.5 * (before.parameter() + behind.parameter())
+        0.5 * (before.parameter() + next.parameter())
     }
 }

@@ -17,10 +17,10 @@
 use super::Run;
 use super::events::FOLD_TOLERANCE;
 use super::touch::{Extreme, Touches, crossings, distinct, is_copy, passed};
-use super::watch::{Between, Test};
+use super::watch::Test;
 use crate::balance::{Balance, Resolution};
 use crate::branches::point::Event;
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::event::{EventKind, Turn};
@@ -47,22 +47,22 @@ impl<'a> Run<'a> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        between: Between<'_>,
+        step: Step<'_>,
         (touches, [before, behind]): (&mut Touches<'a>, &mut [Vec<Extreme>; 2]),
         turned: Option<Turn>,
     ) {
-        touches.read(&between.0.u, before);
-        touches.read(&between.1.u, behind);
+        touches.read(&step.before.u, before);
+        touches.read(&step.next.u, behind);
         let kind = EventKind::Grazing { turns: false };
         let range = (self.options.to - self.options.from).abs();
         let (first, after) = (self.events.len(), self.points.len() - 1);
         let mut found = passed(before, behind);
         if found.is_empty() && crossings(before) != crossings(behind) {
-            self.omit(kind, between, f64::NAN);
+            self.omit(kind, step, f64::NAN);
         }
         while let Some(&next) = found.first() {
             let known = self.events.len();
-            self.touch(balance, newton, between, touches, [&next.0, &next.1]);
+            self.touch(balance, newton, step, touches, [&next.0, &next.1]);
             // Contacts that are copies of each other, and orbits with a symmetry, touch in several places at once: one event.
             let Some(event) = self.events.get_mut(known) else {
                 found.retain(|other| !is_copy(&next, other));
@@ -94,7 +94,7 @@ impl<'a> Run<'a> {
             return;
         };
         // At a corner the slope jumps, and the value there is beyond those of both ends.
-        let [a, b] = [between.0, between.1].map(CurvePoint::parameter);
+        let [a, b] = step.parameters();
         let jumps = turned.test.abs() > STEEP;
         let is_turn = |value: f64| {
             (jumps && (value <= a.min(b) || value >= a.max(b)))
@@ -114,19 +114,17 @@ impl<'a> Run<'a> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        between: Between<'_>,
+        step: Step<'_>,
         touches: &mut Touches<'a>,
         [before, behind]: [&Extreme; 2],
     ) {
         let kind = EventKind::Grazing { turns: false };
         let (from, extreme) = if before.is_clear() {
-            (between.0, before)
+            (step.before, before)
         } else {
-            (between.1, behind)
+            (step.next, behind)
         };
-        let pairs = between.1.u.iter().zip(&between.0.u);
-        let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
-        let farthest = FARTHEST * newton.norm().length(from.scale, &step);
+        let farthest = FARTHEST * newton.norm().length(from.scale, &step.difference());
         let options = self.options.newton;
         let mut closed_in = |balance: &mut Balance<'_>, newton: &mut Newton| {
             let request = (from, *extreme, farthest);
@@ -135,7 +133,7 @@ impl<'a> Run<'a> {
         if let Some(found) = closed_in(balance, newton) {
             let mut test = Test::Touch(touches, *extreme);
             let found = (&mut test, &found, self.points.len() - 1);
-            return self.located(balance, newton, between, kind, found);
+            return self.located(balance, newton, step, kind, found);
         }
         if self.resolution.core < self.resolution.harmonics {
             // What core and tail cannot locate, the whole system may.
@@ -148,7 +146,7 @@ impl<'a> Run<'a> {
             if let Some(found) = &found {
                 let mut test = Test::Touch(touches, *extreme);
                 let found = (&mut test, found, self.points.len() - 1);
-                self.located(&mut whole, &mut newton, between, kind, found);
+                self.located(&mut whole, &mut newton, step, kind, found);
             }
             self.statistics += newton.statistics;
             if found.is_some() {
@@ -156,7 +154,7 @@ impl<'a> Run<'a> {
             }
         }
         let mut test = Test::Touch(touches, *before);
-        self.event(balance, newton, between, kind, &mut test);
+        self.event(balance, newton, step, kind, &mut test);
     }
 }
 

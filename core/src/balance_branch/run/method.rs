@@ -5,11 +5,9 @@ use super::crossed::CROSSED;
 use super::events::FOLD_TOLERANCE;
 use super::watch::{Test as OfOrbit, Watch};
 use crate::balance::{Balance, Resolution};
-use crate::branches::problem::{
-    BranchProblem, Change, Kept, Read, Step, Test, TestValue, Watched, Zero,
-};
+use crate::branches::problem::{BranchProblem, Change, Kept, Read, Test, TestValue, Watched, Zero};
 use crate::branches::progress::{Progress, See};
-use crate::continuation::follow::{CurvePoint, Halted};
+use crate::continuation::follow::{CurvePoint, Halted, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
@@ -91,7 +89,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         }
         // It only seemed to belong to what comes after the end. The walk cannot be halted here for more harmonics, so that the point
         // stands with the error it has.
-        let point = self.run.read_again(&mut self.balance, newton, step.1);
+        let point = self.run.read_again(&mut self.balance, newton, step.next);
         let done = self.run.points.len() + 1;
         let answer = (self.visit)(Progress::orbit(done, &point));
         self.run.points.push(point);

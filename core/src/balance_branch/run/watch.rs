@@ -27,7 +27,7 @@ use crate::balance::{Balance, Resolution};
 use crate::balance_branch::follower::{Follower, Sought};
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{self as engine, TestValue, Watched};
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::Newton;
 use crate::event::{EventKind, Turn};
@@ -139,9 +139,6 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Two successive points.
-pub(super) type Between<'b> = (&'b CurvePoint, &'b CurvePoint);
-
 impl<'a> Run<'a> {
     /// Whether a pair of complex multipliers is near the unit circle at one of the last two points.
     pub(super) fn is_near_circle(&self) -> bool {
@@ -157,10 +154,11 @@ impl<'a> Run<'a> {
     }
 
     /// Records what could not be located.
-    pub(super) fn omit(&mut self, kind: EventKind, (a, b): Between<'_>, test: f64) {
+    pub(super) fn omit(&mut self, kind: EventKind, step: Step<'_>, test: f64) {
+        let [a, b] = step.parameters();
         self.turns.push(Turn {
             kind,
-            value: 0.5 * (a.parameter() + b.parameter()),
+            value: 0.5 * (a + b),
             test,
             after: self.points.len() - 1,
         });
@@ -171,23 +169,23 @@ impl<'a> Run<'a> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        between: Between<'_>,
+        step: Step<'_>,
         kind: EventKind,
         test: &mut Test<'_, 'a>,
     ) {
-        let ends = [between.0, between.1].map(|end| test.at(&end.u, &end.tangent));
+        let ends = [step.before, step.next].map(|end| test.at(&end.u, &end.tangent));
         let cell = RefCell::new(test);
         let value = |point: &CurvePoint| cell.borrow_mut().at(&point.u, &point.tangent);
         let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, found: &Located| {
             let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
             let after = run.points.len() - 1;
-            run.located(b, n, between, kind, (test, found, after));
+            run.located(b, n, step, kind, (test, found, after));
         };
         if self
-            .locate_zero(balance, newton, between, value, read)
+            .locate_zero(balance, newton, step, value, read)
             .is_err()
         {
-            self.omit(kind, between, ends[0]);
+            self.omit(kind, step, ends[0]);
         }
     }
 
@@ -196,16 +194,15 @@ impl<'a> Run<'a> {
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
-        (before, behind): Between<'_>,
+        step: Step<'_>,
         kind: EventKind,
         (test, located, after): (&mut Test<'_, 'a>, &Located, usize),
     ) {
         let u = &located.point.u;
         let left = newton.left_in_parameter();
         let error = if self.reader.finer.correct(u, newton) {
-            let pairs = behind.u.iter().zip(&before.u);
-            let step: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
-            let length = newton.norm().length(before.scale, &step);
+            let scale = step.before.scale;
+            let length = newton.norm().length(scale, &step.difference());
             left + self.event_error(&located.point, DIFFERENCE * length, test)
         } else {
             f64::INFINITY

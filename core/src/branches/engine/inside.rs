@@ -12,7 +12,7 @@
 
 use super::{Engine, Seen, changes};
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{inside, locate};
 use crate::continuation::newton::Newton;
 use crate::event::EventKind;
@@ -34,7 +34,8 @@ impl Engine {
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        (earlier, [a, b]): (Option<&Seen>, [Seen; 2]),
+        earlier: Option<&Seen>,
+        [a, b]: [Seen; 2],
         after: usize,
     ) -> Vec<Seen> {
         let mut parts = vec![a, b];
@@ -176,7 +177,7 @@ impl Engine {
         mut known: [(f64, f64); 3],
     ) -> Option<Seen> {
         let Descent { between, whole, .. } = *descent;
-        let ends = (&between[0].point, &between[1].point);
+        let ends = step_between(between);
         let close = CLOSE * whole;
         let mut lowest = f64::NAN;
         for _ in 0..LOOKS {
@@ -223,16 +224,16 @@ impl Engine {
             .watched()
             .iter()
             .position(|watched| watched.bordered)?;
-        let between = (&pair[0].point, &pair[1].point);
+        let step = step_between(pair);
         let options = self.options.newton;
         let wanted = problem.vanishing().max(problem.aim());
-        let turn = locate(problem, newton, between, options, wanted, |_, at| {
+        let turn = locate(problem, newton, step, options, wanted, |_, at| {
             at.parameter_slope()
         })?;
-        let length = distance(newton, between.0, between.1);
-        let place = distance(newton, between.0, &turn.point) / length;
+        let length = distance(newton, step.before, step.next);
+        let place = distance(newton, step.before, &turn.point) / length;
         let mut beside = |part: f64| {
-            let point = inside(problem.equations(), newton, between, part, options)?;
+            let point = inside(problem.equations(), newton, step, part, options)?;
             Some(Seen::at(problem, &point, true))
         };
         for width in BESIDE {
@@ -277,6 +278,14 @@ struct Descent<'s> {
     reference: f64,
 }
 
+/// The step from one orbit to another.
+fn step_between([a, b]: [&Seen; 2]) -> Step<'_> {
+    Step {
+        before: &a.point,
+        next: &b.point,
+    }
+}
+
 /// Puts an orbit to its place among the parts of a step.
 fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
     let along = |seen: &Seen| distance(newton, &parts[0].point, &seen.point);
@@ -287,8 +296,10 @@ fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
 
 /// How far a point is behind another one, along the tangent there.
 fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
-    let difference: Vec<f64> = b.u.iter().zip(&a.u).map(|(x, y)| x - y).collect();
-    newton.norm().product(a.scale, &a.tangent, &difference)
+    let step = Step { before: a, next: b };
+    newton
+        .norm()
+        .product(a.scale, &a.tangent, &step.difference())
 }
 
 /// Place and value of the lowest point of the parabola through three points; `None` if it has none.

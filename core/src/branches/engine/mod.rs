@@ -23,9 +23,9 @@ mod zero;
 
 pub(crate) use zero::Search;
 
-use super::problem::{BranchProblem, Change, Read, Step, Test, TestValue};
+use super::problem::{BranchProblem, Change, Read, Test, TestValue};
 use crate::continuation::follow::{
-    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Stop, Visit, Walked,
+    Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Step, Stop, Visit, Walked,
     follow_until_stuck,
 };
 use crate::continuation::newton::{Newton, NewtonError};
@@ -158,7 +158,7 @@ impl Engine {
                 let read = problem.read(newton, at);
                 self.kept(problem, at, read)
             }
-            Visit::Between(before, next) => self.step(problem, newton, (before, next)),
+            Visit::Between(before, next) => self.step(problem, newton, Step { before, next }),
         }
     }
 
@@ -193,7 +193,7 @@ impl Engine {
             let Some(read) = problem.end(newton, step, self.options.newton) else {
                 return Continue::Break(Halt::Stop);
             };
-            let kept = self.kept(problem, step.1, read);
+            let kept = self.kept(problem, step.next, read);
             if kept.is_break() {
                 return Continue::Break(Halt::Stop);
             }
@@ -214,16 +214,13 @@ impl Engine {
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        (before, next): Step<'_>,
+        step: Step<'_>,
     ) -> Option<Turn> {
         let after = problem.points() - 1;
-        let earlier = self.complete(problem, before, next);
-        let ends = [
-            &self.seen[self.seen.len() - 2],
-            &self.seen[self.seen.len() - 1],
-        ];
-        let ends = ends.map(Seen::clone);
-        let parts = self.parts(problem, newton, (earlier.as_ref(), ends), after);
+        let earlier = self.complete(problem, step);
+        let ends = [self.seen.len() - 2, self.seen.len() - 1];
+        let ends = ends.map(|place| self.seen[place].clone());
+        let parts = self.parts(problem, newton, earlier.as_ref(), ends, after);
         if self.ended.is_some() {
             return None;
         }
@@ -245,8 +242,7 @@ impl Engine {
     fn complete(
         &mut self,
         problem: &mut dyn BranchProblem,
-        before: &CurvePoint,
-        next: &CurvePoint,
+        Step { before, next }: Step<'_>,
     ) -> Option<Seen> {
         let find = |seen: &[Seen], at: &CurvePoint| seen.iter().rposition(|seen| seen.point == *at);
         let place = find(&self.seen, before);

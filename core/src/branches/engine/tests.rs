@@ -10,10 +10,10 @@
 use nalgebra::DMatrix;
 
 use super::run;
-use crate::branches::problem::{BranchProblem, Change, Kept, Read, Step, TestValue, Watched, Zero};
+use crate::branches::problem::{BranchProblem, Change, Kept, Read, TestValue, Watched, Zero};
 use crate::branches::switch::Departure;
 use crate::branches::value::{Chord, chain, solutions};
-use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Stop};
+use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Step, Stop};
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};

@@ -1,9 +1,9 @@
 //! Locates where a test function vanishes between two points, and has the orbit there read.
 
 use super::{Engine, Seen};
-use crate::branches::problem::{BranchProblem, Change, Kept, Step, Test, TestValue, Zero};
+use crate::branches::problem::{BranchProblem, Change, Kept, Test, TestValue, Zero};
 use crate::continuation::crossing::locate_crossing;
-use crate::continuation::follow::{CurvePoint, Stop};
+use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::event::{EventKind, Turn};
@@ -41,7 +41,10 @@ impl Engine {
         after: usize,
     ) -> Option<Turn> {
         let search = Search {
-            step: (&a.point, &b.point),
+            step: Step {
+                before: &a.point,
+                next: &b.point,
+            },
             change,
             ends: [a, b].map(|seen| seen.value(change.test)),
             after,
@@ -79,7 +82,8 @@ impl Search<'_> {
             }
             Kept::Unread => {}
         }
-        let middle = 0.5 * (self.step.0.parameter() + self.step.1.parameter());
+        let [a, b] = self.step.parameters();
+        let middle = 0.5 * (a + b);
         let (value, test) = jump.map_or_else(
             || (middle, self.ends[0].relative_to(self.reference())),
             |jump| (jump.point.parameter(), jump.test),
