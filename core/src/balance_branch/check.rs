@@ -52,41 +52,13 @@ impl Asked<'_> {
         if facts.coordinates.is_empty() {
             return Err(ModelError::NoCoordinates.into());
         }
-        let mut parameters = self.request.parameters();
         let variable = self.request.variable()?;
-        let [from, to] = self.request.range()?;
-        validate::range(facts, variable, from, to)?;
-        let omega = self.request.held_omega(variable)?.unwrap_or(from);
-        validate::omega(omega)?;
-        if let Variable::Parameter(index) = variable {
-            parameters[index] = from;
-        }
-        validate::parameters(facts, &parameters)?;
+        let range = self.request.range()?;
+        let (parameters, omega) = self.held_at_first(variable, range)?;
         self.check_options()?;
         self.check_near()?;
         let mut resolution = self.resolution()?;
         let layout = Layout::of(self.request.system.as_ref());
-        let over = Over {
-            system: self.request.system.as_ref(),
-            layout: &layout,
-            parameters: &parameters,
-            omega,
-            variable,
-            range: [from, to],
-        };
-        let symmetric = over.is_odd();
-        let given = self.near();
-        let kept = self.balance.symmetric && !given.is_some_and(lacks_symmetry);
-        if symmetric && self.request.period() == 1 && kept {
-            resolution.parity = Parity::Odd;
-            if self.balance.harmonics.is_none() {
-                // An even number is as good as the one below it.
-                resolution.harmonics |= 1;
-            }
-        }
-        if self.request.period() == 1 && self.balance.symmetric {
-            self.take_stride(over.stride(), &mut resolution);
-        }
         let place = Place {
             system: self.request.system.as_ref(),
             layout: &layout,
@@ -94,12 +66,14 @@ impl Asked<'_> {
             omega,
             variable,
         };
-        check_ends(place, [from, to])?;
+        let asymmetric = self.use_symmetries(place, range, &mut resolution);
+        check_ends(place, range)?;
         let newton = NewtonOptions {
             tolerance: (1e-3 * self.request.tolerance).clamp(1e-11, 1e-6),
             iterations: 12,
             damped: false,
         };
+        let [from, to] = range;
         let options = FollowOptions {
             from,
             to,
@@ -108,7 +82,7 @@ impl Asked<'_> {
             newton,
         };
         let chooser = self.chooser(resolution);
-        if let (Some(chooser), Some(orbit)) = (&chooser, given) {
+        if let (Some(chooser), Some(orbit)) = (&chooser, self.near()) {
             resolution.harmonics = chooser.admitted(orbit.harmonics());
         }
         Ok((
@@ -120,7 +94,7 @@ impl Asked<'_> {
                 resolution,
                 newton,
                 sought: self.balance.sought(),
-                asymmetric: symmetric && self.request.period() == 1 && !kept,
+                asymmetric,
                 stability: self.request.stability.then_some(self.balance.multipliers),
                 chooser,
                 from,
@@ -129,6 +103,55 @@ impl Asked<'_> {
             },
             options,
         ))
+    }
+
+    /// Parameters and frequency at the first value of what is varied, checked.
+    fn held_at_first(
+        &self,
+        variable: Variable,
+        [from, to]: [f64; 2],
+    ) -> Result<(Vec<f64>, f64), Error> {
+        let facts = self.request.system.facts();
+        validate::range(facts, variable, from, to)?;
+        let omega = self.request.held_omega(variable)?.unwrap_or(from);
+        validate::omega(omega)?;
+        let mut parameters = self.request.parameters();
+        if let Variable::Parameter(index) = variable {
+            parameters[index] = from;
+        }
+        validate::parameters(facts, &parameters)?;
+        Ok((parameters, omega))
+    }
+
+    /// Takes only the harmonics that orbits with the symmetries of the system have, where such orbits are wanted. Says whether orbits
+    /// without its odd symmetry are.
+    fn use_symmetries(
+        &self,
+        place: Place<'_>,
+        range: [f64; 2],
+        resolution: &mut Resolution,
+    ) -> bool {
+        let over = Over {
+            system: place.system,
+            layout: place.layout,
+            parameters: place.parameters,
+            omega: place.omega,
+            variable: place.variable,
+            range,
+        };
+        let odd = over.is_odd() && self.request.period() == 1;
+        let kept = self.balance.symmetric && !self.near().is_some_and(lacks_symmetry);
+        if odd && kept {
+            resolution.parity = Parity::Odd;
+            if self.balance.harmonics.is_none() {
+                // An even number is as good as the one below it.
+                resolution.harmonics |= 1;
+            }
+        }
+        if self.request.period() == 1 && self.balance.symmetric {
+            self.take_stride(over.stride(), resolution);
+        }
+        odd && !kept
     }
 
     /// Another value that what is varied may have, next to one.
@@ -268,18 +291,10 @@ impl Asked<'_> {
         }
     }
 
+    /// The resolution that was asked for, or else that the tolerance asks for.
     fn resolution(&self) -> Result<Resolution, Error> {
-        let digits = -self.request.tolerance.log10();
-        let by_tolerance = (20.0 * ((digits - 6.0) / 2.0).exp2())
-            .round()
-            .clamp(5.0, 100.0) as usize;
-        let divisor = self.request.system.facts().divisor as usize;
         let layout = Layout::of(self.request.system.as_ref());
-        let per_period = self.balance.harmonics.unwrap_or_else(|| {
-            let least = layout.highest_harmonic() + LEAST_BEYOND;
-            let most = (most_harmonics(&layout) / self.request.period()).max(1);
-            (by_tolerance * divisor).max(least).min(most)
-        });
+        let per_period = self.harmonics_per_period(&layout);
         validate::option(
             "harmonics",
             per_period as f64,
@@ -299,17 +314,44 @@ impl Asked<'_> {
         if highest > harmonics {
             return Err(RequestError::Harmonics { harmonics, highest }.into());
         }
-        let samples_per_period = self
+        Ok(Resolution {
+            harmonics,
+            core: CORE_AT_START * self.request.period(),
+            parity: Parity::All,
+            stride: 1,
+            samples: self.samples(&layout, per_period)?,
+            aft: self.balance.aft,
+            period: self.request.period(),
+        })
+    }
+
+    /// Harmonics for each period of the excitation.
+    fn harmonics_per_period(&self, layout: &Layout) -> usize {
+        let digits = -self.request.tolerance.log10();
+        let by_tolerance = (20.0 * ((digits - 6.0) / 2.0).exp2())
+            .round()
+            .clamp(5.0, 100.0) as usize;
+        let divisor = self.request.system.facts().divisor as usize;
+        self.balance.harmonics.unwrap_or_else(|| {
+            let least = layout.highest_harmonic() + LEAST_BEYOND;
+            let most = (most_harmonics(layout) / self.request.period()).max(1);
+            (by_tolerance * divisor).max(least).min(most)
+        })
+    }
+
+    /// Samples of an orbit, enough for its harmonics.
+    fn samples(&self, layout: &Layout, harmonics_per_period: usize) -> Result<usize, Error> {
+        let per_period = self
             .balance
             .samples
-            .unwrap_or_else(|| (200 * per_period).next_power_of_two());
+            .unwrap_or_else(|| (200 * harmonics_per_period).next_power_of_two());
         validate::option(
             "samples",
-            samples_per_period as f64,
+            per_period as f64,
             1.0..=1e7,
             "must be from 1 to 1e7",
         )?;
-        let samples = samples_per_period * self.request.period();
+        let samples = per_period * self.request.period();
         if samples > MOST_SAMPLES {
             let must = "times the period must be at most 1e7";
             return Err(RequestError::Option {
@@ -325,6 +367,7 @@ impl Asked<'_> {
             contact.offset_harmonic() + contact.force_harmonic() + contact.gap_harmonic()
         };
         let waves = contacts.map(wave).max().unwrap_or(0) * self.request.period();
+        let harmonics = harmonics_per_period * self.request.period();
         let least = 2 * (2 * harmonics + waves) + 2;
         if samples < least {
             return Err(RequestError::Samples {
@@ -334,15 +377,7 @@ impl Asked<'_> {
             }
             .into());
         }
-        Ok(Resolution {
-            harmonics,
-            core: CORE_AT_START * self.request.period(),
-            parity: Parity::All,
-            stride: 1,
-            samples,
-            aft: self.balance.aft,
-            period: self.request.period(),
-        })
+        Ok(samples)
     }
 }
 

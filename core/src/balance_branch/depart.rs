@@ -10,7 +10,7 @@
 //! Renson, Masset and Kerschen (2015), The harmonic balance method for bifurcation analysis, section 4.
 
 use crate::balance::Parity;
-use crate::balance::critical_block::{CriticalBlock, Part};
+use crate::balance::critical_block::Part;
 use crate::balance::resolution::resize;
 use crate::balance_branch::follower::Follower;
 use crate::branches::error::OrbitError;
@@ -18,6 +18,7 @@ use crate::branches::point::Event;
 use crate::branches::switch::Departure;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::Newton;
+use crate::continuation::problem::{Norm, Scale};
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::numeric::fourier::series;
@@ -25,6 +26,19 @@ use crate::numeric::fourier::series;
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.
 const DEPARTURES: [f64; 4] = [0.02, 0.05, 0.01, 0.1];
+
+/// Which part of the Jacobian is singular at an event, and the parity of the harmonics that its orbits have; `None` if no branch begins
+/// there. The harmonics of the old branch are multiples of a stride.
+fn critical(event: &Event, stride: usize, of_branch: usize) -> Option<(Part, Parity)> {
+    let halved = stride == 2 * of_branch;
+    Some(match event.kind {
+        EventKind::PeriodDoubling => (Part::Doubled, Parity::All),
+        EventKind::SymmetryBreaking => (Part::Even, Parity::Odd),
+        EventKind::BranchPoint if !event.tangent.is_empty() => (Part::Own, Parity::All),
+        EventKind::BranchPoint if halved => (Part::Between, Parity::All),
+        _ => return None,
+    })
+}
 
 /// The first orbit of the branch that begins at an event, with its direction, in the resolution of the new branch's follower. The
 /// harmonics of the old branch are multiples of a stride.
@@ -44,41 +58,22 @@ pub(crate) fn depart(
     let orbit = &event.point.orbit;
     let mut u = orbit.series.clone();
     u.push(event.point.value);
-    let halved = stride == 2 * follower.resolution.stride;
-    let (part, parity) = match event.kind {
-        EventKind::PeriodDoubling => (Part::Doubled, Parity::All),
-        EventKind::SymmetryBreaking => (Part::Even, Parity::Odd),
-        EventKind::BranchPoint if !event.tangent.is_empty() => (Part::Own, Parity::All),
-        EventKind::BranchPoint if halved => (Part::Between, Parity::All),
-        _ => return Err(nothing.into()),
+    let Some((part, parity)) = critical(event, stride, follower.resolution.stride) else {
+        return Err(nothing.into());
     };
     let mut old = follower.with_harmonics(orbit.harmonics(), orbit.harmonics());
     (old.parity, old.stride, old.period) = (parity, stride, orbit.period);
-    let mut block = CriticalBlock::new(
-        part,
-        follower.system.as_ref(),
-        &follower.parameters,
-        follower.omega,
-        follower.variable,
-        old,
-    );
-    let (on_block, direction) = block.null_vector(&u, &event.tangent);
+    let (on_block, direction) = follower.block(part, old).null_vector(&u, &event.tangent);
     let harmonics = follower.resolution.harmonics;
-    let length = series::length(harmonics);
-    let of_branch = |u: &[f64]| resize(u, orbit.coordinates, length);
+    let of_branch = |u: &[f64]| resize(u, orbit.coordinates, series::length(harmonics));
     let (start, mut direction) = (of_branch(&on_block), of_branch(&direction));
     let mut balance = follower.balance(follower.with_harmonics(harmonics, harmonics));
     let mut newton = Newton::new(&balance);
     let range = (follower.to - follower.from).abs();
     if part == Part::Own {
-        let norm = newton.norm();
-        let scale = norm.scale_at(&start, range, &mut [0.0; 2]);
+        let scale = newton.norm().scale_at(&start, range, &mut [0.0; 2]);
         let tangent = of_branch(&event.tangent);
-        let along = norm.product(scale, &direction, &tangent);
-        let part = along / norm.product(scale, &tangent, &tangent);
-        for (x, t) in direction.iter_mut().zip(&tangent) {
-            *x -= part * t;
-        }
+        take_out(newton.norm(), scale, &tangent, &mut direction);
     }
     for part in DEPARTURES {
         let scale = newton.norm().scale_at(&start, range, &mut [0.0; 2]);
@@ -99,4 +94,13 @@ pub(crate) fn depart(
         }
     }
     Err(nothing.into())
+}
+
+/// Takes the component along a tangent out of a direction.
+fn take_out(norm: &Norm, scale: Scale, tangent: &[f64], direction: &mut [f64]) {
+    let along = norm.product(scale, direction, tangent);
+    let part = along / norm.product(scale, tangent, tangent);
+    for (x, t) in direction.iter_mut().zip(tangent) {
+        *x -= part * t;
+    }
 }

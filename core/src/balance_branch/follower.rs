@@ -211,7 +211,7 @@ impl Follower {
     /// The orbit at a value between those of two neighbours, with their harmonics, or more where the tolerance asks for them.
     fn between(&self, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {
         let mut harmonics = a.orbit.harmonics().max(b.orbit.harmonics());
-        let mut point = self.searched((a, b), value, harmonics)?;
+        let mut point = self.searched([a, b], value, harmonics)?;
         let mut chooser = self.chooser.clone();
         loop {
             let error = point.error.unwrap_or(f64::INFINITY);
@@ -220,7 +220,7 @@ impl Follower {
                 return Ok(point);
             };
             harmonics = more;
-            match self.searched((a, b), value, harmonics) {
+            match self.searched([a, b], value, harmonics) {
                 Ok(better) => point = better,
                 // What was found stands, with its error.
                 Err(_) => return Ok(point),
@@ -229,12 +229,7 @@ impl Follower {
     }
 
     /// The orbit at a value between those of two neighbours, searched along the chord of the two.
-    fn searched(
-        &self,
-        (a, b): (&Point, &Point),
-        value: f64,
-        harmonics: usize,
-    ) -> Result<Point, Error> {
+    fn searched(&self, [a, b]: [&Point; 2], value: f64, harmonics: usize) -> Result<Point, Error> {
         let mut balance = self.balance(self.with_harmonics(harmonics, harmonics));
         let newton = &mut Newton::new(&balance);
         let extended = |point: &Point| {

@@ -189,6 +189,14 @@ impl<'v> Watch<'v> {
     }
 }
 
+/// How far a search goes: bifurcations between a branch and the first one, and numbers of branches and of orbits.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    pub(super) depth: usize,
+    pub(super) branches: usize,
+    pub(super) points: usize,
+}
+
 /// The search, and what it has found.
 pub(super) struct Search<'v, M> {
     pub(super) watch: Watch<'v>,
@@ -204,18 +212,13 @@ pub(super) struct Search<'v, M> {
 }
 
 impl<'v, M: OrbitMethod> Search<'v, M> {
-    /// To a depth, with no more branches and orbits than this.
-    pub(super) fn new(
-        response: FrequencyResponse<M>,
-        (depth, branches, points): (usize, usize, usize),
-        watch: Watch<'v>,
-    ) -> Self {
+    pub(super) fn new(response: FrequencyResponse<M>, limits: Limits, watch: Watch<'v>) -> Self {
         Self {
             range: response.request.length(),
             response,
-            depth,
-            most_branches: branches,
-            points_left: points,
+            depth: limits.depth,
+            most_branches: limits.branches,
+            points_left: limits.points,
             watch,
             queue: VecDeque::new(),
             diagram: Diagram::default(),

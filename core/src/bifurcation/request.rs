@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use super::diagram::{Diagram, Origin, Reason, Search, Watch};
+use super::diagram::{Diagram, Limits, Origin, Reason, Search, Watch};
 use crate::attractors::basin::{Basin, Basins, Visit};
 use crate::bifurcation::error::BifurcationError;
 use crate::branches::progress::Progress;
@@ -232,6 +232,34 @@ impl<M: OrbitMethod> Bifurcations<M> {
         let started = Instant::now();
         let [from, to] = self.response.request.range()?;
         self.check()?;
+        self.check_searched([from, to])?;
+        let mut seen = Watch::new(&mut visit);
+        let first = self.response.clone().max_points(self.points.max(2));
+        let branch = first.run_with(|progress| seen.see(progress))?;
+        let [low, high] = self.wider(from, to)?;
+        let mut search = Search::new(
+            self.response.clone().from(low).to(high),
+            Limits {
+                depth: self.depth,
+                branches: self.branches,
+                points: self.points,
+            },
+            seen,
+        );
+        search.add(Origin::First, 0, branch);
+        search.exhaust();
+        for &(value, ref basin) in &self.searched {
+            if let Err(reason) = self.add_attractors(&mut search, value, basin, &mut watch) {
+                search.diagram.missed.push((value, reason));
+            }
+        }
+        let mut diagram = search.diagram;
+        diagram.elapsed = started.elapsed();
+        Ok(diagram)
+    }
+
+    /// Where motions are followed from a grid is in the range, and can be.
+    fn check_searched(&self, [from, to]: [f64; 2]) -> Result<(), Error> {
         for &(value, ref basin) in &self.searched {
             if !(from.min(to)..=from.max(to)).contains(&value) {
                 let must = "must be in the range of the first branch";
@@ -243,45 +271,36 @@ impl<M: OrbitMethod> Bifurcations<M> {
                 .and_then(|_| basin.is_of(&*self.response.request.system))
                 .map_err(|reason| BifurcationError::Search { value, reason })?;
         }
-        let mut seen = Watch::new(&mut visit);
-        let first = self.response.clone().max_points(self.points.max(2));
-        let branch = first.run_with(|progress| seen.see(progress))?;
-        let [low, high] = self.wider(from, to)?;
-        let mut search = Search::new(
-            self.response.clone().from(low).to(high),
-            (self.depth, self.branches, self.points),
-            seen,
-        );
-        search.add(Origin::First, 0, branch);
-        search.exhaust();
-        for (value, basin) in &self.searched {
-            if search.watch.interrupted {
-                search.diagram.missed.push((*value, Reason::Interrupted));
-                continue;
-            }
-            let found = match self.basins(*value, basin, &mut watch) {
-                Ok(found) => found,
-                Err(error) => {
-                    search.diagram.missed.push((*value, Reason::of(error)));
-                    continue;
-                }
-            };
-            if !found.complete {
-                search.watch.interrupted = true;
-                search.diagram.missed.push((*value, Reason::Interrupted));
-                continue;
-            }
-            for attractor in found.attractors {
-                let (period, state) = (attractor.period, &attractor.points[0]);
-                if let Err(reason) = search.add_attractor(*value, period, state) {
-                    search.diagram.missed.push((*value, reason));
-                }
-                search.exhaust();
-            }
+        Ok(())
+    }
+
+    /// Takes in the branches of what motions settle to at a value, and what begins at them.
+    ///
+    /// # Errors
+    /// Why it is not known what they settle to.
+    fn add_attractors(
+        &self,
+        search: &mut Search<'_, M>,
+        value: f64,
+        basin: &Basin,
+        visit: Visit<'_>,
+    ) -> Result<(), Reason> {
+        if search.watch.interrupted {
+            return Err(Reason::Interrupted);
         }
-        let mut diagram = search.diagram;
-        diagram.elapsed = started.elapsed();
-        Ok(diagram)
+        let found = self.basins(value, basin, visit).map_err(Reason::of)?;
+        if !found.complete {
+            search.watch.interrupted = true;
+            return Err(Reason::Interrupted);
+        }
+        for attractor in found.attractors {
+            let (period, state) = (attractor.period, &attractor.points[0]);
+            if let Err(reason) = search.add_attractor(value, period, state) {
+                search.diagram.missed.push((value, reason));
+            }
+            search.exhaust();
+        }
+        Ok(())
     }
 
     /// What motions settle to at a value.

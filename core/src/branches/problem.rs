@@ -92,13 +92,19 @@ pub(crate) struct Change {
     pub(crate) kind: EventKind,
 }
 
+/// Where a test function was located.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Root {
+    pub(crate) located: Located,
+    /// What the search leaves in the parameter.
+    pub(crate) error: f64,
+}
+
 /// A zero of a test function.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Zero {
     pub(crate) change: Change,
-    pub(crate) located: Located,
-    /// What the search leaves in the parameter.
-    pub(crate) error: f64,
+    pub(crate) root: Root,
     /// Test functions are in units of `exp(reference)`.
     pub(crate) reference: f64,
     /// Number of points of the branch before it.

@@ -49,7 +49,7 @@ pub(crate) fn branch(
     let started = Instant::now();
     let found = first(setting, guess, from, omega_between(setting, [from, to]))?;
     let near = |u: Vec<f64>| Start::Near(u);
-    followed(setting, (found, near), [from, to], visit, started)
+    followed(setting, found, near, [from, to], visit, started)
 }
 
 /// The branch that begins at an event, on one side of it, within a range.
@@ -66,7 +66,7 @@ pub(crate) fn branch_at(
     let started = Instant::now();
     let Begun { first, point } = switch::depart(setting, event, side, (to - from).abs())?;
     let along = |_| Start::Along(Box::new(point));
-    followed(setting, (first, along), [from, to], visit, started)
+    followed(setting, first, along, [from, to], visit, started)
 }
 
 /// The branch through the orbit near a guess at a value, both ways.
@@ -87,7 +87,7 @@ pub(crate) fn branch_through(
         let found = first(setting, guess, value, setting.omega_at(value))?;
         let Begun { first, point } = switch::resume(setting, found, side, (to - from).abs())?;
         let along = |_| Start::Along(Box::new(point));
-        followed(setting, (first, along), [from, to], &mut *visit, started)
+        followed(setting, first, along, [from, to], &mut *visit, started)
     };
     let forth = part([from, to])?;
     // Once around, or interrupted: there is no other side.
@@ -108,7 +108,8 @@ fn omega_between(setting: &Setting, [from, to]: [f64; 2]) -> f64 {
 /// The branch from a solution on.
 fn followed(
     setting: &Setting,
-    (found, start): (First, impl FnOnce(Vec<f64>) -> Start),
+    found: First,
+    start: impl FnOnce(Vec<f64>) -> Start,
     [from, to]: [f64; 2],
     visit: See<'_>,
     started: Instant,

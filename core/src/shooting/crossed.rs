@@ -66,10 +66,10 @@ pub(super) fn depart(
         .collect();
     units.push(range);
     let directions = directions(&mut first.equations, &u, &event.tangent, &units);
-    let Directions { across, other } = directions.ok_or_else(nothing)?;
+    let directions = directions.ok_or_else(nothing)?;
     for departure in DEPARTURES {
         let step = side * departure;
-        let point = beside(setting, &mut first, (&across, &other), &units, step);
+        let point = beside(setting, &mut first, &directions, &units, step);
         if let Some(point) = point {
             first.u.clone_from(&point.u);
             return Ok(Begun { first, point });
@@ -149,7 +149,7 @@ fn directions(
 fn beside(
     setting: &Setting,
     first: &mut First,
-    (across, other): (&DVector<f64>, &DVector<f64>),
+    Directions { across, other }: &Directions,
     units: &[f64],
     step: f64,
 ) -> Option<CurvePoint> {

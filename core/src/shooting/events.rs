@@ -3,20 +3,18 @@
 //! The test functions are those of [`tested`](super::tested). A place is reported if it solves the equations and the function was
 //! driven to zero there; its error is what a companion makes of it.
 
-use std::cell::RefCell;
-
 use super::companion::{self, Companion, multipliers};
 use super::equations::Equations;
 use super::method::VANISHED;
 use super::run::{Run, observe, relative};
 use super::setting::Setting;
 use super::tested::{Test, Tests};
+use crate::branches::engine::{self, Aim};
 use crate::branches::point::{Event, Point};
-use crate::branches::problem::{Change, Zero};
-use crate::continuation::crossing::locate_crossing;
+use crate::branches::problem::{Change, Root, Zero};
 use crate::continuation::follow::{CurvePoint, Step};
-use crate::continuation::locate::locate;
 use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::{AsProblem, Problem};
 use crate::event::EventKind;
 use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::orbit::stability::Stability;
@@ -24,12 +22,29 @@ use crate::orbit::stability::Stability;
 /// What rounding leaves in the value of an event.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Where it is zero.
-struct Place {
-    point: CurvePoint,
-    test: f64,
-    /// What the search leaves in the parameter.
-    error: f64,
+/// Equations, and the same once more for test functions: they must not disturb what Newton's method has computed.
+struct Tested<'t> {
+    equations: &'t mut Equations,
+    other: Equations,
+}
+
+impl AsProblem for Tested<'_> {
+    fn problem(&mut self) -> &mut dyn Problem {
+        self.equations
+    }
+}
+
+/// A place where an event is by some equations.
+struct Place<'e, 'r> {
+    equations: &'e mut Equations,
+    root: &'r Root,
+}
+
+/// What errors of an event are, of what differs between two of its places, and of the entries of its map.
+#[derive(Clone, Copy)]
+struct Errors {
+    part: f64,
+    noise: f64,
 }
 
 /// What the other multipliers make of a determinant that vanishes with the one nearest to a critical value, and of its rounding.
@@ -49,39 +64,32 @@ pub(super) fn others(equations: &mut Equations, u: &[f64], critical: f64) -> f64
 
 impl Run<'_> {
     /// Where a test function of these equations vanishes.
-    fn place(
+    fn root(
         &mut self,
         equations: &mut Equations,
         newton: &mut Newton,
         step: Step<'_>,
         options: NewtonOptions,
         change: Change,
-    ) -> Option<Place> {
-        // The problem is busy while a test function is evaluated.
-        let other = RefCell::new(equations.again(self.setting).ok()?);
-        let value = |_: &mut Equations, point: &CurvePoint| {
-            let test = Test::of(change.test);
+    ) -> Option<Root> {
+        let other = equations.again(self.setting).ok()?;
+        let mut tested = Tested { equations, other };
+        let aim = if change.kind == EventKind::BranchPoint {
+            Aim::Crossing
+        } else {
+            Aim::Below(VANISHED)
+        };
+        let test = Test::of(change.test);
+        let value = |tested: &mut Tested<'_>, point: &CurvePoint| {
             if test == Test::Slope {
                 return point.parameter_slope();
             }
-            let map = other.borrow_mut().map(&point.u, &mut |_| {}).ok();
+            let map = tested.other.map(&point.u, &mut |_| {}).ok();
             Tests::of(map.as_ref(), point.parameter_slope()).value(test)
         };
-        let place = if change.kind == EventKind::BranchPoint {
-            locate_crossing(equations, newton, step, options, value).map(|crossing| Place {
-                point: crossing.point,
-                test: crossing.test,
-                error: crossing.error,
-            })
-        } else {
-            locate(equations, newton, step, options, VANISHED, value).map(|located| Place {
-                point: located.point,
-                test: located.test,
-                error: 0.0,
-            })
-        };
-        self.work += other.borrow().flow.work();
-        place
+        let root = engine::root(&mut tested, newton, step, options, aim, value);
+        self.work += tested.other.flow.work();
+        root
     }
 
     /// The event at a place, compared with that of the companion.
@@ -92,11 +100,6 @@ impl Run<'_> {
         zero: &Zero,
     ) -> Option<Event> {
         let change = zero.change;
-        let place = &Place {
-            point: zero.located.point.clone(),
-            test: zero.located.test,
-            error: zero.error,
-        };
         let (span, frame) = (equations.span, equations.frame.clone());
         let size = step.before.scale.oscillation;
         let Companion {
@@ -107,34 +110,37 @@ impl Run<'_> {
             finer,
             noise,
         } = Companion::new(self.setting, span, frame, size).ok()?;
-        let moved = self.place(&mut others, &mut newton, step, options, change);
+        let moved = self.root(&mut others, &mut newton, step, options, change);
         self.statistics += newton.statistics;
-        let (event, at) = match &moved {
+        let root = &zero.root;
+        let (read, error, root) = match &moved {
             None => {
-                let (read, _) = observe(self.setting, equations, &place.point.u).ok()?;
-                ((read, f64::INFINITY), place)
+                let (read, _) = observe(self.setting, equations, &root.located.point.u).ok()?;
+                (read, f64::INFINITY, root)
             }
             Some(moved) => {
-                let (here, there) = ((equations, place), (&mut others, moved));
+                let here = Place { equations, root };
+                let there = Place {
+                    equations: &mut others,
+                    root: moved,
+                };
                 // What is reported is the finer one, or the one that is not disturbed.
                 let (best, other) = if finer { (there, here) } else { (here, there) };
-                let at = best.1;
-                (
-                    compared(self.setting, change.kind, best, other, (part, noise))?,
-                    at,
-                )
+                let root = best.root;
+                let errors = Errors { part, noise };
+                let (read, error) = compared(self.setting, change.kind, best, other, errors)?;
+                (read, error, root)
             }
         };
         self.work += others.flow.work();
-        let (read, error) = event;
         Some(Event {
             kind: change.kind,
             point: read,
             error,
-            test: at.test,
+            test: root.located.test,
             after: zero.after,
             contacts: 0,
-            tangent: at.point.tangent.clone(),
+            tangent: root.located.point.tangent.clone(),
         })
     }
 }
@@ -143,19 +149,22 @@ impl Run<'_> {
 fn compared(
     setting: &Setting,
     kind: EventKind,
-    (equations, place): (&mut Equations, &Place),
-    (others, moved): (&mut Equations, &Place),
-    (part, noise): (f64, f64),
+    best: Place<'_, '_>,
+    other: Place<'_, '_>,
+    Errors { part, noise }: Errors,
 ) -> Option<(Point, f64)> {
+    let moved = other.root.located.point.parameter();
+    let Place { equations, root } = best;
+    let there = &other.root.located.point.u;
     let half = equations.span.half;
-    let u = &place.point.u;
+    let u = &root.located.point.u;
     let (mut read, map) = observe(setting, equations, u).ok()?;
-    let by = (moved.point.parameter() - read.value).abs();
-    let error = part * by + place.error + moved.error + ROUNDING * read.value.abs();
-    read.error = Some(relative(part * equations.apart(u, &moved.point.u), &read));
+    let by = (moved - read.value).abs();
+    let error = part * by + root.error + other.root.error + ROUNDING * read.value.abs();
+    read.error = Some(relative(part * equations.apart(u, there), &read));
     if let Some(map) = map {
         let found = multipliers(&map, half);
-        let there = others.map(&moved.point.u, &mut |_| {}).ok()?;
+        let there = other.equations.map(there, &mut |_| {}).ok()?;
         let there = multipliers(&there, half);
         // One of them is known.
         let critical = match kind {

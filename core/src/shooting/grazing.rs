@@ -4,14 +4,13 @@
 //! the place is where that number changes, and is halved down to rounding. The numbers are compared between the orbits of the
 //! branch: what touches twice within one step, and then is as before, is not seen.
 
-use std::cell::RefCell;
-
 use super::equations::Equations;
 use super::run::{Run, observe};
 use crate::branches::point::Event;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::locate;
 use crate::continuation::newton::Newton;
+use crate::continuation::problem::{AsProblem, Problem};
 use crate::event::{EventKind, Turn};
 
 /// What rounding leaves in the value of a grazing, where the distance from a level has a root to be told apart from.
@@ -25,6 +24,36 @@ struct Bracket {
     before: CurvePoint,
     next: CurvePoint,
     switches: Option<usize>,
+}
+
+/// Equations, the same once more to count crossings by, and what they have told so far.
+struct Counting<'c> {
+    equations: &'c mut Equations,
+    other: Equations,
+    nearest: Bracket,
+}
+
+impl AsProblem for Counting<'_> {
+    fn problem(&mut self) -> &mut dyn Problem {
+        self.equations
+    }
+}
+
+impl Counting<'_> {
+    /// One where levels are crossed so `many` times, minus one elsewhere.
+    fn side(&mut self, point: &CurvePoint, many: usize) -> f64 {
+        let half = if self.other.span.half { 2 } else { 1 };
+        let before = self.other.flow.work().switches;
+        let counted = self.other.trace(&point.u, &mut |_| {});
+        let switches = half * (self.other.flow.work().switches - before);
+        let switches = counted.is_ok().then_some(switches);
+        if switches == Some(many) {
+            self.nearest.before = point.clone();
+            return 1.0;
+        }
+        (self.nearest.next, self.nearest.switches) = (point.clone(), switches);
+        -1.0
+    }
 }
 
 impl Run<'_> {
@@ -65,31 +94,20 @@ impl Run<'_> {
         step: Step<'_>,
         many: usize,
     ) -> Option<Bracket> {
-        let half = if equations.span.half { 2 } else { 1 };
-        let other = RefCell::new(equations.again(self.setting).ok()?);
-        let nearest = RefCell::new(Bracket {
-            before: step.before.clone(),
-            next: step.next.clone(),
-            switches: None,
-        });
-        let side = |_: &mut Equations, point: &CurvePoint| {
-            let mut other = other.borrow_mut();
-            let before = other.flow.work().switches;
-            let counted = other.trace(&point.u, &mut |_| {});
-            let switches = half * (other.flow.work().switches - before);
-            let switches = counted.is_ok().then_some(switches);
-            let mut nearest = nearest.borrow_mut();
-            if switches == Some(many) {
-                nearest.before = point.clone();
-                return 1.0;
-            }
-            (nearest.next, nearest.switches) = (point.clone(), switches);
-            -1.0
+        let mut counting = Counting {
+            other: equations.again(self.setting).ok()?,
+            equations,
+            nearest: Bracket {
+                before: step.before.clone(),
+                next: step.next.clone(),
+                switches: None,
+            },
         };
+        let side = |counting: &mut Counting<'_>, point: &CurvePoint| counting.side(point, many);
         // Near the place Newton's method may fail: then what is known is the bracket.
-        let _ = locate(equations, newton, step, self.options, 0.0, side);
-        self.work += other.borrow().flow.work();
-        Some(nearest.into_inner())
+        let _ = locate(&mut counting, newton, step, self.options, 0.0, side);
+        self.work += counting.other.flow.work();
+        Some(counting.nearest)
     }
 
     /// The event, or what is known where its orbit cannot be read.

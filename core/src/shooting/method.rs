@@ -82,8 +82,8 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
         if self.run.points.is_empty() || (span.period == 1 && !odd) {
             return Ok(None);
         }
-        let regular = self.run.regular(&self.equations);
-        let found = Recurrence::of(&mut self.equations, &at.u, regular, odd)?;
+        let same = self.run.same_state(&self.equations);
+        let found = Recurrence::of(&mut self.equations, &at.u, same, odd)?;
         let is_regular = found.period < span.period || found.odd != span.half;
         Ok(is_regular.then_some(found))
     }
@@ -201,7 +201,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
 
     fn keep(&mut self, _: &mut Newton, step: Step<'_>, zero: &Zero) -> Kept {
         let test = tested::Test::of(zero.change.test);
-        if test == tested::Test::Pairs && !self.tests(&zero.located.point).complex {
+        if test == tested::Test::Pairs && !self.tests(&zero.root.located.point).complex {
             return Kept::Nothing;
         }
         let Some(event) = self.run.event_at(&mut self.equations, step, zero) else {

@@ -15,6 +15,13 @@ const SAME_AT_POINT: f64 = 1e-4;
 /// The other branch is followed beyond the point before by this part of the step.
 const MARGIN: f64 = 0.5;
 
+/// By what part of the `size` of orbits two states differ at most that are one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SameState {
+    pub(super) size: f64,
+    pub(super) part: f64,
+}
+
 /// How an orbit repeats itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Recurrence {
@@ -29,21 +36,21 @@ impl Recurrence {
     pub(super) fn at_point(
         equations: &mut Equations,
         u: &[f64],
-        (size, same): (f64, f64),
+        same: SameState,
         odd: bool,
     ) -> Result<Self, FlowError> {
-        Self::of(equations, u, (size, same.max(SAME_AT_POINT)), odd)
+        let part = same.part.max(SAME_AT_POINT);
+        Self::of(equations, u, SameState { part, ..same }, odd)
     }
 
-    /// Of the orbit `u` of some size, two states of which are one if they differ by this part of it; whether it has odd symmetry only
-    /// where that is possible.
+    /// Of the orbit `u`; whether it has odd symmetry only where that is possible.
     pub(super) fn of(
         equations: &mut Equations,
         u: &[f64],
-        (size, same): (f64, f64),
+        same: SameState,
         odd: bool,
     ) -> Result<Self, FlowError> {
-        let most = same * size;
+        let most = same.part * same.size;
         let span = equations.span;
         let value = u[u.len() - 1];
         let first = equations.states_of(u)[..equations.order()].to_vec();

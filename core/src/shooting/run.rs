@@ -6,7 +6,7 @@ use super::companion::{Companion, multipliers};
 use super::equations::Equations;
 use super::extremes;
 use super::method::ShootingBranch;
-use super::recurrence::Recurrence;
+use super::recurrence::{Recurrence, SameState};
 use super::setting::Setting;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
@@ -109,9 +109,12 @@ impl<'r> Run<'r> {
         }
     }
 
-    /// The size of the orbits, and by what part of it two states differ that are one.
-    pub(super) fn regular(&self, equations: &Equations) -> (f64, f64) {
-        (self.size, self.setting.same(equations.frame.ratio))
+    /// How near two states are that are one.
+    pub(super) fn same_state(&self, equations: &Equations) -> SameState {
+        SameState {
+            size: self.size,
+            part: self.setting.same(equations.frame.ratio),
+        }
     }
 
     /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
@@ -126,7 +129,7 @@ impl<'r> Run<'r> {
         }
         let after = event.after;
         let u = equations.unknowns_of(&event.point.orbit.states, event.point.value);
-        let Ok(recurrence) = Recurrence::at_point(equations, &u, self.regular(equations), odd)
+        let Ok(recurrence) = Recurrence::at_point(equations, &u, self.same_state(equations), odd)
         else {
             return false;
         };

@@ -3,7 +3,7 @@
 use super::beyond;
 use super::equations::{Equations, Frame, Span};
 use super::extremes;
-use super::recurrence::Recurrence;
+use super::recurrence::{Recurrence, SameState};
 use super::run::no_orbit;
 use super::setting::Setting;
 use crate::branches::error::Attempts;
@@ -56,8 +56,7 @@ pub(super) fn first(
         size: 1.0,
     };
     first.settle(setting).map_err(motion)?;
-    let size = first.size;
-    let same = (size, setting.same(first.equations.frame.ratio));
+    let same = first.same_state(setting);
     let recurrence = Recurrence::of(&mut first.equations, &first.u, same, setting.odd);
     let recurrence = recurrence.map_err(motion)?;
     if recurrence.period < setting.period {
@@ -87,7 +86,8 @@ pub(super) fn known(setting: &Setting, point: &Point) -> Result<(Equations, Vec<
     through(
         setting,
         point,
-        (point.orbit.period, point.orbit.symmetric),
+        point.orbit.period,
+        point.orbit.symmetric,
         &point.orbit.states,
     )
 }
@@ -99,7 +99,8 @@ pub(super) fn known(setting: &Setting, point: &Point) -> Result<(Equations, Vec<
 pub(super) fn through(
     setting: &Setting,
     point: &Point,
-    (period, half): (usize, bool),
+    period: usize,
+    half: bool,
     states: &[f64],
 ) -> Result<(Equations, Vec<f64>), Error> {
     let coordinates = point.orbit.coordinates;
@@ -141,6 +142,14 @@ fn states(
 }
 
 impl First {
+    /// How near two states are that are one.
+    pub(super) fn same_state(&self, setting: &Setting) -> SameState {
+        SameState {
+            size: self.size,
+            part: setting.same(self.equations.frame.ratio),
+        }
+    }
+
     /// Counts positions from the middle of the motion, and finds its size.
     pub(super) fn settle(&mut self, setting: &Setting) -> Result<(), FlowError> {
         let value = self.u[self.u.len() - 1];

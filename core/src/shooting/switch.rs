@@ -83,9 +83,9 @@ pub(super) fn depart(
     };
     first.settle(setting).map_err(motion)?;
     for departure in DEPARTURES {
-        let step = (side * departure, range);
-        if let Some(point) = first_orbit(setting, &mut first, &direction, step) {
-            let same = (first.size, setting.same(first.equations.frame.ratio));
+        let step = side * departure;
+        if let Some(point) = first_orbit(setting, &mut first, &direction, step, range) {
+            let same = first.same_state(setting);
             let recurrence = Recurrence::of(&mut first.equations, &point.u, same, setting.odd);
             let is_new = |found: Recurrence| found.period == setting.period && !found.odd;
             if recurrence.is_ok_and(is_new) {
@@ -128,7 +128,7 @@ fn twice(setting: &Setting, point: &Point) -> Result<(Equations, Vec<f64>), Erro
     let sign = if point.orbit.symmetric { -1.0 } else { 1.0 };
     let mut states = point.orbit.states.clone();
     states.extend(point.orbit.states.iter().map(|x| sign * x));
-    start::through(setting, point, (setting.period, false), &states)
+    start::through(setting, point, setting.period, false, &states)
 }
 
 /// The direction of the new branch in extended unknowns, from (1); its entry for the parameter is zero.
@@ -151,12 +151,13 @@ pub(super) fn direction(equations: &mut Equations, u: &[f64], symmetric: bool) -
     direction.iter().all(|x| x.is_finite()).then_some(direction)
 }
 
-/// The orbit whose component in the direction is `step.0` times the size, and the tangent there, away from the old branch.
+/// The orbit whose component in the direction is `step` times the size, and the tangent there, away from the old branch.
 fn first_orbit(
     setting: &Setting,
     first: &mut First,
     direction: &[f64],
-    (step, range): (f64, f64),
+    step: f64,
+    range: f64,
 ) -> Option<CurvePoint> {
     let equations = &mut first.equations;
     let mut newton = Newton::new(equations);

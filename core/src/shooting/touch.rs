@@ -36,6 +36,86 @@ struct Extreme {
     largest: bool,
 }
 
+/// Reads the extremes of a gap off an orbit, from stretch to stretch.
+struct Scan<'s> {
+    gap: &'s Gap,
+    state: &'s mut [f64],
+    see: &'s mut dyn FnMut(Extreme),
+    /// The phase since the beginning.
+    passed: f64,
+    /// The rate where the last stretch ended. It is carried to the next one: where a step ends at an extreme, rounding could change its
+    /// sign.
+    last: Option<f64>,
+    /// Gap and rate where the orbit begins.
+    first: Option<(f64, f64)>,
+    /// The gap where it ends.
+    end: f64,
+}
+
+impl Scan<'_> {
+    fn stretch(&mut self, stretch: &dyn Stretch) {
+        let (from, to) = stretch.phases();
+        let (gap, state) = (self.gap, &mut *self.state);
+        let mut at = |phase: f64| {
+            stretch.state(phase, state);
+            gap.at(phase, state)
+        };
+        let parts = (SAMPLES * (to - from) / TAU).ceil().max(2.0);
+        let mut before = Place {
+            x: from,
+            value: self.last.unwrap_or_else(|| at(from).1),
+        };
+        let mut part = 1.0;
+        while part <= parts {
+            let x = from + (to - from) * (part / parts);
+            let value = at(x).1;
+            let next = Place { x, value };
+            let turns = before.value * value < 0.0;
+            let within = LOCATED * (next.x - before.x);
+            let zero = turns.then(|| roots::root(before, next, within, |phase| at(phase).1));
+            if let Some(phase) = zero.flatten() {
+                (self.see)(Extreme {
+                    passed: self.passed + phase - from,
+                    gap: at(phase).0,
+                    largest: before.value > 0.0,
+                });
+            }
+            // Between two switches at one phase there is no rate.
+            if value.abs() > 0.0 {
+                before = next;
+            }
+            part += 1.0;
+        }
+        if self.first.is_none() && self.last.is_none() {
+            self.first = Some(at(from));
+        }
+        self.last = Some(before.value);
+        self.end = at(to).0;
+        self.passed += to - from;
+    }
+
+    /// The extreme where the orbit ends and begins again. Of `half` of an orbit with odd symmetry, all rates turn their signs there.
+    fn close(&mut self, half: bool) -> Option<()> {
+        let (rate, (gap, first)) = (self.last?, self.first?);
+        let turned = if half { -first } else { first };
+        if rate * turned < 0.0 || turned == 0.0 && rate != 0.0 {
+            (self.see)(Extreme {
+                passed: self.passed,
+                gap: self.end,
+                largest: rate > 0.0,
+            });
+            if half {
+                (self.see)(Extreme {
+                    passed: 0.0,
+                    gap,
+                    largest: first < 0.0,
+                });
+            }
+        }
+        Some(())
+    }
+}
+
 /// One gap and one of its levels.
 #[derive(Clone)]
 pub(super) struct Touch<'a> {
@@ -181,73 +261,19 @@ impl<'a> Touch<'a> {
         u: &[f64],
         see: &mut dyn FnMut(Extreme),
     ) -> Option<()> {
-        let mut passed = 0.0;
-        // The rate is carried from stretch to stretch: where a step ends at an extreme, rounding could change its sign.
-        let mut last: Option<f64> = None;
-        let mut first: Option<(f64, f64)> = None;
-        let mut end = 0.0;
-        let (gap, state) = (&self.gap, &mut self.state);
-        let scan = &mut |stretch: &dyn Stretch| {
-            let (from, to) = stretch.phases();
-            let mut at = |phase: f64| {
-                stretch.state(phase, state);
-                gap.at(phase, state)
-            };
-            let parts = (SAMPLES * (to - from) / TAU).ceil().max(2.0);
-            let mut before = Place {
-                x: from,
-                value: last.unwrap_or_else(|| at(from).1),
-            };
-            let mut part = 1.0;
-            while part <= parts {
-                let x = from + (to - from) * (part / parts);
-                let value = at(x).1;
-                let next = Place { x, value };
-                let turns = before.value * value < 0.0;
-                let within = LOCATED * (next.x - before.x);
-                let zero = turns.then(|| roots::root(before, next, within, |phase| at(phase).1));
-                if let Some(phase) = zero.flatten() {
-                    see(Extreme {
-                        passed: passed + phase - from,
-                        gap: at(phase).0,
-                        largest: before.value > 0.0,
-                    });
-                }
-                // Between two switches at one phase there is no rate.
-                if value.abs() > 0.0 {
-                    before = next;
-                }
-                part += 1.0;
-            }
-            if first.is_none() && last.is_none() {
-                first = Some(at(from));
-            }
-            last = Some(before.value);
-            end = at(to).0;
-            passed += to - from;
+        let mut scan = Scan {
+            gap: &self.gap,
+            state: &mut self.state,
+            see,
+            passed: 0.0,
+            last: None,
+            first: None,
+            end: 0.0,
         };
-        if let Err(failure) = equations.trace(u, scan) {
+        if let Err(failure) = equations.trace(u, &mut |stretch| scan.stretch(stretch)) {
             equations.failure = Some(failure);
             return None;
         }
-        let (rate, (gap, first)) = (last?, first?);
-        // Of half of an orbit with odd symmetry, all rates turn their signs at the end.
-        let half = equations.span.half;
-        let turned = if half { -first } else { first };
-        if rate * turned < 0.0 || turned == 0.0 && rate != 0.0 {
-            see(Extreme {
-                passed,
-                gap: end,
-                largest: rate > 0.0,
-            });
-            if half {
-                see(Extreme {
-                    passed: 0.0,
-                    gap,
-                    largest: first < 0.0,
-                });
-            }
-        }
-        Some(())
+        scan.close(equations.span.half)
     }
 }

@@ -21,17 +21,18 @@ impl<'a> Run<'a> {
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         step: Step<'_>,
-        (zero, test): (&Zero, &mut Test<'_, 'a>),
+        zero: &Zero,
+        test: &mut Test<'_, 'a>,
     ) {
-        let at = &zero.located.point;
+        let at = &zero.root.located.point;
         let shift = self.crossing_shift(balance, newton, step, at, test);
-        let error = BEYOND * shift + zero.error + ROUNDING * at.parameter().abs();
+        let error = BEYOND * shift + zero.root.error + ROUNDING * at.parameter().abs();
         let point = self.reader.read(balance, newton, &at.u);
         self.events.push(Event {
             kind: zero.change.kind,
             point,
             error: known(error),
-            test: zero.located.test,
+            test: zero.root.located.test,
             after: zero.after,
             contacts: 0,
             tangent: at.tangent.clone(),

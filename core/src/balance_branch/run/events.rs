@@ -79,13 +79,8 @@ impl Run<'_> {
         newton: &mut Newton,
         zero: &Zero,
     ) -> Kept {
-        let Zero {
-            change,
-            located,
-            after,
-            ..
-        } = zero;
-        let (kind, after) = (change.kind, *after);
+        let located = &zero.root.located;
+        let (kind, after) = (zero.change.kind, zero.after);
         let u = &located.point.u;
         let error = self.reader.finer.fold_error(u, newton);
         let point = self.reader.read(balance, newton, u);

@@ -16,8 +16,8 @@
 
 use super::Run;
 use super::events::FOLD_TOLERANCE;
-use super::touch::{Extreme, Touches, crossings, distinct, is_copy, passed};
-use super::watch::Test;
+use super::touch::{Extreme, Passage, Touches, crossings, distinct, is_copy, passed};
+use super::watch::{Found, Test};
 use crate::balance::{Balance, Resolution};
 use crate::branches::point::Event;
 use crate::continuation::follow::{CurvePoint, Step};
@@ -48,39 +48,26 @@ impl<'a> Run<'a> {
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         step: Step<'_>,
-        (touches, [before, behind]): (&mut Touches<'a>, &mut [Vec<Extreme>; 2]),
+        touches: &mut Touches<'a>,
+        [before, next]: &mut [Vec<Extreme>; 2],
         turned: Option<Turn>,
     ) {
         touches.read(&step.before.u, before);
-        touches.read(&step.next.u, behind);
+        touches.read(&step.next.u, next);
         let kind = EventKind::Grazing { turns: false };
-        let range = (self.options.to - self.options.from).abs();
         let (first, after) = (self.events.len(), self.points.len() - 1);
-        let mut found = passed(before, behind);
-        if found.is_empty() && crossings(before) != crossings(behind) {
+        let mut found = passed(before, next);
+        if found.is_empty() && crossings(before) != crossings(next) {
             self.omit(kind, step, f64::NAN);
         }
-        while let Some(&next) = found.first() {
+        while let Some(&passage) = found.first() {
             let known = self.events.len();
-            self.touch(balance, newton, step, touches, [&next.0, &next.1]);
-            // Contacts that are copies of each other, and orbits with a symmetry, touch in several places at once: one event.
-            let Some(event) = self.events.get_mut(known) else {
-                found.retain(|other| !is_copy(&next, other));
-                continue;
-            };
-            let mut u = event.point.orbit.series.clone();
-            u.push(event.point.value);
-            touches.read(&u, before);
-            let (at_once, later): (Vec<_>, Vec<_>) = found.into_iter().partition(|other| {
-                let there = other.0.nearest(before).or(other.1.nearest(before));
-                *other == next || there.is_some_and(|there| there.above.abs() <= AT_ONCE)
-            });
-            event.contacts = distinct(&at_once);
-            found = later;
-            let value = event.point.value;
-            let is_known = |other: &Event| (other.point.value - value).abs() <= SAME * range;
-            if self.events[first..known].iter().any(is_known) {
-                self.events.truncate(known);
+            self.touch(balance, newton, step, touches, &passage);
+            if self.events.len() == known {
+                found.retain(|other| !is_copy(&passage, other));
+            } else {
+                found = self.count_contacts(touches, before, found);
+                self.drop_known(first);
             }
         }
         // What was located nowhere may be where the branch turned.
@@ -90,10 +77,51 @@ impl<'a> Run<'a> {
                 turns: turned.is_some(),
             };
         }
-        let Some(turned) = turned else {
+        if let Some(turned) = turned {
+            self.turns_at_grazing(first, step, &turned);
+        }
+    }
+
+    /// Counts the contacts that touch at the last event, of which the first that was `found` led to it, and returns what touches
+    /// elsewhere. Contacts that are copies of each other, and orbits with a symmetry, touch in several places at once: one event.
+    fn count_contacts(
+        &mut self,
+        touches: &mut Touches<'_>,
+        extremes: &mut Vec<Extreme>,
+        found: Vec<Passage>,
+    ) -> Vec<Passage> {
+        let (Some(event), Some(&first)) = (self.events.last_mut(), found.first()) else {
+            return Vec::new();
+        };
+        let mut u = event.point.orbit.series.clone();
+        u.push(event.point.value);
+        touches.read(&u, extremes);
+        let (at_once, later): (Vec<_>, Vec<_>) = found.into_iter().partition(|other| {
+            let there = other.before.nearest(extremes);
+            let there = there.or(other.next.nearest(extremes));
+            *other == first || there.is_some_and(|there| there.above.abs() <= AT_ONCE)
+        });
+        event.contacts = distinct(&at_once);
+        later
+    }
+
+    /// Drops the last event if it is one of those from the `first` on.
+    fn drop_known(&mut self, first: usize) {
+        let range = (self.options.to - self.options.from).abs();
+        let Some((last, known)) = self.events[first..].split_last() else {
             return;
         };
-        // At a corner the slope jumps, and the value there is beyond those of both ends.
+        let value = last.point.value;
+        let is_known = |other: &Event| (other.point.value - value).abs() <= SAME * range;
+        if known.iter().any(is_known) {
+            self.events.pop();
+        }
+    }
+
+    /// Marks the event, of those from the `first` on, at which the branch turned, if there is one: at a corner the slope jumps, and
+    /// the value there is beyond those of both ends of the step.
+    fn turns_at_grazing(&mut self, first: usize, step: Step<'_>, turned: &Turn) {
+        let range = (self.options.to - self.options.from).abs();
         let [a, b] = step.parameters();
         let jumps = turned.test.abs() > STEEP;
         let is_turn = |value: f64| {
@@ -104,7 +132,7 @@ impl<'a> Run<'a> {
         if let Some(event) = events.find(|event| is_turn(event.point.value)) {
             // That is where the branch turned, and why.
             event.kind = EventKind::Grazing { turns: true };
-            self.turns.retain(|turn| turn != &turned);
+            self.turns.retain(|turn| turn != turned);
         }
     }
 
@@ -116,24 +144,34 @@ impl<'a> Run<'a> {
         newton: &mut Newton,
         step: Step<'_>,
         touches: &mut Touches<'a>,
-        [before, behind]: [&Extreme; 2],
+        Passage { before, next }: &Passage,
     ) {
         let kind = EventKind::Grazing { turns: false };
         let (from, extreme) = if before.is_clear() {
             (step.before, before)
         } else {
-            (step.next, behind)
+            (step.next, next)
         };
         let farthest = FARTHEST * newton.norm().length(from.scale, &step.difference());
-        let options = self.options.newton;
+        let (options, after) = (self.options.newton, self.points.len() - 1);
         let mut closed_in = |balance: &mut Balance<'_>, newton: &mut Newton| {
-            let request = (from, *extreme, farthest);
-            close_in(balance, newton, touches, request, options)
+            let extreme = *extreme;
+            let approach = Approach {
+                from,
+                extreme,
+                farthest,
+            };
+            close_in(balance, newton, touches, approach, options)
         };
         if let Some(found) = closed_in(balance, newton) {
             let mut test = Test::Touch(touches, *extreme);
-            let found = (&mut test, &found, self.points.len() - 1);
-            return self.located(balance, newton, step, kind, found);
+            let located = &found;
+            let found = Found {
+                kind,
+                located,
+                after,
+            };
+            return self.located(balance, newton, step, &mut test, &found);
         }
         if self.resolution.core < self.resolution.harmonics {
             // What core and tail cannot locate, the whole system may.
@@ -143,10 +181,14 @@ impl<'a> Run<'a> {
             });
             let mut newton = Newton::new(&whole);
             let found = closed_in(&mut whole, &mut newton);
-            if let Some(found) = &found {
+            if let Some(located) = &found {
                 let mut test = Test::Touch(touches, *extreme);
-                let found = (&mut test, found, self.points.len() - 1);
-                self.located(&mut whole, &mut newton, step, kind, found);
+                let found = Found {
+                    kind,
+                    located,
+                    after,
+                };
+                self.located(&mut whole, &mut newton, step, &mut test, &found);
             }
             self.statistics += newton.statistics;
             if found.is_some() {
@@ -158,14 +200,26 @@ impl<'a> Run<'a> {
     }
 }
 
+/// Where the search for an orbit that touches a level begins, and how far it may lead.
+struct Approach<'p> {
+    from: &'p CurvePoint,
+    extreme: Extreme,
+    farthest: f64,
+}
+
 /// The orbit whose extreme reaches its level, by Newton's method with (1) as its border; `None` if that leads elsewhere.
 fn close_in(
     balance: &mut Balance<'_>,
     newton: &mut Newton,
     touches: &mut Touches<'_>,
-    (from, mut extreme, farthest): (&CurvePoint, Extreme, f64),
+    approach: Approach<'_>,
     options: NewtonOptions,
 ) -> Option<Located> {
+    let Approach {
+        from,
+        mut extreme,
+        farthest,
+    } = approach;
     let scale = from.scale;
     let mut u = from.u.clone();
     let mut row = vec![0.0; u.len()];

@@ -3,8 +3,9 @@
 use super::Run;
 use super::crossed::CROSSED;
 use super::events::FOLD_TOLERANCE;
-use super::watch::{Test as OfOrbit, Watch};
+use super::watch::{Found, Test as OfOrbit, Watch};
 use crate::balance::{Balance, Resolution};
+use crate::branches::engine;
 use crate::branches::problem::{BranchProblem, Change, Kept, Read, Test, TestValue, Watched, Zero};
 use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::{CurvePoint, Halted, Step};
@@ -68,7 +69,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
             // What is nothing special need not vanish to be passed over.
             return located.vanishes || !self.run.watch.is_complex(&located.point.u);
         }
-        if change.kind == EventKind::BranchPoint && self.run.watch.is_bordered(change.test) {
+        if engine::is_crossing(self, change) {
             located.test.abs() <= CROSSED
         } else {
             located.vanishes
@@ -120,7 +121,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
             return run.fold(balance, newton, zero);
         };
         let mut watch = std::mem::take(&mut run.watch);
-        let kept = run.keep(balance, newton, step, zero, (&mut watch, index));
+        let kept = run.keep(balance, newton, step, zero, &mut watch, index);
         run.watch = watch;
         kept
     }
@@ -133,13 +134,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         let (run, balance) = (&mut self.run, &mut self.balance);
         let mut watch = std::mem::take(&mut run.watch);
         if let Some(touches) = &mut watch.touches {
-            run.grazing(
-                balance,
-                newton,
-                step,
-                (touches, &mut watch.extremes),
-                turned,
-            );
+            run.grazing(balance, newton, step, touches, &mut watch.extremes, turned);
         }
         run.watch = watch;
     }
@@ -191,10 +186,11 @@ impl<'r> Run<'r> {
         newton: &mut Newton,
         step: Step<'_>,
         zero: &Zero,
-        (watch, index): (&mut Watch<'r>, usize),
+        watch: &mut Watch<'r>,
+        index: usize,
     ) -> Kept {
         let bordered = watch.watched[index].bordered;
-        let at = &zero.located.point.u;
+        let at = &zero.root.located.point.u;
         let mut test = if let Some(block) = watch.blocks.get_mut(index) {
             let slope = zero.change.test == Test::Slope;
             OfOrbit::Block(block, (!slope).then_some(zero.reference))
@@ -208,11 +204,14 @@ impl<'r> Run<'r> {
             return Kept::Nothing;
         };
         if bordered {
-            self.branch_point(balance, newton, step, (zero, &mut test));
+            self.branch_point(balance, newton, step, zero, &mut test);
         } else {
-            let kind = zero.change.kind;
-            let found = (&mut test, &zero.located, zero.after);
-            self.located(balance, newton, step, kind, found);
+            let found = Found {
+                kind: zero.change.kind,
+                located: &zero.root.located,
+                after: zero.after,
+            };
+            self.located(balance, newton, step, &mut test, &found);
         }
         Kept::Event
     }

@@ -171,28 +171,40 @@ impl Extreme {
     }
 }
 
-/// The extremes that have gone through their levels from one orbit to the next, where they were and where they are.
-pub(super) fn passed(before: &[Extreme], behind: &[Extreme]) -> Vec<(Extreme, Extreme)> {
+/// An extreme that has gone through its level from one orbit to the next: where it was, and where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Passage {
+    pub(super) before: Extreme,
+    pub(super) next: Extreme,
+}
+
+/// The extremes that have gone through their levels from one orbit to the next.
+pub(super) fn passed(before: &[Extreme], next: &[Extreme]) -> Vec<Passage> {
     let through = |extreme: &Extreme| {
-        let there = extreme.nearest(behind)?;
+        let there = extreme.nearest(next)?;
         // Each must be the nearest of the other.
         let same = there.nearest(before) == Some(extreme);
-        (same && (there.above < 0.0) != (extreme.above < 0.0)).then_some((*extreme, *there))
+        (same && (there.above < 0.0) != (extreme.above < 0.0)).then_some(Passage {
+            before: *extreme,
+            next: *there,
+        })
     };
     before.iter().filter_map(through).collect()
 }
 
-/// Whether two extremes that have gone through their levels are as far from them before and behind: those of contacts that are copies
+/// Whether two extremes that have gone through their levels are as far from them before and after: those of contacts that are copies
 /// of each other, shifted in phase or with the opposite sign.
-pub(super) fn is_copy(one: &(Extreme, Extreme), other: &(Extreme, Extreme)) -> bool {
+pub(super) fn is_copy(one: &Passage, other: &Passage) -> bool {
     let alike = |a: &Extreme, b: &Extreme| (a.above.abs() - b.above.abs()).abs() <= COPIES;
-    alike(&one.0, &other.0) && alike(&one.1, &other.1)
+    alike(&one.before, &other.before) && alike(&one.next, &other.next)
 }
 
 /// The number of contacts that extremes belong to.
-pub(super) fn distinct(found: &[(Extreme, Extreme)]) -> usize {
+pub(super) fn distinct(found: &[Passage]) -> usize {
     // They are in order of contacts.
-    found.chunk_by(|a, b| a.0.contact == b.0.contact).count()
+    found
+        .chunk_by(|a, b| a.before.contact == b.before.contact)
+        .count()
 }
 
 /// How often levels are crossed in a period: between two successive extremes on different sides, once.
@@ -229,10 +241,14 @@ mod tests {
     fn an_extreme_that_goes_through_its_level_is_seen() {
         let before = [at(0.1, false, 0.05), at(3.0, true, 1.0)];
         // The phase goes round, and the minimum below.
-        let behind = [at(3.1, true, 1.0), at(6.2, false, -0.01)];
-        let found = passed(&before, &behind);
-        assert_eq!(found, [(before[0], behind[1])]);
-        assert_eq!((crossings(&before), crossings(&behind)), (0, 2));
+        let next = [at(3.1, true, 1.0), at(6.2, false, -0.01)];
+        let found = passed(&before, &next);
+        let passage = Passage {
+            before: before[0],
+            next: next[1],
+        };
+        assert_eq!(found, [passage]);
+        assert_eq!((crossings(&before), crossings(&next)), (0, 2));
         assert!(passed(&before, &before).is_empty());
         // A new pair of extremes is nothing that went through.
         let born = [
@@ -251,7 +267,10 @@ mod tests {
                 contact,
                 ..at(tau, true, above)
             };
-            (of(above), of(there))
+            Passage {
+                before: of(above),
+                next: of(there),
+            }
         };
         let found = [
             pair(0, 0.1, -0.05, 0.02),

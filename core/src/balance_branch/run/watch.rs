@@ -26,7 +26,7 @@ use crate::balance::truncation::BEYOND;
 use crate::balance::{Balance, Resolution};
 use crate::balance_branch::follower::{Follower, Sought};
 use crate::branches::point::{Event, Point};
-use crate::branches::problem::{self as engine, TestValue, Watched};
+use crate::branches::problem::{TestValue, Watched};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::Newton;
@@ -69,6 +69,13 @@ impl Test<'_, '_> {
             }
         }
     }
+}
+
+/// An event that was located, behind so many points of the branch.
+pub(super) struct Found<'f> {
+    pub(super) kind: EventKind,
+    pub(super) located: &'f Located,
+    pub(super) after: usize,
 }
 
 /// What is watched along a branch, at one resolution.
@@ -121,14 +128,6 @@ impl<'a> Watch<'a> {
         self.pairs.as_mut().is_some_and(|pairs| pairs.product(u).1)
     }
 
-    /// Whether a branch point is located by a test function: by the slope, or by the bordered determinant.
-    pub(super) fn is_bordered(&self, test: engine::Test) -> bool {
-        match test {
-            engine::Test::Slope => true,
-            engine::Test::Watched(index) => self.watched[index].bordered,
-        }
-    }
-
     /// Determinants, each a Jacobian and a factorisation, and monodromy matrices that were computed.
     pub(super) fn computed(&self) -> (usize, usize) {
         let determinants = self.blocks.iter().map(|block| block.computed).sum();
@@ -178,8 +177,12 @@ impl<'a> Run<'a> {
         let value = |point: &CurvePoint| cell.borrow_mut().at(&point.u, &point.tangent);
         let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, found: &Located| {
             let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
-            let after = run.points.len() - 1;
-            run.located(b, n, step, kind, (test, found, after));
+            let found = Found {
+                kind,
+                located: found,
+                after: run.points.len() - 1,
+            };
+            run.located(b, n, step, test, &found);
         };
         if self
             .locate_zero(balance, newton, step, value, read)
@@ -195,9 +198,14 @@ impl<'a> Run<'a> {
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         step: Step<'_>,
-        kind: EventKind,
-        (test, located, after): (&mut Test<'_, 'a>, &Located, usize),
+        test: &mut Test<'_, 'a>,
+        found: &Found<'_>,
     ) {
+        let Found {
+            kind,
+            located,
+            after,
+        } = *found;
         let u = &located.point.u;
         let left = newton.left_in_parameter();
         let error = if self.reader.finer.correct(u, newton) {

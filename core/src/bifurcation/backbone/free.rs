@@ -199,13 +199,9 @@ impl FreeOscillation {
                     }
                 };
                 let (done, value) = (points.len() + 1, point.ends[0][0]);
-                let answer = visit(Progress::at(Stage::Curve, done, value));
                 points.push(point);
-                if answer.is_break() {
-                    Continue::Break(Halt::Stop)
-                } else {
-                    Continue::Continue(())
-                }
+                let answer = visit(Progress::at(Stage::Curve, done, value));
+                answer.map_break(|()| Halt::Stop)
             },
         );
         let value = points

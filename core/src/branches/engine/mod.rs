@@ -21,7 +21,7 @@ mod inside;
 mod tests;
 mod zero;
 
-pub(crate) use zero::Search;
+pub(crate) use zero::{Aim, Search, is_crossing, root};
 
 use super::problem::{BranchProblem, Change, Read, Test, TestValue};
 use crate::continuation::follow::{

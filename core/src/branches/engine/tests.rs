@@ -134,7 +134,7 @@ impl BranchProblem for Algebraic {
     }
 
     fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> Kept {
-        let at = &zero.located.point;
+        let at = &zero.root.located.point;
         self.events.push((zero.change.kind, at.u[0]));
         Kept::Event
     }

@@ -1,11 +1,12 @@
 //! Locates where a test function vanishes between two points, and has the orbit there read.
 
 use super::{Engine, Seen};
-use crate::branches::problem::{BranchProblem, Change, Kept, Test, TestValue, Zero};
+use crate::branches::problem::{BranchProblem, Change, Kept, Root, Test, TestValue, Zero};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::AsProblem;
 use crate::event::{EventKind, Turn};
 
 /// What came of a change of sign.
@@ -109,51 +110,77 @@ impl Search<'_> {
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
     ) -> (Kept, Option<Located>) {
-        let Some((located, error)) = self.located(problem, newton) else {
+        let Some(root) = self.root(problem, newton) else {
             return (Kept::Unread, None);
         };
-        if !problem.vanishes(self.change, &located) {
-            return (Kept::Unread, Some(located));
+        if !problem.vanishes(self.change, &root.located) {
+            return (Kept::Unread, Some(root.located));
         }
         let zero = Zero {
             change: self.change,
-            located,
-            error,
+            root,
             reference: self.reference(),
             after: self.after,
         };
         let kept = problem.keep(newton, self.step, &zero);
-        (kept, Some(zero.located))
+        (kept, Some(zero.root.located))
     }
 
-    /// Where the test function changes its sign, and what the search leaves in the parameter.
-    fn located(
-        &self,
-        problem: &mut dyn BranchProblem,
-        newton: &mut Newton,
-    ) -> Option<(Located, f64)> {
-        let (options, aim, reference) = (self.options, problem.aim(), self.reference());
-        let test = self.change.test;
+    /// Where the test function changes its sign.
+    fn root(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Option<Root> {
+        let (test, reference) = (self.change.test, self.reference());
+        let aim = if is_crossing(problem, self.change) {
+            Aim::Crossing
+        } else {
+            Aim::Below(problem.aim())
+        };
         let value = |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| match test {
             Test::Slope => at.parameter_slope(),
             Test::Watched(index) => problem.test(index, at, true).relative_to(reference),
         };
-        if is_crossing(problem, self.change) {
-            let found = locate_crossing(problem, newton, self.step, options, value)?;
+        root(problem, newton, self.step, self.options, aim, value)
+    }
+}
+
+/// What a zero is located by.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Aim {
+    /// The test function is driven below this.
+    Below(f64),
+    /// The matrix of Newton's method is singular there: interpolation.
+    Crossing,
+}
+
+/// Where a test function changes its sign in a step.
+pub(crate) fn root<P: AsProblem + ?Sized>(
+    problem: &mut P,
+    newton: &mut Newton,
+    step: Step<'_>,
+    options: NewtonOptions,
+    aim: Aim,
+    value: impl FnMut(&mut P, &CurvePoint) -> f64,
+) -> Option<Root> {
+    match aim {
+        Aim::Crossing => {
+            let found = locate_crossing(problem, newton, step, options, value)?;
             let located = Located {
                 point: found.point,
                 test: found.test,
                 vanishes: true,
             };
-            return Some((located, found.error));
+            let error = found.error;
+            Some(Root { located, error })
         }
-        let located = locate(problem, newton, self.step, options, aim, value)?;
-        Some((located, 0.0))
+        Aim::Below(tolerance) => {
+            let located = locate(problem, newton, step, options, tolerance, value)?;
+            let error = 0.0;
+            Some(Root { located, error })
+        }
     }
 }
 
 /// Whether the matrix of Newton's method is singular at the zero.
-fn is_crossing(problem: &dyn BranchProblem, change: Change) -> bool {
+pub(crate) fn is_crossing(problem: &dyn BranchProblem, change: Change) -> bool {
     match change.test {
         Test::Slope => change.kind == EventKind::BranchPoint,
         Test::Watched(index) => problem.watched()[index].bordered,

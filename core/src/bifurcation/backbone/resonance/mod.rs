@@ -191,8 +191,8 @@ impl PhaseResonance {
         let mut u = resize(&u, first.coordinates(), series::length(self.harmonics));
         u.push(value);
         let balance = self.balance(&parameters, first.omega);
-        let units = (motion.peak_to_peak(), (options.to - value).abs());
-        let mut equations = Resonance::new(balance, index, units);
+        let (size, range) = (motion.peak_to_peak(), (options.to - value).abs());
+        let mut equations = Resonance::new(balance, index, size, range);
         let mut newton = Newton::new(&equations);
         let mut points = Vec::new();
         let see = &mut |equations: &mut Resonance<'_>, _: &mut Newton, seen: Visit<'_>| {
@@ -341,7 +341,7 @@ struct Resonance<'a> {
 }
 
 impl<'a> Resonance<'a> {
-    fn new(balance: Balance<'a>, index: usize, (size, range): (f64, f64)) -> Self {
+    fn new(balance: Balance<'a>, index: usize, size: f64, range: f64) -> Self {
         let n = balance.unknowns();
         Self {
             inner: Jacobian::new(balance.partition()),
