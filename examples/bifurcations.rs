@@ -33,14 +33,14 @@ pub fn main() -> Result<(), Error> {
     };
     let request = Bifurcations::of(&model).vary("drive").omega(1.0);
     let diagram = request.from(0.1).to(2.0).depth(2).run()?;
-    for (number, limb) in diagram.branches.iter().enumerate() {
-        let cycles = limb.branch.points.len();
+    for (number, branch) in diagram.branches.iter().enumerate() {
+        let cycles = branch.branch.points.len();
         println!(
             "branch {number}: period {}, {cycles} orbits, {}",
-            limb.period(),
-            limb.branch.stopped
+            branch.period(),
+            branch.branch.stopped
         );
-        for event in &limb.branch.events {
+        for event in &branch.branch.events {
             println!("  {event}");
         }
     }

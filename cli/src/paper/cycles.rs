@@ -152,8 +152,8 @@ pub fn figure_8a(task: &Task<'_>) -> Result<Drawing, String> {
     let request = request.from(0.1).to(2.1).depth(3);
     let diagram = request.run().map_err(|error| chain(&error).to_string())?;
     let mut figure = Cycles::new(task, "drive");
-    for limb in &diagram.branches {
-        figure.add(&limb.branch);
+    for branch in &diagram.branches {
+        figure.add(&branch.branch);
     }
     figure.drawing.note = format!(
         "{} branches, found from the first one by themselves.",

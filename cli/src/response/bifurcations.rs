@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 use std::ops::ControlFlow;
 
-use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
+use hertzian::bifurcation::{Bifurcations, Diagram, DiagramBranch, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::export::{Decimal, Table};
@@ -148,8 +148,8 @@ impl Found {
             .diagram
             .branches
             .iter()
-            .filter(|limb| !limb.mirrored)
-            .flat_map(|limb| &limb.branch.events)
+            .filter(|branch| !branch.mirrored)
+            .flat_map(|branch| &branch.branch.events)
             .filter(|event| is_wanted(event.kind))
             .cloned()
             .collect();
@@ -188,16 +188,16 @@ impl Found {
     ) -> Result<(), Error> {
         let facts = model.facts();
         record.events.clear();
-        for (number, limb) in self.diagram.branches.iter().enumerate() {
-            let events = limb.branch.events.iter();
+        for (number, branch) in self.diagram.branches.iter().enumerate() {
+            let events = branch.branch.events.iter();
             record
                 .events
                 .extend(events.map(|event| EventRecord::of(number, event, facts)));
             if number == 0 {
                 continue;
             }
-            for point in &limb.branch.points {
-                let point = limb.branch.complete(point)?;
+            for point in &branch.branch.points {
+                let point = branch.branch.complete(point)?;
                 table.add(number, &point);
                 let point = PointRecord::of(&point, facts);
                 record.points.push(PointRecord {
@@ -254,7 +254,7 @@ impl Found {
             .diagram
             .branches
             .iter()
-            .flat_map(|limb| &limb.branch.points);
+            .flat_map(|branch| &branch.branch.points);
         let sizes = points.map(Point::peak_to_peak);
         let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
             (low.min(size), high.max(size))
@@ -275,8 +275,8 @@ impl Found {
     }
 
     fn write(&self, text: &mut String) -> fmt::Result {
-        for (number, limb) in self.diagram.branches.iter().enumerate() {
-            describe(text, number, limb)?;
+        for (number, branch) in self.diagram.branches.iter().enumerate() {
+            describe(text, number, branch)?;
         }
         let deep = |reason: &Reason| matches!(reason, Reason::Depth);
         let left = self.diagram.omitted.iter();
@@ -324,22 +324,22 @@ impl Found {
     }
 }
 
-fn describe(text: &mut String, number: usize, limb: &Limb) -> fmt::Result {
-    let from = match limb.origin {
+fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt::Result {
+    let from = match branch.origin {
         Origin::Event { branch, .. } => format!(", from branch {branch}"),
         Origin::Attractor { value } => format!(", found at {value}"),
         _ => String::new(),
     };
-    let (period, count) = (limb.period(), limb.branch.points.len());
+    let (period, count) = (branch.period(), branch.branch.points.len());
     writeln!(
         text,
         "branch {number:<3} period {period}{from}: {count} orbits, {}",
-        limb.branch.stopped
+        branch.branch.stopped
     )?;
-    for event in &limb.branch.events {
+    for event in &branch.branch.events {
         writeln!(text, "  {event}")?;
     }
-    for turn in &limb.branch.turns {
+    for turn in &branch.branch.turns {
         writeln!(
             text,
             "  unlocated at {:.6}: a test function changes its sign, and was not driven to zero",

@@ -23,7 +23,7 @@ use crate::response::{FrequencyResponse, OrbitMethod};
 #[non_exhaustive]
 pub struct Diagram {
     /// The branches, in the order in which they were found.
-    pub branches: Vec<Limb>,
+    pub branches: Vec<DiagramBranch>,
     /// Bifurcations whose further branch was not followed, and why.
     pub omitted: Vec<Omitted>,
     /// Attractors whose branch was not followed, and searches that failed: the value and why.
@@ -40,7 +40,7 @@ pub struct Diagram {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
-pub struct Limb {
+pub struct DiagramBranch {
     /// Where it comes from.
     pub origin: Origin,
     /// Number of bifurcations between it and the first branch.
@@ -149,7 +149,7 @@ impl fmt::Display for Reason {
     }
 }
 
-impl Limb {
+impl DiagramBranch {
     /// Period of its orbits in periods of the declaration.
     pub fn period(&self) -> usize {
         self.branch.period()
@@ -161,8 +161,8 @@ impl Diagram {
     /// with the same period, and of kind [`EventKind::BranchPoint`] on one that ends there.
     pub fn events(&self, kind: EventKind) -> impl Iterator<Item = (usize, &Event)> {
         let branches = self.branches.iter().enumerate();
-        branches.flat_map(move |(number, limb)| {
-            limb.branch.events(kind).map(move |event| (number, event))
+        branches.flat_map(move |(number, branch)| {
+            branch.branch.events(kind).map(move |event| (number, event))
         })
     }
 }
@@ -236,7 +236,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         });
         self.queue.extend(begins.map(|index| (number, index)));
         let mirrored = self.is_mirrored(origin);
-        self.diagram.branches.push(Limb {
+        self.diagram.branches.push(DiagramBranch {
             origin,
             depth,
             branch,
@@ -287,7 +287,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         }
         let request = self.response.clone().period(period).near_state(state);
         let orbit = request.orbit(value).map_err(Reason::of)?;
-        let known = |limb: &Limb| known::contains(&self.response, limb, &orbit);
+        let known = |branch: &DiagramBranch| known::contains(&self.response, branch, &orbit);
         if self.diagram.branches.iter().any(known) {
             return Ok(());
         }
@@ -305,9 +305,9 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
     }
 
     fn follow(&mut self, number: usize, index: usize) -> Result<(), Reason> {
-        let limb = &self.diagram.branches[number];
-        let (depth, mirrored) = (limb.depth + 1, limb.mirrored);
-        let event = limb.branch.events[index].clone();
+        let branch = &self.diagram.branches[number];
+        let (depth, mirrored) = (branch.depth + 1, branch.mirrored);
+        let event = branch.branch.events[index].clone();
         let sides = match event.kind {
             EventKind::SymmetryBreaking | EventKind::BranchPoint => &[Side::One, Side::Other][..],
             _ => &[Side::One],
@@ -361,19 +361,19 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
     /// Another branch that passes the same crossing.
     fn crossing_at(&self, number: usize, event: &Event) -> Option<usize> {
         let same = |other: &&Event| known::is_same_place(other, event, self.range);
-        let mut limbs = self.diagram.branches.iter().enumerate();
-        let crosses = |limb: &Limb| {
-            let mut crossings = limb.branch.events(EventKind::BranchPoint);
-            limb.period() == event.point.orbit.period && crossings.any(|other| same(&other))
+        let mut branches = self.diagram.branches.iter().enumerate();
+        let crosses = |branch: &DiagramBranch| {
+            let mut crossings = branch.branch.events(EventKind::BranchPoint);
+            branch.period() == event.point.orbit.period && crossings.any(|other| same(&other))
         };
-        let found = limbs.find(|(index, limb)| *index != number && crosses(limb));
+        let found = branches.find(|(index, branch)| *index != number && crosses(branch));
         let crossed = event.kind == EventKind::BranchPoint;
         found.filter(|_| crossed).map(|(index, _)| index)
     }
 
     /// The branches that end at an event of another one.
     fn ending_at(&self, event: &Event) -> Vec<usize> {
-        let limbs = self.diagram.branches.iter().enumerate();
+        let branches = self.diagram.branches.iter().enumerate();
         let is_joint = |end: Option<Stop>, joint: Option<&Event>| match end {
             Some(Stop::Joined { period, value, .. }) => {
                 period == event.point.orbit.period
@@ -384,10 +384,10 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             }
             _ => false,
         };
-        let ends = limbs.filter(|(_, limb)| {
-            let joints = || limb.branch.events(EventKind::BranchPoint);
-            is_joint(Some(limb.branch.stopped), joints().next_back())
-                || is_joint(limb.branch.begin, joints().next())
+        let ends = branches.filter(|(_, branch)| {
+            let joints = || branch.branch.events(EventKind::BranchPoint);
+            is_joint(Some(branch.branch.stopped), joints().next_back())
+                || is_joint(branch.branch.begin, joints().next())
         });
         ends.map(|(number, _)| number).collect()
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::diagram::Limb;
+use super::diagram::DiagramBranch;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::response::{FrequencyResponse, OrbitMethod};
@@ -57,17 +57,17 @@ pub(super) fn visits(point: &Point, state: &[f64]) -> bool {
 /// Whether an orbit is on a branch: one of those near its value leads to it.
 pub(super) fn contains<M: OrbitMethod>(
     response: &FrequencyResponse<M>,
-    limb: &Limb,
+    branch: &DiagramBranch,
     orbit: &Point,
 ) -> bool {
-    if limb.period() != orbit.orbit.period {
+    if branch.period() != orbit.orbit.period {
         return false;
     }
     let passes = |pair: &&[Point]| {
         let [a, b] = [pair[0].value, pair[1].value];
         (a - orbit.value) * (b - orbit.value) <= 0.0
     };
-    limb.branch.points.windows(2).filter(passes).any(|pair| {
+    branch.branch.points.windows(2).filter(passes).any(|pair| {
         let nearer = |point: &Point| (point.value - orbit.value).abs();
         let start = if nearer(&pair[0]) < nearer(&pair[1]) {
             &pair[0]

@@ -6,5 +6,5 @@ pub(crate) mod error;
 mod known;
 mod request;
 
-pub use diagram::{Diagram, Limb, Omitted, Origin, Reason};
+pub use diagram::{Diagram, DiagramBranch, Omitted, Origin, Reason};
 pub use request::Bifurcations;

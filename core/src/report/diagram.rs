@@ -2,7 +2,7 @@
 
 use hertzian_chart::{Chart, Curve};
 
-use crate::bifurcation::diagram::{Diagram, Limb};
+use crate::bifurcation::diagram::{Diagram, DiagramBranch};
 use crate::branches::branch::Branch;
 use crate::error::Error;
 use crate::report::labels::Labels;
@@ -16,7 +16,7 @@ impl Diagram {
         let Some(first) = self.branches.first() else {
             return Chart::default();
         };
-        let mut periods: Vec<usize> = self.branches.iter().map(Limb::period).collect();
+        let mut periods: Vec<usize> = self.branches.iter().map(DiagramBranch::period).collect();
         periods.sort_unstable();
         periods.dedup();
         let curves = periods.iter().map(|&period| Curve {
@@ -24,12 +24,12 @@ impl Diagram {
             runs: self
                 .branches
                 .iter()
-                .filter(|limb| limb.period() == period)
-                .flat_map(|limb| limb.branch.runs())
+                .filter(|branch| branch.period() == period)
+                .flat_map(|branch| branch.branch.runs())
                 .collect(),
         });
         let chart = curves.fold(empty_chart(&Labels::of(&first.branch)), Chart::curve);
-        let branches = || self.branches.iter().map(|limb| &limb.branch);
+        let branches = || self.branches.iter().map(|branch| &branch.branch);
         let turns = branches().flat_map(Branch::unlocated).collect();
         event_markers(branches().flat_map(Branch::marked))
             .chain([unlocated(turns)])

@@ -80,9 +80,9 @@ fn assert_found<'e>(
 fn the_cascade_is_followed_by_itself() {
     let diagram = diagram(3);
     let events = |period: usize| {
-        let limbs = diagram.branches.iter();
-        let limbs = limbs.filter(move |limb| limb.period() == period);
-        limbs.flat_map(|limb| &limb.branch.events)
+        let branches = diagram.branches.iter();
+        let branches = branches.filter(move |branch| branch.period() == period);
+        branches.flat_map(|branch| &branch.branch.events)
     };
     assert_found(events(1), EventKind::PeriodDoubling, &A1);
     assert_found(events(2), EventKind::PeriodDoubling, &A4);
@@ -91,19 +91,25 @@ fn the_cascade_is_followed_by_itself() {
     assert!(fold.point.value > 2.0);
     assert_found(events(2), EventKind::Fold, &PERIOD_2_LOWER_FOLD);
     assert_found(events(8), EventKind::Fold, &PERIOD_8_FOLD);
-    for limb in &diagram.branches {
-        let expected = 1 << limb.depth;
-        assert_eq!(limb.period(), expected);
+    for branch in &diagram.branches {
+        let expected = 1 << branch.depth;
+        assert_eq!(branch.period(), expected);
         assert!(
-            limb.branch
+            branch
+                .branch
                 .points
                 .iter()
                 .all(|c| c.orbit.period == expected)
         );
-        if let Origin::Event { branch, event, .. } = limb.origin {
-            let parent = &diagram.branches[branch].branch.events[event];
+        if let Origin::Event {
+            branch: parent,
+            event,
+            ..
+        } = branch.origin
+        {
+            let parent = &diagram.branches[parent].branch.events[event];
             assert_eq!(parent.kind, EventKind::PeriodDoubling);
-            let first = limb.branch.points[0].value;
+            let first = branch.branch.points[0].value;
             assert!(
                 (first - parent.point.value).abs() < 1e-2,
                 "{first} {parent}"
@@ -139,7 +145,7 @@ fn what_is_known_is_not_followed_again() {
     // Four on the first branch of period four, and one on that which begins beyond the lower fold.
     assert_eq!(deep.count(), 5);
     assert_eq!(
-        diagram.branches.iter().map(|limb| limb.depth).max(),
+        diagram.branches.iter().map(|branch| branch.depth).max(),
         Some(2)
     );
 }
@@ -150,8 +156,8 @@ fn as_far_as_period_16() {
     let request = Bifurcations::of(&MODEL).vary("drive").omega(1.0);
     let diagram = request.from(1.2).to(1.6).depth(4).run().unwrap();
     let first = |period: usize| {
-        let mut limbs = diagram.branches.iter();
-        limbs.find(|limb| limb.period() == period).unwrap()
+        let mut branches = diagram.branches.iter();
+        branches.find(|branch| branch.period() == period).unwrap()
     };
     for period in [2, 4, 8, 16] {
         let doubles = first(period / 2).branch.events(EventKind::PeriodDoubling);
@@ -198,13 +204,16 @@ fn a_budget_is_kept_and_said() {
     assert!(few.omitted.iter().all(|o| o.reason == Reason::Budget));
     assert_eq!(few.omitted.len(), 3);
     let short = request.max_points(100).run().unwrap();
-    let points = short.branches.iter().map(|limb| limb.branch.points.len());
+    let points = short
+        .branches
+        .iter()
+        .map(|branch| branch.branch.points.len());
     assert!(points.sum::<usize>() <= 100);
     let said = short.omitted.iter().any(|o| o.reason == Reason::Budget);
-    let cut = short.branches.iter().any(|limb| {
-        limb.branch.stopped
+    let cut = short.branches.iter().any(|branch| {
+        branch.branch.stopped
             == Stop::PointLimit {
-                points: limb.branch.points.len(),
+                points: branch.branch.points.len(),
             }
     });
     assert!(said || cut);

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use hertzian::attractors::basin::{Axis, Basin, Grid};
-use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin};
+use hertzian::bifurcation::{Bifurcations, Diagram, DiagramBranch, Origin};
 use hertzian::{Complex, FrequencyResponse, Point, Shooting, Verdict};
 use hertzian_tests::OneSidedLinear;
 
@@ -51,12 +51,12 @@ fn basin(model: &OneSidedLinear) -> Basin {
 /// The orbits of a period at frequency one, on all branches.
 fn at_frequency_1(diagram: &Diagram, model: &OneSidedLinear, period: usize) -> Vec<Point> {
     let mut found = Vec::new();
-    for limb in diagram
+    for branch in diagram
         .branches
         .iter()
-        .filter(|limb| limb.period() == period)
+        .filter(|branch| branch.period() == period)
     {
-        for pair in limb.branch.points.windows(2) {
+        for pair in branch.branch.points.windows(2) {
             if (pair[0].value - 1.0) * (pair[1].value - 1.0) > 0.0 {
                 continue;
             }
@@ -83,19 +83,22 @@ fn periods_one_to_five_of_figure_9() {
     let request = Bifurcations::of(&model).from(2.2).to(0.4).depth(1);
     let diagram = request.search(1.0, basin(&model)).run().unwrap();
     for period in 1..=5 {
-        let limbs = diagram
+        let branches = diagram
             .branches
             .iter()
-            .filter(|limb| limb.period() == period);
-        assert!(limbs.count() > 0, "period {period}");
+            .filter(|branch| branch.period() == period);
+        assert!(branches.count() > 0, "period {period}");
     }
     for period in 3..=5 {
         let found = |origin: Origin| matches!(origin, Origin::Attractor { value } if value == 1.0);
-        let mut limbs = diagram
+        let mut branches = diagram
             .branches
             .iter()
-            .filter(|limb| limb.period() == period);
-        assert!(limbs.any(|limb| found(limb.origin)), "period {period}");
+            .filter(|branch| branch.period() == period);
+        assert!(
+            branches.any(|branch| found(branch.origin)),
+            "period {period}"
+        );
     }
     for (period, [re, im], peak_to_peak, points) in AT_FREQUENCY_1 {
         let exact = Complex::new(re, im);
@@ -240,30 +243,30 @@ fn the_detached_branch_of_a_hertzian_contact() {
     let basin = Basin::of(&model).grid(grid).longest(1).patience(3000);
     let request = Bifurcations::of(&model).from(0.3).to(0.18).depth(0);
     let diagram = request.search(at, basin).run().unwrap();
-    let detached = |limb: &&Limb| {
-        matches!(limb.origin, Origin::Attractor { .. })
-            && limb
+    let detached = |branch: &&DiagramBranch| {
+        matches!(branch.origin, Origin::Attractor { .. })
+            && branch
                 .branch
                 .points
                 .iter()
                 .any(|cycle| cycle.peak_to_peak() > 0.5 * height(at))
     };
-    let limbs: Vec<_> = diagram.branches.iter().filter(detached).collect();
-    let [limb] = limbs[..] else {
+    let branches: Vec<_> = diagram.branches.iter().filter(detached).collect();
+    let [branch] = branches[..] else {
         panic!(
             "{} of {}, {:?}",
-            limbs.len(),
+            branches.len(),
             diagram.branches.len(),
             diagram.missed
         );
     };
     // It comes from low frequencies, turns at the limit, and goes back there.
-    let folds: Vec<_> = limb.branch.folds().collect();
+    let folds: Vec<_> = branch.branch.folds().collect();
     let [fold] = folds[..] else {
-        panic!("{:?}", limb.branch.events);
+        panic!("{:?}", branch.branch.events);
     };
     assert!((fold.point.value / limit - 1.0).abs() < 0.05, "{fold}");
-    for cycle in &limb.branch.points {
+    for cycle in &branch.branch.points {
         let ratio = cycle.peak_to_peak() / height(cycle.value);
         assert!((ratio - 1.0).abs() < 0.15, "{} {ratio}", cycle.value);
     }

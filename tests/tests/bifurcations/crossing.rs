@@ -1,6 +1,6 @@
 //! Crossings of branches without a symmetry: beside a driven oscillator, another one has equilibria that are known.
 
-use hertzian::bifurcation::{Bifurcations, Diagram, Limb, Origin, Reason};
+use hertzian::bifurcation::{Bifurcations, Diagram, DiagramBranch, Origin, Reason};
 use hertzian::{EventKind, FrequencyResponse, OrbitError, Point, Shooting, Side, System};
 
 hertzian::oscillator! {
@@ -31,7 +31,7 @@ fn diagram(system: &dyn System) -> Diagram {
 }
 
 /// Both directions of the other branch, from a crossing whose place is known.
-fn of_crossing(diagram: &Diagram) -> [&Limb; 2] {
+fn of_crossing(diagram: &Diagram) -> [&DiagramBranch; 2] {
     let crossings: Vec<_> = diagram.branches[0]
         .branch
         .events(EventKind::BranchPoint)
@@ -50,15 +50,15 @@ fn of_crossing(diagram: &Diagram) -> [&Limb; 2] {
     let [_, one, other] = &diagram.branches[..] else {
         panic!("{} branches, {:?}", diagram.branches.len(), diagram.omitted);
     };
-    for (limb, expected) in [(one, Side::One), (other, Side::Other)] {
+    for (branch, expected) in [(one, Side::One), (other, Side::Other)] {
         let Origin::Event {
             branch: 0, side, ..
-        } = limb.origin
+        } = branch.origin
         else {
-            panic!("{:?}", limb.origin);
+            panic!("{:?}", branch.origin);
         };
         assert_eq!(side, expected);
-        assert!(!limb.mirrored);
+        assert!(!branch.mirrored);
     }
     [one, other]
 }
@@ -77,11 +77,11 @@ fn assert_near(cycle: &Point, expected: f64) {
 #[test]
 fn both_directions_of_a_pitchfork() {
     let diagram = diagram(&Pitchfork { at: AT });
-    let limbs = of_crossing(&diagram);
-    let signs = limbs.map(|limb| limb.branch.points[0].observed.motions[1].maximum.signum());
+    let branches = of_crossing(&diagram);
+    let signs = branches.map(|branch| branch.branch.points[0].observed.motions[1].maximum.signum());
     assert_eq!(signs[0], -signs[1]);
-    for (limb, sign) in limbs.into_iter().zip(signs) {
-        let cycles = &limb.branch.points;
+    for (branch, sign) in branches.into_iter().zip(signs) {
+        let cycles = &branch.branch.points;
         assert!(cycles.len() > 3 && (cycles[cycles.len() - 1].value - 2.66).abs() < 1e-12);
         for cycle in cycles {
             assert_near(cycle, sign * (cycle.value - AT).sqrt());
@@ -92,11 +92,11 @@ fn both_directions_of_a_pitchfork() {
 #[test]
 fn both_directions_of_a_transcritical_crossing() {
     let diagram = diagram(&Transcritical { at: AT });
-    let limbs = of_crossing(&diagram);
-    let ends = limbs.map(|limb| limb.branch.points.last().unwrap().value);
+    let branches = of_crossing(&diagram);
+    let ends = branches.map(|branch| branch.branch.points.last().unwrap().value);
     assert!((ends[0] - ends[1]).abs() > 0.6, "{ends:?}");
-    for limb in limbs {
-        for cycle in &limb.branch.points {
+    for branch in branches {
+        for cycle in &branch.branch.points {
             assert_near(cycle, AT - cycle.value);
         }
     }

@@ -175,13 +175,16 @@ fn assert_crossed(system: &dyn System, expected: impl Fn(f64, f64) -> f64) {
         error < 1e-9 && error <= crossing.error,
         "{crossing} {error:.1e}"
     );
-    let limbs = [Side::One, Side::Other].map(|side| request.switch(crossing, side).unwrap());
-    let signs =
-        [&limbs[0], &limbs[1]].map(|limb| limb.points[0].orbit.series(1).unwrap()[0].signum());
+    let branches = [Side::One, Side::Other].map(|side| request.switch(crossing, side).unwrap());
+    let signs = [&branches[0], &branches[1]]
+        .map(|branch| branch.points[0].orbit.series(1).unwrap()[0].signum());
     assert_eq!(signs[0], -signs[1]);
-    for (limb, sign) in limbs.iter().zip(signs) {
-        assert!(matches!(limb.stopped, Stop::ReachedEnd | Stop::LeftAtStart));
-        for point in &limb.points {
+    for (branch, sign) in branches.iter().zip(signs) {
+        assert!(matches!(
+            branch.stopped,
+            Stop::ReachedEnd | Stop::LeftAtStart
+        ));
+        for point in &branch.points {
             let y = point.orbit.series(1).unwrap();
             let error = (y[0] - expected(point.value, sign)).abs();
             assert!(error < 1e-8, "{} {error:.1e}", point.value);

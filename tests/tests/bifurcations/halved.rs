@@ -98,7 +98,7 @@ fn a_closed_branch_is_followed_once() {
     let diagram = request.run().unwrap();
     let closed = |end: Stop| end == Stop::Closed;
     let loops = diagram.branches.iter();
-    let loops = loops.filter(|limb| closed(limb.branch.stopped));
+    let loops = loops.filter(|branch| closed(branch.branch.stopped));
     assert_eq!(loops.count(), 1);
     let known = diagram.omitted.iter();
     let mut known = known.filter(|omitted| matches!(omitted.reason, Reason::Known { .. }));

@@ -68,9 +68,10 @@ fn assert_symmetry_breaks(
     // Both asymmetric branches go from one to the other.
     let asymmetric = &diagram.branches[1..];
     assert_eq!(asymmetric.len(), 2);
-    for limb in asymmetric {
+    for branch in asymmetric {
         assert!(
-            limb.branch
+            branch
+                .branch
                 .points
                 .iter()
                 .all(|cycle| !cycle.orbit.symmetric)
@@ -79,16 +80,18 @@ fn assert_symmetry_breaks(
             period: 1,
             symmetric: true,
             ..
-        } = limb.branch.stopped
+        } = branch.branch.stopped
         else {
-            panic!("{}", limb.branch.stopped);
+            panic!("{}", branch.branch.stopped);
         };
-        let (joint, found) = limb.branch.events.split_last().unwrap();
+        let (joint, found) = branch.branch.events.split_last().unwrap();
         // Where the displacement touches zero, between the pieces of the spring, is of no interest here.
         let grazing = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
         let found: Vec<_> = found.iter().filter(|event| !grazing(event)).collect();
         for (kind, omega, peak_to_peak) in events {
-            let event = nearest(limb.branch.events(*kind), *omega, |event| event.point.value);
+            let event = nearest(branch.branch.events(*kind), *omega, |event| {
+                event.point.value
+            });
             let event = event.unwrap();
             let error = (event.point.value - omega).abs();
             assert!(error < 1e-11, "{event} {error:.1e}");
@@ -108,7 +111,7 @@ fn assert_symmetry_breaks(
     }
     // They are mirror images: what is the largest displacement of one is the smallest of the other.
     let extremes =
-        |limb: usize, index: usize| asymmetric[limb].branch.points[index].observed.motions[0];
+        |branch: usize, index: usize| asymmetric[branch].branch.points[index].observed.motions[0];
     for index in 0..asymmetric[0].branch.points.len() {
         let (one, other) = (extremes(0, index), extremes(1, index));
         assert!(

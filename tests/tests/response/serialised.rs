@@ -73,7 +73,7 @@ fn a_diagram_of_bifurcations() {
     let doublings = diagram.events(EventKind::PeriodDoubling).count();
     let written = branches
         .iter()
-        .flat_map(|limb| limb["branch"]["events"].as_array().unwrap());
+        .flat_map(|branch| branch["branch"]["events"].as_array().unwrap());
     assert_eq!(
         written
             .filter(|event| event["kind"] == "period-doubling")
