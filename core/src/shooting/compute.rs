@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::companion::Companion;
+use super::error_reference::ErrorReference;
 use super::run::Run;
 use super::setting::Setting;
 use super::start::{First, first};
@@ -146,7 +146,7 @@ fn run(setting: &Setting, found: First, from: f64, to: f64) -> Result<(Run<'_>, 
         equations, size, ..
     } = &found;
     let frame = equations.frame.clone();
-    let companion = Companion::new(setting, equations.span, frame, *size)?;
+    let reference = ErrorReference::new(setting, equations.span, frame, *size)?;
     let options = setting.follow(from, to, equations.frame.ratio).newton;
-    Ok((Run::new(setting, options, companion, *size), found))
+    Ok((Run::new(setting, options, reference, *size), found))
 }

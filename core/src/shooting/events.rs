@@ -1,10 +1,10 @@
 //! Events of a branch: where a test function vanishes between two orbits, and how well that is known.
 //!
 //! The test functions are those of [`tested`](super::tested). A place is reported if it solves the equations and the function was
-//! driven to zero there; its error is what a companion makes of it.
+//! driven to zero there; its error is what an error reference makes of it.
 
-use super::companion::{self, Companion, multipliers};
 use super::equations::Equations;
+use super::error_reference::{self, ErrorReference, multipliers};
 use super::method::VANISHED;
 use super::run::{Run, observe, relative};
 use super::setting::Setting;
@@ -92,7 +92,7 @@ impl Run<'_> {
         root
     }
 
-    /// The event at a place, compared with that of the companion.
+    /// The event at a place, compared with that of the reference.
     pub(super) fn event_at(
         &mut self,
         equations: &mut Equations,
@@ -102,14 +102,14 @@ impl Run<'_> {
         let change = zero.change;
         let (span, frame) = (equations.span, equations.frame.clone());
         let size = step.before.scale.oscillation;
-        let Companion {
+        let ErrorReference {
             equations: mut others,
             mut newton,
             options,
             part,
             finer,
             noise,
-        } = Companion::new(self.setting, span, frame, size).ok()?;
+        } = ErrorReference::new(self.setting, span, frame, size).ok()?;
         let moved = self.root(&mut others, &mut newton, step, options, change);
         self.statistics += newton.statistics;
         let root = &zero.root;
@@ -177,7 +177,7 @@ fn compared(
         });
         let spread = part * distance(&found, &there)
             + nearest.fold(f64::INFINITY, f64::min)
-            + companion::moved(&map, &found, half, noise * map.norm().max(1.0));
+            + error_reference::moved(&map, &found, half, noise * map.norm().max(1.0));
         read.stability = Stability::of(found, spread);
     }
     Some((read, error))

@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::companion::{Companion, multipliers};
 use super::equations::Equations;
+use super::error_reference::{ErrorReference, multipliers};
 use super::extremes;
 use super::method::ShootingBranch;
 use super::recurrence::{Recurrence, SameState};
@@ -31,7 +31,7 @@ const STILL: f64 = 10.0;
 pub(super) struct Run<'r> {
     pub(super) setting: &'r Setting,
     pub(super) options: NewtonOptions,
-    companion: Companion,
+    reference: ErrorReference,
     size: f64,
     /// What the branch has met.
     pub(super) joined: Option<Recurrence>,
@@ -51,13 +51,13 @@ impl<'r> Run<'r> {
     pub(super) fn new(
         setting: &'r Setting,
         options: NewtonOptions,
-        companion: Companion,
+        reference: ErrorReference,
         size: f64,
     ) -> Self {
         Self {
             setting,
             options,
-            companion,
+            reference,
             size,
             joined: None,
             state_error: f64::NAN,
@@ -86,8 +86,8 @@ impl<'r> Run<'r> {
         branch.count_flows();
         let failed = branch.equations.failure;
         let failure = self.failure.or(failed);
-        self.statistics += self.companion.newton.statistics;
-        self.work += self.companion.work();
+        self.statistics += self.reference.newton.statistics;
+        self.work += self.reference.work();
         let value = self.points.last().map_or(options.from, |point| point.value);
         if let Some(Recurrence { period, odd }) = self.joined {
             let joint = self.events.last().map_or(value, |event| event.point.value);
@@ -151,29 +151,29 @@ impl<'r> Run<'r> {
         u: &[f64],
     ) -> Result<(Point, Option<DMatrix<f64>>), FlowError> {
         let Self {
-            setting, companion, ..
+            setting, reference, ..
         } = self;
         if !setting.stability {
             return observe(setting, equations, u);
         }
         self.statistics.monodromies += 1;
-        let corrected = companion.correct(u);
-        let finer = corrected.as_ref().filter(|_| companion.finer);
+        let corrected = reference.correct(u);
+        let finer = corrected.as_ref().filter(|_| reference.finer);
         let (at, known) = match finer {
-            Some(finer) => (&mut companion.equations, &finer.u[..]),
+            Some(finer) => (&mut reference.equations, &finer.u[..]),
             None => (equations, u),
         };
         let (mut point, map) = observe(setting, at, known)?;
         let Some(map) = map else {
             return Ok((point, None));
         };
-        let found = multipliers(&map, companion.equations.span.half);
-        let (mut spread, in_states) = companion.errors(&map, &found);
+        let found = multipliers(&map, reference.equations.span.half);
+        let (mut spread, in_states) = reference.errors(&map, &found);
         let mut error = in_states * self.size;
         if let Some(corrected) = &corrected {
-            let other = companion.multipliers_beside(corrected);
-            spread += companion.part * distance(&found, &other);
-            error += companion.part * companion.equations.apart(u, &corrected.u);
+            let other = reference.multipliers_beside(corrected);
+            spread += reference.part * distance(&found, &other);
+            error += reference.part * reference.equations.apart(u, &corrected.u);
         } else {
             spread = f64::INFINITY;
             error = f64::INFINITY;

@@ -3,7 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::bend::Bend;
-use super::companion::Companion;
+use super::error_reference::ErrorReference;
 use super::setting::Setting;
 use super::track::{Curve, determinant};
 use super::watch::{ROUNDING, VANISHED};
@@ -220,9 +220,9 @@ pub(super) struct ReferenceCurve<'a> {
 impl<'a> ReferenceCurve<'a> {
     pub(super) fn of(setting: &Setting, curve: &Curve<'a>) -> Option<Self> {
         let (span, frame) = (curve.equations.span, curve.equations.frame.clone());
-        let companion = Companion::new(setting, span, frame, curve.units[0]).ok()?;
-        let (options, part) = (companion.options, companion.part);
-        let curve = curve.with(companion.equations);
+        let reference = ErrorReference::new(setting, span, frame, curve.units[0]).ok()?;
+        let (options, part) = (reference.options, reference.part);
+        let curve = curve.with(reference.equations);
         Some(Self {
             newton: Newton::new(&curve),
             curve,

@@ -8,7 +8,7 @@
 //! | double: two multipliers are one, or minus one | the product of `mu -+ 1` over all but the nearest |
 //! | degenerate: what begins at a doubling bends neither way | the coefficient of [`bend`](super::bend) |
 //!
-//! A place is looked for once more by the equations of a [`companion`](super::companion), and what that changes is its error.
+//! A place is looked for once more by the equations of a [`error_reference`](super::error_reference), and what that changes is its error.
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
 

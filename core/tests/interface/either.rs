@@ -141,7 +141,11 @@ fn diagrams_are_made_by_both_methods() {
     let balance = HarmonicBalance::new().harmonics(20).bifurcations(true);
     let by_balance = request.by(balance).depth(1).run().expect("a diagram");
     for diagram in [by_shooting, by_balance] {
-        let periods: Vec<_> = diagram.branches.iter().map(|branch| branch.period()).collect();
+        let periods: Vec<_> = diagram
+            .branches
+            .iter()
+            .map(|branch| branch.period())
+            .collect();
         assert_eq!(periods, [1, 2]);
     }
 }

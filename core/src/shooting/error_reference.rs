@@ -3,7 +3,7 @@
 //! A flow with a tolerance is compared with a finer one: the orbit is corrected for it, and what that changes is the error. What
 //! is reported then is the corrected orbit, so that the error stated is rather that of the orbit before.
 //!
-//! Where no finer flow can be asked for, the companion is a coarser one; the orbit itself is reported then, and the error is that
+//! Where no finer flow can be asked for, the reference is a coarser one; the orbit itself is reported then, and the error is that
 //! of the coarser one.
 //!
 //! A closed form errs by rounding only. What that does is seen from equations that are
@@ -33,7 +33,7 @@ const DISTURBANCE: f64 = 1e-9;
 const ONE_UPDATE: f64 = 1e-3;
 
 /// Equations of the same orbits that are finer, or, of a closed form, disturbed.
-pub(super) struct Companion {
+pub(super) struct ErrorReference {
     pub(super) equations: Equations,
     pub(super) newton: Newton,
     pub(super) options: NewtonOptions,
@@ -45,14 +45,14 @@ pub(super) struct Companion {
     pub(super) noise: f64,
 }
 
-/// An orbit of the companion's equations.
+/// An orbit of the reference's equations.
 pub(super) struct Corrected {
     pub(super) u: Vec<f64>,
     /// Multipliers before the correction.
     pub(super) multipliers: Vec<Complex<f64>>,
 }
 
-impl Companion {
+impl ErrorReference {
     /// Of the equations over this span, at orbits of this size.
     pub(super) fn new(
         setting: &Setting,
