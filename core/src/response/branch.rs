@@ -54,7 +54,7 @@ impl Branch {
                     request: &request,
                     shooting: &shooting,
                 };
-                at::at(&asked.setting(value, value)?, self, value)
+                at::at(&asked.problem(value, value)?, self, value)
             }
         }
     }

@@ -21,22 +21,22 @@ use crate::system::Variable;
 
 impl Follow for Shooting {
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
-        let setting = Asked {
+        let problem = Asked {
             request,
             shooting: self,
         }
-        .setting(value, value)?;
-        compute::orbit(&setting, &guess(request, value)?, value)
+        .problem(value, value)?;
+        compute::orbit(&problem, &guess(request, value)?, value)
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
-        let (range, setting) = Asked {
+        let (range, problem) = Asked {
             request,
             shooting: self,
         }
         .ranged()?;
         let guess = guess(request, range[0])?;
-        let branch = compute::branch(&setting, &guess, range, visit)?;
+        let branch = compute::branch(&problem, &guess, range, visit)?;
         Ok(with_request(branch, request, *self))
     }
 
@@ -55,18 +55,18 @@ impl Follow for Shooting {
         let doubles = event.kind == EventKind::PeriodDoubling;
         let period = event.point.orbit.period * if doubles { 2 } else { 1 };
         let (shooting, request) = of_period(*self, request, period);
-        let (range, setting) = Asked {
+        let (range, problem) = Asked {
             request: &request,
             shooting: &shooting,
         }
         .ranged()?;
-        let event = with_states(&setting, event);
-        let branch = compute::branch_at(&setting, &event, side.sign(), range, visit)?;
+        let event = with_states(&problem, event);
+        let branch = compute::branch_at(&problem, &event, side.sign(), range, visit)?;
         Ok(with_request(branch, &request, shooting))
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        let ([from, to], setting) = Asked {
+        let ([from, to], problem) = Asked {
             request,
             shooting: self,
         }
@@ -78,7 +78,7 @@ impl Follow for Shooting {
             "must be between from and to",
         )?;
         let guess = guess(request, value)?;
-        let branch = compute::branch_through(&setting, &guess, value, [from, to], visit)?;
+        let branch = compute::branch_through(&problem, &guess, value, [from, to], visit)?;
         Ok(with_request(branch, request, *self))
     }
 }
@@ -111,11 +111,11 @@ pub(super) fn track(
         request: &request,
         shooting: &shooting,
     };
-    let (range, setting) = asked.ranged()?;
+    let (range, problem) = asked.ranged()?;
     let facts = request.system.facts();
     let variable = validate::variable(facts, Some(second.name))?;
     validate::range(facts, variable, second.range[0], second.range[1])?;
-    if variable == setting.variable {
+    if variable == problem.variable {
         let name = second.name.to_owned();
         let must = "must be another one than what the branch varies";
         return Err(RequestError::Varied { name, must }.into());
@@ -126,7 +126,7 @@ pub(super) fn track(
         name: second.name.to_owned(),
         ranges: [range, second.range],
     };
-    trace::track(&setting, &with_states(&setting, event), &plane, visit)
+    trace::track(&problem, &with_states(&problem, event), &plane, visit)
 }
 
 /// An orbit with its series.
@@ -168,7 +168,7 @@ pub(super) fn completed(
         shooting: &shooting,
     };
     asked.belongs(point)?;
-    complete::complete(&asked.setting(point.value, point.value)?, point)
+    complete::complete(&asked.problem(point.value, point.value)?, point)
 }
 
 /// The same request for orbits of another period, with as many segments as it has periods.

@@ -4,7 +4,7 @@
 //! the orbit is searched along the chord of the two.
 
 use super::compute;
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use super::start::{self, First};
 use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
@@ -24,26 +24,30 @@ const SAME: f64 = 1e-9;
 ///
 /// # Errors
 /// If the orbit between two neighbours is not found.
-pub(crate) fn at(setting: &Setting, branch: &Branch, value: f64) -> Result<Vec<Point>, Error> {
+pub(crate) fn at(
+    problem: &ShootingProblem,
+    branch: &Branch,
+    value: f64,
+) -> Result<Vec<Point>, Error> {
     let same = |a: &Point, b: &Point| is_same(a, b);
-    orbits_at(branch, value, |ends| between(setting, ends, value), same)
+    orbits_at(branch, value, |ends| between(problem, ends, value), same)
 }
 
-fn between(setting: &Setting, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {
+fn between(problem: &ShootingProblem, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {
     let motion = |reason| MotionError { value, reason };
-    let (equations, u) = start::known(setting, a)?;
+    let (equations, u) = start::known(problem, a)?;
     let mut first = First {
         u,
         equations,
         size: a.size(),
     };
     if !a.orbit.symmetric {
-        first.settle(setting).map_err(motion)?;
+        first.settle(problem).map_err(motion)?;
     }
     let First { equations, u, .. } = &mut first;
     let last = equations.unknowns_of(&b.orbit.states, b.value);
     let mut newton = Newton::new(equations);
-    let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
+    let options = problem.newton(problem.source.tolerance, equations.frame.ratio);
     let chord = Chord {
         ends: [u.clone(), last],
         range: (b.value - a.value).abs(),
@@ -62,7 +66,7 @@ fn between(setting: &Setting, [a, b]: [&Point; 2], value: f64) -> Result<Point, 
     let end = u.len() - 1;
     u[end] = value;
     solve::at_value(equations, &mut newton, u, options).map_err(|_| lost)?;
-    compute::read(setting, first, value)
+    compute::read(problem, first, value)
 }
 
 fn is_same(a: &Point, b: &Point) -> bool {

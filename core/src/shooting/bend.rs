@@ -14,7 +14,7 @@
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, sections 4.5 and 9.3 (the generalised flip).
 
 use super::equations::{Equations, Span};
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use super::switch::direction;
 use super::track::Curve;
 use crate::continuation::newton::{Border, Newton};
@@ -48,12 +48,12 @@ impl Bend {
     /// # Errors
     /// If there is no flow.
     pub(super) fn new(
-        setting: &Setting,
+        problem: &ShootingProblem,
         curve: &Curve<'_>,
         symmetric: bool,
         farther: bool,
     ) -> Result<Self, Error> {
-        let distance = if setting.source.exact {
+        let distance = if problem.source.exact {
             EXACT
         } else {
             DISTANCE
@@ -67,7 +67,7 @@ impl Bend {
             segments: 2 * segments,
         };
         let frame = curve.equations.frame.clone();
-        let equations = Equations::new(setting, curve.equations.tolerance, span, frame)?;
+        let equations = Equations::new(problem, curve.equations.tolerance, span, frame)?;
         Ok(Self {
             newton: Newton::new(&equations),
             equations,
@@ -87,7 +87,12 @@ impl Bend {
     }
 
     /// `k` at a point of the curve, whose unknowns end with both parameters.
-    pub(super) fn at(&mut self, setting: &Setting, curve: &Curve<'_>, u: &[f64]) -> Option<f64> {
+    pub(super) fn at(
+        &mut self,
+        problem: &ShootingProblem,
+        curve: &Curve<'_>,
+        u: &[f64],
+    ) -> Option<f64> {
         let last = u.len() - 1;
         self.equations.flow.set(self.second, u[last]).ok()?;
         let mut states = curve.equations.states_of(&u[..last]);
@@ -100,11 +105,11 @@ impl Bend {
         let crossed = self.crossings(&u)?;
         PARTS.into_iter().find_map(|part| {
             let e = part * self.distance;
-            let (far, same) = self.coefficient(setting, &u, &direction, e)?;
+            let (far, same) = self.coefficient(problem, &u, &direction, e)?;
             if self.crossings(&same)? != crossed {
                 return None;
             }
-            let (near, _) = self.coefficient(setting, &u, &direction, 0.5 * e)?;
+            let (near, _) = self.coefficient(problem, &u, &direction, 0.5 * e)?;
             Some((4.0 * near - far) / 3.0)
         })
     }
@@ -119,7 +124,7 @@ impl Bend {
     /// `(lambda(e) - lambda(0)) / e^2`, and the orbit.
     fn coefficient(
         &mut self,
-        setting: &Setting,
+        problem: &ShootingProblem,
         u: &[f64],
         direction: &[f64],
         e: f64,
@@ -134,7 +139,7 @@ impl Bend {
             row: &row,
             value: crate::numeric::linear::dot(&row, &beside),
         };
-        let options = setting.newton(self.equations.tolerance, self.equations.frame.ratio);
+        let options = problem.newton(self.equations.tolerance, self.equations.frame.ratio);
         let corrected =
             self.newton
                 .correct(&mut self.equations, &mut beside, border, scale, options);

@@ -3,7 +3,7 @@
 //! passes it or turns back.
 
 use super::equations::Equations;
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use crate::branches::error::OrbitError;
 use crate::branches::solve;
 use crate::continuation::follow::{CurvePoint, Step};
@@ -34,7 +34,7 @@ enum Found {
 /// # Errors
 /// [`OrbitError::Beyond`] if the branch turns back before, and `reason` if nothing is known.
 pub(super) fn search(
-    setting: &Setting,
+    problem: &ShootingProblem,
     equations: &mut Equations,
     u: &[f64],
     value: f64,
@@ -42,8 +42,8 @@ pub(super) fn search(
 ) -> Result<Vec<f64>, Error> {
     let mut search = Search {
         newton: Newton::new(equations),
-        start: setting.newton_at_start(),
-        options: setting.newton(setting.source.tolerance, 1.0),
+        start: problem.newton_at_start(),
+        options: problem.newton(problem.source.tolerance, 1.0),
         equations,
         value,
         held: 0,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::options::Shooting;
-use super::setting::{Setting, Source};
+use super::problem::{ShootingProblem, Source};
 use crate::balance::symmetry::Over;
 use crate::branches::point::Point;
 use crate::branches::request::{Guess, Request};
@@ -82,15 +82,15 @@ impl Asked<'_> {
     }
 
     /// The range, and everything else that was asked for, checked.
-    pub(crate) fn ranged(&self) -> Result<([f64; 2], Setting), Error> {
+    pub(crate) fn ranged(&self) -> Result<([f64; 2], ShootingProblem), Error> {
         let [from, to] = self.request.range()?;
-        let setting = self.setting(from, to)?;
-        validate::range(self.request.system.facts(), setting.variable, from, to)?;
-        Ok(([from, to], setting))
+        let problem = self.problem(from, to)?;
+        validate::range(self.request.system.facts(), problem.variable, from, to)?;
+        Ok(([from, to], problem))
     }
 
     /// Checks everything that was asked for.
-    pub(crate) fn setting(&self, from: f64, to: f64) -> Result<Setting, Error> {
+    pub(crate) fn problem(&self, from: f64, to: f64) -> Result<ShootingProblem, Error> {
         let facts = self.request.system.facts();
         if facts.coordinates.is_empty() {
             return Err(ModelError::NoCoordinates.into());
@@ -128,7 +128,7 @@ impl Asked<'_> {
             range,
         };
         let odd = over.is_odd();
-        Ok(Setting {
+        Ok(ShootingProblem {
             system: Arc::clone(&self.request.system),
             source: self.source(&parameters, omega),
             varied: self.request.varied(),

@@ -3,7 +3,7 @@
 //! Positions are sampled along the motion itself and transformed, so coefficients err by aliasing only: those of displacements
 //! fall at least as `k^-3`, and there are hundreds of samples for each harmonic that is kept.
 
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::branches::orbit::Orbit;
@@ -25,10 +25,10 @@ const HARMONICS: usize = 20;
 ///
 /// # Errors
 /// If the motion cannot be computed.
-pub(crate) fn complete(setting: &Setting, point: &Point) -> Result<Point, Error> {
+pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point, Error> {
     let coordinates = point.orbit.coordinates;
-    let divisor = setting.divisor as usize;
-    let samples = sampled(setting, point, SAMPLES * divisor)?;
+    let divisor = problem.divisor as usize;
+    let samples = sampled(problem, point, SAMPLES * divisor)?;
     let count = samples.len() / coordinates;
     let harmonics = HARMONICS * divisor * point.orbit.period;
     let mut transform = SampledTransform::new(count);
@@ -49,10 +49,10 @@ pub(crate) fn complete(setting: &Setting, point: &Point) -> Result<Point, Error>
         period: point.orbit.period,
     };
     let mut balance = Balance::new(
-        setting.system.as_ref(),
+        problem.system.as_ref(),
         &point.parameters,
         point.orbit.omega,
-        setting.variable,
+        problem.variable,
         resolution,
     );
     balance.set(point.value);
@@ -77,15 +77,15 @@ pub(crate) fn complete(setting: &Setting, point: &Point) -> Result<Point, Error>
 }
 
 /// Positions at equal distances over the period, so many in each period of the declaration, coordinate by coordinate.
-fn sampled(setting: &Setting, point: &Point, each: usize) -> Result<Vec<f64>, Error> {
+fn sampled(problem: &ShootingProblem, point: &Point, each: usize) -> Result<Vec<f64>, Error> {
     let coordinates = point.orbit.coordinates;
     let count = each * point.orbit.period;
-    let mut flow = setting.flow(setting.source.tolerance)?;
+    let mut flow = problem.flow(problem.source.tolerance)?;
     let motion = |reason| MotionError {
         value: point.value,
         reason,
     };
-    flow.set(setting.variable, point.value).map_err(motion)?;
+    flow.set(problem.variable, point.value).map_err(motion)?;
     let mut samples = vec![0.0; coordinates * count];
     let mut index = 0;
     let mut keep = |_: f64, state: &[f64]| {

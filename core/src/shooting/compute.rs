@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use super::error_reference::ErrorReference;
+use super::problem::ShootingProblem;
 use super::run::Run;
-use super::setting::Setting;
 use super::start::{First, first};
 use super::switch::{self, Begun};
 use crate::branches::branch::{Branch, Further, Model};
@@ -20,17 +20,17 @@ use crate::time::MotionError;
 ///
 /// # Errors
 /// If none is found.
-pub(crate) fn orbit(setting: &Setting, guess: &Guess, value: f64) -> Result<Point, Error> {
-    let found = first(setting, guess, value, setting.omega_at(value))?;
-    read(setting, found, value)
+pub(crate) fn orbit(problem: &ShootingProblem, guess: &Guess, value: f64) -> Result<Point, Error> {
+    let found = first(problem, guess, value, problem.omega_at(value))?;
+    read(problem, found, value)
 }
 
 /// A solution as an orbit.
 ///
 /// # Errors
 /// If its motion cannot be computed.
-pub(super) fn read(setting: &Setting, found: First, value: f64) -> Result<Point, Error> {
-    let (mut run, mut found) = run(setting, found, value, value)?;
+pub(super) fn read(problem: &ShootingProblem, found: First, value: f64) -> Result<Point, Error> {
+    let (mut run, mut found) = run(problem, found, value, value)?;
     let read = run.read(&mut found.equations, &found.u);
     let (point, _) = read.map_err(|reason| MotionError { value, reason })?;
     Ok(point)
@@ -41,15 +41,15 @@ pub(super) fn read(setting: &Setting, found: First, value: f64) -> Result<Point,
 /// # Errors
 /// If there is no first orbit.
 pub(crate) fn branch(
-    setting: &Setting,
+    problem: &ShootingProblem,
     guess: &Guess,
     [from, to]: [f64; 2],
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let started = Instant::now();
-    let found = first(setting, guess, from, omega_between(setting, [from, to]))?;
+    let found = first(problem, guess, from, omega_between(problem, [from, to]))?;
     let near = |u: Vec<f64>| Start::Near(u);
-    followed(setting, found, near, [from, to], visit, started)
+    followed(problem, found, near, [from, to], visit, started)
 }
 
 /// The branch that begins at an event, on one side of it, within a range.
@@ -57,16 +57,16 @@ pub(crate) fn branch(
 /// # Errors
 /// If there is none.
 pub(crate) fn branch_at(
-    setting: &Setting,
+    problem: &ShootingProblem,
     event: &Event,
     side: f64,
     [from, to]: [f64; 2],
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let started = Instant::now();
-    let Begun { first, point } = switch::depart(setting, event, side, (to - from).abs())?;
+    let Begun { first, point } = switch::depart(problem, event, side, (to - from).abs())?;
     let along = |_| Start::Along(Box::new(point));
-    followed(setting, first, along, [from, to], visit, started)
+    followed(problem, first, along, [from, to], visit, started)
 }
 
 /// The branch through the orbit near a guess at a value, both ways.
@@ -74,7 +74,7 @@ pub(crate) fn branch_at(
 /// # Errors
 /// If there is no such orbit.
 pub(crate) fn branch_through(
-    setting: &Setting,
+    problem: &ShootingProblem,
     guess: &Guess,
     value: f64,
     [from, to]: [f64; 2],
@@ -84,10 +84,10 @@ pub(crate) fn branch_through(
     let mut part = |[from, to]: [f64; 2]| {
         let side = (to - from).signum();
         let started = Instant::now();
-        let found = first(setting, guess, value, setting.omega_at(value))?;
-        let Begun { first, point } = switch::resume(setting, found, side, (to - from).abs())?;
+        let found = first(problem, guess, value, problem.omega_at(value))?;
+        let Begun { first, point } = switch::resume(problem, found, side, (to - from).abs())?;
         let along = |_| Start::Along(Box::new(point));
-        followed(setting, first, along, [from, to], &mut *visit, started)
+        followed(problem, first, along, [from, to], &mut *visit, started)
     };
     let forth = part([from, to])?;
     // Once around, or interrupted: there is no other side.
@@ -98,24 +98,24 @@ pub(crate) fn branch_through(
 }
 
 /// A frequency that velocities count by.
-fn omega_between(setting: &Setting, [from, to]: [f64; 2]) -> f64 {
-    match setting.variable {
+fn omega_between(problem: &ShootingProblem, [from, to]: [f64; 2]) -> f64 {
+    match problem.variable {
         Variable::Omega => (from * to).sqrt(),
-        Variable::Parameter(_) => setting.omega,
+        Variable::Parameter(_) => problem.omega,
     }
 }
 
 /// The branch from a solution on.
 fn followed(
-    setting: &Setting,
+    problem: &ShootingProblem,
     found: First,
     start: impl FnOnce(Vec<f64>) -> Start,
     [from, to]: [f64; 2],
     visit: See<'_>,
     started: Instant,
 ) -> Result<Branch, Error> {
-    let (mut run, First { equations, u, .. }) = run(setting, found, from, to)?;
-    let options = setting.follow(from, to, equations.frame.ratio);
+    let (mut run, First { equations, u, .. }) = run(problem, found, from, to)?;
+    let options = problem.follow(from, to, equations.frame.ratio);
     let stopped = run.follow(equations, start(u), options, visit)?;
     let Run {
         points,
@@ -126,8 +126,8 @@ fn followed(
         ..
     } = run;
     Ok(Branch {
-        model: Model::of(setting.system.as_ref()),
-        varied: setting.varied.clone(),
+        model: Model::of(problem.system.as_ref()),
+        varied: problem.varied.clone(),
         points,
         events,
         turns,
@@ -141,12 +141,17 @@ fn followed(
 }
 
 /// A run that begins at a solution.
-fn run(setting: &Setting, found: First, from: f64, to: f64) -> Result<(Run<'_>, First), Error> {
+fn run(
+    problem: &ShootingProblem,
+    found: First,
+    from: f64,
+    to: f64,
+) -> Result<(Run<'_>, First), Error> {
     let First {
         equations, size, ..
     } = &found;
     let frame = equations.frame.clone();
-    let reference = ErrorReference::new(setting, equations.span, frame, *size)?;
-    let options = setting.follow(from, to, equations.frame.ratio).newton;
-    Ok((Run::new(setting, options, reference, *size), found))
+    let reference = ErrorReference::new(problem, equations.span, frame, *size)?;
+    let options = problem.follow(from, to, equations.frame.ratio).newton;
+    Ok((Run::new(problem, options, reference, *size), found))
 }

@@ -17,7 +17,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::equations::Equations;
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use super::start::{self, First};
 use super::switch::{Begun, DEPARTURES};
 use crate::branches::error::OrbitError;
@@ -48,7 +48,7 @@ struct Directions {
 /// # Errors
 /// [`OrbitError::NoBranch`] if no other branch was found.
 pub(super) fn depart(
-    setting: &Setting,
+    problem: &ShootingProblem,
     event: &Event,
     side: f64,
     range: f64,
@@ -57,7 +57,7 @@ pub(super) fn depart(
         kind: event.kind,
         value: event.point.value,
     };
-    let mut first = same(setting, event)?;
+    let mut first = same(problem, event)?;
     let u = first.u.clone();
     let scale = first.size;
     let equations = &first.equations;
@@ -69,7 +69,7 @@ pub(super) fn depart(
     let directions = directions.ok_or_else(nothing)?;
     for departure in DEPARTURES {
         let step = side * departure;
-        let point = beside(setting, &mut first, &directions, &units, step);
+        let point = beside(problem, &mut first, &directions, &units, step);
         if let Some(point) = point {
             first.u.clone_from(&point.u);
             return Ok(Begun { first, point });
@@ -79,9 +79,9 @@ pub(super) fn depart(
 }
 
 /// The equations of the event's own orbit, and the orbit as a solution of them.
-fn same(setting: &Setting, event: &Event) -> Result<First, Error> {
+fn same(problem: &ShootingProblem, event: &Event) -> Result<First, Error> {
     let point = &event.point;
-    let (equations, u) = start::known(setting, point)?;
+    let (equations, u) = start::known(problem, point)?;
     let mut first = First {
         u,
         equations,
@@ -91,7 +91,7 @@ fn same(setting: &Setting, event: &Event) -> Result<First, Error> {
     if !point.orbit.symmetric {
         let value = point.value;
         let motion = |reason| MotionError { value, reason };
-        first.settle(setting).map_err(motion)?;
+        first.settle(problem).map_err(motion)?;
     }
     Ok(first)
 }
@@ -147,7 +147,7 @@ fn directions(
 
 /// The orbit of the other branch with this component across the known one.
 fn beside(
-    setting: &Setting,
+    problem: &ShootingProblem,
     first: &mut First,
     Directions { across, other }: &Directions,
     units: &[f64],
@@ -165,6 +165,6 @@ fn beside(
         held: &row,
         scale,
     };
-    let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
+    let options = problem.newton(problem.source.tolerance, equations.frame.ratio);
     departure.first_point(equations, &mut newton, step, options)
 }

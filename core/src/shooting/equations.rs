@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DMatrixView};
 
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use crate::cancel::Cancel;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
@@ -113,12 +113,12 @@ pub(super) struct Equations {
 impl Equations {
     /// With a flow of this tolerance.
     pub(super) fn new(
-        setting: &Setting,
+        problem: &ShootingProblem,
         tolerance: f64,
         span: Span,
         frame: Frame,
     ) -> Result<Self, Error> {
-        let flow = setting.flow(tolerance)?;
+        let flow = problem.flow(tolerance)?;
         let coordinates = flow.coordinates();
         let order = 2 * coordinates;
         Ok(Self {
@@ -133,13 +133,13 @@ impl Equations {
             disturbance: 0.0,
             failure: None,
             tolerance,
-            cancel: setting.cancel.clone(),
+            cancel: problem.cancel.clone(),
         })
     }
 
     /// The same equations, with a flow of their own.
-    pub(super) fn again(&self, setting: &Setting) -> Result<Self, Error> {
-        let equations = Self::new(setting, self.tolerance, self.span, self.frame.clone())?;
+    pub(super) fn again(&self, problem: &ShootingProblem) -> Result<Self, Error> {
+        let equations = Self::new(problem, self.tolerance, self.span, self.frame.clone())?;
         Ok(Self {
             disturbance: self.disturbance,
             ..equations

@@ -13,7 +13,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::equations::{Equations, Frame, Span};
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::error::Error;
 use crate::numeric::spectrum::{distance, eigenvalues};
@@ -55,29 +55,29 @@ pub(super) struct Corrected {
 impl ErrorReference {
     /// Of the equations over this span, at orbits of this size.
     pub(super) fn new(
-        setting: &Setting,
+        problem: &ShootingProblem,
         span: Span,
         frame: Frame,
         size: f64,
     ) -> Result<Self, Error> {
-        let exact = setting.source.exact;
-        let finer = !exact && FINER * setting.source.tolerance >= FINEST;
+        let exact = problem.source.exact;
+        let finer = !exact && FINER * problem.source.tolerance >= FINEST;
         let ratio = if finer || exact { FINER } else { 1.0 / FINER };
-        let tolerance = (ratio * setting.source.tolerance).max(FINEST);
+        let tolerance = (ratio * problem.source.tolerance).max(FINEST);
         let rounding = ROUNDING * frame.ratio;
-        let mut equations = Equations::new(setting, tolerance, span, frame)?;
+        let mut equations = Equations::new(problem, tolerance, span, frame)?;
         let (part, noise) = if exact {
             equations.disturbance = DISTURBANCE * size;
             ((SAFETY * rounding / DISTURBANCE).min(1.0), rounding)
         } else {
             (
                 1.0,
-                rounding + SAFETY * tolerance.min(setting.source.tolerance),
+                rounding + SAFETY * tolerance.min(problem.source.tolerance),
             )
         };
         Ok(Self {
             newton: Newton::new(&equations),
-            options: setting.newton(tolerance, equations.frame.ratio),
+            options: problem.newton(tolerance, equations.frame.ratio),
             equations,
             part,
             finer,

@@ -6,8 +6,8 @@
 use super::equations::Equations;
 use super::error_reference::{self, ErrorReference, multipliers};
 use super::method::VANISHED;
+use super::problem::ShootingProblem;
 use super::run::{Run, observe, relative};
-use super::setting::Setting;
 use super::tested::{Test, Tests};
 use crate::branches::engine::{self, Aim};
 use crate::branches::point::{Event, Point};
@@ -72,7 +72,7 @@ impl Run<'_> {
         options: NewtonOptions,
         change: Change,
     ) -> Option<Root> {
-        let other = equations.again(self.setting).ok()?;
+        let other = equations.again(self.problem).ok()?;
         let mut tested = Tested { equations, other };
         let aim = if change.kind == EventKind::BranchPoint {
             Aim::Crossing
@@ -109,13 +109,13 @@ impl Run<'_> {
             part,
             finer,
             noise,
-        } = ErrorReference::new(self.setting, span, frame, size).ok()?;
+        } = ErrorReference::new(self.problem, span, frame, size).ok()?;
         let moved = self.root(&mut others, &mut newton, step, options, change);
         self.statistics += newton.statistics;
         let root = &zero.root;
         let (read, error, root) = match &moved {
             None => {
-                let (read, _) = observe(self.setting, equations, &root.located.point.u).ok()?;
+                let (read, _) = observe(self.problem, equations, &root.located.point.u).ok()?;
                 (read, f64::INFINITY, root)
             }
             Some(moved) => {
@@ -128,7 +128,7 @@ impl Run<'_> {
                 let (best, other) = if finer { (there, here) } else { (here, there) };
                 let root = best.root;
                 let errors = Errors { part, noise };
-                let (read, error) = compared(self.setting, change.kind, best, other, errors)?;
+                let (read, error) = compared(self.problem, change.kind, best, other, errors)?;
                 (read, error, root)
             }
         };
@@ -147,7 +147,7 @@ impl Run<'_> {
 
 /// An event of some equations with its errors, and the error of its value: a part of what it is in others.
 fn compared(
-    setting: &Setting,
+    problem: &ShootingProblem,
     kind: EventKind,
     best: Place<'_, '_>,
     other: Place<'_, '_>,
@@ -158,7 +158,7 @@ fn compared(
     let there = &other.root.located.point.u;
     let half = equations.span.half;
     let u = &root.located.point.u;
-    let (mut read, map) = observe(setting, equations, u).ok()?;
+    let (mut read, map) = observe(problem, equations, u).ok()?;
     let by = (moved - read.value).abs();
     let error = part * by + root.error + other.root.error + ROUNDING * read.value.abs();
     read.error = Some(relative(part * equations.apart(u, there), &read));

@@ -95,7 +95,7 @@ impl Run<'_> {
         many: usize,
     ) -> Option<Bracket> {
         let mut counting = Counting {
-            other: equations.again(self.setting).ok()?,
+            other: equations.again(self.problem).ok()?,
             equations,
             nearest: Bracket {
                 before: step.before.clone(),
@@ -118,7 +118,7 @@ impl Run<'_> {
         Bracket { before, next, .. }: &Bracket,
     ) {
         let after = self.points.len() - 1;
-        let Ok((point, _)) = observe(self.setting, equations, &before.u) else {
+        let Ok((point, _)) = observe(self.problem, equations, &before.u) else {
             let (value, test) = (before.parameter(), f64::NAN);
             self.turns.push(Turn {
                 kind: EventKind::Grazing { turns: false },

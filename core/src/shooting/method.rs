@@ -34,7 +34,7 @@ pub(super) struct ShootingBranch<'b, 'r> {
 
 impl<'b, 'r> ShootingBranch<'b, 'r> {
     pub(super) fn new(run: &'b mut Run<'r>, equations: Equations, visit: See<'b>) -> Self {
-        let watched = if run.setting.stability {
+        let watched = if run.problem.stability {
             tested::watched(equations.span.half).to_vec()
         } else {
             Vec::new()
@@ -65,7 +65,7 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
             return *tests;
         }
         if self.other.is_none() {
-            self.other = self.equations.again(self.run.setting).ok();
+            self.other = self.equations.again(self.run.problem).ok();
         }
         let map = self
             .other
@@ -78,7 +78,7 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
     }
 
     fn recurrence(&mut self, at: &CurvePoint) -> Result<Option<Recurrence>, FlowError> {
-        let (span, odd) = (self.equations.span, self.run.setting.odd);
+        let (span, odd) = (self.equations.span, self.run.problem.odd);
         if self.run.points.is_empty() || (span.period == 1 && !odd) {
             return Ok(None);
         }
@@ -103,7 +103,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     }
 
     fn vanishing(&self) -> f64 {
-        self.run.setting.vanishing(self.equations.frame.ratio)
+        self.run.problem.vanishing(self.equations.frame.ratio)
     }
 
     /// Without damping the product of pairs is rounding all along.
@@ -220,7 +220,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     }
 
     fn graze(&mut self, newton: &mut Newton, step: Step<'_>, _: Option<Turn>) {
-        if self.run.setting.stability
+        if self.run.problem.stability
             && let [.., a, b] = &self.run.points[..]
             && a.observed.switches != b.observed.switches
         {

@@ -6,8 +6,8 @@ use super::equations::Equations;
 use super::error_reference::{ErrorReference, multipliers};
 use super::extremes;
 use super::method::ShootingBranch;
+use super::problem::ShootingProblem;
 use super::recurrence::{Recurrence, SameState};
-use super::setting::Setting;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::{Motion, Observed};
@@ -29,7 +29,7 @@ const STILL: f64 = 10.0;
 
 /// What a run has gathered.
 pub(super) struct Run<'r> {
-    pub(super) setting: &'r Setting,
+    pub(super) problem: &'r ShootingProblem,
     pub(super) options: NewtonOptions,
     reference: ErrorReference,
     size: f64,
@@ -49,13 +49,13 @@ pub(super) struct Run<'r> {
 
 impl<'r> Run<'r> {
     pub(super) fn new(
-        setting: &'r Setting,
+        problem: &'r ShootingProblem,
         options: NewtonOptions,
         reference: ErrorReference,
         size: f64,
     ) -> Self {
         Self {
-            setting,
+            problem,
             options,
             reference,
             size,
@@ -113,14 +113,14 @@ impl<'r> Run<'r> {
     pub(super) fn same_state(&self, equations: &Equations) -> SameState {
         SameState {
             size: self.size,
-            part: self.setting.same(equations.frame.ratio),
+            part: self.problem.same(equations.frame.ratio),
         }
     }
 
     /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
     /// same orbits again, looked at from elsewhere.
     pub(super) fn meets(&mut self, equations: &mut Equations) -> bool {
-        let odd = self.setting.odd;
+        let odd = self.problem.odd;
         let Some(event) = self.events.last() else {
             return false;
         };
@@ -151,10 +151,10 @@ impl<'r> Run<'r> {
         u: &[f64],
     ) -> Result<(Point, Option<DMatrix<f64>>), FlowError> {
         let Self {
-            setting, reference, ..
+            problem, reference, ..
         } = self;
-        if !setting.stability {
-            return observe(setting, equations, u);
+        if !problem.stability {
+            return observe(problem, equations, u);
         }
         self.statistics.monodromies += 1;
         let corrected = reference.correct(u);
@@ -163,7 +163,7 @@ impl<'r> Run<'r> {
             Some(finer) => (&mut reference.equations, &finer.u[..]),
             None => (equations, u),
         };
-        let (mut point, map) = observe(setting, at, known)?;
+        let (mut point, map) = observe(problem, at, known)?;
         let Some(map) = map else {
             return Ok((point, None));
         };
@@ -191,16 +191,16 @@ impl<'r> Run<'r> {
 
 /// An orbit without its stability, and its map if the stability is wanted.
 pub(super) fn observe(
-    setting: &Setting,
+    problem: &ShootingProblem,
     equations: &mut Equations,
     u: &[f64],
 ) -> Result<(Point, Option<DMatrix<f64>>), FlowError> {
     let value = u[u.len() - 1];
-    let rate = setting.rate_at(value);
+    let rate = problem.rate_at(value);
     let mut extremes = vec![Motion::NONE; equations.order() / 2];
     let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
     let before = equations.flow.work().switches;
-    let map = if setting.stability {
+    let map = if problem.stability {
         Some(equations.map(u, see)?)
     } else {
         equations.trace(u, see)?;
@@ -215,12 +215,12 @@ pub(super) fn observe(
     }
     let point = Point {
         value,
-        parameters: setting.parameters_at(value),
+        parameters: problem.parameters_at(value),
         orbit: Orbit {
             series: Vec::new(),
             states: equations.states_of(u),
             coordinates: extremes.len(),
-            omega: setting.omega_at(value),
+            omega: problem.omega_at(value),
             base: rate / equations.span.period as f64,
             period: equations.span.period,
             symmetric: half,

@@ -1,7 +1,7 @@
 //! States of an orbit that is known by its Fourier series: shooting goes on from what the balance has found.
 
 use super::equations::Span;
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::event::EventKind;
@@ -9,7 +9,7 @@ use crate::numeric::fourier::series;
 use crate::system::Variable;
 
 /// An event with the states of its orbit at the beginnings of the segments, and the tangent of the branch there; as it is, if it has them.
-pub(crate) fn with_states(setting: &Setting, event: &Event) -> Event {
+pub(crate) fn with_states(problem: &ShootingProblem, event: &Event) -> Event {
     let orbit = &event.point.orbit;
     if !orbit.has_series() || !orbit.states.is_empty() {
         return event.clone();
@@ -25,12 +25,12 @@ pub(crate) fn with_states(setting: &Setting, event: &Event) -> Event {
         },
     };
     let times =
-        || (0..span.segments).map(|s| span.begins(s) * f64::from(setting.divisor) / orbit.omega);
+        || (0..span.segments).map(|s| span.begins(s) * f64::from(problem.divisor) / orbit.omega);
     let states = times().flat_map(|time| state(orbit, &orbit.series, [orbit.base, 0.0], time));
     let mut tangent = Vec::new();
     if let Some((slope, of_series)) = event.tangent.split_last() {
         // A velocity is the base frequency times the slope of the series, and both change along the branch.
-        let moves = setting.variable == Variable::Omega;
+        let moves = problem.variable == Variable::Omega;
         let of_base = if moves {
             slope * orbit.base / orbit.omega
         } else {

@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::bend::Bend;
 use super::error_reference::ErrorReference;
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use super::track::{Curve, determinant};
 use super::watch::{ROUNDING, VANISHED};
 use crate::continuation::follow::{CurvePoint, Step};
@@ -47,7 +47,7 @@ pub(super) struct Tests {
 
 /// What the test functions of a curve are computed with.
 pub(super) struct TestFunctions<'p> {
-    pub(super) setting: &'p Setting,
+    pub(super) problem: &'p ShootingProblem,
     /// `-1` or `1`; `None` on a curve of grazing.
     pub(super) shift: Option<f64>,
     /// On curves where branches begin, if it is wanted.
@@ -63,7 +63,7 @@ impl TestFunctions<'_> {
     ) -> Option<Tests> {
         let shift = self.shift?;
         let bend = self.bend.as_mut();
-        let bend = bend.and_then(|bend| bend.at(self.setting, curve, &at.u));
+        let bend = bend.and_then(|bend| bend.at(self.problem, curve, &at.u));
         Some(Tests {
             switches: counted.switches,
             other: determinant(&counted.map, -shift),
@@ -154,7 +154,7 @@ impl Search<'_, '_> {
         functions: &mut TestFunctions<'_>,
         criterion: Criterion,
     ) -> Option<CurvePoint> {
-        let other = self.curve.again(functions.setting).ok()?;
+        let other = self.curve.again(functions.problem).ok()?;
         let mut tested = Tested {
             curve: &mut *self.curve,
             other,
@@ -177,8 +177,8 @@ impl Search<'_, '_> {
     }
 
     /// The last point before levels are not crossed so `many` times any more, and how far the next one is.
-    pub(super) fn bracket(&mut self, setting: &Setting, many: usize) -> Option<Place> {
-        let mut other = self.curve.again(setting).ok()?;
+    pub(super) fn bracket(&mut self, problem: &ShootingProblem, many: usize) -> Option<Place> {
+        let mut other = self.curve.again(problem).ok()?;
         let (mut before, mut next) = (self.step.before.clone(), self.step.next.clone());
         for _ in 0..HALVINGS {
             let ends = Step {
@@ -218,9 +218,9 @@ pub(super) struct ReferenceCurve<'a> {
 }
 
 impl<'a> ReferenceCurve<'a> {
-    pub(super) fn of(setting: &Setting, curve: &Curve<'a>) -> Option<Self> {
+    pub(super) fn of(problem: &ShootingProblem, curve: &Curve<'a>) -> Option<Self> {
         let (span, frame) = (curve.equations.span, curve.equations.frame.clone());
-        let reference = ErrorReference::new(setting, span, frame, curve.units[0]).ok()?;
+        let reference = ErrorReference::new(problem, span, frame, curve.units[0]).ok()?;
         let (options, part) = (reference.options, reference.part);
         let curve = curve.with(reference.equations);
         Some(Self {

@@ -3,9 +3,9 @@
 use super::beyond;
 use super::equations::{Equations, Frame, Span};
 use super::extremes;
+use super::problem::ShootingProblem;
 use super::recurrence::{Recurrence, SameState};
 use super::run::no_orbit;
-use super::setting::Setting;
 use crate::branches::error::Attempts;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::Motion;
@@ -27,41 +27,41 @@ pub(super) struct First {
 
 /// The orbit at a value, from a guess; frequencies count by `omega`.
 pub(super) fn first(
-    setting: &Setting,
+    problem: &ShootingProblem,
     guess: &Guess,
     value: f64,
     omega: f64,
 ) -> Result<First, Error> {
     let span = Span {
-        period: setting.period,
+        period: problem.period,
         half: false,
-        segments: setting.segments,
+        segments: problem.segments,
     };
-    let coordinates = setting.flow(setting.source.tolerance)?.coordinates();
-    let frame = Frame::plain(setting.variable, coordinates, omega);
-    let mut equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
+    let coordinates = problem.flow(problem.source.tolerance)?.coordinates();
+    let frame = Frame::plain(problem.variable, coordinates, omega);
+    let mut equations = Equations::new(problem, problem.source.tolerance, span, frame)?;
     let motion = |reason| MotionError { value, reason };
-    let states = states(setting, &mut equations, guess, value).map_err(motion)?;
+    let states = states(problem, &mut equations, guess, value).map_err(motion)?;
     let mut u = equations.unknowns_of(&states, value);
     let mut newton = Newton::new(&equations);
-    let options = setting.newton_at_start();
+    let options = problem.newton_at_start();
     let solved = solve::at_value(&mut equations, &mut newton, &mut u, options);
     if let Err(reason) = solved {
         let reason = no_orbit(value, reason, equations.failure);
-        u = beyond::search(setting, &mut equations, &u, value, reason)?;
+        u = beyond::search(problem, &mut equations, &u, value, reason)?;
     }
     let mut first = First {
         equations,
         u,
         size: 1.0,
     };
-    first.settle(setting).map_err(motion)?;
-    let same = first.same_state(setting);
-    let recurrence = Recurrence::of(&mut first.equations, &first.u, same, setting.odd);
+    first.settle(problem).map_err(motion)?;
+    let same = first.same_state(problem);
+    let recurrence = Recurrence::of(&mut first.equations, &first.u, same, problem.odd);
     let recurrence = recurrence.map_err(motion)?;
-    if recurrence.period < setting.period {
+    if recurrence.period < problem.period {
         return Err(OrbitError::NoSuchPeriod {
-            period: setting.period,
+            period: problem.period,
             value,
             attempts: Attempts {
                 planned: 1,
@@ -73,7 +73,7 @@ pub(super) fn first(
         .into());
     }
     if recurrence.odd {
-        first.halve(setting)?;
+        first.halve(problem)?;
     }
     Ok(first)
 }
@@ -82,9 +82,12 @@ pub(super) fn first(
 ///
 /// # Errors
 /// If there is no flow.
-pub(super) fn known(setting: &Setting, point: &Point) -> Result<(Equations, Vec<f64>), Error> {
+pub(super) fn known(
+    problem: &ShootingProblem,
+    point: &Point,
+) -> Result<(Equations, Vec<f64>), Error> {
     through(
-        setting,
+        problem,
         point,
         point.orbit.period,
         point.orbit.symmetric,
@@ -97,7 +100,7 @@ pub(super) fn known(setting: &Setting, point: &Point) -> Result<(Equations, Vec<
 /// # Errors
 /// If there is no flow.
 pub(super) fn through(
-    setting: &Setting,
+    problem: &ShootingProblem,
     point: &Point,
     period: usize,
     half: bool,
@@ -109,15 +112,15 @@ pub(super) fn through(
         half,
         segments: states.len() / (2 * coordinates),
     };
-    let frame = Frame::plain(setting.variable, coordinates, point.orbit.omega);
-    let equations = Equations::new(setting, setting.source.tolerance, span, frame)?;
+    let frame = Frame::plain(problem.variable, coordinates, point.orbit.omega);
+    let equations = Equations::new(problem, problem.source.tolerance, span, frame)?;
     let u = equations.unknowns_of(states, point.value);
     Ok((equations, u))
 }
 
 /// States at the beginnings of the segments.
 fn states(
-    setting: &Setting,
+    problem: &ShootingProblem,
     equations: &mut Equations,
     guess: &Guess,
     value: f64,
@@ -128,7 +131,7 @@ fn states(
             let n = orbit.coordinates();
             let mut states = Vec::with_capacity(2 * n * span.segments);
             for segment in 0..span.segments {
-                let time = span.begins(segment) * f64::from(setting.divisor) / orbit.omega;
+                let time = span.begins(segment) * f64::from(problem.divisor) / orbit.omega;
                 let motions = (0..n).filter_map(|i| orbit.state_at(i, time));
                 let (positions, velocities): (Vec<f64>, Vec<f64>) = motions.unzip();
                 states.extend(positions);
@@ -143,18 +146,18 @@ fn states(
 
 impl First {
     /// How near two states are that are one.
-    pub(super) fn same_state(&self, setting: &Setting) -> SameState {
+    pub(super) fn same_state(&self, problem: &ShootingProblem) -> SameState {
         SameState {
             size: self.size,
-            part: setting.same(self.equations.frame.ratio),
+            part: problem.same(self.equations.frame.ratio),
         }
     }
 
     /// Counts positions from the middle of the motion, and finds its size.
-    pub(super) fn settle(&mut self, setting: &Setting) -> Result<(), FlowError> {
+    pub(super) fn settle(&mut self, problem: &ShootingProblem) -> Result<(), FlowError> {
         let value = self.u[self.u.len() - 1];
         let n = self.equations.order() / 2;
-        let rate = setting.rate_at(value);
+        let rate = problem.rate_at(value);
         let mut extremes = vec![Motion::NONE; n];
         let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
         self.equations.trace(&self.u, see)?;
@@ -171,7 +174,7 @@ impl First {
     }
 
     /// Goes over to the equations of half a period.
-    fn halve(&mut self, setting: &Setting) -> Result<(), Error> {
+    fn halve(&mut self, problem: &ShootingProblem) -> Result<(), Error> {
         let value = self.u[self.u.len() - 1];
         let motion = |reason| MotionError { value, reason };
         let mut state = self.equations.states_of(&self.u);
@@ -187,7 +190,7 @@ impl First {
         let states = self.equations.states_from(&state, value).map_err(motion)?;
         self.u = self.equations.unknowns_of(&states, value);
         let mut newton = Newton::new(&self.equations);
-        let options = setting.newton(setting.source.tolerance, 1.0);
+        let options = problem.newton(problem.source.tolerance, 1.0);
         solve::at_value(&mut self.equations, &mut newton, &mut self.u, options)
             .map_err(|reason| no_orbit(value, reason, self.equations.failure))?;
         Ok(())

@@ -20,8 +20,8 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
+use super::problem::ShootingProblem;
 use super::recurrence::Recurrence;
-use super::setting::Setting;
 use super::start::{self, First};
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
@@ -50,7 +50,7 @@ pub(super) struct Begun {
 /// # Errors
 /// [`OrbitError::NoBranch`] if no branch begins there, or its first orbit was not found.
 pub(super) fn depart(
-    setting: &Setting,
+    problem: &ShootingProblem,
     event: &Event,
     side: f64,
     range: f64,
@@ -60,7 +60,7 @@ pub(super) fn depart(
         value: event.point.value,
     };
     if event.kind == EventKind::BranchPoint {
-        return super::crossed::depart(setting, event, side, range);
+        return super::crossed::depart(problem, event, side, range);
     }
     if !matches!(
         event.kind,
@@ -68,7 +68,7 @@ pub(super) fn depart(
     ) {
         return Err(nothing.into());
     }
-    let (mut equations, u) = twice(setting, &event.point)?;
+    let (mut equations, u) = twice(problem, &event.point)?;
     let Some(direction) = direction(&mut equations, &u, event.point.orbit.symmetric) else {
         return Err(nothing.into());
     };
@@ -81,13 +81,13 @@ pub(super) fn depart(
         value: event.point.value,
         reason,
     };
-    first.settle(setting).map_err(motion)?;
+    first.settle(problem).map_err(motion)?;
     for departure in DEPARTURES {
         let step = side * departure;
-        if let Some(point) = first_orbit(setting, &mut first, &direction, step, range) {
-            let same = first.same_state(setting);
-            let recurrence = Recurrence::of(&mut first.equations, &point.u, same, setting.odd);
-            let is_new = |found: Recurrence| found.period == setting.period && !found.odd;
+        if let Some(point) = first_orbit(problem, &mut first, &direction, step, range) {
+            let same = first.same_state(problem);
+            let recurrence = Recurrence::of(&mut first.equations, &point.u, same, problem.odd);
+            let is_new = |found: Recurrence| found.period == problem.period && !found.odd;
             if recurrence.is_ok_and(is_new) {
                 first.u.clone_from(&point.u);
                 return Ok(Begun { first, point });
@@ -102,13 +102,13 @@ pub(super) fn depart(
 /// # Errors
 /// If it does not solve the equations.
 pub(super) fn resume(
-    setting: &Setting,
+    problem: &ShootingProblem,
     mut first: First,
     side: f64,
     range: f64,
 ) -> Result<Begun, Error> {
     let mut newton = Newton::new(&first.equations);
-    let options = setting.newton(setting.source.tolerance, first.equations.frame.ratio);
+    let options = problem.newton(problem.source.tolerance, first.equations.frame.ratio);
     let value = first.u[first.u.len() - 1];
     let toward = Toward { side, range };
     let point = along(
@@ -124,11 +124,11 @@ pub(super) fn resume(
 }
 
 /// The equations of the new branch, and the orbit as a solution of them.
-fn twice(setting: &Setting, point: &Point) -> Result<(Equations, Vec<f64>), Error> {
+fn twice(problem: &ShootingProblem, point: &Point) -> Result<(Equations, Vec<f64>), Error> {
     let sign = if point.orbit.symmetric { -1.0 } else { 1.0 };
     let mut states = point.orbit.states.clone();
     states.extend(point.orbit.states.iter().map(|x| sign * x));
-    start::through(setting, point, setting.period, false, &states)
+    start::through(problem, point, problem.period, false, &states)
 }
 
 /// The direction of the new branch in extended unknowns, from (1); its entry for the parameter is zero.
@@ -153,7 +153,7 @@ pub(super) fn direction(equations: &mut Equations, u: &[f64], symmetric: bool) -
 
 /// The orbit whose component in the direction is `step` times the size, and the tangent there, away from the old branch.
 fn first_orbit(
-    setting: &Setting,
+    problem: &ShootingProblem,
     first: &mut First,
     direction: &[f64],
     step: f64,
@@ -172,7 +172,7 @@ fn first_orbit(
         held: &row,
         scale,
     };
-    let options = setting.newton(setting.source.tolerance, equations.frame.ratio);
+    let options = problem.newton(problem.source.tolerance, equations.frame.ratio);
     departure.first_point(equations, &mut newton, step, options)
 }
 

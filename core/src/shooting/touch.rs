@@ -14,7 +14,7 @@
 use std::f64::consts::TAU;
 
 use super::equations::Equations;
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use crate::model::layout::Layout;
 use crate::numeric::roots::{self, Place};
 use crate::system::{System, Variable};
@@ -138,7 +138,7 @@ impl<'a> Touch<'a> {
     /// The gap and the level that an orbit comes nearest to touching; `None` if it touches none.
     pub(super) fn of(
         system: &'a dyn System,
-        setting: &Setting,
+        problem: &ShootingProblem,
         equations: &mut Equations,
         u: &[f64],
     ) -> Option<Self> {
@@ -158,7 +158,7 @@ impl<'a> Touch<'a> {
                     },
                     gap: Gap::default(),
                     base: 0.0,
-                    parameters: setting.parameters.clone(),
+                    parameters: problem.parameters.clone(),
                     coefficients: vec![0.0; layout.coefficients],
                     arguments: vec![0.0; layout.contacts[contact].argument_count],
                     levels: vec![0.0; law.facts().levels.len()],
@@ -166,7 +166,7 @@ impl<'a> Touch<'a> {
                     layout: layout.clone(),
                 };
                 let value = u[u.len() - 1];
-                touch.set(setting.omega_at(value), &[(setting.variable, value)]);
+                touch.set(problem.omega_at(value), &[(problem.variable, value)]);
                 let at = touch.levels[level];
                 let mut extremes = Vec::new();
                 touch.extremes(equations, u, &mut |extreme| extremes.push(extreme))?;

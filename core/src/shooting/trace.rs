@@ -4,8 +4,8 @@
 
 use nalgebra::Complex;
 
+use super::problem::ShootingProblem;
 use super::run::no_orbit;
-use super::setting::Setting;
 use super::start;
 use super::touch::Touch;
 use super::track::{Condition, Curve};
@@ -143,7 +143,7 @@ impl std::fmt::Display for SpecialKind {
     }
 }
 
-/// Ranges of the two parameters: the first is what the setting varies.
+/// Ranges of the two parameters: the first is what the problem varies.
 pub(crate) struct Plane<'a> {
     pub(crate) system: &'a dyn System,
     pub(crate) second: Variable,
@@ -196,16 +196,16 @@ impl Half {
 /// # Errors
 /// If events of that kind are on no such curve, or the event does not solve its equations.
 pub(crate) fn track(
-    setting: &Setting,
+    problem: &ShootingProblem,
     event: &Event,
     plane: &Plane<'_>,
     visit: See<'_>,
 ) -> Result<Track, Error> {
     check_inside(event, plane)?;
-    let mut back = half(setting, event, plane, -1.0, visit)?;
+    let mut back = half(problem, event, plane, -1.0, visit)?;
     let track = |points, special, ends| Track {
         kind: event.kind,
-        names: [setting.varied.clone(), plane.name.clone()],
+        names: [problem.varied.clone(), plane.name.clone()],
         period: event.point.orbit.period,
         points,
         special,
@@ -222,8 +222,8 @@ pub(crate) fn track(
     let forth = if interrupted {
         Half::interrupted()
     } else {
-        match half(setting, event, plane, 1.0, visit) {
-            Err(_) if setting.cancel.is_cancelled() => Half::interrupted(),
+        match half(problem, event, plane, 1.0, visit) {
+            Err(_) if problem.cancel.is_cancelled() => Half::interrupted(),
             forth => forth?,
         }
     };
@@ -246,15 +246,15 @@ fn check_inside(event: &Event, plane: &Plane<'_>) -> Result<(), Error> {
 
 /// From the event towards larger values of the second parameter, or smaller ones.
 fn half(
-    setting: &Setting,
+    problem: &ShootingProblem,
     event: &Event,
     plane: &Plane<'_>,
     side: f64,
     visit: See<'_>,
 ) -> Result<Half, Error> {
-    let (mut curve, mut u) = curve(setting, event, plane)?;
+    let (mut curve, mut u) = curve(problem, event, plane)?;
     let mut newton = Newton::new(&curve);
-    let newton_options = setting.newton(setting.source.tolerance, 1.0);
+    let newton_options = problem.newton(problem.source.tolerance, 1.0);
     let value = event.point.value;
     solve::at_value(&mut curve, &mut newton, &mut u, newton_options)
         .map_err(|reason| no_orbit(value, reason, curve.equations.failure))?;
@@ -263,15 +263,15 @@ fn half(
     let options = FollowOptions {
         from: a.min(b),
         to: a.max(b),
-        points: setting.points.min(POINTS),
+        points: problem.points.min(POINTS),
         steps: StepControl {
             smallest: SHORTEST,
-            ..setting.steps
+            ..problem.steps
         },
         newton: newton_options,
     };
     let symmetric = event.point.orbit.symmetric;
-    let mut watch = Watch::new(setting, plane, newton_options, &curve, symmetric);
+    let mut watch = Watch::new(problem, plane, newton_options, &curve, symmetric);
     let mut interrupted = false;
     let outcome = follow(
         &mut curve,
@@ -332,12 +332,12 @@ fn second_of(event: &Event, second: Variable) -> f64 {
 
 /// The problem of the curve, and the event as its unknowns.
 fn curve<'a>(
-    setting: &Setting,
+    problem: &ShootingProblem,
     event: &Event,
     plane: &Plane<'a>,
 ) -> Result<(Curve<'a>, Vec<f64>), Error> {
     let point = &event.point;
-    let (mut equations, mut u) = start::known(setting, point)?;
+    let (mut equations, mut u) = start::known(problem, point)?;
     let nothing = OrbitError::NoBranch {
         kind: event.kind,
         value: point.value,
@@ -346,8 +346,8 @@ fn curve<'a>(
         EventKind::Fold => Condition::Multiplier(-1.0),
         EventKind::PeriodDoubling | EventKind::SymmetryBreaking => Condition::Multiplier(1.0),
         EventKind::Grazing { .. } => {
-            let touch = Touch::of(plane.system, setting, &mut equations, &u).ok_or(nothing)?;
-            Condition::Touch(Box::new(touch), setting.omega)
+            let touch = Touch::of(plane.system, problem, &mut equations, &u).ok_or(nothing)?;
+            Condition::Touch(Box::new(touch), problem.omega)
         }
         _ => return Err(nothing.into()),
     };

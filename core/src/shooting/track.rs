@@ -18,7 +18,7 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
-use super::setting::Setting;
+use super::problem::ShootingProblem;
 use super::touch::Touch;
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::problem::Problem;
@@ -78,8 +78,8 @@ impl<'a> Curve<'a> {
     ///
     /// # Errors
     /// If there is no flow.
-    pub(super) fn again(&self, setting: &Setting) -> Result<Self, Error> {
-        let equations = self.equations.again(setting)?;
+    pub(super) fn again(&self, problem: &ShootingProblem) -> Result<Self, Error> {
+        let equations = self.equations.again(problem)?;
         Ok(self.with(equations))
     }
 

@@ -14,8 +14,8 @@
 
 use super::bend::Bend;
 use super::halved::Halved;
+use super::problem::ShootingProblem;
 use super::run::no_orbit;
-use super::setting::Setting;
 use super::special_search::{
     Counted, Criterion, Function, Place, ReferenceCurve, Search, TestFunctions, Tests, apart,
     values,
@@ -40,7 +40,7 @@ pub(super) const ROUNDING: f64 = 1e-12;
 
 /// What is looked at along a curve.
 pub(super) struct Watch<'p, 'a> {
-    setting: &'p Setting,
+    problem: &'p ShootingProblem,
     plane: &'p Plane<'a>,
     options: NewtonOptions,
     symmetric: bool,
@@ -71,7 +71,7 @@ struct Moved {
 
 impl<'p, 'a> Watch<'p, 'a> {
     pub(super) fn new(
-        setting: &'p Setting,
+        problem: &'p ShootingProblem,
         plane: &'p Plane<'a>,
         options: NewtonOptions,
         curve: &Curve<'a>,
@@ -81,14 +81,14 @@ impl<'p, 'a> Watch<'p, 'a> {
             Condition::Multiplier(shift) => Some(shift),
             Condition::Touch(..) => None,
         };
-        let bend = (shift == Some(1.0)).then(|| Bend::new(setting, curve, symmetric, false).ok());
+        let bend = (shift == Some(1.0)).then(|| Bend::new(problem, curve, symmetric, false).ok());
         Self {
-            setting,
+            problem,
             plane,
             options,
             symmetric,
             functions: TestFunctions {
-                setting,
+                problem,
                 shift,
                 bend: bend.flatten(),
             },
@@ -245,7 +245,7 @@ impl<'p, 'a> Watch<'p, 'a> {
         let mut find = |search: &mut Search<'_, 'a>| {
             let found = search.zero(&mut functions, criterion);
             let found = found.map(Place::at);
-            found.or_else(|| search.bracket(self.setting, many))
+            found.or_else(|| search.bracket(self.problem, many))
         };
         let found = find(search);
         let moved = self.reference(search.curve).and_then(|mut reference| {
@@ -267,7 +267,7 @@ impl<'p, 'a> Watch<'p, 'a> {
         let moved = self.reference(search.curve).and_then(|mut reference| {
             // What is left of the next order at a distance is not proportional to the error of the flow.
             let bend = degenerate
-                .then(|| Bend::new(self.setting, &reference.curve, self.symmetric, true).ok());
+                .then(|| Bend::new(self.problem, &reference.curve, self.symmetric, true).ok());
             let mut functions = TestFunctions {
                 bend: bend.flatten(),
                 ..self.functions
@@ -289,7 +289,7 @@ impl<'p, 'a> Watch<'p, 'a> {
 
     /// The same curve by the equations of the error reference.
     fn reference(&self, curve: &Curve<'a>) -> Option<ReferenceCurve<'a>> {
-        ReferenceCurve::of(self.setting, curve)
+        ReferenceCurve::of(self.problem, curve)
     }
 
     /// Keeps a special point with the error that the reference tells, or in the middle of the step if it was not located.

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::compute::{branch, orbit};
-use super::setting::{Setting, Source};
+use super::problem::{ShootingProblem, Source};
 use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
 use crate::branches::progress::Progress;
@@ -39,7 +39,7 @@ fn steps(tolerance: f64) -> usize {
     (10.0 * tolerance.powf(-0.25)) as usize
 }
 
-fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting {
+fn problem(parameters: [f64; 4], variable: Variable, omega: f64) -> ShootingProblem {
     let make = move |tolerance: f64| -> Result<Box<dyn Flow>, Error> {
         Ok(Box::new(RungeKutta {
             parameters,
@@ -48,7 +48,7 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting {
             work: Work::default(),
         }))
     };
-    Setting {
+    ShootingProblem {
         source: Source {
             make: Box::new(make),
             exact: false,
@@ -76,10 +76,10 @@ fn setting(parameters: [f64; 4], variable: Variable, omega: f64) -> Setting {
 }
 
 /// The branch along a range from an orbit near a state.
-fn followed(setting: &Setting, state: [f64; 2], from: f64, to: f64) -> Branch {
+fn followed(problem: &ShootingProblem, state: [f64; 2], from: f64, to: f64) -> Branch {
     let guess = Guess::State(state.to_vec());
     let go = &mut |_: Progress<'_>| ControlFlow::Continue(());
-    branch(setting, &guess, [from, to], go).unwrap()
+    branch(problem, &guess, [from, to], go).unwrap()
 }
 
 /// Against central differences, for one and several segments, a whole and half a period, every variable.
@@ -92,7 +92,7 @@ fn jacobian_agrees_with_differences() {
             Variable::Parameter(0),
             Variable::Parameter(2),
         ] {
-            let setting = setting([0.1, 0.5, 0.3, 0.0], variable, 0.9);
+            let problem = problem([0.1, 0.5, 0.3, 0.0], variable, 0.9);
             let span = Span {
                 period,
                 half,
@@ -104,7 +104,7 @@ fn jacobian_agrees_with_differences() {
                 omega: 0.9,
                 ratio: 1.0,
             };
-            let mut equations = Equations::new(&setting, 1e-6, span, frame).unwrap();
+            let mut equations = Equations::new(&problem, 1e-6, span, frame).unwrap();
             let n = equations.unknowns();
             let mut u: Vec<f64> = (0..=n).map(|i| (i as f64 + 0.7).sin()).collect();
             u[n] = 0.8;
@@ -134,8 +134,8 @@ fn jacobian_agrees_with_differences() {
 
 #[test]
 fn folds_of_a_smooth_oscillator_are_those_of_the_balance() {
-    let setting = setting([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
-    let found = followed(&setting, [0.2, 0.0], 0.7, 1.8);
+    let problem = problem([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
+    let found = followed(&problem, [0.2, 0.0], 0.7, 1.8);
     assert_eq!(found.stopped, Stop::ReachedEnd);
     assert!(found.turns.is_empty(), "{:?}", found.turns);
     assert_eq!(found.events.len(), 2, "{:?}", found.events);
@@ -186,12 +186,12 @@ fn an_orbit_of_the_balance_is_refined() {
     let by_balance = request.harmonics(3).max_points(2).run().unwrap();
     let known = &by_balance.points[0].orbit;
     for segments in [1, 3] {
-        let mut setting = setting([0.05, 1.0, 0.2, 0.1], Variable::Omega, 0.8);
-        setting.segments = segments;
-        let refined = orbit(&setting, &Guess::Orbit(known.clone()), 0.8).unwrap();
-        setting.source.tolerance = 1e-12;
+        let mut problem = problem([0.05, 1.0, 0.2, 0.1], Variable::Omega, 0.8);
+        problem.segments = segments;
+        let refined = orbit(&problem, &Guess::Orbit(known.clone()), 0.8).unwrap();
+        problem.source.tolerance = 1e-12;
         let guess = Guess::State(refined.orbit.state());
-        let again = orbit(&setting, &guess, 0.8).unwrap();
+        let again = orbit(&problem, &guess, 0.8).unwrap();
         let pairs = refined.orbit.state().into_iter().zip(again.orbit.state());
         let change = pairs.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()));
         let stated = refined.peak_to_peak() * refined.error.expect("with its stability");
@@ -212,7 +212,7 @@ fn an_orbit_of_the_balance_is_refined() {
 /// By half a period, by a whole one, and by the balance.
 #[test]
 fn symmetry_breaks_where_the_balance_says() {
-    let mut setting = setting([0.1, 1.0, 1.0, 0.0], Variable::Parameter(2), 1.0);
+    let mut problem = problem([0.1, 1.0, 1.0, 0.0], Variable::Parameter(2), 1.0);
     let model = Duffing {
         zeta: 0.1,
         cubic: 1.0,
@@ -226,8 +226,8 @@ fn symmetry_breaks_where_the_balance_says() {
         (true, EventKind::SymmetryBreaking),
         (false, EventKind::BranchPoint),
     ] {
-        setting.odd = odd;
-        let found = followed(&setting, [0.1, 0.0], 0.1, 12.0);
+        problem.odd = odd;
+        let found = followed(&problem, [0.1, 0.0], 0.1, 12.0);
         assert_eq!(found.stopped, Stop::ReachedEnd);
         assert!(found.turns.is_empty(), "{:?}", found.turns);
         assert_eq!(found.events.len(), 2, "{:?}", found.events);
@@ -245,8 +245,8 @@ fn symmetry_breaks_where_the_balance_says() {
 /// The branch of twice the period ends on the branch that doubles, where that has a multiplier of minus one.
 #[test]
 fn a_period_doubles_where_the_branch_of_twice_the_period_ends() {
-    let mut setting = setting([0.1, 1.0, 1.0, 0.3], Variable::Parameter(2), 1.0);
-    let found = followed(&setting, [0.1, 0.0], 0.1, 12.0);
+    let mut problem = problem([0.1, 1.0, 1.0, 0.3], Variable::Parameter(2), 1.0);
+    let found = followed(&problem, [0.1, 0.0], 0.1, 12.0);
     let [doubling] = &found.events[..] else {
         panic!("{:?}", found.events);
     };
@@ -254,15 +254,15 @@ fn a_period_doubles_where_the_branch_of_twice_the_period_ends() {
     let one = doubling.point.stability.multipliers[0];
     assert!((one + 1.0).norm() < 1e-10, "{one}");
     // Beyond it the motion settles on twice the period.
-    let mut flow = setting.flow(1e-6).unwrap();
+    let mut flow = problem.flow(1e-6).unwrap();
     flow.set(Variable::Parameter(2), 7.3).unwrap();
     let mut state = doubling.point.orbit.state();
     for _ in 0..1000 {
         flow.advance(0.0, TAU, &mut state, None, None).unwrap();
     }
-    setting.period = 2;
-    setting.segments = 2;
-    let found = followed(&setting, [state[0], state[1]], 7.3, 7.0);
+    problem.period = 2;
+    problem.segments = 2;
+    let found = followed(&problem, [state[0], state[1]], 7.3, 7.0);
     let end = found.events.last().unwrap();
     let joined = Stop::Joined {
         period: 1,
@@ -278,12 +278,12 @@ fn a_period_doubles_where_the_branch_of_twice_the_period_ends() {
 
 #[test]
 fn beyond_a_fold_there_is_no_orbit_and_the_fold_is_named() {
-    let setting = setting([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
-    let found = followed(&setting, [0.2, 0.0], 0.7, 1.8);
+    let problem = problem([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
+    let found = followed(&problem, [0.2, 0.0], 0.7, 1.8);
     let fold = &found.events[0].point;
     let guess = Guess::State(fold.orbit.state());
     let beyond = fold.value + 1e-7;
-    let error = orbit(&setting, &guess, beyond).unwrap_err();
+    let error = orbit(&problem, &guess, beyond).unwrap_err();
     let Some(&OrbitError::Beyond { value, fold: named }) = error.downcast_ref() else {
         panic!("{error}");
     };
@@ -291,22 +291,22 @@ fn beyond_a_fold_there_is_no_orbit_and_the_fold_is_named() {
     assert!((named - fold.value).abs() < 1e-10, "{named} {}", fold.value);
     let text = error.to_string();
     assert!(text.contains("turns back at 1.52244802"), "{text}");
-    let before = orbit(&setting, &guess, fold.value - 1e-7).unwrap();
+    let before = orbit(&problem, &guess, fold.value - 1e-7).unwrap();
     assert!((before.orbit.state()[0] - fold.orbit.state()[0]).abs() < 1e-2);
 }
 
 #[test]
 fn a_motion_without_end_is_an_error_and_not_a_panic() {
-    let setting = setting([0.05, -1.0, 0.2, 0.0], Variable::Omega, 0.5);
-    let error = orbit(&setting, &Guess::State(vec![3.0, 3.0]), 0.7).unwrap_err();
+    let problem = problem([0.05, -1.0, 0.2, 0.0], Variable::Omega, 0.5);
+    let error = orbit(&problem, &Guess::State(vec![3.0, 3.0]), 0.7).unwrap_err();
     assert!(error.downcast_ref::<MotionError>().is_some(), "{error}");
 }
 
 #[test]
 fn an_orbit_of_a_shorter_period_is_not_the_one_asked_for() {
-    let mut setting = setting([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
-    setting.period = 3;
-    let error = orbit(&setting, &Guess::State(vec![0.2, 0.0]), 0.7).unwrap_err();
+    let mut problem = problem([0.05, 1.0, 0.2, 0.0], Variable::Omega, 0.5);
+    problem.period = 3;
+    let error = orbit(&problem, &Guess::State(vec![0.2, 0.0]), 0.7).unwrap_err();
     assert!(
         matches!(
             error.downcast_ref(),
@@ -320,7 +320,7 @@ fn an_orbit_of_a_shorter_period_is_not_the_one_asked_for() {
 fn evaluations_do_not_allocate() {
     use super::equations::{Equations, Frame, Span};
     let variable = Variable::Omega;
-    let setting = setting([0.1, 0.5, 0.3, 0.0], variable, 0.9);
+    let problem = problem([0.1, 0.5, 0.3, 0.0], variable, 0.9);
     let span = Span {
         period: 2,
         half: false,
@@ -332,7 +332,7 @@ fn evaluations_do_not_allocate() {
         omega: 0.9,
         ratio: 1.0,
     };
-    let mut equations = Equations::new(&setting, 1e-4, span, frame).unwrap();
+    let mut equations = Equations::new(&problem, 1e-4, span, frame).unwrap();
     let n = equations.unknowns();
     let mut jacobian = Jacobian::new(equations.partition());
     let (u, mut residual) = (vec![0.5; n + 1], vec![0.0; n]);

@@ -23,7 +23,7 @@ pub(super) struct Source {
 }
 
 /// The system, what is varied, and how.
-pub(crate) struct Setting {
+pub(crate) struct ShootingProblem {
     pub(super) system: Arc<dyn System>,
     pub(super) source: Source,
     /// Name of what is varied.
@@ -50,8 +50,8 @@ const ITERATIONS: usize = 12;
 /// The same from a guess, where they are halved as long as they do not help.
 const ITERATIONS_AT_START: usize = 40;
 
-impl Setting {
-    /// A flow of this tolerance at the parameters of the setting.
+impl ShootingProblem {
+    /// A flow of this tolerance at the parameters of the problem.
     pub(super) fn flow(&self, tolerance: f64) -> Result<Box<dyn Flow>, Error> {
         (self.source.make)(tolerance)
     }
