@@ -168,12 +168,12 @@ impl Diagram {
 }
 
 /// Who looks at every orbit, and may ask to stop.
-pub(super) struct Watch<'v> {
+pub(super) struct Observer<'v> {
     visit: See<'v>,
     pub(super) interrupted: bool,
 }
 
-impl<'v> Watch<'v> {
+impl<'v> Observer<'v> {
     pub(super) fn new(visit: See<'v>) -> Self {
         Self {
             visit,
@@ -199,7 +199,7 @@ pub(super) struct Limits {
 
 /// The search, and what it has found.
 pub(super) struct Search<'v, M> {
-    pub(super) watch: Watch<'v>,
+    pub(super) observer: Observer<'v>,
     response: FrequencyResponse<M>,
     /// Length of the range.
     range: f64,
@@ -212,14 +212,18 @@ pub(super) struct Search<'v, M> {
 }
 
 impl<'v, M: OrbitMethod> Search<'v, M> {
-    pub(super) fn new(response: FrequencyResponse<M>, limits: Limits, watch: Watch<'v>) -> Self {
+    pub(super) fn new(
+        response: FrequencyResponse<M>,
+        limits: Limits,
+        observer: Observer<'v>,
+    ) -> Self {
         Self {
             range: response.request.length(),
             response,
             depth: limits.depth,
             most_branches: limits.branches,
             points_left: limits.points,
-            watch,
+            observer,
             queue: VecDeque::new(),
             diagram: Diagram::default(),
         }
@@ -282,7 +286,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         period: usize,
         state: &[f64],
     ) -> Result<(), Reason> {
-        if self.watch.interrupted {
+        if self.observer.interrupted {
             return Err(Reason::Interrupted);
         }
         let request = self.response.clone().period(period).near_state(state);
@@ -298,7 +302,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         let request = request
             .near_orbit(&orbit.orbit)
             .max_points(self.points_left / 2);
-        let branch = request.through_with(value, |progress| self.watch.see(progress));
+        let branch = request.through_with(value, |progress| self.observer.see(progress));
         let branch = branch.map_err(Reason::of)?;
         self.add(Origin::Attractor { value }, 0, branch);
         Ok(())
@@ -327,7 +331,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         }
         let mut failed = None;
         for &side in sides {
-            if self.watch.interrupted {
+            if self.observer.interrupted {
                 return Err(Reason::Interrupted);
             }
             if self.diagram.branches.len() >= self.most_branches || self.points_left < 2 {
@@ -335,7 +339,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             }
             let request = self.response.clone().max_points(self.points_left);
             let branch =
-                match request.switch_with(&event, side, |progress| self.watch.see(progress)) {
+                match request.switch_with(&event, side, |progress| self.observer.see(progress)) {
                     Ok(branch) => branch,
                     Err(error) => {
                         // The other side may begin all the same.

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use super::diagram::{Diagram, Limits, Origin, Reason, Search, Watch};
+use super::diagram::{Diagram, Limits, Observer, Origin, Reason, Search};
 use crate::attractors::basin::{Basin, Basins, Visit};
 use crate::bifurcation::error::BifurcationError;
 use crate::branches::progress::Progress;
@@ -233,7 +233,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
         let [from, to] = self.response.request.range()?;
         self.check()?;
         self.check_searched([from, to])?;
-        let mut seen = Watch::new(&mut visit);
+        let mut seen = Observer::new(&mut visit);
         let first = self.response.clone().max_points(self.points.max(2));
         let branch = first.run_with(|progress| seen.see(progress))?;
         let [low, high] = self.wider(from, to)?;
@@ -285,12 +285,12 @@ impl<M: OrbitMethod> Bifurcations<M> {
         basin: &Basin,
         visit: Visit<'_>,
     ) -> Result<(), Reason> {
-        if search.watch.interrupted {
+        if search.observer.interrupted {
             return Err(Reason::Interrupted);
         }
         let found = self.basins(value, basin, visit).map_err(Reason::of)?;
         if !found.complete {
-            search.watch.interrupted = true;
+            search.observer.interrupted = true;
             return Err(Reason::Interrupted);
         }
         for attractor in found.attractors {

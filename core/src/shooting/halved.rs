@@ -14,10 +14,10 @@
 //! period, and its order of contact).
 
 use super::equations::Equations;
+use super::event_monitor::{EventMonitor, ROUNDING};
 use super::special_search::apart;
 use super::trace::{Special, SpecialKind};
 use super::track::Curve;
-use super::watch::{ROUNDING, Watch};
 use crate::continuation::follow::{CurvePoint, Step};
 
 /// Two differences point opposite ways if the cosine of their angle is below this.
@@ -82,7 +82,7 @@ impl Halved {
     }
 }
 
-impl Watch<'_, '_> {
+impl EventMonitor<'_, '_> {
     /// Whether an orbit of half the period lies between the last point and this one.
     pub(super) fn passes_half_the_period(&mut self, curve: &Curve<'_>, at: &CurvePoint) -> bool {
         if self.functions.shift != Some(-1.0) {

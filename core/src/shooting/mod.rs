@@ -13,6 +13,7 @@ pub(crate) mod compute;
 mod crossed;
 mod equations;
 mod error_reference;
+mod event_monitor;
 mod events;
 mod extremes;
 mod grazing;
@@ -32,7 +33,6 @@ mod tests;
 mod touch;
 pub(crate) mod trace;
 mod track;
-mod watch;
 
 pub(crate) use checked::Asked;
 pub use options::Shooting;

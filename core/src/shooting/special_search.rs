@@ -4,9 +4,9 @@ use nalgebra::{Complex, DMatrix};
 
 use super::bend::Bend;
 use super::error_reference::ErrorReference;
+use super::event_monitor::{ROUNDING, VANISHED};
 use super::problem::ShootingProblem;
 use super::track::{Curve, determinant};
-use super::watch::{ROUNDING, VANISHED};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{inside, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};

@@ -1,15 +1,15 @@
 //! Following a curve of bifurcations in two parameters, both ways from one of them.
 //!
-//! What is special is looked for by [`watch`](super::watch).
+//! What is special is looked for by [`event_monitor`](super::event_monitor).
 
 use nalgebra::Complex;
 
+use super::event_monitor::EventMonitor;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
 use super::start;
 use super::touch::Touch;
 use super::track::{Condition, Curve};
-use super::watch::Watch;
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See, Stage};
@@ -271,7 +271,7 @@ fn half(
         newton: newton_options,
     };
     let symmetric = event.point.orbit.symmetric;
-    let mut watch = Watch::new(problem, plane, newton_options, &curve, symmetric);
+    let mut monitor = EventMonitor::new(problem, plane, newton_options, &curve, symmetric);
     let mut interrupted = false;
     let outcome = follow(
         &mut curve,
@@ -279,9 +279,9 @@ fn half(
         Start::Along(Box::new(first)),
         options,
         &mut |curve, newton, seen| {
-            let known = watch.points.len();
-            watch.visit(curve, newton, &seen)?;
-            let shown = watch.points[known..].iter().zip(known + 1..);
+            let known = monitor.points.len();
+            monitor.visit(curve, newton, &seen)?;
+            let shown = monitor.points[known..].iter().zip(known + 1..);
             let mut shown = shown.map(|(point, done)| (point.values[0], done));
             if shown.any(|(value, done)| visit(Progress::at(Stage::Curve, done, value)).is_break())
             {
@@ -294,11 +294,11 @@ fn half(
     let end = if interrupted {
         TrackEnd::Stopped(Stop::Interrupted)
     } else {
-        watch.end_of(&curve, outcome, value)?
+        monitor.end_of(&curve, outcome, value)?
     };
     Ok(Half {
-        points: watch.points,
-        special: watch.special,
+        points: monitor.points,
+        special: monitor.special,
         end,
     })
 }

@@ -1,7 +1,7 @@
 //! Where another branch crosses, which no zero of a test function can be driven to: see [`continuation::crossing`](crate::continuation::crossing).
 
 use super::Run;
-use super::watch::{ROUNDING, Test, known, three_quarters};
+use super::event_monitor::{ROUNDING, Test, known, three_quarters};
 use crate::balance::Balance;
 use crate::balance::truncation::BEYOND;
 use crate::branches::point::Event;
@@ -56,7 +56,7 @@ impl<'a> Run<'a> {
         let width = BESIDE * newton.norm().length(scale, &step.difference());
         let fine = self.reader.finer.balance().resolution();
         let resolutions = [fine, three_quarters(fine)];
-        let mut watches = resolutions.map(|of| self.watch_like(test, of));
+        let mut monitors = resolutions.map(|of| self.monitor_like(test, of));
         let mut coarse = [[0.0; 2]; 2];
         let mut finer = [[[0.0; 2]; 2]; 2];
         for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
@@ -72,17 +72,17 @@ impl<'a> Run<'a> {
                 return f64::INFINITY;
             }
             coarse[side] = [u[u.len() - 1], test.at(&u, &at.tangent)];
-            for ((watch, of), finer) in watches.iter_mut().zip(resolutions).zip(&mut finer) {
+            for ((monitor, of), finer) in monitors.iter_mut().zip(resolutions).zip(&mut finer) {
                 let u = self.with_harmonics_of(self.reader.finer.extended(), of);
                 let tangent = self.with_harmonics_of(&at.tangent, of);
-                let Some(mut test) = watch.test(test) else {
+                let Some(mut test) = monitor.test(test) else {
                     return f64::INFINITY;
                 };
                 finer[side] = [u[u.len() - 1], test.at(&u, &tangent)];
             }
         }
-        for watch in &watches {
-            self.count(watch);
+        for monitor in &monitors {
+            self.count(monitor);
         }
         let zero = |[[p, a], [q, b]]: [[f64; 2]; 2]| p + (q - p) * a / (a - b);
         let [all, half] = finer.map(|sides| zero(sides) - zero(coarse));

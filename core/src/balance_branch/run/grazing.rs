@@ -15,9 +15,9 @@
 //! (corners of branches).
 
 use super::Run;
+use super::event_monitor::{Found, Test};
 use super::events::FOLD_TOLERANCE;
 use super::touch::{Extreme, Passage, Touches, crossings, distinct, is_copy, passed};
-use super::watch::{Found, Test};
 use crate::balance::{Balance, Resolution};
 use crate::branches::point::Event;
 use crate::continuation::follow::{CurvePoint, Step};

@@ -2,8 +2,8 @@
 
 use super::Run;
 use super::crossed::CROSSED;
+use super::event_monitor::{EventMonitor, Found, Test as OfOrbit};
 use super::events::FOLD_TOLERANCE;
-use super::watch::{Found, Test as OfOrbit, Watch};
 use crate::balance::{Balance, Resolution};
 use crate::branches::engine;
 use crate::branches::problem::{BranchProblem, Change, Kept, Read, Test, TestValue, Watched, Zero};
@@ -44,12 +44,12 @@ impl BranchProblem for BalanceBranch<'_, '_> {
     }
 
     fn watched(&self) -> &[Watched] {
-        &self.run.watch.watched
+        &self.run.monitor.watched
     }
 
     fn test(&mut self, index: usize, at: &CurvePoint, needed: bool) -> TestValue {
         let near = needed || self.run.is_near_circle();
-        self.run.watch.value(index, at, near)
+        self.run.monitor.value(index, at, near)
     }
 
     fn aim(&self) -> f64 {
@@ -58,7 +58,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
 
     /// Without damping the product of two pairs or more is rounding all along, each factor being so to about 1e-12.
     fn noise(&self, index: usize) -> f64 {
-        match self.run.watch.watched[index].kind {
+        match self.run.monitor.watched[index].kind {
             EventKind::NeimarkSacker => NOISE,
             _ => 0.0,
         }
@@ -67,7 +67,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
     fn vanishes(&mut self, change: Change, located: &Located) -> bool {
         if change.kind == EventKind::NeimarkSacker {
             // What is nothing special need not vanish to be passed over.
-            return located.vanishes || !self.run.watch.is_complex(&located.point.u);
+            return located.vanishes || !self.run.monitor.is_complex(&located.point.u);
         }
         if engine::is_crossing(self, change) {
             located.test.abs() <= CROSSED
@@ -111,7 +111,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
             Test::Watched(index) => Some(index),
             // A branch that turns where it ends on another one.
             Test::Slope if zero.change.kind == EventKind::BranchPoint => run
-                .watch
+                .monitor
                 .watched
                 .iter()
                 .position(|watched| watched.bordered),
@@ -120,9 +120,9 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         let Some(index) = index else {
             return run.fold(balance, newton, zero);
         };
-        let mut watch = std::mem::take(&mut run.watch);
-        let kept = run.keep(balance, newton, step, zero, &mut watch, index);
-        run.watch = watch;
+        let mut monitor = std::mem::take(&mut run.monitor);
+        let kept = run.keep(balance, newton, step, zero, &mut monitor, index);
+        run.monitor = monitor;
         kept
     }
 
@@ -132,11 +132,18 @@ impl BranchProblem for BalanceBranch<'_, '_> {
 
     fn graze(&mut self, newton: &mut Newton, step: Step<'_>, turned: Option<Turn>) {
         let (run, balance) = (&mut self.run, &mut self.balance);
-        let mut watch = std::mem::take(&mut run.watch);
-        if let Some(touches) = &mut watch.touches {
-            run.grazing(balance, newton, step, touches, &mut watch.extremes, turned);
+        let mut monitor = std::mem::take(&mut run.monitor);
+        if let Some(touches) = &mut monitor.touches {
+            run.grazing(
+                balance,
+                newton,
+                step,
+                touches,
+                &mut monitor.extremes,
+                turned,
+            );
         }
-        run.watch = watch;
+        run.monitor = monitor;
     }
 
     fn strengthen(&mut self) -> bool {
@@ -186,15 +193,15 @@ impl<'r> Run<'r> {
         newton: &mut Newton,
         step: Step<'_>,
         zero: &Zero,
-        watch: &mut Watch<'r>,
+        monitor: &mut EventMonitor<'r>,
         index: usize,
     ) -> Kept {
-        let bordered = watch.watched[index].bordered;
+        let bordered = monitor.watched[index].bordered;
         let at = &zero.root.located.point.u;
-        let mut test = if let Some(block) = watch.blocks.get_mut(index) {
+        let mut test = if let Some(block) = monitor.blocks.get_mut(index) {
             let slope = zero.change.test == Test::Slope;
             OfOrbit::Block(block, (!slope).then_some(zero.reference))
-        } else if let Some(pairs) = &mut watch.pairs {
+        } else if let Some(pairs) = &mut monitor.pairs {
             if !pairs.product(at).1 {
                 // A pair of real multipliers whose product is one is nothing special.
                 return Kept::Nothing;

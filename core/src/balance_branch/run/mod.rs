@@ -2,11 +2,11 @@
 //! tolerance asks for it.
 
 mod crossed;
+mod event_monitor;
 mod events;
 mod grazing;
 mod method;
 mod touch;
-mod watch;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
@@ -23,8 +23,8 @@ use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::Turn;
 use crate::numeric::fourier::series;
+use event_monitor::EventMonitor;
 use method::BalanceBranch;
-use watch::Watch;
 
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;
@@ -53,7 +53,7 @@ pub(crate) struct Run<'a> {
     core_before: usize,
     reader: Reader<'a>,
     /// What is looked for besides folds.
-    watch: Watch<'a>,
+    monitor: EventMonitor<'a>,
     chooser: Option<Chooser>,
     /// The resolution asked for when the walk was halted.
     wanted: Resolution,
@@ -79,7 +79,7 @@ impl<'a> Run<'a> {
             core,
             core_before: core,
             reader: follower.reader(resolution),
-            watch: Watch::new(follower, resolution),
+            monitor: EventMonitor::new(follower, resolution),
             chooser: follower.chooser.clone(),
             wanted: resolution,
             former: None,
@@ -120,11 +120,11 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Reads and watches orbits of the resolution from here on.
+    /// Reads and monitors orbits of the resolution from here on.
     fn renew(&mut self) {
         self.count_others();
         self.reader = self.follower.reader(self.resolution);
-        self.watch = Watch::new(self.follower, self.resolution);
+        self.monitor = EventMonitor::new(self.follower, self.resolution);
     }
 
     /// Whether harmonics are coupled to the core alone.
@@ -185,7 +185,7 @@ impl<'a> Run<'a> {
     /// Adds the work that Newton's method does not count.
     fn count_others(&mut self) {
         let judged = self.reader.judge.as_ref().map_or(0, |judge| judge.computed);
-        let (determinants, monodromies) = self.watch.computed();
+        let (determinants, monodromies) = self.monitor.computed();
         self.statistics.monodromies += judged + monodromies;
         self.statistics.jacobians += determinants;
         self.statistics.factorisations += determinants;

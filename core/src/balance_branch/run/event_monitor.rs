@@ -80,7 +80,7 @@ pub(super) struct Found<'f> {
 
 /// What is watched along a branch, at one resolution.
 #[derive(Debug, Default)]
-pub(super) struct Watch<'a> {
+pub(super) struct EventMonitor<'a> {
     /// Test functions: of the blocks, then of the pairs.
     pub(super) watched: Vec<Watched>,
     pub(super) blocks: Vec<CriticalBlock<'a>>,
@@ -90,7 +90,7 @@ pub(super) struct Watch<'a> {
     pub(super) extremes: [Vec<Extreme>; 2],
 }
 
-impl<'a> Watch<'a> {
+impl<'a> EventMonitor<'a> {
     pub(super) fn new(follower: &'a Follower, resolution: Resolution) -> Self {
         let coordinates = follower.system.facts().coordinates.len();
         let all = follower.sought == Sought::All;
@@ -246,8 +246,8 @@ impl<'a> Run<'a> {
         resolution: Resolution,
         test: &Test<'_, 'a>,
     ) -> f64 {
-        let mut watch = self.watch_like(test, resolution);
-        let Some(mut test) = watch.test(test) else {
+        let mut monitor = self.monitor_like(test, resolution);
+        let Some(mut test) = monitor.test(test) else {
             return f64::INFINITY;
         };
         let finer = self.with_harmonics_of(self.reader.finer.extended(), resolution);
@@ -261,32 +261,36 @@ impl<'a> Run<'a> {
         let along = -here / ((b - a) / (2.0 * step));
         let last = finer.len() - 1;
         let moved = finer[last] - point.parameter() + along * tangent[last];
-        self.count(&watch);
+        self.count(&monitor);
         moved
     }
 
-    /// Adds the work of a watch that was made for one event.
-    pub(super) fn count(&mut self, watch: &Watch<'_>) {
-        let (determinants, monodromies) = watch.computed();
+    /// Adds the work of a monitor that was made for one event.
+    pub(super) fn count(&mut self, monitor: &EventMonitor<'_>) {
+        let (determinants, monodromies) = monitor.computed();
         self.statistics.jacobians += determinants;
         self.statistics.factorisations += determinants;
         self.statistics.monodromies += monodromies;
     }
 
     /// What is watched for a test function, in some resolution.
-    pub(super) fn watch_like(&self, test: &Test<'_, 'a>, resolution: Resolution) -> Watch<'a> {
+    pub(super) fn monitor_like(
+        &self,
+        test: &Test<'_, 'a>,
+        resolution: Resolution,
+    ) -> EventMonitor<'a> {
         let follower = self.follower;
-        let mut watch = Watch::default();
+        let mut monitor = EventMonitor::default();
         match test {
             Test::Touch(..) => {
-                watch.touches = Some(Touches::new(follower.balance(resolution)));
+                monitor.touches = Some(Touches::new(follower.balance(resolution)));
             }
             Test::Pairs(_) => {
-                watch.pairs = Some(Pairs::new(follower.balance(resolution)));
+                monitor.pairs = Some(Pairs::new(follower.balance(resolution)));
             }
-            Test::Block(block, _) => watch.blocks.push(follower.block(block.part, resolution)),
+            Test::Block(block, _) => monitor.blocks.push(follower.block(block.part, resolution)),
         }
-        watch
+        monitor
     }
 
     /// A vector of the branch in another resolution.
@@ -304,7 +308,7 @@ fn watched(part: Part) -> Watched {
     }
 }
 
-impl<'a> Watch<'a> {
+impl<'a> EventMonitor<'a> {
     /// The same test function of other orbits, in units of its own.
     pub(super) fn test(&mut self, like: &Test<'_, 'a>) -> Option<Test<'_, 'a>> {
         match like {
