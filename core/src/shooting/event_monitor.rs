@@ -13,7 +13,7 @@
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
 
 use super::bend::Bend;
-use super::halved::Halved;
+use super::generalised_flip::HalfPeriodDifference;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
 use super::special_search::{
@@ -50,7 +50,7 @@ pub(super) struct EventMonitor<'p, 'a> {
     pub(super) points: Vec<TrackPoint>,
     pub(super) special: Vec<Special>,
     /// What the last orbit has that one of half the period has not, on a curve of folds.
-    pub(super) halved: Option<Halved>,
+    pub(super) halved: Option<HalfPeriodDifference>,
     /// The largest of these, and the last point.
     pub(super) largest: f64,
     pub(super) last: Option<CurvePoint>,

@@ -28,9 +28,9 @@ const NEARLY: f64 = 0.05;
 
 /// The difference of an orbit, velocities in units of the frequency.
 #[derive(Debug, Clone)]
-pub(super) struct Halved(Vec<f64>);
+pub(super) struct HalfPeriodDifference(Vec<f64>);
 
-impl Halved {
+impl HalfPeriodDifference {
     /// Of an orbit whose last two unknowns are the parameters; `None` if half of its period is not a whole number of segments.
     pub(super) fn of(equations: &Equations, u: &[f64]) -> Option<Self> {
         let states = equations.states_of(&u[..u.len() - 1]);
@@ -88,12 +88,15 @@ impl EventMonitor<'_, '_> {
         if self.functions.shift != Some(-1.0) {
             return false;
         }
-        let now = Halved::of(&curve.equations, &at.u);
+        let now = HalfPeriodDifference::of(&curve.equations, &at.u);
         let pair = self.halved.as_ref().zip(now.as_ref());
         if pair.is_some_and(|(before, now)| before.passes(now)) {
             return true;
         }
-        self.largest = now.as_ref().map_or(0.0, Halved::size).max(self.largest);
+        self.largest = now
+            .as_ref()
+            .map_or(0.0, HalfPeriodDifference::size)
+            .max(self.largest);
         self.last = Some(at.clone());
         self.halved = now;
         false
@@ -124,7 +127,7 @@ impl EventMonitor<'_, '_> {
     /// The degenerate doubling between two points, from the nearer one; what the other one says of it is its error.
     pub(super) fn end(&mut self, curve: &Curve<'_>, step: Step<'_>) {
         let seen = [step.before, step.next].map(|point| {
-            let halved = Halved::of(&curve.equations, &point.u)?;
+            let halved = HalfPeriodDifference::of(&curve.equations, &point.u)?;
             Some((halved.size(), halved.end(&curve.equations, point)?))
         });
         let [Some(a), Some(b)] = seen else {
