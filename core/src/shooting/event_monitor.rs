@@ -6,14 +6,14 @@
 //! | grazing: the map loses a derivative, and the curve its smoothness | none: the number of crossings changes |
 //! | fold and flip: one multiplier is one, another minus one | `det(M + I)` on a curve of folds |
 //! | double: two multipliers are one, or minus one | the product of `mu -+ 1` over all but the nearest |
-//! | degenerate: what begins at a doubling bends neither way | the coefficient of [`bend`](super::bend) |
+//! | degenerate: what begins at a doubling bends neither way | the coefficient of [`normal_form`](super::normal_form) |
 //!
 //! A place is looked for once more by the equations of a [`error_reference`](super::error_reference), and what that changes is its error.
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
 
-use super::bend::Bend;
 use super::generalised_flip::HalfPeriodDifference;
+use super::normal_form::CubicCoefficient;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
 use super::special_search::{
@@ -81,7 +81,8 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
             Condition::Multiplier(shift) => Some(shift),
             Condition::Touch(..) => None,
         };
-        let bend = (shift == Some(1.0)).then(|| Bend::new(problem, curve, symmetric, false).ok());
+        let coefficient = (shift == Some(1.0))
+            .then(|| CubicCoefficient::new(problem, curve, symmetric, false).ok());
         Self {
             problem,
             plane,
@@ -90,7 +91,7 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
             functions: TestFunctions {
                 problem,
                 shift,
-                bend: bend.flatten(),
+                coefficient: coefficient.flatten(),
             },
             seen: [None, None],
             points: Vec::new(),
@@ -199,11 +200,11 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
         if a.rest * b.rest < 0.0 {
             self.zero(search, SpecialKind::Double, small(Function::Rest));
         }
-        if a.bend * b.bend < 0.0 {
+        if a.coefficient * b.coefficient < 0.0 {
             let criterion = Criterion {
-                function: Function::Bend,
+                function: Function::CubicCoefficient,
                 tolerance: 0.0,
-                largest: JUMPS * a.bend.abs().min(b.bend.abs()),
+                largest: JUMPS * a.coefficient.abs().min(b.coefficient.abs()),
             };
             self.zero(search, SpecialKind::Degenerate, criterion);
         }
@@ -239,7 +240,7 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
             largest: f64::INFINITY,
         };
         let mut functions = TestFunctions {
-            bend: None,
+            coefficient: None,
             ..self.functions
         };
         let mut find = |search: &mut Search<'_, 'a>| {
@@ -266,10 +267,11 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
         }
         let moved = self.reference(search.curve).and_then(|mut reference| {
             // What is left of the next order at a distance is not proportional to the error of the flow.
-            let bend = degenerate
-                .then(|| Bend::new(self.problem, &reference.curve, self.symmetric, true).ok());
+            let coefficient = degenerate.then(|| {
+                CubicCoefficient::new(self.problem, &reference.curve, self.symmetric, true).ok()
+            });
             let mut functions = TestFunctions {
-                bend: bend.flatten(),
+                coefficient: coefficient.flatten(),
                 ..self.functions
             };
             let criterion = Criterion {

@@ -5,7 +5,6 @@
 //! by the same continuation.
 
 pub(crate) mod at;
-mod bend;
 mod beyond;
 pub(crate) mod checked;
 pub(crate) mod complete;
@@ -19,6 +18,7 @@ mod extremes;
 mod generalised_flip;
 mod grazing;
 mod method;
+mod normal_form;
 mod options;
 pub(crate) mod problem;
 mod recurrence;

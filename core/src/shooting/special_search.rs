@@ -2,9 +2,9 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::bend::Bend;
 use super::error_reference::ErrorReference;
 use super::event_monitor::{ROUNDING, VANISHED};
+use super::normal_form::CubicCoefficient;
 use super::problem::ShootingProblem;
 use super::track::{Curve, determinant};
 use crate::continuation::follow::{CurvePoint, Step};
@@ -41,8 +41,8 @@ pub(super) struct Tests {
     pub(super) other: f64,
     /// The product of what is left without the multiplier that is critical.
     pub(super) rest: f64,
-    /// The coefficient of [`bend`](super::bend) times the slope of the second parameter: where that vanishes the coefficient is infinite.
-    pub(super) bend: f64,
+    /// The coefficient of [`normal_form`](super::normal_form) times the slope of the second parameter: where that vanishes the coefficient is infinite.
+    pub(super) coefficient: f64,
 }
 
 /// What the test functions of a curve are computed with.
@@ -51,7 +51,7 @@ pub(super) struct TestFunctions<'p> {
     /// `-1` or `1`; `None` on a curve of grazing.
     pub(super) shift: Option<f64>,
     /// On curves where branches begin, if it is wanted.
-    pub(super) bend: Option<Bend>,
+    pub(super) coefficient: Option<CubicCoefficient>,
 }
 
 impl TestFunctions<'_> {
@@ -62,13 +62,14 @@ impl TestFunctions<'_> {
         counted: &Counted,
     ) -> Option<Tests> {
         let shift = self.shift?;
-        let bend = self.bend.as_mut();
-        let bend = bend.and_then(|bend| bend.at(self.problem, curve, &at.u));
+        let coefficient = self.coefficient.as_mut();
+        let coefficient =
+            coefficient.and_then(|coefficient| coefficient.at(self.problem, curve, &at.u));
         Some(Tests {
             switches: counted.switches,
             other: determinant(&counted.map, -shift),
             rest: rest(&counted.map, -shift),
-            bend: bend.unwrap_or(f64::NAN) * at.parameter_slope(),
+            coefficient: coefficient.unwrap_or(f64::NAN) * at.parameter_slope(),
         })
     }
 }
@@ -78,7 +79,7 @@ impl TestFunctions<'_> {
 pub(super) enum Function {
     Other,
     Rest,
-    Bend,
+    CubicCoefficient,
     /// Positive where levels are crossed so many times.
     CrossedAs(usize),
 }
@@ -89,7 +90,7 @@ impl Function {
         match self {
             Self::Other => of(|tests| tests.other),
             Self::Rest => of(|tests| tests.rest),
-            Self::Bend => of(|tests| tests.bend),
+            Self::CubicCoefficient => of(|tests| tests.coefficient),
             Self::CrossedAs(many) if tests.is_some_and(|tests| tests.switches == many) => 1.0,
             Self::CrossedAs(_) => -1.0,
         }

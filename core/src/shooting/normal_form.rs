@@ -32,7 +32,7 @@ const FARTHER: f64 = 2.0;
 const PARTS: [f64; 3] = [1.0, 0.25, 0.0625];
 
 /// Orbits of the new branch, beside those of a curve.
-pub(super) struct Bend {
+pub(super) struct CubicCoefficient {
     equations: Equations,
     newton: Newton,
     second: Variable,
@@ -42,7 +42,7 @@ pub(super) struct Bend {
     distance: f64,
 }
 
-impl Bend {
+impl CubicCoefficient {
     /// Of a curve; at a larger distance to compare with.
     ///
     /// # Errors
