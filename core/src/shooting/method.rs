@@ -2,7 +2,7 @@
 
 use super::equations::Equations;
 use super::events;
-use super::recurrence::{Recurrence, step_on_other_branch};
+use super::minimal_period::{MinimalPeriod, step_on_other_branch};
 use super::run::Run;
 use super::tested::{self, Tests};
 use crate::branches::engine::Search;
@@ -77,13 +77,13 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
         tests
     }
 
-    fn recurrence(&mut self, at: &CurvePoint) -> Result<Option<Recurrence>, FlowError> {
+    fn recurrence(&mut self, at: &CurvePoint) -> Result<Option<MinimalPeriod>, FlowError> {
         let (span, odd) = (self.equations.span, self.run.problem.odd);
         if self.run.points.is_empty() || (span.period == 1 && !odd) {
             return Ok(None);
         }
         let same = self.run.same_state(&self.equations);
-        let found = Recurrence::of(&mut self.equations, &at.u, same, odd)?;
+        let found = MinimalPeriod::of(&mut self.equations, &at.u, same, odd)?;
         let is_regular = found.period < span.period || found.odd != span.half;
         Ok(is_regular.then_some(found))
     }

@@ -6,8 +6,8 @@ use super::equations::Equations;
 use super::error_reference::{ErrorReference, multipliers};
 use super::extremes;
 use super::method::ShootingBranch;
+use super::minimal_period::{MinimalPeriod, SameState};
 use super::problem::ShootingProblem;
-use super::recurrence::{Recurrence, SameState};
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::{Motion, Observed};
@@ -34,7 +34,7 @@ pub(super) struct Run<'r> {
     reference: ErrorReference,
     size: f64,
     /// What the branch has met.
-    pub(super) joined: Option<Recurrence>,
+    pub(super) joined: Option<MinimalPeriod>,
     /// Error of the states of the orbit read last; not a number where it is not known.
     pub(super) state_error: f64,
     pub(super) points: Vec<Point>,
@@ -89,7 +89,7 @@ impl<'r> Run<'r> {
         self.statistics += self.reference.newton.statistics;
         self.work += self.reference.work();
         let value = self.points.last().map_or(options.from, |point| point.value);
-        if let Some(Recurrence { period, odd }) = self.joined {
+        if let Some(MinimalPeriod { period, odd }) = self.joined {
             let joint = self.events.last().map_or(value, |event| event.point.value);
             return Ok(Stop::Joined {
                 period,
@@ -129,7 +129,8 @@ impl<'r> Run<'r> {
         }
         let after = event.after;
         let u = equations.unknowns_of(&event.point.orbit.states, event.point.value);
-        let Ok(recurrence) = Recurrence::at_point(equations, &u, self.same_state(equations), odd)
+        let Ok(recurrence) =
+            MinimalPeriod::at_point(equations, &u, self.same_state(equations), odd)
         else {
             return false;
         };

@@ -3,8 +3,8 @@
 use super::beyond;
 use super::equations::{Equations, Frame, Span};
 use super::extremes;
+use super::minimal_period::{MinimalPeriod, SameState};
 use super::problem::ShootingProblem;
-use super::recurrence::{Recurrence, SameState};
 use super::run::no_orbit;
 use crate::branches::error::Attempts;
 use crate::branches::error::OrbitError;
@@ -57,7 +57,7 @@ pub(super) fn first(
     };
     first.settle(problem).map_err(motion)?;
     let same = first.same_state(problem);
-    let recurrence = Recurrence::of(&mut first.equations, &first.u, same, problem.odd);
+    let recurrence = MinimalPeriod::of(&mut first.equations, &first.u, same, problem.odd);
     let recurrence = recurrence.map_err(motion)?;
     if recurrence.period < problem.period {
         return Err(OrbitError::NoSuchPeriod {

@@ -20,8 +20,8 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
+use super::minimal_period::MinimalPeriod;
 use super::problem::ShootingProblem;
-use super::recurrence::Recurrence;
 use super::start::{self, First};
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
@@ -86,8 +86,8 @@ pub(super) fn depart(
         let step = side * departure;
         if let Some(point) = first_orbit(problem, &mut first, &direction, step, range) {
             let same = first.same_state(problem);
-            let recurrence = Recurrence::of(&mut first.equations, &point.u, same, problem.odd);
-            let is_new = |found: Recurrence| found.period == problem.period && !found.odd;
+            let recurrence = MinimalPeriod::of(&mut first.equations, &point.u, same, problem.odd);
+            let is_new = |found: MinimalPeriod| found.period == problem.period && !found.odd;
             if recurrence.is_ok_and(is_new) {
                 first.u.clone_from(&point.u);
                 return Ok(Begun { first, point });

@@ -24,14 +24,14 @@ pub(super) struct SameState {
 
 /// How an orbit repeats itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Recurrence {
+pub(super) struct MinimalPeriod {
     /// Its shortest period, in periods of the system.
     pub(super) period: usize,
     /// Half of the period asked for turns the sign of every coordinate.
     pub(super) odd: bool,
 }
 
-impl Recurrence {
+impl MinimalPeriod {
     /// The same at a branch point.
     pub(super) fn at_point(
         equations: &mut Equations,
