@@ -5,7 +5,6 @@
 //! by the same continuation.
 
 pub(crate) mod at;
-mod beyond;
 pub(crate) mod checked;
 pub(crate) mod complete;
 pub(crate) mod compute;
@@ -21,6 +20,7 @@ mod method;
 mod minimal_period;
 mod normal_form;
 mod options;
+mod past_fold;
 pub(crate) mod problem;
 mod run;
 mod sampled_states;

@@ -1,9 +1,9 @@
 //! The first orbit: from a guess to a solution, with what is known of it.
 
-use super::beyond;
 use super::equations::{Equations, Frame, Span};
 use super::extremes;
 use super::minimal_period::{MinimalPeriod, SameState};
+use super::past_fold;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
 use crate::branches::error::Attempts;
@@ -48,7 +48,7 @@ pub(super) fn first(
     let solved = solve::at_value(&mut equations, &mut newton, &mut u, options);
     if let Err(reason) = solved {
         let reason = no_orbit(value, reason, equations.failure);
-        u = beyond::search(problem, &mut equations, &u, value, reason)?;
+        u = past_fold::search(problem, &mut equations, &u, value, reason)?;
     }
     let mut first = First {
         equations,
