@@ -79,7 +79,7 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
     ) -> Self {
         let shift = match curve.condition {
             Condition::Multiplier(shift) => Some(shift),
-            Condition::Touch(..) => None,
+            Condition::Grazing(..) => None,
         };
         let coefficient = (shift == Some(1.0))
             .then(|| CubicCoefficient::new(problem, curve, symmetric, false).ok());

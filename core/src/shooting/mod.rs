@@ -16,6 +16,7 @@ mod events;
 mod extremes;
 mod generalised_flip;
 mod grazing;
+mod grazing_condition;
 mod method;
 mod minimal_period;
 mod normal_form;
@@ -30,7 +31,6 @@ mod switch;
 mod tested;
 #[cfg(test)]
 mod tests;
-mod touch;
 pub(crate) mod trace;
 mod track;
 

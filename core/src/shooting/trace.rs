@@ -5,10 +5,10 @@
 use nalgebra::Complex;
 
 use super::event_monitor::EventMonitor;
+use super::grazing_condition::GrazingCondition;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
 use super::start;
-use super::touch::Touch;
 use super::track::{Condition, Curve};
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
@@ -346,8 +346,9 @@ fn curve<'a>(
         EventKind::Fold => Condition::Multiplier(-1.0),
         EventKind::PeriodDoubling | EventKind::SymmetryBreaking => Condition::Multiplier(1.0),
         EventKind::Grazing { .. } => {
-            let touch = Touch::of(plane.system, problem, &mut equations, &u).ok_or(nothing)?;
-            Condition::Touch(Box::new(touch), problem.omega)
+            let grazing =
+                GrazingCondition::of(plane.system, problem, &mut equations, &u).ok_or(nothing)?;
+            Condition::Grazing(Box::new(grazing), problem.omega)
         }
         _ => return Err(nothing.into()),
     };

@@ -7,7 +7,7 @@
 //! F(s, lambda; mu) = 0,     g(s, lambda; mu) = det(M -+ I) = 0                                               (1)
 //! ```
 //!
-//! with a minus for folds and a plus for period doublings and broken symmetry; for grazing `g` is that of [`touch`](super::touch). `M` has the order of a state, so its determinant
+//! with a minus for folds and a plus for period doublings and broken symmetry; for grazing `g` is that of [`grazing_condition`](super::grazing_condition). `M` has the order of a state, so its determinant
 //! is as good as the scalar of a bordered system, and is never undefined. Derivatives of `F` by `s` and `lambda` are those of the
 //! flow; those by `mu`, and all of `g`, are central differences of `F` and `M`, which are exact themselves: the law's second
 //! derivatives are not needed, and need not exist.
@@ -18,8 +18,8 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
+use super::grazing_condition::GrazingCondition;
 use super::problem::ShootingProblem;
-use super::touch::Touch;
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::problem::Problem;
 use crate::error::Error;
@@ -34,7 +34,7 @@ pub(super) enum Condition<'a> {
     /// `det(M + shift I)`, with a shift of `-1` or `1`.
     Multiplier(f64),
     /// The distance of a gap from a level, at this frequency unless it is varied.
-    Touch(Box<Touch<'a>>, f64),
+    Grazing(Box<GrazingCondition<'a>>, f64),
 }
 
 /// The equations (1). The last of the extended unknowns is `mu`, the one before `lambda`.
@@ -90,8 +90,8 @@ impl<'a> Curve<'a> {
 
     /// Remembers where a gap has the extreme that touches, for what follows.
     pub(super) fn follow(&mut self, u: &[f64]) {
-        if let Condition::Touch(touch, omega) = &mut self.condition {
-            touch.follow(&mut self.equations, u, *omega, self.second);
+        if let Condition::Grazing(grazing, omega) = &mut self.condition {
+            grazing.follow(&mut self.equations, u, *omega, self.second);
         }
     }
 
@@ -115,8 +115,8 @@ impl<'a> Curve<'a> {
         }
         match &mut self.condition {
             Condition::Multiplier(shift) => determinant(&self.equations.product, *shift),
-            Condition::Touch(touch, omega) => {
-                touch.distance(&mut self.equations, u, *omega, self.second)
+            Condition::Grazing(grazing, omega) => {
+                grazing.distance(&mut self.equations, u, *omega, self.second)
             }
         }
     }

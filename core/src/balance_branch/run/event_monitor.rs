@@ -5,7 +5,7 @@
 //! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`critical_block`](crate::balance::critical_block)) |
 //! | branch point ([`crossed`](super::crossed)) | the determinant of the Jacobian with the tangent as its border |
 //! | Neimark-Sacker | the product over pairs of multipliers ([`pairs`](crate::orbit::stability::pairs)), and a pair is complex |
-//! | grazing ([`grazing`](super::grazing)) | an extreme of a gap less the level ([`touch`](super::touch)) |
+//! | grazing ([`grazing`](super::grazing)) | an extreme of a gap less the level ([`gap_extremes`](super::gap_extremes)) |
 //!
 //! All are functions of the discrete orbit, and driven to zero on the branch. The same functions of the orbit that is corrected for
 //! the harmonics left out say where the event would be then: with `s` along the unit tangent `t`, and `du` the correction,
@@ -19,7 +19,7 @@
 use std::cell::RefCell;
 
 use super::Run;
-use super::touch::{Extreme, Touches};
+use super::gap_extremes::{Extreme, GapExtremes};
 use crate::balance::critical_block::{CriticalBlock, Part};
 use crate::balance::resolution::resize;
 use crate::balance::truncation::BEYOND;
@@ -47,7 +47,7 @@ pub(super) enum Test<'t, 'a> {
     Block(&'t mut CriticalBlock<'a>, Option<f64>),
     Pairs(&'t mut Pairs<'a>),
     /// Of one extreme, wherever it moves.
-    Touch(&'t mut Touches<'a>, Extreme),
+    Extreme(&'t mut GapExtremes<'a>, Extreme),
 }
 
 impl Test<'_, '_> {
@@ -58,9 +58,9 @@ impl Test<'_, '_> {
                 sign * (size - *largest.get_or_insert(size)).exp()
             }
             Self::Pairs(pairs) => pairs.product(u).0,
-            Self::Touch(touches, extreme) => {
+            Self::Extreme(gaps, extreme) => {
                 let mut extremes = Vec::new();
-                touches.read(u, &mut extremes);
+                gaps.read(u, &mut extremes);
                 extreme.nearest(&extremes).map_or(f64::NAN, |found| {
                     // The next one is looked for where this one was.
                     *extreme = *found;
@@ -85,7 +85,7 @@ pub(super) struct EventMonitor<'a> {
     pub(super) watched: Vec<Watched>,
     pub(super) blocks: Vec<CriticalBlock<'a>>,
     pub(super) pairs: Option<Pairs<'a>>,
-    pub(super) touches: Option<Touches<'a>>,
+    pub(super) gaps: Option<GapExtremes<'a>>,
     /// Extremes at the ends of the step looked at.
     pub(super) extremes: [Vec<Extreme>; 2],
 }
@@ -106,7 +106,7 @@ impl<'a> EventMonitor<'a> {
             watched,
             blocks,
             pairs: pairs.then(|| Pairs::new(follower.balance(resolution))),
-            touches: all.then(|| Touches::new(follower.balance(resolution))),
+            gaps: all.then(|| GapExtremes::new(follower.balance(resolution))),
             extremes: Default::default(),
         }
     }
@@ -282,8 +282,8 @@ impl<'a> Run<'a> {
         let follower = self.follower;
         let mut monitor = EventMonitor::default();
         match test {
-            Test::Touch(..) => {
-                monitor.touches = Some(Touches::new(follower.balance(resolution)));
+            Test::Extreme(..) => {
+                monitor.gaps = Some(GapExtremes::new(follower.balance(resolution)));
             }
             Test::Pairs(_) => {
                 monitor.pairs = Some(Pairs::new(follower.balance(resolution)));
@@ -317,9 +317,9 @@ impl<'a> EventMonitor<'a> {
                 .first_mut()
                 .map(|block| Test::Block(block, None)),
             Test::Pairs(_) => self.pairs.as_mut().map(Test::Pairs),
-            Test::Touch(_, extreme) => {
-                let touches = self.touches.as_mut();
-                touches.map(|touches| Test::Touch(touches, *extreme))
+            Test::Extreme(_, extreme) => {
+                let gaps = self.gaps.as_mut();
+                gaps.map(|gaps| Test::Extreme(gaps, *extreme))
             }
         }
     }

@@ -17,7 +17,7 @@
 use super::Run;
 use super::event_monitor::{Found, Test};
 use super::events::FOLD_TOLERANCE;
-use super::touch::{Extreme, Passage, Touches, crossings, distinct, is_copy, passed};
+use super::gap_extremes::{Extreme, GapExtremes, Passage, crossings, distinct, is_copy, passed};
 use crate::balance::{Balance, Resolution};
 use crate::branches::point::Event;
 use crate::continuation::follow::{CurvePoint, Step};
@@ -48,12 +48,12 @@ impl<'a> Run<'a> {
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         step: Step<'_>,
-        touches: &mut Touches<'a>,
+        gaps: &mut GapExtremes<'a>,
         [before, next]: &mut [Vec<Extreme>; 2],
         turned: Option<Turn>,
     ) {
-        touches.read(&step.before.u, before);
-        touches.read(&step.next.u, next);
+        gaps.read(&step.before.u, before);
+        gaps.read(&step.next.u, next);
         let kind = EventKind::Grazing { turns: false };
         let (first, after) = (self.events.len(), self.points.len() - 1);
         let mut found = passed(before, next);
@@ -62,11 +62,11 @@ impl<'a> Run<'a> {
         }
         while let Some(&passage) = found.first() {
             let known = self.events.len();
-            self.touch(balance, newton, step, touches, &passage);
+            self.locate_grazing(balance, newton, step, gaps, &passage);
             if self.events.len() == known {
                 found.retain(|other| !is_copy(&passage, other));
             } else {
-                found = self.count_contacts(touches, before, found);
+                found = self.count_contacts(gaps, before, found);
                 self.drop_known(first);
             }
         }
@@ -86,7 +86,7 @@ impl<'a> Run<'a> {
     /// elsewhere. Contacts that are copies of each other, and orbits with a symmetry, touch in several places at once: one event.
     fn count_contacts(
         &mut self,
-        touches: &mut Touches<'_>,
+        gaps: &mut GapExtremes<'_>,
         extremes: &mut Vec<Extreme>,
         found: Vec<Passage>,
     ) -> Vec<Passage> {
@@ -95,7 +95,7 @@ impl<'a> Run<'a> {
         };
         let mut u = event.point.orbit.series.clone();
         u.push(event.point.value);
-        touches.read(&u, extremes);
+        gaps.read(&u, extremes);
         let (at_once, later): (Vec<_>, Vec<_>) = found.into_iter().partition(|other| {
             let there = other.before.nearest(extremes);
             let there = there.or(other.next.nearest(extremes));
@@ -138,12 +138,12 @@ impl<'a> Run<'a> {
 
     /// Locates where one extreme reaches its level: from the end of the step where the level is not crossed there, or anywhere between
     /// both ends.
-    fn touch(
+    fn locate_grazing(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         step: Step<'_>,
-        touches: &mut Touches<'a>,
+        gaps: &mut GapExtremes<'a>,
         Passage { before, next }: &Passage,
     ) {
         let kind = EventKind::Grazing { turns: false };
@@ -161,10 +161,10 @@ impl<'a> Run<'a> {
                 extreme,
                 farthest,
             };
-            close_in(balance, newton, touches, approach, options)
+            close_in(balance, newton, gaps, approach, options)
         };
         if let Some(found) = closed_in(balance, newton) {
-            let mut test = Test::Touch(touches, *extreme);
+            let mut test = Test::Extreme(gaps, *extreme);
             let located = &found;
             let found = Found {
                 kind,
@@ -182,7 +182,7 @@ impl<'a> Run<'a> {
             let mut newton = Newton::new(&whole);
             let found = closed_in(&mut whole, &mut newton);
             if let Some(located) = &found {
-                let mut test = Test::Touch(touches, *extreme);
+                let mut test = Test::Extreme(gaps, *extreme);
                 let found = Found {
                     kind,
                     located,
@@ -195,7 +195,7 @@ impl<'a> Run<'a> {
                 return;
             }
         }
-        let mut test = Test::Touch(touches, *before);
+        let mut test = Test::Extreme(gaps, *before);
         self.event(balance, newton, step, kind, &mut test);
     }
 }
@@ -211,7 +211,7 @@ struct Approach<'p> {
 fn close_in(
     balance: &mut Balance<'_>,
     newton: &mut Newton,
-    touches: &mut Touches<'_>,
+    gaps: &mut GapExtremes<'_>,
     approach: Approach<'_>,
     options: NewtonOptions,
 ) -> Option<Located> {
@@ -226,7 +226,7 @@ fn close_in(
     let mut extremes = Vec::new();
     for _ in 0..ORBITS {
         let aim = extreme.above.signum() * (CLOSER * extreme.above.abs()).max(AIM);
-        touches.form(&u, &extreme, scale.parameter, &mut row);
+        gaps.form(&u, &extreme, scale.parameter, &mut row);
         let border = Border {
             row: &row,
             value: crate::numeric::linear::dot(&row, &u) + aim - extreme.above,
@@ -234,7 +234,7 @@ fn close_in(
         newton
             .correct(balance, &mut u, border, scale, options)
             .ok()?;
-        touches.read(&u, &mut extremes);
+        gaps.read(&u, &mut extremes);
         extreme = *extreme.nearest(&extremes)?;
         if extreme.above.abs() > FOLD_TOLERANCE {
             continue;

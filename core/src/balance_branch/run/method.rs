@@ -133,15 +133,8 @@ impl BranchProblem for BalanceBranch<'_, '_> {
     fn graze(&mut self, newton: &mut Newton, step: Step<'_>, turned: Option<Turn>) {
         let (run, balance) = (&mut self.run, &mut self.balance);
         let mut monitor = std::mem::take(&mut run.monitor);
-        if let Some(touches) = &mut monitor.touches {
-            run.grazing(
-                balance,
-                newton,
-                step,
-                touches,
-                &mut monitor.extremes,
-                turned,
-            );
+        if let Some(gaps) = &mut monitor.gaps {
+            run.grazing(balance, newton, step, gaps, &mut monitor.extremes, turned);
         }
         run.monitor = monitor;
     }

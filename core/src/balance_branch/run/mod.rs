@@ -4,9 +4,9 @@
 mod crossed;
 mod event_monitor;
 mod events;
+mod gap_extremes;
 mod grazing;
 mod method;
-mod touch;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};

@@ -35,7 +35,7 @@ pub(super) struct Extreme {
 
 /// Reads extremes of gaps off the orbits of one balance.
 #[derive(Debug)]
-pub(super) struct Touches<'a> {
+pub(super) struct GapExtremes<'a> {
     balance: Balance<'a>,
     finder: CrossingFinder,
     gap: Vec<f64>,
@@ -45,7 +45,7 @@ pub(super) struct Touches<'a> {
     turns: Vec<Crossing>,
 }
 
-impl<'a> Touches<'a> {
+impl<'a> GapExtremes<'a> {
     pub(super) fn new(balance: Balance<'a>) -> Self {
         let harmonics = balance.gap_harmonics();
         let length = series::length(harmonics);

@@ -118,7 +118,7 @@ impl Scan<'_> {
 
 /// One gap and one of its levels.
 #[derive(Clone)]
-pub(super) struct Touch<'a> {
+pub(super) struct GrazingCondition<'a> {
     system: &'a dyn System,
     layout: Layout,
     contact: usize,
@@ -134,7 +134,7 @@ pub(super) struct Touch<'a> {
     state: Vec<f64>,
 }
 
-impl<'a> Touch<'a> {
+impl<'a> GrazingCondition<'a> {
     /// The gap and the level that an orbit comes nearest to touching; `None` if it touches none.
     pub(super) fn of(
         system: &'a dyn System,
@@ -147,7 +147,7 @@ impl<'a> Touch<'a> {
         for contact in 0..layout.contacts.len() {
             let law = system.law(layout.contacts[contact].law);
             for level in 0..law.facts().levels.len() {
-                let mut touch = Self {
+                let mut grazing = Self {
                     system,
                     contact,
                     level,
@@ -166,20 +166,20 @@ impl<'a> Touch<'a> {
                     layout: layout.clone(),
                 };
                 let value = u[u.len() - 1];
-                touch.set(problem.omega_at(value), &[(problem.variable, value)]);
-                let at = touch.levels[level];
+                grazing.set(problem.omega_at(value), &[(problem.variable, value)]);
+                let at = grazing.levels[level];
                 let mut extremes = Vec::new();
-                touch.extremes(equations, u, &mut |extreme| extremes.push(extreme))?;
+                grazing.extremes(equations, u, &mut |extreme| extremes.push(extreme))?;
                 for extreme in extremes {
                     let apart = (extreme.gap - at).abs();
                     if nearest.as_ref().is_none_or(|(least, _)| apart < *least) {
-                        touch.near = extreme;
-                        nearest = Some((apart, touch.clone()));
+                        grazing.near = extreme;
+                        nearest = Some((apart, grazing.clone()));
                     }
                 }
             }
         }
-        nearest.map(|(_, touch)| touch)
+        nearest.map(|(_, grazing)| grazing)
     }
 
     /// Puts the gap and its levels where parameters have values.
