@@ -1,9 +1,9 @@
 //! Branches of orbits by harmonic balance, as the [engine](crate::branches::engine) follows them.
 
 pub(crate) mod check;
-pub(crate) mod depart;
 pub(crate) mod follower;
 pub(crate) mod motion;
 pub(crate) mod options;
 pub(crate) mod reader;
 pub(crate) mod run;
+pub(crate) mod switch;

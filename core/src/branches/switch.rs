@@ -17,7 +17,7 @@ const FARTHEST: f64 = 10.0;
 
 /// Where a branch begins, and where to.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Departure<'d> {
+pub(crate) struct BranchSwitch<'d> {
     /// The solution where it begins, as extended unknowns.
     pub(crate) from: &'d [f64],
     /// The direction of the branch.
@@ -27,7 +27,7 @@ pub(crate) struct Departure<'d> {
     pub(crate) scale: Scale,
 }
 
-impl Departure<'_> {
+impl BranchSwitch<'_> {
     /// The solution at a step along the direction, with its tangent away from where the branch begins.
     pub(crate) fn first_point(
         &self,

@@ -64,7 +64,7 @@ pub(crate) fn branch_at(
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let started = Instant::now();
-    let Begun { first, point } = switch::depart(problem, event, side, (to - from).abs())?;
+    let Begun { first, point } = switch::switch_branch(problem, event, side, (to - from).abs())?;
     let along = |_| Start::Along(Box::new(point));
     followed(problem, first, along, [from, to], visit, started)
 }

@@ -19,10 +19,10 @@ use nalgebra::{DMatrix, DVector};
 use super::equations::Equations;
 use super::problem::ShootingProblem;
 use super::start::{self, First};
-use super::switch::{Begun, DEPARTURES};
+use super::switch::{Begun, FIRST_STEPS};
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
-use crate::branches::switch::Departure;
+use crate::branches::switch::BranchSwitch;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::newton::Newton;
@@ -47,7 +47,7 @@ struct Directions {
 ///
 /// # Errors
 /// [`OrbitError::NoBranch`] if no other branch was found.
-pub(super) fn depart(
+pub(super) fn switch_branch(
     problem: &ShootingProblem,
     event: &Event,
     side: f64,
@@ -67,8 +67,8 @@ pub(super) fn depart(
     units.push(range);
     let directions = directions(&mut first.equations, &u, &event.tangent, &units);
     let directions = directions.ok_or_else(nothing)?;
-    for departure in DEPARTURES {
-        let step = side * departure;
+    for part in FIRST_STEPS {
+        let step = side * part;
         let point = beside(problem, &mut first, &directions, &units, step);
         if let Some(point) = point {
             first.u.clone_from(&point.u);
@@ -159,12 +159,12 @@ fn beside(
     let scale = newton.norm().scale_at(&first.u, range, &mut [0.0; 2]);
     let row: Vec<f64> = across.iter().zip(units).map(|(x, unit)| x / unit).collect();
     let along: Vec<f64> = other.iter().zip(units).map(|(x, unit)| x * unit).collect();
-    let departure = Departure {
+    let switch = BranchSwitch {
         from: &first.u,
         along: &along,
         held: &row,
         scale,
     };
     let options = problem.newton(problem.source.tolerance, equations.frame.ratio);
-    departure.first_point(equations, &mut newton, step, options)
+    switch.first_point(equations, &mut newton, step, options)
 }

@@ -26,7 +26,7 @@ use super::start::{self, First};
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
 use crate::branches::solve::{Toward, along};
-use crate::branches::switch::Departure;
+use crate::branches::switch::BranchSwitch;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Scale;
@@ -36,7 +36,7 @@ use crate::time::MotionError;
 
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.
-pub(super) const DEPARTURES: [f64; 5] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1];
+pub(super) const FIRST_STEPS: [f64; 5] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1];
 
 /// An orbit with the direction in which a branch is followed from it.
 pub(super) struct Begun {
@@ -49,7 +49,7 @@ pub(super) struct Begun {
 ///
 /// # Errors
 /// [`OrbitError::NoBranch`] if no branch begins there, or its first orbit was not found.
-pub(super) fn depart(
+pub(super) fn switch_branch(
     problem: &ShootingProblem,
     event: &Event,
     side: f64,
@@ -60,7 +60,7 @@ pub(super) fn depart(
         value: event.point.value,
     };
     if event.kind == EventKind::BranchPoint {
-        return super::crossed::depart(problem, event, side, range);
+        return super::crossed::switch_branch(problem, event, side, range);
     }
     if !matches!(
         event.kind,
@@ -82,8 +82,8 @@ pub(super) fn depart(
         reason,
     };
     first.settle(problem).map_err(motion)?;
-    for departure in DEPARTURES {
-        let step = side * departure;
+    for part in FIRST_STEPS {
+        let step = side * part;
         if let Some(point) = first_orbit(problem, &mut first, &direction, step, range) {
             let same = first.same_state(problem);
             let recurrence = MinimalPeriod::of(&mut first.equations, &point.u, same, problem.odd);
@@ -166,14 +166,14 @@ fn first_orbit(
     let unit: Vec<f64> = direction.iter().map(|x| x / length).collect();
     let mut row = vec![0.0; unit.len()];
     newton.norm().linear_form(scale, &unit, &mut row);
-    let departure = Departure {
+    let switch = BranchSwitch {
         from: &first.u,
         along: &unit,
         held: &row,
         scale,
     };
     let options = problem.newton(problem.source.tolerance, equations.frame.ratio);
-    departure.first_point(equations, &mut newton, step, options)
+    switch.first_point(equations, &mut newton, step, options)
 }
 
 fn scale_of(newton: &Newton, u: &[f64], range: f64) -> Scale {

@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 
 use super::run;
 use crate::branches::problem::{BranchProblem, Change, Kept, Read, TestValue, Watched, Zero};
-use crate::branches::switch::Departure;
+use crate::branches::switch::BranchSwitch;
 use crate::branches::value::{Chord, chain, solutions};
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Step, Stop};
 use crate::continuation::jacobian::Jacobian;
@@ -249,14 +249,14 @@ fn the_branch_that_crosses_is_followed() {
     for side in [-1.0, 1.0] {
         let mut problem = Algebraic::default();
         let mut newton = Newton::new(&problem);
-        let departure = Departure {
+        let switch = BranchSwitch {
             from: &from,
             along: &along,
             held: &along,
             scale: Scale::UNIT,
         };
         let step = 0.01 * side;
-        let first = departure.first_point(&mut problem, &mut newton, step, NEWTON);
+        let first = switch.first_point(&mut problem, &mut newton, step, NEWTON);
         let start = Start::Along(Box::new(first.unwrap()));
         let (branch, stop) = followed(from[2], 8.0, start);
         assert_eq!(stop, Stop::ReachedEnd);

@@ -15,7 +15,7 @@ use crate::balance::resolution::resize;
 use crate::balance_branch::follower::Follower;
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
-use crate::branches::switch::Departure;
+use crate::branches::switch::BranchSwitch;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::{Norm, Scale};
@@ -25,7 +25,7 @@ use crate::numeric::fourier::series;
 
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
 /// orbit of the new branch is taken.
-const DEPARTURES: [f64; 4] = [0.02, 0.05, 0.01, 0.1];
+const FIRST_STEPS: [f64; 4] = [0.02, 0.05, 0.01, 0.1];
 
 /// Which part of the Jacobian is singular at an event, and the parity of the harmonics that its orbits have; `None` if no branch begins
 /// there. The harmonics of the old branch are multiples of a stride.
@@ -45,7 +45,7 @@ fn critical(event: &Event, stride: usize, of_branch: usize) -> Option<(Part, Par
 ///
 /// # Errors
 /// [`OrbitError::NoBranch`] if no branch begins there, or its first orbit was not found.
-pub(crate) fn depart(
+pub(crate) fn switch_branch(
     follower: &Follower,
     event: &Event,
     stride: usize,
@@ -75,20 +75,20 @@ pub(crate) fn depart(
         let tangent = of_branch(&event.tangent);
         take_out(newton.norm(), scale, &tangent, &mut direction);
     }
-    for part in DEPARTURES {
+    for part in FIRST_STEPS {
         let scale = newton.norm().scale_at(&start, range, &mut [0.0; 2]);
         let length = newton.norm().length(scale, &direction);
         let unit: Vec<f64> = direction.iter().map(|x| x / length).collect();
         let mut row = vec![0.0; unit.len()];
         newton.norm().linear_form(scale, &unit, &mut row);
-        let departure = Departure {
+        let switch = BranchSwitch {
             from: &start,
             along: &unit,
             held: &row,
             scale,
         };
         let options = follower.newton;
-        let first = departure.first_point(&mut balance, &mut newton, side * part, options);
+        let first = switch.first_point(&mut balance, &mut newton, side * part, options);
         if let Some(first) = first {
             return Ok(first);
         }
