@@ -6,7 +6,7 @@ use crate::balance::aft::Aft;
 use crate::balance::resolution::Chooser;
 use crate::balance::symmetry::{Over, has_stride, is_broken};
 use crate::balance::{Lattice, Parity, Resolution};
-use crate::balance_branch::follower::Follower;
+use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Event;
@@ -47,7 +47,7 @@ pub(crate) struct Asked<'r> {
 
 impl Asked<'_> {
     /// Checks everything that was asked for.
-    pub(crate) fn check(&self) -> Result<(Follower, FollowOptions), Error> {
+    pub(crate) fn check(&self) -> Result<(BranchContext, FollowOptions), Error> {
         let facts = self.request.system.facts();
         if facts.coordinates.is_empty() {
             return Err(ModelError::NoCoordinates.into());
@@ -86,7 +86,7 @@ impl Asked<'_> {
             resolution.harmonics = chooser.admitted(orbit.harmonics());
         }
         Ok((
-            Follower {
+            BranchContext {
                 system: Arc::clone(&self.request.system),
                 parameters,
                 omega,

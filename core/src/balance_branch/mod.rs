@@ -1,7 +1,7 @@
 //! Branches of orbits by harmonic balance, as the [engine](crate::branches::engine) follows them.
 
 pub(crate) mod check;
-pub(crate) mod follower;
+pub(crate) mod context;
 pub(crate) mod motion;
 pub(crate) mod options;
 pub(crate) mod reader;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::balance::start::{Moved, Moving};
-use crate::balance_branch::follower::Follower;
+use crate::balance_branch::context::BranchContext;
 use crate::system::{System, Variable};
 use crate::time;
 use crate::time::{Flow, FlowError, Options, Stretch};
@@ -14,8 +14,8 @@ const TOLERANCE: f64 = 1e-7;
 const PER_CONTACT: u64 = 64;
 
 /// Moves a state of the system of a branch.
-pub(crate) fn moved(follower: &Follower, moving: Moving<'_>) -> Moved {
-    let mut parameters = follower.parameters.clone();
+pub(crate) fn moved(context: &BranchContext, moving: Moving<'_>) -> Moved {
+    let mut parameters = context.parameters.clone();
     let mut omega = moving.omega;
     match moving.variable {
         Variable::Omega => omega = moving.value,
@@ -23,19 +23,19 @@ pub(crate) fn moved(follower: &Follower, moving: Moving<'_>) -> Moved {
     }
     let options = Options::default()
         .tolerance(TOLERANCE)
-        .cancel(&follower.cancel);
-    let Ok(mut flow) = time::at(&follower.system, &parameters, omega, options) else {
+        .cancel(&context.cancel);
+    let Ok(mut flow) = time::at(&context.system, &parameters, omega, options) else {
         return Moved {
             positions: None,
             operations: 0,
         };
     };
     let most =
-        usize::try_from(moving.most / per_force(follower.system.as_ref())).unwrap_or(usize::MAX);
+        usize::try_from(moving.most / per_force(context.system.as_ref())).unwrap_or(usize::MAX);
     let positions = recorded(flow.as_mut(), moving, most).ok().flatten();
     Moved {
         positions,
-        operations: flow.work().forces as u64 * per_force(follower.system.as_ref()),
+        operations: flow.work().forces as u64 * per_force(context.system.as_ref()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Options of the harmonic balance.
 
 use crate::balance::aft::Aft;
-use crate::balance_branch::follower::Sought;
+use crate::balance_branch::context::Sought;
 use crate::orbit::stability::Method;
 
 /// Orbits as Fourier series whose residual vanishes in as many harmonics (harmonic balance): the method of a

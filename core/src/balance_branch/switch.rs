@@ -12,7 +12,7 @@
 use crate::balance::Parity;
 use crate::balance::critical_block::Part;
 use crate::balance::resolution::resize;
-use crate::balance_branch::follower::Follower;
+use crate::balance_branch::context::BranchContext;
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
 use crate::branches::switch::BranchSwitch;
@@ -40,13 +40,13 @@ fn critical(event: &Event, stride: usize, of_branch: usize) -> Option<(Part, Par
     })
 }
 
-/// The first orbit of the branch that begins at an event, with its direction, in the resolution of the new branch's follower. The
+/// The first orbit of the branch that begins at an event, with its direction, in the resolution of the new branch's context. The
 /// harmonics of the old branch are multiples of a stride.
 ///
 /// # Errors
 /// [`OrbitError::NoBranch`] if no branch begins there, or its first orbit was not found.
 pub(crate) fn switch_branch(
-    follower: &Follower,
+    context: &BranchContext,
     event: &Event,
     stride: usize,
     side: f64,
@@ -58,18 +58,18 @@ pub(crate) fn switch_branch(
     let orbit = &event.point.orbit;
     let mut u = orbit.series.clone();
     u.push(event.point.value);
-    let Some((part, parity)) = critical(event, stride, follower.resolution.stride) else {
+    let Some((part, parity)) = critical(event, stride, context.resolution.stride) else {
         return Err(nothing.into());
     };
-    let mut old = follower.with_harmonics(orbit.harmonics(), orbit.harmonics());
+    let mut old = context.with_harmonics(orbit.harmonics(), orbit.harmonics());
     (old.parity, old.stride, old.period) = (parity, stride, orbit.period);
-    let (on_block, direction) = follower.block(part, old).null_vector(&u, &event.tangent);
-    let harmonics = follower.resolution.harmonics;
+    let (on_block, direction) = context.block(part, old).null_vector(&u, &event.tangent);
+    let harmonics = context.resolution.harmonics;
     let of_branch = |u: &[f64]| resize(u, orbit.coordinates, series::length(harmonics));
     let (start, mut direction) = (of_branch(&on_block), of_branch(&direction));
-    let mut balance = follower.balance(follower.with_harmonics(harmonics, harmonics));
+    let mut balance = context.balance(context.with_harmonics(harmonics, harmonics));
     let mut newton = Newton::new(&balance);
-    let range = (follower.to - follower.from).abs();
+    let range = (context.to - context.from).abs();
     if part == Part::Own {
         let scale = newton.norm().scale_at(&start, range, &mut [0.0; 2]);
         let tangent = of_branch(&event.tangent);
@@ -87,7 +87,7 @@ pub(crate) fn switch_branch(
             held: &row,
             scale,
         };
-        let options = follower.newton;
+        let options = context.newton;
         let first = switch.first_point(&mut balance, &mut newton, side * part, options);
         if let Some(first) = first {
             return Ok(first);

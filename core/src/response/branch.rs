@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::by_shooting::{self, Second};
 use super::sealed::Follow;
 use crate::balance_branch::check::Asked;
-use crate::balance_branch::follower::Follower;
+use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::point::{Event, Point};
@@ -21,7 +21,7 @@ use crate::system::System;
 
 /// What a branch was asked for by.
 pub(super) enum Following {
-    Balance(Box<Follower>, Request, HarmonicBalance),
+    Balance(Box<BranchContext>, Request, HarmonicBalance),
     Shooting(Request, Shooting),
 }
 
@@ -43,7 +43,7 @@ impl Branch {
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
         validate::finite("at", value)?;
         match self.following()? {
-            Following::Balance(follower, ..) => follower.at(self, value),
+            Following::Balance(context, ..) => context.at(self, value),
             Following::Shooting(request, shooting) => {
                 let Some(point) = self.points.first() else {
                     return Ok(Vec::new());
@@ -154,8 +154,8 @@ impl Branch {
                 request: &near,
                 balance: &balance,
             };
-            let (follower, _) = asked.check()?;
-            Following::Balance(Box::new(follower), request, balance)
+            let (context, _) = asked.check()?;
+            Following::Balance(Box::new(context), request, balance)
         } else {
             Following::Shooting(request, shooting)
         };
@@ -167,9 +167,9 @@ impl Branch {
     }
 
     /// A balance of orbits like this one of the branch, whatever method found it.
-    pub(super) fn follower(&self, point: &Point) -> Result<Follower, Error> {
+    pub(super) fn context(&self, point: &Point) -> Result<BranchContext, Error> {
         let request = match self.following()? {
-            Following::Balance(follower, ..) => return Ok(follower.as_ref().clone()),
+            Following::Balance(context, ..) => return Ok(context.as_ref().clone()),
             Following::Shooting(request, _) => request,
         };
         let balance = HarmonicBalance::new();
@@ -192,9 +192,9 @@ impl Branch {
     }
 
     /// What followed it, if it is one of the balance.
-    pub(super) fn by_balance(&self) -> Option<&Follower> {
+    pub(super) fn by_balance(&self) -> Option<&BranchContext> {
         match self.following() {
-            Ok(Following::Balance(follower, ..)) => Some(follower),
+            Ok(Following::Balance(context, ..)) => Some(context),
             _ => None,
         }
     }

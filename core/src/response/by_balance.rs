@@ -11,7 +11,7 @@ use crate::balance::Parity;
 use crate::balance::start::{Moving, start, without_symmetry};
 use crate::balance::symmetry::has_stride;
 use crate::balance_branch::check::Asked;
-use crate::balance_branch::follower::Follower;
+use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::motion;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::balance_branch::run::{Followed, Run};
@@ -57,12 +57,12 @@ impl Follow for HarmonicBalance {
             request,
             balance: self,
         };
-        let (follower, options) = asked.check()?;
+        let (context, options) = asked.check()?;
         let mut statistics = Statistics::default();
-        let first = first(asked, &follower, options, &mut statistics)?;
-        let run = Run::new(&follower, options, &first);
+        let first = first(asked, &context, options, &mut statistics)?;
+        let run = Run::new(&context, options, &first);
         let followed = run.follow(Start::Near(first), visit)?;
-        let mut branch = as_branch(asked, follower.clone(), followed);
+        let mut branch = as_branch(asked, context.clone(), followed);
         branch.statistics += statistics;
         branch.elapsed = started.elapsed();
         Ok(branch)
@@ -92,12 +92,12 @@ impl Follow for HarmonicBalance {
             request,
             balance: self,
         };
-        let (mut follower, options) = asked.check()?;
-        let stride = with_resolution_of(&mut follower, event, request.period());
-        let point = switch_branch(&follower, event, stride, side.sign())?;
-        let run = Run::new(&follower, options, &point.u);
+        let (mut context, options) = asked.check()?;
+        let stride = with_resolution_of(&mut context, event, request.period());
+        let point = switch_branch(&context, event, stride, side.sign())?;
+        let run = Run::new(&context, options, &point.u);
         let followed = run.follow(Start::Along(Box::new(point)), visit)?;
-        let mut branch = as_branch(asked, follower.clone(), followed);
+        let mut branch = as_branch(asked, context.clone(), followed);
         branch.elapsed = started.elapsed();
         Ok(branch)
     }
@@ -116,21 +116,21 @@ impl Follow for HarmonicBalance {
             request,
             balance: self,
         };
-        let (follower, mut options) = asked.check()?;
+        let (context, mut options) = asked.check()?;
         let mut statistics = Statistics::default();
         options.from = value;
-        let first = first(asked, &follower, options, &mut statistics)?;
+        let first = first(asked, &context, options, &mut statistics)?;
         // Each part ends where the range does.
         let mut part = |[from, to]: [f64; 2]| {
-            let point = follower.along(&first, (to - from).signum(), value)?;
+            let point = context.along(&first, (to - from).signum(), value)?;
             let options = FollowOptions {
                 from,
                 to,
                 ..options
             };
-            let run = Run::new(&follower, options, &first);
+            let run = Run::new(&context, options, &first);
             let followed = run.follow(Start::Along(Box::new(point)), &mut *visit)?;
-            Ok::<_, Error>(as_branch(asked, follower.clone(), followed))
+            Ok::<_, Error>(as_branch(asked, context.clone(), followed))
         };
         let forth = part([from, to])?;
         // Once around, or interrupted: there is no other side.
@@ -149,48 +149,48 @@ impl Follow for HarmonicBalance {
 /// Unknowns of the first orbit.
 fn first(
     asked: Asked<'_>,
-    follower: &Follower,
+    context: &BranchContext,
     options: FollowOptions,
     statistics: &mut Statistics,
 ) -> Result<Vec<f64>, Error> {
     if let Some(orbit) = asked.near() {
-        return Ok(follower.unknowns_of(orbit, options.from));
+        return Ok(context.unknowns_of(orbit, options.from));
     }
-    let motion = |moving: Moving<'_>| motion::moved(follower, moving);
-    let request = follower.start_request(options, &motion);
+    let motion = |moving: Moving<'_>| motion::moved(context, moving);
+    let request = context.start_request(options, &motion);
     let found = start(request, statistics)?;
-    let broken = follower.asymmetric;
+    let broken = context.asymmetric;
     let broken = broken.then(|| without_symmetry(request, &found, statistics));
     Ok(broken.flatten().unwrap_or(found))
 }
 
 /// Takes symmetry and harmonics from the orbit at an event, of which a branch of this period begins; the stride of the event's own orbit.
-fn with_resolution_of(follower: &mut Follower, event: &Event, period: usize) -> usize {
+fn with_resolution_of(context: &mut BranchContext, event: &Event, period: usize) -> usize {
     let doubles = event.kind == EventKind::PeriodDoubling;
     // Of the system, where orbits of period one may have it.
-    let odd = follower.asymmetric || follower.resolution.parity == Parity::Odd;
-    follower.resolution.parity = Parity::All;
-    follower.asymmetric = odd && !doubles;
+    let odd = context.asymmetric || context.resolution.parity == Parity::Odd;
+    context.resolution.parity = Parity::All;
+    context.asymmetric = odd && !doubles;
     let orbit = &event.point.orbit;
-    let mut stride = follower.resolution.stride;
+    let mut stride = context.resolution.stride;
     if !has_stride(orbit, stride) {
         stride = 1;
     }
     let halves = event.kind == EventKind::BranchPoint && event.tangent.is_empty();
-    follower.resolution.stride = if halves && stride.is_multiple_of(2) {
+    context.resolution.stride = if halves && stride.is_multiple_of(2) {
         stride / 2
     } else {
         stride
     };
-    if let Some(chooser) = &follower.chooser {
+    if let Some(chooser) = &context.chooser {
         let times = period / orbit.period;
-        follower.resolution.harmonics = chooser.admitted(times * orbit.harmonics());
+        context.resolution.harmonics = chooser.admitted(times * orbit.harmonics());
     }
     stride
 }
 
 /// The branch that a run gives.
-fn as_branch(asked: Asked<'_>, follower: Follower, followed: Followed) -> Branch {
+fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Branch {
     let Followed {
         stopped,
         points,
@@ -204,11 +204,11 @@ fn as_branch(asked: Asked<'_>, follower: Follower, followed: Followed) -> Branch
     let system = Arc::clone(&asked.request.system);
     // What is asked of the branch later is not part of this run.
     let request = asked.request.afterwards();
-    let follower = Follower {
+    let context = BranchContext {
         cancel: request.cancel.clone(),
-        ..follower
+        ..context
     };
-    let request = Following::Balance(Box::new(follower), request, *asked.balance);
+    let request = Following::Balance(Box::new(context), request, *asked.balance);
     Branch {
         model: Model::of(system.as_ref()),
         varied: asked.request.varied(),

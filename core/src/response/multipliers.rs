@@ -1,7 +1,7 @@
 //! What a method says of an orbit of a branch.
 
 use crate::balance::truncation::RefinedBalance;
-use crate::balance_branch::follower::Follower;
+use crate::balance_branch::context::BranchContext;
 use crate::branches::branch::Branch;
 use crate::branches::point::Point;
 use crate::continuation::newton::{Border, Newton};
@@ -23,8 +23,8 @@ impl Branch {
     /// [model](Self::attach).
     pub fn multipliers(&self, point: &Point, method: Method) -> Result<Answer, Error> {
         let point = &self.complete(point)?;
-        let follower = &self.follower(point)?;
-        let facts = follower.system.facts();
+        let context = &self.context(point)?;
+        let facts = context.system.facts();
         let (entries, expected) = (point.orbit.coordinates(), facts.coordinates.len());
         if entries != expected {
             let (entries, expected) = (2 * entries, 2 * expected);
@@ -35,20 +35,20 @@ impl Branch {
             return Err(RequestError::Values { values, expected }.into());
         }
         let harmonics = point.orbit.harmonics();
-        let resolution = follower.with_harmonics(harmonics, harmonics);
-        let mut balance = follower.balance(resolution);
+        let resolution = context.with_harmonics(harmonics, harmonics);
+        let mut balance = context.balance(resolution);
         let mut u = point.orbit.series.clone();
         u.push(point.value);
         let mut finer = RefinedBalance::new(
-            follower.system.as_ref(),
+            context.system.as_ref(),
             &point.parameters,
             point.orbit.omega,
-            follower.variable,
+            context.variable,
             resolution,
         );
         let mut newton = Newton::new(&balance);
         let corrected =
-            factorise(follower, &mut balance, &mut newton, &u) && finer.correct(&u, &mut newton);
+            factorise(context, &mut balance, &mut newton, &u) && finer.correct(&u, &mut newton);
         balance.set(point.value);
         Ok(Judge::new(method).answer(&balance, corrected.then_some(&finer), &u))
     }
@@ -57,12 +57,12 @@ impl Branch {
 /// Makes the factors at an orbit, with a border that holds the parameter fast or, near a fold, the way along the branch;
 /// false if that fails.
 fn factorise(
-    follower: &Follower,
+    context: &BranchContext,
     problem: &mut dyn Problem,
     newton: &mut Newton,
     u: &[f64],
 ) -> bool {
-    let range = (follower.to - follower.from).abs();
+    let range = (context.to - context.from).abs();
     let scale = newton.norm().scale_at(u, range, &mut [0.0; 2]);
     let last = u.len() - 1;
     let mut row = vec![0.0; u.len()];
@@ -70,7 +70,7 @@ fn factorise(
         let mut moved = u.to_vec();
         let value = dot(row, u);
         let border = Border { row, value };
-        let found = newton.correct(problem, &mut moved, border, scale, follower.newton);
+        let found = newton.correct(problem, &mut moved, border, scale, context.newton);
         let difference: Vec<f64> = moved.iter().zip(u).map(|(a, b)| a - b).collect();
         let stayed = found.is_ok() && newton.norm().length(scale, &difference) < MOVED;
         stayed.then(|| {

@@ -25,10 +25,10 @@ impl<'a> Stages<'a> {
     pub fn at(branch: &'a Branch, point: &Point) -> Option<Self> {
         let mut u = point.orbit.series.clone();
         u.push(point.value);
-        let follower = branch.by_balance()?;
-        let core = follower.core_for(&u);
-        let resolution = follower.with_harmonics(point.orbit.harmonics(), core);
-        let balance = follower.balance(resolution);
+        let context = branch.by_balance()?;
+        let core = context.core_for(&u);
+        let resolution = context.with_harmonics(point.orbit.harmonics(), core);
+        let balance = context.balance(resolution);
         let mut border = vec![0.0; u.len()];
         border[u.len() - 1] = 1.0;
         let mut stages = Self {

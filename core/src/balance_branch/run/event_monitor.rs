@@ -24,7 +24,7 @@ use crate::balance::critical_block::{CriticalBlock, Part};
 use crate::balance::resolution::resize;
 use crate::balance::truncation::BEYOND;
 use crate::balance::{Balance, Resolution};
-use crate::balance_branch::follower::{Follower, Sought};
+use crate::balance_branch::context::{BranchContext, Sought};
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{TestValue, Watched};
 use crate::continuation::follow::{CurvePoint, Step};
@@ -91,12 +91,12 @@ pub(super) struct EventMonitor<'a> {
 }
 
 impl<'a> EventMonitor<'a> {
-    pub(super) fn new(follower: &'a Follower, resolution: Resolution) -> Self {
-        let coordinates = follower.system.facts().coordinates.len();
-        let all = follower.sought == Sought::All;
+    pub(super) fn new(context: &'a BranchContext, resolution: Resolution) -> Self {
+        let coordinates = context.system.facts().coordinates.len();
+        let all = context.sought == Sought::All;
         // Two multipliers on the unit circle, of one coordinate, are there with no damping only.
-        let pairs = all && follower.stability.is_some() && coordinates > 1;
-        let blocks = follower.blocks(resolution);
+        let pairs = all && context.stability.is_some() && coordinates > 1;
+        let blocks = context.blocks(resolution);
         let mut watched: Vec<Watched> = blocks.iter().map(|block| watched(block.part)).collect();
         watched.extend(pairs.then_some(Watched {
             kind: EventKind::NeimarkSacker,
@@ -105,8 +105,8 @@ impl<'a> EventMonitor<'a> {
         Self {
             watched,
             blocks,
-            pairs: pairs.then(|| Pairs::new(follower.balance(resolution))),
-            gaps: all.then(|| GapExtremes::new(follower.balance(resolution))),
+            pairs: pairs.then(|| Pairs::new(context.balance(resolution))),
+            gaps: all.then(|| GapExtremes::new(context.balance(resolution))),
             extremes: Default::default(),
         }
     }
@@ -279,23 +279,23 @@ impl<'a> Run<'a> {
         test: &Test<'_, 'a>,
         resolution: Resolution,
     ) -> EventMonitor<'a> {
-        let follower = self.follower;
+        let context = self.context;
         let mut monitor = EventMonitor::default();
         match test {
             Test::Extreme(..) => {
-                monitor.gaps = Some(GapExtremes::new(follower.balance(resolution)));
+                monitor.gaps = Some(GapExtremes::new(context.balance(resolution)));
             }
             Test::Pairs(_) => {
-                monitor.pairs = Some(Pairs::new(follower.balance(resolution)));
+                monitor.pairs = Some(Pairs::new(context.balance(resolution)));
             }
-            Test::Block(block, _) => monitor.blocks.push(follower.block(block.part, resolution)),
+            Test::Block(block, _) => monitor.blocks.push(context.block(block.part, resolution)),
         }
         monitor
     }
 
     /// A vector of the branch in another resolution.
     pub(super) fn with_harmonics_of(&self, v: &[f64], resolution: Resolution) -> Vec<f64> {
-        let coordinates = self.follower.system.facts().coordinates.len();
+        let coordinates = self.context.system.facts().coordinates.len();
         resize(v, coordinates, series::length(resolution.harmonics))
     }
 }

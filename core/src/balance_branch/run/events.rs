@@ -49,7 +49,7 @@ impl Run<'_> {
             ..self.resolution
         };
         if self.resolution.core < whole.core {
-            let mut balance = self.follower.balance(whole);
+            let mut balance = self.context.balance(whole);
             let mut newton = Newton::new(&balance);
             let again = locate(
                 &mut balance,
@@ -119,7 +119,7 @@ impl Run<'_> {
         orbit.is_some_and(|orbit| {
             let length = orbit.row(0).len();
             let least = BEYOND_NEWTON * self.options.newton.tolerance;
-            let symmetric = self.follower.asymmetric
+            let symmetric = self.context.asymmetric
                 && broken_share(&orbit.series, length) > least * least
                 && broken(orbit, u).vanished();
             symmetric || passes_shorter_period(orbit, u).is_some()

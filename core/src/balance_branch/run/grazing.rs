@@ -175,7 +175,7 @@ impl<'a> Run<'a> {
         }
         if self.resolution.core < self.resolution.harmonics {
             // What core and tail cannot locate, the whole system may.
-            let mut whole = self.follower.balance(Resolution {
+            let mut whole = self.context.balance(Resolution {
                 core: self.resolution.harmonics,
                 ..self.resolution
             });

@@ -27,14 +27,14 @@ pub(super) struct BalanceBranch<'r, 'v> {
 impl<'r, 'v> BalanceBranch<'r, 'v> {
     pub(super) fn new(run: Run<'r>, visit: See<'v>) -> Self {
         Self {
-            balance: run.follower.balance(run.resolution),
+            balance: run.context.balance(run.resolution),
             run,
             visit,
         }
     }
 
     fn renew(&mut self) {
-        self.balance = self.run.follower.balance(self.run.resolution);
+        self.balance = self.run.context.balance(self.run.resolution);
     }
 }
 
@@ -159,7 +159,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         } else {
             resolution.core
         };
-        self.balance = self.run.follower.balance(Resolution { core, ..resolution });
+        self.balance = self.run.context.balance(Resolution { core, ..resolution });
         true
     }
 

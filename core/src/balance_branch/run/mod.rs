@@ -10,7 +10,7 @@ mod method;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
-use crate::balance_branch::follower::Follower;
+use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::reader::Reader;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
@@ -45,7 +45,7 @@ pub(crate) struct Followed {
 
 /// What a run has gathered.
 pub(crate) struct Run<'a> {
-    pub(crate) follower: &'a Follower,
+    pub(crate) context: &'a BranchContext,
     options: FollowOptions,
     resolution: Resolution,
     /// The size of the core, where it pays to have one, and before it grew last.
@@ -69,18 +69,18 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    pub(crate) fn new(follower: &'a Follower, options: FollowOptions, first: &[f64]) -> Self {
-        let core = follower.core_for(first);
-        let resolution = follower.with_harmonics(follower.resolution.harmonics, core);
+    pub(crate) fn new(context: &'a BranchContext, options: FollowOptions, first: &[f64]) -> Self {
+        let core = context.core_for(first);
+        let resolution = context.with_harmonics(context.resolution.harmonics, core);
         Self {
-            follower,
+            context,
             options,
             resolution,
             core,
             core_before: core,
-            reader: follower.reader(resolution),
-            monitor: EventMonitor::new(follower, resolution),
-            chooser: follower.chooser.clone(),
+            reader: context.reader(resolution),
+            monitor: EventMonitor::new(context, resolution),
+            chooser: context.chooser.clone(),
             wanted: resolution,
             former: None,
             slow: 0,
@@ -123,8 +123,8 @@ impl<'a> Run<'a> {
     /// Reads and monitors orbits of the resolution from here on.
     fn renew(&mut self) {
         self.count_others();
-        self.reader = self.follower.reader(self.resolution);
-        self.monitor = EventMonitor::new(self.follower, self.resolution);
+        self.reader = self.context.reader(self.resolution);
+        self.monitor = EventMonitor::new(self.context, self.resolution);
     }
 
     /// Whether harmonics are coupled to the core alone.
@@ -143,7 +143,7 @@ impl<'a> Run<'a> {
     /// Puts a halted walk into the resolution wanted.
     fn remap(&mut self, halted: &mut Halted) {
         let length = series::length(self.wanted.harmonics);
-        let coordinates = self.follower.system.facts().coordinates.len();
+        let coordinates = self.context.system.facts().coordinates.len();
         for vector in halted.vectors() {
             *vector = resize(vector, coordinates, length);
         }
@@ -256,7 +256,7 @@ impl<'a> Run<'a> {
             chooser.decide(harmonics, error)
         });
         self.wanted = self
-            .follower
+            .context
             .with_harmonics(chosen.unwrap_or(harmonics), self.core);
     }
 }

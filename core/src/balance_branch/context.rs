@@ -45,7 +45,7 @@ pub(crate) enum Sought {
 
 /// What it takes to compute further orbits of a branch.
 #[derive(Clone)]
-pub(crate) struct Follower {
+pub(crate) struct BranchContext {
     pub(crate) system: Arc<dyn System>,
     pub(crate) parameters: Vec<f64>,
     pub(crate) omega: f64,
@@ -65,15 +65,15 @@ pub(crate) struct Follower {
     pub(crate) cancel: Cancel,
 }
 
-impl std::fmt::Debug for Follower {
+impl std::fmt::Debug for BranchContext {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Follower")
+        f.debug_struct("BranchContext")
             .field("variable", &self.variable)
             .finish_non_exhaustive()
     }
 }
 
-impl Follower {
+impl BranchContext {
     /// The balance at one of the branch's resolutions.
     pub(crate) fn balance(&self, resolution: Resolution) -> Balance<'_> {
         Balance::new(
