@@ -7,7 +7,7 @@ use crate::balance::resolution::{Chooser, resize};
 use crate::balance::start::{Motion, StartRequest};
 use crate::balance::truncation::RefinedBalance;
 use crate::balance::{Balance, Parity, Resolution};
-use crate::balance_branch::reader::Reader;
+use crate::balance_branch::point_evaluator::PointEvaluator;
 use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
 use crate::branches::orbit::Orbit;
@@ -86,8 +86,8 @@ impl BranchContext {
         .until(&self.cancel)
     }
 
-    /// A reader of orbits of that resolution.
-    pub(crate) fn reader(&self, resolution: Resolution) -> Reader<'_> {
+    /// A evaluator of orbits of that resolution.
+    pub(crate) fn evaluator(&self, resolution: Resolution) -> PointEvaluator<'_> {
         let finer = RefinedBalance::new(
             self.system.as_ref(),
             &self.parameters,
@@ -95,7 +95,7 @@ impl BranchContext {
             self.variable,
             resolution,
         );
-        Reader::new(finer, self.stability, self.chooser.is_some())
+        PointEvaluator::new(finer, self.stability, self.chooser.is_some())
     }
 
     /// What becomes singular at bifurcations of orbits of that resolution: the even harmonics where they have odd ones only, those
@@ -255,8 +255,8 @@ impl BranchContext {
             .u;
         let last = u.len() - 1;
         u[last] = value;
-        let mut reader = self.reader(balance.resolution());
-        Ok(reader.read(&mut balance, newton, &u))
+        let mut evaluator = self.evaluator(balance.resolution());
+        Ok(evaluator.read(&mut balance, newton, &u))
     }
 }
 

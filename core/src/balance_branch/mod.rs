@@ -4,6 +4,6 @@ pub(crate) mod check;
 pub(crate) mod context;
 pub(crate) mod motion;
 pub(crate) mod options;
-pub(crate) mod reader;
+pub(crate) mod point_evaluator;
 pub(crate) mod run;
 pub(crate) mod switch;

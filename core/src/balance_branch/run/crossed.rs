@@ -27,7 +27,7 @@ impl<'a> Run<'a> {
         let at = &zero.root.located.point;
         let shift = self.crossing_shift(balance, newton, step, at, test);
         let error = BEYOND * shift + zero.root.error + ROUNDING * at.parameter().abs();
-        let point = self.reader.read(balance, newton, &at.u);
+        let point = self.evaluator.read(balance, newton, &at.u);
         self.events.push(Event {
             kind: zero.change.kind,
             point,
@@ -54,7 +54,7 @@ impl<'a> Run<'a> {
         let mut row = vec![0.0; at.u.len()];
         newton.norm().linear_form(scale, &at.tangent, &mut row);
         let width = BESIDE * newton.norm().length(scale, &step.difference());
-        let fine = self.reader.finer.balance().resolution();
+        let fine = self.evaluator.finer.balance().resolution();
         let resolutions = [fine, three_quarters(fine)];
         let mut monitors = resolutions.map(|of| self.monitor_like(test, of));
         let mut coarse = [[0.0; 2]; 2];
@@ -68,12 +68,12 @@ impl<'a> Run<'a> {
             };
             let options = self.options.newton;
             let corrected = newton.correct(balance, &mut u, border, scale, options);
-            if corrected.is_err() || !self.reader.finer.correct(&u, newton) {
+            if corrected.is_err() || !self.evaluator.finer.correct(&u, newton) {
                 return f64::INFINITY;
             }
             coarse[side] = [u[u.len() - 1], test.at(&u, &at.tangent)];
             for ((monitor, of), finer) in monitors.iter_mut().zip(resolutions).zip(&mut finer) {
-                let u = self.with_harmonics_of(self.reader.finer.extended(), of);
+                let u = self.with_harmonics_of(self.evaluator.finer.extended(), of);
                 let tangent = self.with_harmonics_of(&at.tangent, of);
                 let Some(mut test) = monitor.test(test) else {
                     return f64::INFINITY;

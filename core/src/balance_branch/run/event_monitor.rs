@@ -208,14 +208,14 @@ impl<'a> Run<'a> {
         } = *found;
         let u = &located.point.u;
         let left = newton.left_in_parameter();
-        let error = if self.reader.finer.correct(u, newton) {
+        let error = if self.evaluator.finer.correct(u, newton) {
             let scale = step.before.scale;
             let length = newton.norm().length(scale, &step.difference());
             left + self.event_error(&located.point, DIFFERENCE * length, test)
         } else {
             f64::INFINITY
         };
-        let point = self.reader.read(balance, newton, u);
+        let point = self.evaluator.read(balance, newton, u);
         self.events.push(Event {
             kind,
             point,
@@ -230,7 +230,7 @@ impl<'a> Run<'a> {
     /// Estimated error of an event, from the corrected orbit that is held. What the first half of the harmonics that were left out
     /// does and what the second half does may cancel, and are taken by their sizes.
     fn event_error(&mut self, point: &CurvePoint, step: f64, test: &Test<'_, 'a>) -> f64 {
-        let fine = self.reader.finer.balance().resolution();
+        let fine = self.evaluator.finer.balance().resolution();
         let some = three_quarters(fine);
         let mut by = |of| self.moved(point, step, of, test);
         let (all, half) = (by(fine), by(some));
@@ -250,7 +250,7 @@ impl<'a> Run<'a> {
         let Some(mut test) = monitor.test(test) else {
             return f64::INFINITY;
         };
-        let finer = self.with_harmonics_of(self.reader.finer.extended(), resolution);
+        let finer = self.with_harmonics_of(self.evaluator.finer.extended(), resolution);
         let tangent = self.with_harmonics_of(&point.tangent, resolution);
         let mut at = |by: f64| {
             let pairs = finer.iter().zip(&tangent);

@@ -82,8 +82,8 @@ impl Run<'_> {
         let located = &zero.root.located;
         let (kind, after) = (zero.change.kind, zero.after);
         let u = &located.point.u;
-        let error = self.reader.finer.fold_error(u, newton);
-        let point = self.reader.read(balance, newton, u);
+        let error = self.evaluator.finer.fold_error(u, newton);
+        let point = self.evaluator.read(balance, newton, u);
         let turns = |after: usize, value: f64| self.points[after - 1].value < value;
         let same_way = turns(after, point.value);
         let near = |other: &&Event| {

@@ -11,7 +11,7 @@ mod method;
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
 use crate::balance_branch::context::BranchContext;
-use crate::balance_branch::reader::Reader;
+use crate::balance_branch::point_evaluator::PointEvaluator;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
@@ -51,7 +51,7 @@ pub(crate) struct Run<'a> {
     /// The size of the core, where it pays to have one, and before it grew last.
     core: usize,
     core_before: usize,
-    reader: Reader<'a>,
+    evaluator: PointEvaluator<'a>,
     /// What is looked for besides folds.
     monitor: EventMonitor<'a>,
     chooser: Option<Chooser>,
@@ -78,7 +78,7 @@ impl<'a> Run<'a> {
             resolution,
             core,
             core_before: core,
-            reader: context.reader(resolution),
+            evaluator: context.evaluator(resolution),
             monitor: EventMonitor::new(context, resolution),
             chooser: context.chooser.clone(),
             wanted: resolution,
@@ -123,7 +123,7 @@ impl<'a> Run<'a> {
     /// Reads and monitors orbits of the resolution from here on.
     fn renew(&mut self) {
         self.count_others();
-        self.reader = self.context.reader(self.resolution);
+        self.evaluator = self.context.evaluator(self.resolution);
         self.monitor = EventMonitor::new(self.context, self.resolution);
     }
 
@@ -184,7 +184,11 @@ impl<'a> Run<'a> {
 
     /// Adds the work that Newton's method does not count.
     fn count_others(&mut self) {
-        let judged = self.reader.judge.as_ref().map_or(0, |judge| judge.computed);
+        let judged = self
+            .evaluator
+            .judge
+            .as_ref()
+            .map_or(0, |judge| judge.computed);
         let (determinants, monodromies) = self.monitor.computed();
         self.statistics.monodromies += judged + monodromies;
         self.statistics.jacobians += determinants;
@@ -199,7 +203,7 @@ impl<'a> Run<'a> {
         at: &CurvePoint,
         visit: See<'_>,
     ) -> Read {
-        let point = self.reader.read(balance, newton, &at.u);
+        let point = self.evaluator.read(balance, newton, &at.u);
         self.choose(&point, newton.contraction());
         let change = self.wanted != self.resolution;
         if self.wanted.harmonics > self.resolution.harmonics {
@@ -233,7 +237,7 @@ impl<'a> Run<'a> {
         let options = self.options.newton;
         let corrected = newton.correct(balance, &mut u, border, point.scale, options);
         let u = if corrected.is_ok() { &u } else { &point.u };
-        self.reader.read(balance, newton, u)
+        self.evaluator.read(balance, newton, u)
     }
 
     /// Decides on the resolution of the next point, or of this one again.
@@ -246,9 +250,9 @@ impl<'a> Run<'a> {
             self.core += self.core.div_ceil(2);
         }
         let chosen = self.chooser.as_mut().and_then(|chooser| {
-            let error = point.error.map_or(f64::INFINITY, |_| self.reader.across);
+            let error = point.error.map_or(f64::INFINITY, |_| self.evaluator.across);
             // What rounding leaves, no harmonics take away.
-            let error = if error <= ROUNDINGS * self.reader.rounding {
+            let error = if error <= ROUNDINGS * self.evaluator.rounding {
                 0.0
             } else {
                 error

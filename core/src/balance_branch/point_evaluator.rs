@@ -22,7 +22,7 @@ const EXTREMES: f64 = 4.0;
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
-pub(crate) struct Reader<'a> {
+pub(crate) struct PointEvaluator<'a> {
     pub(crate) finer: RefinedBalance<'a>,
     pub(crate) judge: Option<Judge>,
     observer: Observer,
@@ -38,7 +38,7 @@ pub(crate) struct Reader<'a> {
     pub(crate) rounding: f64,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> PointEvaluator<'a> {
     pub(crate) fn new(
         finer: RefinedBalance<'a>,
         stability: Option<Method>,
