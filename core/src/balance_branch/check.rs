@@ -93,7 +93,7 @@ impl Asked<'_> {
                 variable,
                 resolution,
                 newton,
-                sought: self.balance.sought(),
+                selection: self.balance.selection(),
                 asymmetric,
                 stability: self.request.stability.then_some(self.balance.multipliers),
                 chooser,

@@ -35,7 +35,7 @@ const VALUE_TOLERANCE: f64 = 1e-13;
 
 /// Events that a run looks for. Where a symmetry breaks is located always.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Sought {
+pub(crate) enum EventSelection {
     Folds,
     /// And doublings of the period.
     Doublings,
@@ -55,7 +55,7 @@ pub(crate) struct BranchContext {
     /// The orbits lack the odd symmetry that others of the system have.
     pub(crate) asymmetric: bool,
     /// Which events are looked for.
-    pub(crate) sought: Sought,
+    pub(crate) selection: EventSelection,
     /// How multipliers are computed, where they are.
     pub(crate) stability: Option<Method>,
     /// How harmonics follow the tolerance, where they do.
@@ -103,12 +103,12 @@ impl BranchContext {
     /// looked for.
     pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<CriticalBlock<'_>> {
         let odd = resolution.parity == Parity::Odd;
-        let all = self.sought == Sought::All;
+        let all = self.selection == EventSelection::All;
         let halves = resolution.stride.is_multiple_of(2);
         let wanted = [
             (odd, Part::Even),
             (
-                !odd && !halves && self.sought != Sought::Folds,
+                !odd && !halves && self.selection != EventSelection::Folds,
                 Part::Doubled,
             ),
             (!odd && halves && all, Part::Between),

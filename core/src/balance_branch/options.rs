@@ -1,7 +1,7 @@
 //! Options of the harmonic balance.
 
 use crate::balance::aft::Aft;
-use crate::balance_branch::context::Sought;
+use crate::balance_branch::context::EventSelection;
 use crate::orbit::stability::Method;
 
 /// Orbits as Fourier series whose residual vanishes in as many harmonics (harmonic balance): the method of a
@@ -119,11 +119,11 @@ impl HarmonicBalance {
     }
 
     /// Which events are looked for.
-    pub(crate) fn sought(&self) -> Sought {
+    pub(crate) fn selection(&self) -> EventSelection {
         match (self.bifurcations, self.doublings) {
-            (true, _) => Sought::All,
-            (false, true) => Sought::Doublings,
-            (false, false) => Sought::Folds,
+            (true, _) => EventSelection::All,
+            (false, true) => EventSelection::Doublings,
+            (false, false) => EventSelection::Folds,
         }
     }
 }

@@ -24,7 +24,7 @@ use crate::balance::critical_block::{CriticalBlock, Part};
 use crate::balance::resolution::resize;
 use crate::balance::truncation::BEYOND;
 use crate::balance::{Balance, Resolution};
-use crate::balance_branch::context::{BranchContext, Sought};
+use crate::balance_branch::context::{BranchContext, EventSelection};
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{TestValue, Watched};
 use crate::continuation::follow::{CurvePoint, Step};
@@ -93,7 +93,7 @@ pub(super) struct EventMonitor<'a> {
 impl<'a> EventMonitor<'a> {
     pub(super) fn new(context: &'a BranchContext, resolution: Resolution) -> Self {
         let coordinates = context.system.facts().coordinates.len();
-        let all = context.sought == Sought::All;
+        let all = context.selection == EventSelection::All;
         // Two multipliers on the unit circle, of one coordinate, are there with no damping only.
         let pairs = all && context.stability.is_some() && coordinates > 1;
         let blocks = context.blocks(resolution);
