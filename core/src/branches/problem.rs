@@ -67,7 +67,7 @@ pub(crate) enum Read {
 
 /// What became of a place where a test function vanishes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Kept {
+pub(crate) enum ZeroOutcome {
     /// It is an event.
     Event,
     /// Nothing happens there.
@@ -159,7 +159,7 @@ pub(crate) trait BranchProblem {
     fn read(&mut self, newton: &mut Newton, at: &CurvePoint) -> Read;
 
     /// Reads a zero of a test function, whose factors Newton's method holds unless branches cross there, and keeps it.
-    fn keep(&mut self, newton: &mut Newton, step: Step<'_>, zero: &Zero) -> Kept;
+    fn keep(&mut self, newton: &mut Newton, step: Step<'_>, zero: &Zero) -> ZeroOutcome;
 
     /// Keeps a place that is none.
     fn keep_turn(&mut self, turn: Turn);
@@ -170,12 +170,12 @@ pub(crate) trait BranchProblem {
     }
 
     /// Takes more of the equations into the matrix from here on. Says whether there was something to take.
-    fn strengthen(&mut self) -> bool {
+    fn couple_fully(&mut self) -> bool {
         false
     }
 
     /// The same for one search; `false` takes it back.
-    fn strengthen_for_one(&mut self, on: bool) -> bool {
+    fn couple_fully_once(&mut self, on: bool) -> bool {
         let _ = on;
         false
     }

@@ -6,7 +6,9 @@ use super::minimal_period::{MinimalPeriod, step_on_other_branch};
 use super::run::Run;
 use super::tested::{self, Tests};
 use crate::branches::engine::Search;
-use crate::branches::problem::{BranchProblem, Change, Kept, Read, Test, TestValue, Watched, Zero};
+use crate::branches::problem::{
+    BranchProblem, Change, Read, Test, TestValue, Watched, Zero, ZeroOutcome,
+};
 use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::locate::Located;
@@ -199,20 +201,20 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         }
     }
 
-    fn keep(&mut self, _: &mut Newton, step: Step<'_>, zero: &Zero) -> Kept {
+    fn keep(&mut self, _: &mut Newton, step: Step<'_>, zero: &Zero) -> ZeroOutcome {
         let test = tested::Test::of(zero.change.test);
         if test == tested::Test::Pairs && !self.tests(&zero.root.located.point).complex {
-            return Kept::Nothing;
+            return ZeroOutcome::Nothing;
         }
         let Some(event) = self.run.event_at(&mut self.equations, step, zero) else {
-            return Kept::Unread;
+            return ZeroOutcome::Unread;
         };
         let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();
         self.run.events.push(event);
         if meets && self.run.meets(&mut self.equations) {
-            return Kept::Ends(Stop::Interrupted);
+            return ZeroOutcome::Ends(Stop::Interrupted);
         }
-        Kept::Event
+        ZeroOutcome::Event
     }
 
     fn keep_turn(&mut self, turn: Turn) {

@@ -5,7 +5,7 @@ use crate::balance::subharmonics::{is_shifted, passes_shorter_period};
 use crate::balance::symmetry::{broken, broken_share};
 use crate::balance::{Balance, Resolution};
 use crate::branches::point::Event;
-use crate::branches::problem::{Kept, Zero};
+use crate::branches::problem::{Zero, ZeroOutcome};
 use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::locate::{Located, locate};
 use crate::continuation::newton::Newton;
@@ -78,7 +78,7 @@ impl Run<'_> {
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         zero: &Zero,
-    ) -> Kept {
+    ) -> ZeroOutcome {
         let located = &zero.root.located;
         let (kind, after) = (zero.change.kind, zero.after);
         let u = &located.point.u;
@@ -98,7 +98,7 @@ impl Run<'_> {
         if point.orbit.period > 1
             && passed.any(|other| is_shifted(&other.point.orbit, &point.orbit))
         {
-            return Kept::Ends(Stop::Closed);
+            return ZeroOutcome::Ends(Stop::Closed);
         }
         self.events.push(Event {
             kind,
@@ -109,7 +109,7 @@ impl Run<'_> {
             contacts: 0,
             tangent: Vec::new(),
         });
-        Kept::Event
+        ZeroOutcome::Event
     }
 
     /// Whether the branch has passed an orbit of a shorter period, or a symmetric one, since its last point: what its orbits have

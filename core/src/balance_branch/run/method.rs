@@ -6,7 +6,9 @@ use super::event_monitor::{EventMonitor, Found, Test as OfOrbit};
 use super::events::FOLD_TOLERANCE;
 use crate::balance::{Balance, Resolution};
 use crate::branches::engine;
-use crate::branches::problem::{BranchProblem, Change, Kept, Read, Test, TestValue, Watched, Zero};
+use crate::branches::problem::{
+    BranchProblem, Change, Read, Test, TestValue, Watched, Zero, ZeroOutcome,
+};
 use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::{CurvePoint, Halted, Step};
 use crate::continuation::locate::Located;
@@ -105,7 +107,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         self.run.read(&mut self.balance, newton, at, self.visit)
     }
 
-    fn keep(&mut self, newton: &mut Newton, step: Step<'_>, zero: &Zero) -> Kept {
+    fn keep(&mut self, newton: &mut Newton, step: Step<'_>, zero: &Zero) -> ZeroOutcome {
         let (run, balance) = (&mut self.run, &mut self.balance);
         let index = match zero.change.test {
             Test::Watched(index) => Some(index),
@@ -139,7 +141,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         run.monitor = monitor;
     }
 
-    fn strengthen(&mut self) -> bool {
+    fn couple_fully(&mut self) -> bool {
         if !self.run.has_tail() {
             return false;
         }
@@ -149,7 +151,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         true
     }
 
-    fn strengthen_for_one(&mut self, on: bool) -> bool {
+    fn couple_fully_once(&mut self, on: bool) -> bool {
         let resolution = self.run.resolution;
         if !self.run.has_tail() {
             return false;
@@ -188,7 +190,7 @@ impl<'r> Run<'r> {
         zero: &Zero,
         monitor: &mut EventMonitor<'r>,
         index: usize,
-    ) -> Kept {
+    ) -> ZeroOutcome {
         let bordered = monitor.watched[index].bordered;
         let at = &zero.root.located.point.u;
         let mut test = if let Some(block) = monitor.blocks.get_mut(index) {
@@ -197,11 +199,11 @@ impl<'r> Run<'r> {
         } else if let Some(pairs) = &mut monitor.pairs {
             if !pairs.product(at).1 {
                 // A pair of real multipliers whose product is one is nothing special.
-                return Kept::Nothing;
+                return ZeroOutcome::Nothing;
             }
             OfOrbit::Pairs(pairs)
         } else {
-            return Kept::Nothing;
+            return ZeroOutcome::Nothing;
         };
         if bordered {
             self.branch_point(balance, newton, step, zero, &mut test);
@@ -213,6 +215,6 @@ impl<'r> Run<'r> {
             };
             self.located(balance, newton, step, &mut test, &found);
         }
-        Kept::Event
+        ZeroOutcome::Event
     }
 }

@@ -110,7 +110,7 @@ pub(crate) fn run(
                 outcome: Outcome::Stopped(stop),
                 stuck,
             }) => {
-                let Some(halted) = stuck.filter(|_| problem.strengthen()) else {
+                let Some(halted) = stuck.filter(|_| problem.couple_fully()) else {
                     return Ok(engine.ended.unwrap_or(stop));
                 };
                 Start::At(halted)
@@ -127,7 +127,7 @@ pub(crate) fn run(
             Err(NewtonError::Cancelled { .. }) if problem.points() > 0 => {
                 return Ok(Stop::Interrupted);
             }
-            Err(_) if problem.strengthen() => begun,
+            Err(_) if problem.couple_fully() => begun,
             Err(reason) => {
                 let Some(halted) = last.take() else {
                     return Err(reason);

@@ -10,7 +10,9 @@
 use nalgebra::DMatrix;
 
 use super::run;
-use crate::branches::problem::{BranchProblem, Change, Kept, Read, TestValue, Watched, Zero};
+use crate::branches::problem::{
+    BranchProblem, Change, Read, TestValue, Watched, Zero, ZeroOutcome,
+};
 use crate::branches::switch::BranchSwitch;
 use crate::branches::value::{Chord, chain, solutions};
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Step, Stop};
@@ -133,10 +135,10 @@ impl BranchProblem for Algebraic {
         }
     }
 
-    fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> Kept {
+    fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> ZeroOutcome {
         let at = &zero.root.located.point;
         self.events.push((zero.change.kind, at.u[0]));
-        Kept::Event
+        ZeroOutcome::Event
     }
 
     fn keep_turn(&mut self, turn: Turn) {

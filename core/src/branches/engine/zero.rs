@@ -1,7 +1,7 @@
 //! Locates where a test function vanishes between two points, and has the orbit there read.
 
 use super::{Engine, Seen};
-use crate::branches::problem::{BranchProblem, Change, Kept, Root, Test, TestValue, Zero};
+use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::locate::{Located, locate};
@@ -67,21 +67,21 @@ impl Search<'_> {
     /// function jumps.
     pub(crate) fn record(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Recorded {
         let (mut kept, jump) = self.search(problem, newton);
-        let stronger = kept == Kept::Unread && !is_crossing(problem, self.change);
-        if stronger && problem.strengthen_for_one(true) {
+        let stronger = kept == ZeroOutcome::Unread && !is_crossing(problem, self.change);
+        if stronger && problem.couple_fully_once(true) {
             let mut newton = Newton::new(problem.equations());
             kept = self.search(problem, &mut newton).0;
             problem.count(&newton);
-            problem.strengthen_for_one(false);
+            problem.couple_fully_once(false);
         }
         match kept {
-            Kept::Event | Kept::Nothing => return Recorded::Found,
-            Kept::Ends(stop) => return Recorded::Ends(stop),
+            ZeroOutcome::Event | ZeroOutcome::Nothing => return Recorded::Found,
+            ZeroOutcome::Ends(stop) => return Recorded::Ends(stop),
             // It may well be an event.
-            Kept::Unread if problem.equations().is_cancelled() => {
+            ZeroOutcome::Unread if problem.equations().is_cancelled() => {
                 return Recorded::Ends(Stop::Interrupted);
             }
-            Kept::Unread => {}
+            ZeroOutcome::Unread => {}
         }
         let [a, b] = self.step.parameters();
         let middle = 0.5 * (a + b);
@@ -109,12 +109,12 @@ impl Search<'_> {
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-    ) -> (Kept, Option<Located>) {
+    ) -> (ZeroOutcome, Option<Located>) {
         let Some(root) = self.root(problem, newton) else {
-            return (Kept::Unread, None);
+            return (ZeroOutcome::Unread, None);
         };
         if !problem.vanishes(self.change, &root.located) {
-            return (Kept::Unread, Some(root.located));
+            return (ZeroOutcome::Unread, Some(root.located));
         }
         let zero = Zero {
             change: self.change,
