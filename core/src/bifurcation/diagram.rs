@@ -8,7 +8,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use super::known;
+use super::matching;
 use crate::branches::branch::Branch;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See};
@@ -291,7 +291,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         }
         let request = self.response.clone().period(period).near_state(state);
         let orbit = request.orbit(value).map_err(Reason::of)?;
-        let known = |branch: &DiagramBranch| known::contains(&self.response, branch, &orbit);
+        let known = |branch: &DiagramBranch| matching::contains(&self.response, branch, &orbit);
         if self.diagram.branches.iter().any(known) {
             return Ok(());
         }
@@ -364,7 +364,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
 
     /// Another branch that passes the same crossing.
     fn crossing_at(&self, number: usize, event: &Event) -> Option<usize> {
-        let same = |other: &&Event| known::is_same_place(other, event, self.range);
+        let same = |other: &&Event| matching::is_same_place(other, event, self.range);
         let mut branches = self.diagram.branches.iter().enumerate();
         let crosses = |branch: &DiagramBranch| {
             let mut crossings = branch.branch.events(EventKind::BranchPoint);
@@ -382,8 +382,8 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             Some(Stop::Joined { period, value, .. }) => {
                 period == event.point.orbit.period
                     && joint.map_or_else(
-                        || known::is_same_value(value, event, self.range),
-                        |joint| known::is_same_place(joint, event, self.range),
+                        || matching::is_same_value(value, event, self.range),
+                        |joint| matching::is_same_place(joint, event, self.range),
                     )
             }
             _ => false,

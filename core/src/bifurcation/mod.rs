@@ -3,7 +3,7 @@
 pub mod backbone;
 pub(crate) mod diagram;
 pub(crate) mod error;
-mod known;
+mod matching;
 mod request;
 
 pub use diagram::{Diagram, DiagramBranch, Omitted, Origin, Reason};

@@ -35,7 +35,7 @@ pub(crate) fn at(
 
 fn between(problem: &ShootingProblem, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {
     let motion = |reason| MotionError { value, reason };
-    let (equations, u) = start::known(problem, a)?;
+    let (equations, u) = start::of_point(problem, a)?;
     let mut first = First {
         u,
         equations,

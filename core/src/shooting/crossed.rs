@@ -81,7 +81,7 @@ pub(super) fn switch_branch(
 /// The equations of the event's own orbit, and the orbit as a solution of them.
 fn same(problem: &ShootingProblem, event: &Event) -> Result<First, Error> {
     let point = &event.point;
-    let (equations, u) = start::known(problem, point)?;
+    let (equations, u) = start::of_point(problem, point)?;
     let mut first = First {
         u,
         equations,

@@ -82,7 +82,7 @@ pub(super) fn first(
 ///
 /// # Errors
 /// If there is no flow.
-pub(super) fn known(
+pub(super) fn of_point(
     problem: &ShootingProblem,
     point: &Point,
 ) -> Result<(Equations, Vec<f64>), Error> {

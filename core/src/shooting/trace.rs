@@ -337,7 +337,7 @@ fn curve<'a>(
     plane: &Plane<'a>,
 ) -> Result<(Curve<'a>, Vec<f64>), Error> {
     let point = &event.point;
-    let (mut equations, mut u) = start::known(problem, point)?;
+    let (mut equations, mut u) = start::of_point(problem, point)?;
     let nothing = OrbitError::NoBranch {
         kind: event.kind,
         value: point.value,

@@ -1,7 +1,7 @@
 //! Where another branch crosses, which no zero of a test function can be driven to: see [`continuation::crossing`](crate::continuation::crossing).
 
 use super::Run;
-use super::event_monitor::{ROUNDING, Test, known, three_quarters};
+use super::event_monitor::{ROUNDING, Test, or_infinite, three_quarters};
 use crate::balance::Balance;
 use crate::balance::truncation::BEYOND;
 use crate::branches::point::Event;
@@ -31,7 +31,7 @@ impl<'a> Run<'a> {
         self.events.push(Event {
             kind: zero.change.kind,
             point,
-            error: known(error),
+            error: or_infinite(error),
             test: zero.root.located.test,
             after: zero.after,
             contacts: 0,

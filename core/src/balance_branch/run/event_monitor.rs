@@ -235,7 +235,7 @@ impl<'a> Run<'a> {
         let mut by = |of| self.moved(point, step, of, test);
         let (all, half) = (by(fine), by(some));
         let change = half.abs() + (all - half).abs();
-        known(BEYOND * change + ROUNDING * point.parameter().abs())
+        or_infinite(BEYOND * change + ROUNDING * point.parameter().abs())
     }
 
     /// (1) with the harmonics of a resolution, and the derivative from differences over `step`.
@@ -336,7 +336,7 @@ pub(super) fn three_quarters(fine: Resolution) -> Resolution {
 }
 
 /// An error, or infinity where nothing is known of it.
-pub(super) fn known(error: f64) -> f64 {
+pub(super) fn or_infinite(error: f64) -> f64 {
     if error.is_finite() {
         error
     } else {
