@@ -16,7 +16,9 @@ use crate::error::Error;
 use crate::event::{EventKind, Side};
 use crate::model::request::RequestError;
 use crate::model::validate;
-use crate::shooting::{Asked, Plane, Shooting, Track, complete, compute, trace, with_states};
+use crate::shooting::{
+    Asked, Plane, Shooting, Track, bifurcation_curve, complete, compute, with_states,
+};
 use crate::system::Variable;
 
 impl Follow for Shooting {
@@ -126,7 +128,7 @@ pub(super) fn track(
         name: second.name.to_owned(),
         ranges: [range, second.range],
     };
-    trace::track(&problem, &with_states(&problem, event), &plane, visit)
+    bifurcation_curve::track(&problem, &with_states(&problem, event), &plane, visit)
 }
 
 /// An orbit with its series.

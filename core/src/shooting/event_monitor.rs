@@ -12,6 +12,8 @@
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
 
+use super::bifurcation_curve::{Plane, Special, SpecialKind, TrackEnd, TrackPoint};
+use super::codimension_one::{Condition, Curve};
 use super::generalised_flip::HalfPeriodDifference;
 use super::normal_form::CubicCoefficient;
 use super::problem::ShootingProblem;
@@ -20,8 +22,6 @@ use super::special_search::{
     Counted, Criterion, Function, Place, ReferenceCurve, Search, TestFunctions, Tests, apart,
     values,
 };
-use super::trace::{Plane, Special, SpecialKind, TrackEnd, TrackPoint};
-use super::track::{Condition, Curve};
 use crate::continuation::follow::{Continue, CurvePoint, Halt, Outcome, Step, Stop, Visit};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;

@@ -13,11 +13,11 @@
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, section 9.3 (generalised flip: the curve of folds of twice the
 //! period, and its order of contact).
 
+use super::bifurcation_curve::{Special, SpecialKind};
+use super::codimension_one::Curve;
 use super::equations::Equations;
 use super::event_monitor::{EventMonitor, ROUNDING};
 use super::special_search::apart;
-use super::trace::{Special, SpecialKind};
-use super::track::Curve;
 use crate::continuation::follow::{CurvePoint, Step};
 
 /// Two differences point opposite ways if the cosine of their angle is below this.

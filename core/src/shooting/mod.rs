@@ -5,7 +5,9 @@
 //! by the same continuation.
 
 pub(crate) mod at;
+pub(crate) mod bifurcation_curve;
 pub(crate) mod checked;
+mod codimension_one;
 pub(crate) mod complete;
 pub(crate) mod compute;
 mod crossed;
@@ -31,11 +33,9 @@ mod switch;
 mod tested;
 #[cfg(test)]
 mod tests;
-pub(crate) mod trace;
-mod track;
 
+pub(crate) use bifurcation_curve::Plane;
+pub use bifurcation_curve::{Special, SpecialKind, Track, TrackEnd, TrackPoint};
 pub(crate) use checked::Asked;
 pub use options::Shooting;
 pub(crate) use sampled_states::with_states;
-pub(crate) use trace::Plane;
-pub use trace::{Special, SpecialKind, Track, TrackEnd, TrackPoint};

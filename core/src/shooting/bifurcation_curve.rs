@@ -4,12 +4,12 @@
 
 use nalgebra::Complex;
 
+use super::codimension_one::{Condition, Curve};
 use super::event_monitor::EventMonitor;
 use super::grazing_condition::GrazingCondition;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
 use super::start;
-use super::track::{Condition, Curve};
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See, Stage};
