@@ -1,7 +1,5 @@
 //! `--backbone`: free oscillation of the same oscillator, and its phase resonance.
 
-use std::ops::ControlFlow;
-
 use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::chart::Reference;
 use hertzian::error::chain;
@@ -56,14 +54,6 @@ pub fn of(
     (Backbone { free, resonance }, warnings)
 }
 
-fn unless(cancel: &Cancel) -> ControlFlow<()> {
-    if cancel.is_cancelled() {
-        ControlFlow::Break(())
-    } else {
-        ControlFlow::Continue(())
-    }
-}
-
 fn free(options: &Options, branch: &Branch, cancel: &Cancel) -> Result<Vec<BackbonePoint>, Error> {
     let ModelOptions { alpha, load, .. } = options.model;
     let model = declared(&ModelOptions {
@@ -76,7 +66,7 @@ fn free(options: &Options, branch: &Branch, cancel: &Cancel) -> Result<Vec<Backb
     let largest = maxima.fold(rest, f64::max);
     let from = rest + SMALLEST * (largest - rest);
     let request = FreeOscillation::of(&*model).from(from).to(largest);
-    let curve = request.run_with(|_| unless(cancel))?;
+    let curve = request.cancel(cancel).run()?;
     let points = curve.points.iter().map(|point| BackbonePoint {
         omega: point.omega,
         peak_to_peak: point.peak_to_peak(),
@@ -93,7 +83,7 @@ fn resonance(
     let to = LEAST_DRIVE * options.model.drive;
     let request = PhaseResonance::of(model).vary("drive").to(to);
     let request = request.between(options.from, options.to);
-    let curve = request.run_with(|_| unless(cancel))?;
+    let curve = request.cancel(cancel).run()?;
     let points = curve.points.iter().map(|point| BackbonePoint {
         omega: point.orbit.omega,
         peak_to_peak: point.motion.peak_to_peak(),

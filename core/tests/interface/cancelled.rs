@@ -3,13 +3,15 @@
 //! What happens after the token was cancelled is counted in evaluations, not in seconds: a law cancels the token when it is called for
 //! the given time, and counts on.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use hertzian::backbone::{FreeOscillation, PhaseResonance};
 use hertzian::error::ErrorKind;
 use hertzian::law::{Derivatives, Law, LawFacts, On, Parts};
 use hertzian::structure::{Contact, DMatrix, Structure, parameter};
-use hertzian::{Cancel, FrequencyResponse, Shooting, Stop};
+use hertzian::{Cancel, FrequencyResponse, Progress, Shooting, Stop};
 
 hertzian::law! {
     /// A hardening spring.
@@ -176,4 +178,62 @@ fn shooting_is_stopped_in_the_search_for_its_first_orbit_and_on_its_branch() {
     assert!(!part.points.is_empty() && part.points.len() < whole.points.len());
     assert_eq!(part.points[..], whole.points[..part.points.len()]);
     assert!(count.calls() - all / 2 <= STEP, "{}", count.calls());
+}
+
+hertzian::oscillator! {
+    Hertz(x) {
+        param zeta >= 0;
+        param drive;
+        ddot(x) + 2*zeta*dot(x) + sgn(x)*|x|^1.5 = drive*cos(omega*t);
+    }
+}
+
+#[test]
+fn backbones_keep_what_they_had() {
+    let free = FreeOscillation::of(&Hertz {
+        zeta: 0.0,
+        drive: 0.0,
+    });
+    let free = free.from(0.5).to(2.0);
+    let driven = Hertz {
+        zeta: 0.01,
+        drive: 0.02,
+    };
+    let resonance = PhaseResonance::of(&driven)
+        .vary("drive")
+        .to(0.04)
+        .between(0.45, 1.4);
+    let cancel = Cancel::new();
+    let stop_at_third = |progress: Progress<'_>| {
+        if progress.done == 3 {
+            cancel.cancel();
+        }
+        ControlFlow::Continue(())
+    };
+    let part = free
+        .clone()
+        .cancel(&cancel)
+        .run_with(stop_at_third)
+        .expect("three points");
+    assert_eq!((part.stopped, part.points.len()), (Stop::Interrupted, 3));
+    let nothing = free.cancel(&cancel).run().expect_err("it is cancelled");
+    assert_eq!(nothing.kind(), ErrorKind::Cancelled);
+    let nothing = resonance
+        .clone()
+        .cancel(&cancel)
+        .run()
+        .expect_err("it is cancelled");
+    assert_eq!(nothing.kind(), ErrorKind::Cancelled);
+    let cancel = Cancel::new();
+    let stop_at_third = |progress: Progress<'_>| {
+        if progress.done == 3 {
+            cancel.cancel();
+        }
+        ControlFlow::Continue(())
+    };
+    let part = resonance
+        .cancel(&cancel)
+        .run_with(stop_at_third)
+        .expect("three points");
+    assert_eq!((part.stopped, part.points.len()), (Stop::Interrupted, 3));
 }

@@ -24,6 +24,7 @@ use super::oscillation::Equations;
 use crate::bifurcation::error::BifurcationError;
 use crate::branches::error::OrbitError;
 use crate::branches::progress::{Progress, Stage};
+use crate::cancel::Cancel;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
@@ -68,6 +69,7 @@ pub struct FreeOscillation {
     tolerance: f64,
     max_points: usize,
     largest_step: f64,
+    cancel: Cancel,
 }
 
 impl std::fmt::Debug for FreeOscillation {
@@ -109,6 +111,7 @@ impl FreeOscillation {
             tolerance: 1e-12,
             max_points: POINTS,
             largest_step: StepControl::default().largest,
+            cancel: Cancel::new(),
         }
     }
 
@@ -145,6 +148,13 @@ impl FreeOscillation {
     #[must_use]
     pub fn largest_step(mut self, step: f64) -> Self {
         self.largest_step = step;
+        self
+    }
+
+    /// What is computed ends when this token is cancelled, the search for the first oscillation too.
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.cancel = cancel.clone();
         self
     }
 
@@ -207,7 +217,10 @@ impl FreeOscillation {
         let value = points
             .last()
             .map_or(options.from, |last: &FreePoint| last.ends[0][0]);
+        let cancelled = self.cancel.is_cancelled();
         let stopped = match (failure, outcome) {
+            _ if cancelled && !points.is_empty() => Stop::Interrupted,
+            _ if cancelled => return Err(OrbitError::Cancelled { value }.into()),
             (Some(Ok(apart)), _) => return Err(BifurcationError::NotFree { apart }.into()),
             (Some(Err(reason)), _) if points.is_empty() => {
                 return Err(MotionError { value, reason }.into());
@@ -263,9 +276,10 @@ impl FreeOscillation {
             &self.system,
             &parameters,
             1.0,
-            Options::default().tolerance(tolerance),
+            Options::default().tolerance(tolerance).cancel(&self.cancel),
         )?;
-        Ok(Equations::new(flow, f64::from(facts.divisor)))
+        let cancel = self.cancel.clone();
+        Ok(Equations::new(flow, f64::from(facts.divisor), cancel))
     }
 
     /// The unknowns of the first oscillation.

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::free::FreePoint;
 use crate::bifurcation::error::BifurcationError;
+use crate::cancel::Cancel;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
 use crate::error::Error;
@@ -43,10 +44,11 @@ pub(super) struct Equations {
     column: Vec<f64>,
     /// What counts as one for positions and for the frequency.
     units: [f64; 2],
+    cancel: Cancel,
 }
 
 impl Equations {
-    pub(super) fn new(flow: Box<dyn Flow>, divisor: f64) -> Self {
+    pub(super) fn new(flow: Box<dyn Flow>, divisor: f64, cancel: Cancel) -> Self {
         let n = flow.coordinates();
         Self {
             state: vec![0.0; 2 * n],
@@ -55,6 +57,7 @@ impl Equations {
             units: [1.0; 2],
             divisor,
             flow,
+            cancel,
         }
     }
 
@@ -170,6 +173,10 @@ impl Equations {
 impl Problem for Equations {
     fn unknowns(&self) -> usize {
         self.column.len()
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.cancel.is_cancelled()
     }
 
     fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {

@@ -23,9 +23,10 @@ use crate::balance::aft::Aft;
 use crate::balance::resolution::resize;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::bifurcation::error::BifurcationError;
-use crate::branches::error::OrbitError;
+use crate::branches::error::{OrbitError, unless_cancelled};
 use crate::branches::orbit::Orbit;
 use crate::branches::progress::{Progress, Stage};
+use crate::cancel::Cancel;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
 };
@@ -82,6 +83,7 @@ pub struct PhaseResonance {
     harmonics: usize,
     max_points: usize,
     largest_step: f64,
+    cancel: Cancel,
 }
 
 impl std::fmt::Debug for PhaseResonance {
@@ -118,6 +120,7 @@ impl PhaseResonance {
             harmonics: HARMONICS,
             max_points: POINTS,
             largest_step: StepControl::default().largest,
+            cancel: Cancel::new(),
         }
     }
 
@@ -125,6 +128,13 @@ impl PhaseResonance {
     #[must_use]
     pub fn vary(mut self, parameter: impl Into<String>) -> Self {
         self.vary = Some(parameter.into());
+        self
+    }
+
+    /// What is computed ends when this token is cancelled, the search for the first oscillation too.
+    #[must_use]
+    pub fn cancel(mut self, cancel: &Cancel) -> Self {
+        self.cancel = cancel.clone();
         self
     }
 
@@ -210,7 +220,9 @@ impl PhaseResonance {
             }
         };
         let outcome = follow(&mut equations, &mut newton, Start::Near(u), options, see);
-        let stop = match outcome.map_err(|reason| OrbitError::NoStart { value, reason })? {
+        let outcome = outcome.map_err(|reason| OrbitError::NoStart { value, reason }.into());
+        let outcome = outcome.map_err(|error| unless_cancelled(&self.cancel, value, error));
+        let stop = match outcome? {
             Outcome::Stopped(stop) => stop,
             // A walk of one number of harmonics is never resized.
             Outcome::Halted(_) => Stop::Interrupted,
@@ -281,6 +293,7 @@ impl PhaseResonance {
             Variable::Omega,
             resolution,
         )
+        .until(&self.cancel)
     }
 
     /// The orbit of the frequency response that is next to phase resonance, and what it cost.
@@ -291,6 +304,7 @@ impl PhaseResonance {
         })?;
         let response = FrequencyResponse::of(&self.system).from(low).to(high);
         let response = response.harmonics(self.harmonics).stability(false);
+        let response = response.cancel(&self.cancel);
         let branch = response.run()?;
         let mut balance = self.balance(parameters, low);
         let mut room = vec![0.0; balance.unknowns()];
