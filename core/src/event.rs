@@ -4,6 +4,8 @@ use std::fmt;
 
 /// What happens at an [`Event`](crate::Event).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum EventKind {
     /// The branch turns back in what it varies; a multiplier is one.
@@ -48,14 +50,16 @@ impl fmt::Display for EventKind {
 /// Of kind [`EventKind::Fold`] it is a place where the branch turned back, but not through a fold. A sampled balance of a force
 /// that jumps does this, and so does an orbit that grazes a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Turn {
     /// What would have happened where the test function vanishes.
     pub kind: EventKind,
     /// What the branch varies, where the jump is; in the middle of the step between two points where it was not found.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub value: f64,
     /// Value of the test function beside the jump; not a number where it is unknown.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub test: f64,
     /// Number of points of the branch before it.
     pub after: usize,
@@ -63,7 +67,7 @@ pub struct Turn {
 
 /// The side of an event on which a branch is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Side {
     /// One of the two.

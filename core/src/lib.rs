@@ -48,6 +48,7 @@
 //!
 //! - `parallel` (default): basins of attraction on several threads.
 //! - `plot` (default): draws branches as SVG.
+//! - `serde`: results are serialised and read back; branches as JSON, `Branch::write_json` and `Branch::read_json`.
 //! - `text`: reads declarations from text at run time; brings the compiler in.
 //! - `serde`: results are written and read by serde.
 //!

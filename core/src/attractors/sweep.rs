@@ -101,8 +101,10 @@ pub struct Swept {
 #[non_exhaustive]
 pub struct Row {
     /// The value.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub value: f64,
     /// States, one after the other: of the stroboscope, or where the motion crossed a section.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub points: Vec<f64>,
     /// Why it has no points; the motion started again.
     pub ended: Option<Ended>,
@@ -113,6 +115,8 @@ pub struct Row {
 
 /// Why nothing was seen at a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Ended {
     /// The motion grew beyond the bound.
     Escaped,

@@ -19,7 +19,7 @@ use crate::response::{FrequencyResponse, OrbitMethod};
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Diagram {
     /// The branches, in the order in which they were found.
@@ -27,18 +27,16 @@ pub struct Diagram {
     /// Bifurcations whose further branch was not followed, and why.
     pub omitted: Vec<Omitted>,
     /// Attractors whose branch was not followed, and searches that failed: the value and why.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub missed: Vec<(f64, Reason)>,
     /// Time of the computation.
-    #[cfg_attr(
-        feature = "serde",
-        serde(serialize_with = "crate::numeric::serialise::seconds")
-    )]
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub elapsed: Duration,
 }
 
 /// One branch of a diagram.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct DiagramBranch {
     /// Where it comes from.
@@ -53,7 +51,7 @@ pub struct DiagramBranch {
 
 /// Where a branch comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Origin {
@@ -71,13 +69,14 @@ pub enum Origin {
     /// Nothing that was followed leads to it: motions were found to settle to one of its orbits.
     Attractor {
         /// Where, in what is varied.
+        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
         value: f64,
     },
 }
 
 /// A bifurcation of which a further branch was not followed; of two sides the other may have been.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Omitted {
     /// Number of the branch in the diagram.
@@ -101,7 +100,7 @@ impl fmt::Display for Omitted {
 
 /// Why a branch was not followed.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Reason {
@@ -119,10 +118,6 @@ pub enum Reason {
     /// The caller asked to stop before.
     Interrupted,
     /// Its first orbit was not found.
-    #[cfg_attr(
-        feature = "serde",
-        serde(serialize_with = "crate::numeric::serialise::text")
-    )]
     Failed(Error),
 }
 

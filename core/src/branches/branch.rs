@@ -39,7 +39,7 @@ use crate::time::Work;
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Branch {
     /// The system that it belongs to.
@@ -61,10 +61,7 @@ pub struct Branch {
     /// What motions in time cost, by shooting.
     pub work: Work,
     /// Time of the computation.
-    #[cfg_attr(
-        feature = "serde",
-        serde(serialize_with = "crate::numeric::serialise::seconds")
-    )]
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub elapsed: Duration,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) further: Further,
@@ -72,7 +69,7 @@ pub struct Branch {
 
 /// What a branch says of its system.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Model {
     /// Name of the declared type.
@@ -89,7 +86,7 @@ pub struct Model {
 
 /// A parameter of a model.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Parameter {
     /// Its name.
@@ -112,6 +109,18 @@ impl Model {
                 .map(|contact| system.law(contact.law).facts().pieces.len())
                 .collect(),
         }
+    }
+
+    /// Whether the other one has the same equations by the same names, whatever is said of its parameters.
+    pub(crate) fn agrees(&self, other: &Self) -> bool {
+        let names = |model: &Self| -> Vec<String> {
+            let names = model.parameters.iter().map(|parameter| &parameter.name);
+            names.chain(&model.coordinates).cloned().collect()
+        };
+        self.name == other.name
+            && self.equation == other.equation
+            && names(self) == names(other)
+            && self.pieces == other.pieces
     }
 }
 

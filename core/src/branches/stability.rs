@@ -6,19 +6,17 @@ use crate::model::rigid::Rigid;
 
 /// What is known of the stability of an orbit.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Stability {
     /// The verdict.
     pub verdict: Verdict,
     /// Floquet multipliers over the orbit's own period, largest modulus first; those of the orbit corrected for the
     /// harmonics and samples that were left out. Those of [rigid motions](Self::rigid) are not among them.
-    #[cfg_attr(
-        feature = "serde",
-        serde(serialize_with = "crate::numeric::serialise::pairs")
-    )]
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub multipliers: Vec<Complex<f64>>,
     /// Estimated error of the multipliers: of the integration, and of the orbit's own truncation.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub error: f64,
     /// So many multipliers more are exactly one, since nothing holds the system along some directions: shifted along them an orbit
     /// is another one, and so it is at another constant speed where nothing damps that. The verdict is about the others.
@@ -27,6 +25,8 @@ pub struct Stability {
 
 /// Whether small perturbations die out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Verdict {
     /// All multipliers are inside the unit circle, by more than their error.
     Stable,

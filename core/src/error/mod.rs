@@ -4,6 +4,8 @@
 //! What a program asks first is [`Error::kind`]; the room's enum comes back by [`Error::downcast_ref`].
 
 mod debug;
+#[cfg(feature = "serde")]
+mod serialise;
 
 use std::error::Error as StdError;
 use std::fmt;
@@ -44,6 +46,8 @@ pub struct Error {
 
 /// What is to be changed for an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum ErrorKind {
     /// The request: an option, a parameter or a name is not usable.

@@ -11,7 +11,7 @@ use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::Progress;
-use crate::branches::request::Request;
+use crate::branches::request::{Guess, Request};
 use crate::error::Error;
 use crate::event::Side;
 use crate::model::request::RequestError;
@@ -112,58 +112,70 @@ impl Branch {
         }
     }
 
-    /// Gives a branch that was read from a file its model back, so that it can compute further orbits.
+    /// Gives a branch that was read from a file its model back, so that it can compute further orbits: by the method that followed it,
+    /// with that method's default options.
     ///
     /// # Errors
     /// If the model has another name, other equations, or other values of what the branch does not vary.
     pub fn attach(&mut self, model: &dyn System) -> Result<(), Error> {
-        let system = model.shared();
-        if Model::of(model) != self.model {
+        if !self.model.agrees(&Model::of(model)) {
             return Err(RequestError::OtherModel {
                 expected: self.model.name.clone(),
                 found: model.facts().name.to_string(),
             }
             .into());
         }
-        let Some(point) = self.points.first() else {
-            self.further.system = Some(system);
-            return Ok(());
+        let following = match self.points.first() {
+            Some(point) => self.followed_by(model, point)?,
+            None => Following::Shooting(Request::of(model), Shooting::new()),
         };
+        self.further = Further {
+            system: Some(model.shared()),
+            request: Some(Arc::new(following)),
+        };
+        Ok(())
+    }
+
+    /// What a branch with this first point was followed by, if it was one of this system.
+    fn followed_by(&self, model: &dyn System, point: &Point) -> Result<Following, Error> {
         let mut request = Request::of(model);
         if self.varied != "omega" {
             request.vary = Some(self.varied.clone());
             request.omega = Some(point.orbit.omega);
         }
         let values = || self.points.iter().map(|point| point.value);
-        request.from = Some(values().fold(f64::INFINITY, f64::min));
-        request.to = Some(values().fold(f64::NEG_INFINITY, f64::max));
+        let ends = [
+            values().fold(f64::INFINITY, f64::min),
+            values().fold(f64::NEG_INFINITY, f64::max),
+        ];
+        request.from = Some(ends[0]);
         request.period = Some(point.orbit.period);
-        let shooting = Shooting::new();
-        let asked = shooting::Asked {
+        let (shooting, balance) = (Shooting::new(), HarmonicBalance::new().bifurcations(true));
+        shooting::Asked {
             request: &request,
             shooting: &shooting,
-        };
-        asked.belongs(point)?;
-        let following = if point.orbit.states.is_empty() {
-            let balance = HarmonicBalance::new().bifurcations(true);
-            let near = Request {
-                near: Some(crate::branches::request::Guess::Orbit(point.orbit.clone())),
-                ..request.clone()
-            };
-            let asked = Asked {
-                request: &near,
-                balance: &balance,
-            };
-            let (context, _) = asked.check()?;
-            Following::Balance(Box::new(context), request, balance)
+        }
+        .belongs(point)?;
+        request.to = Some(if ends[0] < ends[1] {
+            ends[1]
         } else {
-            Following::Shooting(request, shooting)
+            let balance = &balance;
+            let request = &request;
+            Asked { request, balance }.aside(ends[0])?
+        });
+        if !point.orbit.states.is_empty() {
+            return Ok(Following::Shooting(request, shooting));
+        }
+        let near = Request {
+            near: Some(Guess::Orbit(point.orbit.clone())),
+            ..request.clone()
         };
-        self.further = Further {
-            system: Some(system),
-            request: Some(Arc::new(following)),
+        let asked = Asked {
+            request: &near,
+            balance: &balance,
         };
-        Ok(())
+        let (context, _) = asked.check()?;
+        Ok(Following::Balance(Box::new(context), request, balance))
     }
 
     /// A balance of orbits like this one of the branch, whatever method found it.

@@ -26,7 +26,7 @@ use crate::time::FlowError;
 
 /// A curve of bifurcations in the plane of two parameters.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Track {
     /// What bifurcates.
@@ -45,18 +45,17 @@ pub struct Track {
 
 /// One bifurcation of a curve.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct TrackPoint {
     /// Values of the two parameters.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub values: [f64; 2],
     /// The state `(q, dq/dt)` at phase zero.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub state: Vec<f64>,
     /// Floquet multipliers over the period, largest modulus first.
-    #[cfg_attr(
-        feature = "serde",
-        serde(serialize_with = "crate::numeric::serialise::pairs")
-    )]
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub multipliers: Vec<Complex<f64>>,
     /// How often a gap crosses a level in a period.
     pub switches: usize,
@@ -64,15 +63,17 @@ pub struct TrackPoint {
 
 /// A special point of a curve.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Special {
     /// What is special.
     pub kind: SpecialKind,
     /// Values of the two parameters.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub values: [f64; 2],
     /// Estimated error of them: what a flow of another accuracy makes of the place. Where the place was not located, half of the
     /// step that passed it.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub error: f64,
     /// Number of points of the curve before it.
     pub after: usize,
@@ -87,6 +88,8 @@ impl std::fmt::Display for Special {
 
 /// What is special about a point of a curve of bifurcations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum SpecialKind {
     /// Two folds meet and vanish.
@@ -105,6 +108,8 @@ pub enum SpecialKind {
 
 /// Why a curve ended on one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum TrackEnd {
     /// A parameter left its range.

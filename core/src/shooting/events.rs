@@ -153,18 +153,21 @@ fn compared(
     other: Place<'_, '_>,
     Errors { part, noise }: Errors,
 ) -> Option<(Point, f64)> {
-    let moved = other.root.located.point.parameter();
     let Place { equations, root } = best;
-    let there = &other.root.located.point.u;
+    let Place {
+        equations: others,
+        root: moved,
+    } = other;
+    let there = &moved.located.point.u;
     let half = equations.span.half;
     let u = &root.located.point.u;
     let (mut read, map) = observe(problem, equations, u).ok()?;
-    let by = (moved - read.value).abs();
-    let error = part * by + root.error + other.root.error + ROUNDING * read.value.abs();
+    let by = (moved.located.point.parameter() - read.value).abs();
+    let error = part * by + root.error + moved.error + ROUNDING * read.value.abs();
     read.error = Some(relative(part * equations.apart(u, there), &read));
     if let Some(map) = map {
         let found = multipliers(&map, half);
-        let there = other.equations.map(there, &mut |_| {}).ok()?;
+        let there = others.map(there, &mut |_| {}).ok()?;
         let there = multipliers(&there, half);
         // One of them is known.
         let critical = match kind {

@@ -1,6 +1,8 @@
-//! Newton's method at a fixed parameter ends near the fold then, and there the equations can be solved with another unknown held
-//! instead of the parameter. That unknown is moved, in steps that grow, so that the parameter comes nearer to the value, until it
-//! passes it or turns back.
+//! An orbit at a value that a branch may not reach: the branch turns back at a fold before it.
+//!
+//! Newton's method with the parameter held fails there, and ends near the fold. Near it the equations can be solved with another
+//! unknown held instead of the parameter. That unknown is moved, in steps that grow, so that the parameter comes nearer to the value,
+//! until it passes it or turns back.
 
 use super::equations::Equations;
 use super::problem::ShootingProblem;

@@ -202,7 +202,7 @@ pub trait Stretch {
 
 /// What a flow has done.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Work {
     /// Steps, or stretches where a closed form needs none.

@@ -1,8 +1,9 @@
 //! What is asked of a branch is the same for both methods, and so is what it answers.
 
+use hertzian::bifurcation::DiagramBranch;
 use hertzian::{
-    Bifurcations, Branch, EventKind, FrequencyResponse, HarmonicBalance, OrbitMethod, RequestError,
-    Shooting, Side, Stop,
+    Bifurcations, Branch, EventKind, FrequencyResponse, HarmonicBalance, Method, OrbitMethod,
+    RequestError, Shooting, Side, Stop,
 };
 use proptest::prelude::*;
 
@@ -56,7 +57,7 @@ fn answers<M: OrbitMethod>(request: &FrequencyResponse<M>) -> Branch {
         assert_eq!(whole.observed.contacts.len(), 1);
         assert!((whole.peak_to_peak() - point.peak_to_peak()).abs() < 1e-12);
         let largest = branch
-            .multipliers(point, Default::default())
+            .multipliers(point, Method::default())
             .expect("they are known");
         let stated = largest.stability.error + point.stability.error;
         let [x, y] = [&largest.stability, &point.stability].map(|s| s.multipliers[0].norm());
@@ -141,11 +142,8 @@ fn diagrams_are_made_by_both_methods() {
     let balance = HarmonicBalance::new().harmonics(20).bifurcations(true);
     let by_balance = request.by(balance).depth(1).run().expect("a diagram");
     for diagram in [by_shooting, by_balance] {
-        let periods: Vec<_> = diagram
-            .branches
-            .iter()
-            .map(|branch| branch.period())
-            .collect();
+        let branches = diagram.branches.iter();
+        let periods: Vec<_> = branches.map(DiagramBranch::period).collect();
         assert_eq!(periods, [1, 2]);
     }
 }

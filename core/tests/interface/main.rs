@@ -2,6 +2,8 @@
 
 mod cancelled;
 mod either;
+#[cfg(feature = "serde")]
+mod json;
 mod messages;
 mod owned;
 mod structure;

@@ -99,10 +99,16 @@ fn parameters_are_varied_by_name() {
     assert!(structure.set("stopp", 50.0).is_err());
 }
 
+fn square(size: usize) -> DMatrix<f64> {
+    DMatrix::identity(size, size)
+}
+
+fn fails(builder: hertzian::structure::Builder) -> StructureError {
+    builder.build().expect_err("a fault")
+}
+
 #[test]
-fn what_does_not_fit_is_said_with_numbers() {
-    let square = |size| DMatrix::<f64>::identity(size, size);
-    let fails = |builder: hertzian::structure::Builder| builder.build().expect_err("a fault");
+fn matrices_that_do_not_fit_are_said_with_numbers() {
     assert_eq!(
         fails(Structure::of(&square(2), &square(3), &square(2))),
         StructureError::MatrixSize {
@@ -134,10 +140,6 @@ fn what_does_not_fit_is_said_with_numbers() {
             .build()
             .is_ok()
     );
-    for name in ["", "omega"] {
-        let fault = fails(two_masses().constant(0, parameter(name, 1.0)));
-        assert!(matches!(fault, StructureError::Name { .. }), "{fault}");
-    }
     let mut holed = square(2);
     holed[(0, 1)] = f64::INFINITY;
     let fault = fails(Structure::of(&square(2), &square(2), &holed));
@@ -145,6 +147,14 @@ fn what_does_not_fit_is_said_with_numbers() {
         matches!(&fault, StructureError::NotFinite { value, .. } if value.is_infinite()),
         "{fault}"
     );
+}
+
+#[test]
+fn loads_and_contacts_that_do_not_fit_are_said_with_numbers() {
+    for name in ["", "omega"] {
+        let fault = fails(two_masses().constant(0, parameter(name, 1.0)));
+        assert!(matches!(fault, StructureError::Name { .. }), "{fault}");
+    }
     assert_eq!(
         fails(two_masses().constant(2, 1.0)),
         StructureError::NoCoordinate {

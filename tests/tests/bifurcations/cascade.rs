@@ -173,7 +173,7 @@ fn as_far_as_period_16() {
         ..MODEL
     };
     let mut map = Stroboscope::new(time::of(&model, 1.0, time::Options::default()).unwrap());
-    let mut state = cycle.orbit.state().to_vec();
+    let mut state = cycle.orbit.state();
     let apart = |state: &[f64]| {
         (state[0] - cycle.orbit.state()[0]).hypot(state[1] - cycle.orbit.state()[1])
     };

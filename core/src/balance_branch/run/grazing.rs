@@ -201,6 +201,7 @@ impl<'a> Run<'a> {
 }
 
 /// Where the search for an orbit that touches a level begins, and how far it may lead.
+#[derive(Clone, Copy)]
 struct Approach<'p> {
     from: &'p CurvePoint,
     extreme: Extreme,

@@ -84,12 +84,14 @@ impl std::fmt::Debug for FreeOscillation {
 
 /// One free oscillation.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct FreePoint {
     /// Its frequency.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub omega: f64,
     /// Positions at rest, where it begins and half a period later.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub ends: [Vec<f64>; 2],
 }
 

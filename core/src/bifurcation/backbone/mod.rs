@@ -16,7 +16,7 @@ pub use resonance::{PhaseResonance, ResonancePoint};
 
 /// A backbone curve, of [`FreePoint`] or of [`ResonancePoint`].
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Backbone<P> {
     /// Its points, in the order in which it was followed.
@@ -28,9 +28,6 @@ pub struct Backbone<P> {
     /// What the motions cost; nothing in phase resonance, which computes none.
     pub work: Work,
     /// Time of the computation.
-    #[cfg_attr(
-        feature = "serde",
-        serde(serialize_with = "crate::numeric::serialise::seconds")
-    )]
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub elapsed: Duration,
 }

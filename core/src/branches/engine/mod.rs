@@ -82,14 +82,7 @@ pub(crate) fn run(
     mut start: Start,
     options: FollowOptions,
 ) -> Result<Stop, NewtonError> {
-    let mut engine = Engine {
-        options,
-        seen: Vec::new(),
-        divided: Vec::new(),
-        refused: false,
-        beyond: false,
-        ended: None,
-    };
+    let mut engine = Engine::new(options);
     // Where the walk was halted last, in case that other unknowns fail there.
     let mut last: Option<Box<Halted>> = None;
     loop {
@@ -141,6 +134,17 @@ pub(crate) fn run(
 }
 
 impl Engine {
+    fn new(options: FollowOptions) -> Self {
+        Self {
+            options,
+            seen: Vec::new(),
+            divided: Vec::new(),
+            refused: false,
+            beyond: false,
+            ended: None,
+        }
+    }
+
     fn visit(
         &mut self,
         problem: &mut dyn BranchProblem,

@@ -4,6 +4,8 @@ use crate::numeric::linear::Singular;
 
 /// Why an iteration ended without a solution.
 #[derive(Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum NewtonError {
     /// The updates did not become small.
@@ -14,8 +16,10 @@ pub enum NewtonError {
         /// Number of updates.
         iterations: usize,
         /// Length of the last update, where one is the size of the orbit, or the range of what is varied.
+        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
         update: f64,
         /// Largest residual by size, in the units of the equation it is of.
+        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
         residual: f64,
     },
     /// The bordered matrix is singular.

@@ -9,6 +9,8 @@ use super::orbit::Orbit;
 
 /// A way from an orbit to its multipliers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Method {
     /// The monodromy matrix with as few steps as the verdict needs, which measurements show to be the cheapest: see
@@ -26,6 +28,8 @@ pub enum Method {
 
 /// Which eigenvalues of the Hill matrix are taken for Floquet exponents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Sorting {
     /// Those with the smallest imaginary part by size. Two real negative multipliers can come out as one of them twice.
@@ -38,6 +42,8 @@ pub enum Sorting {
 
 /// How the solution is read off the exponential of the Hill matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Projection {
     /// From its mean.
@@ -74,7 +80,7 @@ impl std::fmt::Display for Method {
 
 /// What multipliers cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Cost {
     /// Evaluations of the derivatives of a contact's force at one instant.

@@ -8,5 +8,7 @@ mod table;
 pub use crate::numeric::decimal::Decimal;
 pub use hertzian_file::{can_write, write};
 
+#[cfg(feature = "serde")]
+pub use json::JSON_VERSION;
 pub use npy::{Npy, Number};
 pub use table::{COLUMNS, Table, cells};

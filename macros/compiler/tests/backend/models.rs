@@ -86,13 +86,14 @@ impl Sketch {
             one,
         ));
         for (index, (argument, range)) in self.names.iter().zip(&self.ranges).enumerate() {
-            parameters.push(parameter(argument, *range));
+            let (minimum, maximum) = *range;
+            parameters.push(parameter(argument, minimum, maximum));
             let value = self.dag.variable(Variable::Parameter(index));
             coefficients.push((Place::Argument { contact: 0, index }, value));
         }
         for (name, wave) in [("load", constant), ("drive", Wave::cosine(1))] {
             let value = self.dag.variable(Variable::Parameter(parameters.len()));
-            parameters.push(parameter(name, ANY));
+            parameters.push(parameter(name, ANY.0, ANY.1));
             coefficients.push((Place::Load { row: 0, wave }, value));
         }
         Model {
@@ -111,8 +112,7 @@ impl Sketch {
     }
 }
 
-fn parameter(name: &str, range: (Bound, Bound)) -> Parameter {
-    let (minimum, maximum) = range;
+fn parameter(name: &str, minimum: Bound, maximum: Bound) -> Parameter {
     Parameter {
         name: quote::format_ident!("{name}"),
         documentation: String::new(),

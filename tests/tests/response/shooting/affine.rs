@@ -234,7 +234,7 @@ fn multipliers_of_table_1_and_no_solution_at_the_last() {
                 "{error:.1e} {cycle:?}"
             );
         }
-        near = cycle.orbit.state().to_vec();
+        near = cycle.orbit.state();
     }
     let request = shooting().period(8).near_state(&near);
     let error = request.orbit(1.77983603).unwrap_err();

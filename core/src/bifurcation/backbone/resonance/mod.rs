@@ -98,10 +98,11 @@ impl std::fmt::Debug for PhaseResonance {
 
 /// One orbit in phase resonance.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ResonancePoint {
     /// What is varied.
+    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
     pub value: f64,
     /// The orbit.
     pub orbit: Orbit,
