@@ -56,10 +56,10 @@ pub struct Turn {
     /// What would have happened where the test function vanishes.
     pub kind: EventKind,
     /// What the branch varies, where the jump is; in the middle of the step between two points where it was not found.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
     /// Value of the test function beside the jump; not a number where it is unknown.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub test: f64,
     /// Number of points of the branch before it.
     pub after: usize,

@@ -90,6 +90,8 @@ mod numeric;
 mod orbit;
 mod report;
 mod response;
+#[cfg(feature = "serde")]
+mod serialise;
 pub mod shooting;
 pub mod system;
 #[cfg(test)]

@@ -101,10 +101,10 @@ pub struct Swept {
 #[non_exhaustive]
 pub struct Row {
     /// The value.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
     /// States, one after the other: of the stroboscope, or where the motion crossed a section.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub points: Vec<f64>,
     /// Why it has no points; the motion started again.
     pub ended: Option<Ended>,

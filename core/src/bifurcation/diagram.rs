@@ -27,10 +27,10 @@ pub struct Diagram {
     /// Bifurcations whose further branch was not followed, and why.
     pub omitted: Vec<Omitted>,
     /// Attractors whose branch was not followed, and searches that failed: the value and why.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub missed: Vec<(f64, Reason)>,
     /// Time of the computation.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub elapsed: Duration,
 }
 
@@ -69,7 +69,7 @@ pub enum Origin {
     /// Nothing that was followed leads to it: motions were found to settle to one of its orbits.
     Attractor {
         /// Where, in what is varied.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         value: f64,
     },
 }

@@ -61,7 +61,7 @@ pub struct Branch {
     /// What motions in time cost, by shooting.
     pub work: Work,
     /// Time of the computation.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub elapsed: Duration,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) further: Further,

@@ -12,14 +12,14 @@ pub struct Observed {
     pub contacts: Vec<ContactMotion>,
     /// For each contact, the part of the period that its gap spends on each piece of its law, from the piece of the lowest gaps to
     /// that of the highest: `gap > 0 => ..., else => ...` has the time without contact first. They add up to one.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub on_pieces: Vec<Vec<f64>>,
     /// Mean power of the load: `<f . q'>`; `None` where only the extremes were read off.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub input_power: Option<f64>,
     /// Mean power that damping, stiffness and contacts take up. In the discrete balance it equals the input power
     /// exactly, for a symmetric mass matrix: the residual is orthogonal to the velocity. `None` where only the extremes were read off.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub dissipated_power: Option<f64>,
     /// How often a gap crosses a level in the period, where shooting has counted that.
     pub switches: Option<usize>,
@@ -45,16 +45,16 @@ impl Observed {
 #[non_exhaustive]
 pub struct Motion {
     /// Largest value.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub maximum: f64,
     /// Smallest value.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub minimum: f64,
     /// Mean; `None` where only the extremes were read off.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub mean: Option<f64>,
     /// Root of the mean square, mean included; `None` where only the extremes were read off.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub rms: Option<f64>,
 }
 
@@ -101,19 +101,19 @@ pub struct ContactMotion {
     /// Largest value of the law by size, one-sided limits at switches included. A factor that stands outside of the law in an
     /// equation is not in it: of `2*stop(x - 1)` this is the largest `stop(x - 1)`. The factor belongs to the place where the force
     /// acts, and one law may act on several equations with a different factor in each.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub peak_force: f64,
     /// Smallest value of the law, with its sign: the largest pull where a positive force pushes. One-sided limits at switches count,
     /// and a piece without force counts as zero.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub minimum_force: f64,
     /// Largest value of the law, with its sign.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub maximum_force: f64,
     /// Fraction of the period spent on pieces whose force is not identically zero. So it is one for a law that acts everywhere, as
     /// the attraction beyond the surface under a tip, or a bolt that holds two parts together: time on each side of a level is in
     /// [`Observed::on_pieces`].
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub fraction: f64,
     /// Number of separate intervals of contact: zero without contact, one for contact that is never lost.
     pub count: usize,

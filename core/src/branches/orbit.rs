@@ -8,17 +8,17 @@ use crate::numeric::fourier::series;
 #[non_exhaustive]
 pub struct Orbit {
     /// Coordinate by coordinate, each laid out as in [`series`]; nothing where the series are not known.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) series: Vec<f64>,
     /// States at the beginnings of the segments; nothing where they are not known.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) states: Vec<f64>,
     pub(crate) coordinates: usize,
     /// Excitation frequency.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub omega: f64,
     /// Base frequency: the orbit repeats after `2 pi / base`.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub base: f64,
     /// Number of periods of the declaration (`2 pi divisor / omega`) in its period.
     pub period: usize,

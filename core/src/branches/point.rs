@@ -14,10 +14,10 @@ use crate::numeric::decimal::Decimal;
 #[non_exhaustive]
 pub struct Point {
     /// Value of what the branch varies: omega or a parameter.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
     /// Parameters of the system, in the order of its declaration.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub parameters: Vec<f64>,
     /// The orbit.
     pub orbit: Orbit,
@@ -28,7 +28,7 @@ pub struct Point {
     /// Estimated error of peak-to-peak, from the harmonics that were left out or from the tolerance of the flow, and from rounding: of the first coordinate relative to its own, of the others
     /// relative to the largest of all, at this very value of what is varied. A first coordinate whose motion is not told from what is left
     /// of the equations is at rest, and measured by the largest. `None` where neither the tolerance nor the stability asked for it. Infinite where it could not be estimated: nothing is known of the error then.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub error: Option<f64>,
 }
 
@@ -68,10 +68,10 @@ pub struct Event {
     /// Estimated error of [`Point::value`], from the harmonics and samples that were left out or from the tolerance of the flow, and from
     /// rounding. Infinite where it could not be estimated: the event is one of the discrete equations then, and nothing is known of
     /// the true one.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub error: f64,
     /// Value of the test function that was reached.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub test: f64,
     /// Number of points of the branch before it.
     pub after: usize,
@@ -79,7 +79,7 @@ pub struct Event {
     /// as the balls of a bearing. Zero otherwise.
     pub contacts: usize,
     /// The tangent of the branch, in extended unknowns. By the balance at a crossing with another branch of the same harmonics only.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) tangent: Vec<f64>,
 }
 

@@ -13,10 +13,10 @@ pub struct Stability {
     pub verdict: Verdict,
     /// Floquet multipliers over the orbit's own period, largest modulus first; those of the orbit corrected for the
     /// harmonics and samples that were left out. Those of [rigid motions](Self::rigid) are not among them.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub multipliers: Vec<Complex<f64>>,
     /// Estimated error of the multipliers: of the integration, and of the orbit's own truncation.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub error: f64,
     /// So many multipliers more are exactly one, since nothing holds the system along some directions: shifted along them an orbit
     /// is another one, and so it is at another constant speed where nothing damps that. The verdict is about the others.

@@ -92,7 +92,7 @@ pub enum Stop {
         /// Whether the orbits met have an odd symmetry that those of the branch lack.
         symmetric: bool,
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         value: f64,
     },
     /// As many points as were allowed.
@@ -103,10 +103,10 @@ pub enum Stop {
     /// No step, however short, led to another solution.
     StepTooShort {
         /// Length of the last step tried, where one is the size of the orbit, or the range of what is varied.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         step: f64,
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         value: f64,
         /// What the last correction said.
         reason: NewtonError,
@@ -114,7 +114,7 @@ pub enum Stop {
     /// The motion near the last orbit, or the one that would be next, cannot be computed.
     Motion {
         /// Value at the last orbit.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         value: f64,
         /// Why.
         reason: FlowError,
@@ -122,10 +122,10 @@ pub enum Stop {
     /// The orbits grow without bound while what is varied hardly moves: a resonance that no damping limits.
     Unbounded {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         value: f64,
         /// How many times the first orbit's oscillation the last one is.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         growth: f64,
     },
     /// The caller asked to stop, or [cancelled](crate::Cancel) the work.

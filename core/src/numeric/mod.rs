@@ -6,7 +6,5 @@ pub mod fourier;
 pub(crate) mod linear;
 pub mod power;
 pub(crate) mod roots;
-#[cfg(feature = "serde")]
-pub(crate) mod serialise;
 pub(crate) mod spectrum;
 pub(crate) mod triangular;

@@ -49,13 +49,13 @@ pub struct Track {
 #[non_exhaustive]
 pub struct TrackPoint {
     /// Values of the two parameters.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub values: [f64; 2],
     /// The state `(q, dq/dt)` at phase zero.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub state: Vec<f64>,
     /// Floquet multipliers over the period, largest modulus first.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub multipliers: Vec<Complex<f64>>,
     /// How often a gap crosses a level in a period.
     pub switches: usize,
@@ -69,11 +69,11 @@ pub struct Special {
     /// What is special.
     pub kind: SpecialKind,
     /// Values of the two parameters.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub values: [f64; 2],
     /// Estimated error of them: what a flow of another accuracy makes of the place. Where the place was not located, half of the
     /// step that passed it.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub error: f64,
     /// Number of points of the curve before it.
     pub after: usize,

@@ -15,24 +15,24 @@ pub enum FlowError {
     #[error("the step fell to {step:.1e} at the phase {phase}")]
     StepTooShort {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
         /// The last step tried.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         step: f64,
     },
     /// A state, a force or a derivative is not a number.
     #[error("the motion is not finite at the phase {phase}")]
     NotFinite {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
     },
     /// The function of a section is not a number.
     #[error("the function of the section is not a number at the phase {phase}")]
     Section {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
     },
     /// A mean was to be taken over no period at all.
@@ -42,7 +42,7 @@ pub enum FlowError {
     #[error("{switches} switches within one period at the phase {phase}")]
     TooManySwitches {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
         /// How many.
         switches: usize,
@@ -53,7 +53,7 @@ pub enum FlowError {
     )]
     TooManySteps {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
         /// How many.
         steps: usize,
@@ -62,7 +62,7 @@ pub enum FlowError {
     #[error("the motion rests on a level at which the force jumps, at the phase {phase}")]
     Rests {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
     },
     /// A gap touches a level at which the force jumps, without speed: the motion has no derivative there.
@@ -71,31 +71,31 @@ pub enum FlowError {
     )]
     Grazes {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
     },
     /// The motion was [cancelled](crate::Cancel).
     #[error("cancelled at the phase {phase}")]
     Cancelled {
         /// Where.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
     },
     /// The mass matrix is singular.
     #[error("the mass matrix is singular: its determinant is {determinant:e}")]
     SingularMass {
         /// Its determinant.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         determinant: f64,
     },
     /// There is no such variable, or it cannot have this value.
     #[error("{}", refused(*.variable, *.value))]
     Value {
         /// What was to be set.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         variable: Variable,
         /// To what.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         value: f64,
     },
     /// The levels of a law are not in increasing order, or not finite.

@@ -18,7 +18,7 @@ const CONTRACT: &[&str] = &["law", "system"];
 const IN_CONTRACT: &[&str] = &["data", "law", "system", "declared", "constants"];
 
 /// Single files that stand before all rooms, at most four.
-const SHARED: &[&str] = &["event", "cancel"];
+const SHARED: &[&str] = &["serialise", "event", "cancel"];
 
 /// The modules of the compiler, the first that runs first. What differentiates and simplifies stands before lowering, which takes terms
 /// apart with both; `stages` calls them in the order in which a declaration passes through them.

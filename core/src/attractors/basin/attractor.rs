@@ -13,10 +13,10 @@ pub struct Attractor {
     /// Its shortest period, in periods of the declaration.
     pub period: usize,
     /// Its states at the phase of the basin, in the order in which it visits them, from the one with the smallest first entry.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub points: Vec<Vec<f64>>,
     /// Floquet multipliers over its period, largest modulus first.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub multipliers: Vec<Complex<f64>>,
     /// Where motions are known to end on it.
     #[cfg_attr(feature = "serde", serde(skip))]

@@ -88,10 +88,10 @@ impl std::fmt::Debug for FreeOscillation {
 #[non_exhaustive]
 pub struct FreePoint {
     /// Its frequency.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub omega: f64,
     /// Positions at rest, where it begins and half a period later.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub ends: [Vec<f64>; 2],
 }
 

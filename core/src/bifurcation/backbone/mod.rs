@@ -28,6 +28,6 @@ pub struct Backbone<P> {
     /// What the motions cost; nothing in phase resonance, which computes none.
     pub work: Work,
     /// Time of the computation.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub elapsed: Duration,
 }

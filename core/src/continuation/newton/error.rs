@@ -16,10 +16,10 @@ pub enum NewtonError {
         /// Number of updates.
         iterations: usize,
         /// Length of the last update, where one is the size of the orbit, or the range of what is varied.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         update: f64,
         /// Largest residual by size, in the units of the equation it is of.
-        #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         residual: f64,
     },
     /// The bordered matrix is singular.

@@ -41,7 +41,7 @@ pub struct Singular {
     /// Column without a usable pivot.
     pub column: usize,
     /// The largest candidate there, relative to the row it stands in.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub pivot: f64,
 }
 

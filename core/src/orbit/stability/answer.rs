@@ -18,25 +18,25 @@ pub struct Answer {
     /// What varies along the branch, for the corrected orbit: an orbit is corrected across its branch, and lies a little farther along
     /// the axis then. At the value of the point itself multipliers differ from those given by their slope times this distance,
     /// which no error has in it. The slope grows without bound towards a fold.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
     /// Multipliers of the orbit as it is, largest modulus first; empty if the method found none.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub uncorrected: Vec<Complex<f64>>,
     /// Estimated error of the method.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub by_method: f64,
     /// Estimated error from what the harmonics and samples of the orbit leave out.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub by_truncation: f64,
     /// A bound on the error of the monodromy matrix of the corrected orbit (of the orbit, if it was not corrected), with
     /// displacements and velocities scaled to be alike. Only [`Method::KoopmanHill`] has one, and only for orbits whose
     /// stiffness and damping are smooth enough that their Fourier coefficients fall exponentially: never where a contact opens.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub bound: Option<f64>,
     /// What it cost, both orbits together.
     pub cost: Cost,
     /// The time that took, without that of correcting the orbit.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub elapsed: Duration,
 }

@@ -102,7 +102,7 @@ impl std::fmt::Debug for PhaseResonance {
 #[non_exhaustive]
 pub struct ResonancePoint {
     /// What is varied.
-    #[cfg_attr(feature = "serde", serde(with = "crate::numeric::serialise"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
     /// The orbit.
     pub orbit: Orbit,
