@@ -7,7 +7,7 @@ use hertzian::bifurcation::{Bifurcations, Diagram, DiagramBranch, Origin, Reason
 use hertzian::chart::{Chart, Markers, Scale, Trace};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::export::{Decimal, Table};
-use hertzian::shooting::Track;
+use hertzian::shooting::BifurcationCurve;
 use hertzian::{
     Cancel, Error, Event, EventKind, FrequencyResponse, Point, RequestError, Shooting, System,
 };
@@ -27,7 +27,7 @@ pub struct Found {
     /// The branches; the first is the one that was asked for.
     pub diagram: Diagram,
     /// Curves of bifurcations in two parameters.
-    pub tracks: Vec<Track>,
+    pub tracks: Vec<BifurcationCurve>,
     /// What could not be done.
     pub warnings: Vec<String>,
 }
@@ -158,7 +158,7 @@ impl Found {
                 break;
             }
             see(event.point.value);
-            let on_it = |track: &&Track| passes(track, &event, value);
+            let on_it = |track: &&BifurcationCurve| passes(track, &event, value);
             if self.tracks.iter().any(|track| on_it(&track)) {
                 continue;
             }
@@ -398,7 +398,7 @@ fn value_of(options: &Options, model: &dyn System, name: &str) -> f64 {
 }
 
 /// Whether a curve passes an event, which has this value of the second parameter.
-fn passes(track: &Track, event: &Event, value: f64) -> bool {
+fn passes(track: &BifurcationCurve, event: &Event, value: f64) -> bool {
     let size = track
         .points
         .iter()

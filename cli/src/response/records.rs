@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use hertzian::observe::{amplitudes, phases};
-use hertzian::shooting::Track;
+use hertzian::shooting::BifurcationCurve;
 use hertzian::system::SystemFacts;
 use hertzian::{Branch, Event, Point, Statistics, System};
 use serde::Serialize;
@@ -155,7 +155,7 @@ pub struct SpecialRecord {
 
 impl TrackRecord {
     /// Of a curve.
-    pub fn of(track: &Track) -> Self {
+    pub fn of(track: &BifurcationCurve) -> Self {
         Self {
             kind: track.kind.to_string(),
             period: track.period,

@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::event::Side;
 use crate::model::request::RequestError;
 use crate::model::validate;
-use crate::shooting::{self, Shooting, Track, at};
+use crate::shooting::{self, BifurcationCurve, Shooting, at};
 use crate::system::System;
 
 /// What a branch was asked for by.
@@ -78,7 +78,12 @@ impl Branch {
     ///
     /// # Errors
     /// If a parameter is not usable, there is no such curve, or the branch was read from a file and has no [model](Self::attach).
-    pub fn track(&self, event: &Event, second: &str, range: [f64; 2]) -> Result<Track, Error> {
+    pub fn track(
+        &self,
+        event: &Event,
+        second: &str,
+        range: [f64; 2],
+    ) -> Result<BifurcationCurve, Error> {
         let following = self.following()?;
         let shooting = match following {
             Following::Balance(..) => Shooting::new(),

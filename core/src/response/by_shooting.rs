@@ -17,7 +17,7 @@ use crate::event::{EventKind, Side};
 use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::shooting::{
-    Asked, Plane, Shooting, Track, bifurcation_curve, complete, compute, with_states,
+    Asked, BifurcationCurve, Plane, Shooting, bifurcation_curve, complete, compute, with_states,
 };
 use crate::system::Variable;
 
@@ -102,7 +102,7 @@ pub(super) fn track(
     event: &Event,
     second: Second<'_>,
     visit: See<'_>,
-) -> Result<Track, Error> {
+) -> Result<BifurcationCurve, Error> {
     Asked {
         request,
         shooting: &shooting,

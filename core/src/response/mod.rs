@@ -20,7 +20,7 @@ use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::event::Side;
 use crate::orbit::stability::Method;
-use crate::shooting::{Shooting, Track};
+use crate::shooting::{BifurcationCurve, Shooting};
 use crate::system::System;
 
 mod sealed {
@@ -399,7 +399,12 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     ///
     /// # Errors
     /// If a parameter or an option is not usable, or there is no such curve.
-    pub fn track(&self, event: &Event, second: &str, range: [f64; 2]) -> Result<Track, Error> {
+    pub fn track(
+        &self,
+        event: &Event,
+        second: &str,
+        range: [f64; 2],
+    ) -> Result<BifurcationCurve, Error> {
         self.track_with(event, second, range, |_| ControlFlow::Continue(()))
     }
 
@@ -414,7 +419,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         second: &str,
         range: [f64; 2],
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
-    ) -> Result<Track, Error> {
+    ) -> Result<BifurcationCurve, Error> {
         let found = by_shooting::track(
             &self.request,
             self.shooting(),

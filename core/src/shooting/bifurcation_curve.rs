@@ -28,7 +28,7 @@ use crate::time::FlowError;
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Track {
+pub struct BifurcationCurve {
     /// What bifurcates.
     pub kind: EventKind,
     /// Names of the two parameters.
@@ -36,18 +36,18 @@ pub struct Track {
     /// Period of the orbits in periods of the declaration.
     pub period: usize,
     /// The curve in its order.
-    pub points: Vec<TrackPoint>,
+    pub points: Vec<BifurcationCurvePoint>,
     /// Its special points, in the order of the curve.
     pub special: Vec<Special>,
     /// Why it ended on both sides.
-    pub ends: [TrackEnd; 2],
+    pub ends: [BifurcationCurveEnd; 2],
 }
 
 /// One bifurcation of a curve.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct TrackPoint {
+pub struct BifurcationCurvePoint {
     /// Values of the two parameters.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub values: [f64; 2],
@@ -111,7 +111,7 @@ pub enum SpecialKind {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
-pub enum TrackEnd {
+pub enum BifurcationCurveEnd {
     /// A parameter left its range.
     Left,
     /// The curve closed upon itself.
@@ -124,7 +124,7 @@ pub enum TrackEnd {
     Stopped(Stop),
 }
 
-impl std::fmt::Display for TrackEnd {
+impl std::fmt::Display for BifurcationCurveEnd {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Left => f.write_str("left the range"),
@@ -163,9 +163,9 @@ const SHORTEST: f64 = 1e-5;
 
 /// Half of a curve, as it is followed.
 struct Half {
-    points: Vec<TrackPoint>,
+    points: Vec<BifurcationCurvePoint>,
     special: Vec<Special>,
-    end: TrackEnd,
+    end: BifurcationCurveEnd,
 }
 
 impl Half {
@@ -173,12 +173,12 @@ impl Half {
         Self {
             points: Vec::new(),
             special: Vec::new(),
-            end: TrackEnd::Stopped(Stop::Interrupted),
+            end: BifurcationCurveEnd::Stopped(Stop::Interrupted),
         }
     }
 
     /// Points and special points of this half from its end to the event, and of the other one from there on.
-    fn joined(mut self, forth: Self) -> (Vec<TrackPoint>, Vec<Special>) {
+    fn joined(mut self, forth: Self) -> (Vec<BifurcationCurvePoint>, Vec<Special>) {
         let count = self.points.len();
         self.points.reverse();
         self.special.reverse();
@@ -205,10 +205,10 @@ pub(crate) fn track(
     event: &Event,
     plane: &Plane<'_>,
     visit: See<'_>,
-) -> Result<Track, Error> {
+) -> Result<BifurcationCurve, Error> {
     check_inside(event, plane)?;
     let mut back = half(problem, event, plane, -1.0, visit)?;
-    let track = |points, special, ends| Track {
+    let track = |points, special, ends| BifurcationCurve {
         kind: event.kind,
         names: [problem.varied.clone(), plane.name.clone()],
         period: event.point.orbit.period,
@@ -216,13 +216,17 @@ pub(crate) fn track(
         special,
         ends,
     };
-    if back.end == TrackEnd::Closed {
+    if back.end == BifurcationCurveEnd::Closed {
         // The other way leads through the same points.
         let first = back.points.first().cloned();
         back.points.extend(first);
-        return Ok(track(back.points, back.special, [TrackEnd::Closed; 2]));
+        return Ok(track(
+            back.points,
+            back.special,
+            [BifurcationCurveEnd::Closed; 2],
+        ));
     }
-    let interrupted = matches!(back.end, TrackEnd::Stopped(Stop::Interrupted));
+    let interrupted = matches!(back.end, BifurcationCurveEnd::Stopped(Stop::Interrupted));
     // Without the other half there is the event, where both begin.
     let forth = if interrupted {
         Half::interrupted()
@@ -297,7 +301,7 @@ fn half(
         },
     );
     let end = if interrupted {
-        TrackEnd::Stopped(Stop::Interrupted)
+        BifurcationCurveEnd::Stopped(Stop::Interrupted)
     } else {
         monitor.end_of(&curve, outcome, value)?
     };

@@ -12,7 +12,9 @@
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
 
-use super::bifurcation_curve::{Plane, Special, SpecialKind, TrackEnd, TrackPoint};
+use super::bifurcation_curve::{
+    BifurcationCurveEnd, BifurcationCurvePoint, Plane, Special, SpecialKind,
+};
 use super::codimension_one::{Condition, Curve};
 use super::generalised_flip::HalfPeriodDifference;
 use super::normal_form::CubicCoefficient;
@@ -47,7 +49,7 @@ pub(super) struct EventMonitor<'p, 'a> {
     pub(super) functions: TestFunctions<'p>,
     /// The last two points.
     seen: [Option<Tests>; 2],
-    pub(super) points: Vec<TrackPoint>,
+    pub(super) points: Vec<BifurcationCurvePoint>,
     pub(super) special: Vec<Special>,
     /// What the last orbit has that one of half the period has not, on a curve of folds.
     pub(super) halved: Option<HalfPeriodDifference>,
@@ -157,7 +159,7 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
     }
 
     /// A point with what is read off it.
-    fn point(&self, curve: &Curve<'_>, u: &[f64], counted: &Counted) -> TrackPoint {
+    fn point(&self, curve: &Curve<'_>, u: &[f64], counted: &Counted) -> BifurcationCurvePoint {
         let mut multipliers = eigenvalues(&counted.map);
         if self.symmetric {
             for m in &mut multipliers {
@@ -166,7 +168,7 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
         }
         let last = u.len() - 1;
         let states = curve.equations.states_of(&u[..last]);
-        TrackPoint {
+        BifurcationCurvePoint {
             values: [u[last - 1], u[last]],
             state: states[..curve.equations.order()].to_vec(),
             multipliers,
@@ -337,25 +339,29 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
         curve: &Curve<'a>,
         outcome: Result<Outcome, NewtonError>,
         value: f64,
-    ) -> Result<TrackEnd, Error> {
+    ) -> Result<BifurcationCurveEnd, Error> {
         let stuck = matches!(outcome, Ok(Outcome::Stopped(Stop::StepTooShort { .. })));
         if stuck && self.is_at_half_the_period(curve) {
             self.joined = true;
         }
         let failure = self.failure.or(curve.equations.failure);
         Ok(match (outcome, failure) {
-            (Ok(_), Some(FlowError::Cancelled { .. })) => TrackEnd::Stopped(Stop::Interrupted),
-            _ if self.left => TrackEnd::Left,
-            _ if self.joined => TrackEnd::Joined,
+            (Ok(_), Some(FlowError::Cancelled { .. })) => {
+                BifurcationCurveEnd::Stopped(Stop::Interrupted)
+            }
+            _ if self.left => BifurcationCurveEnd::Left,
+            _ if self.joined => BifurcationCurveEnd::Joined,
             (Err(reason), failure) => return Err(no_orbit(value, reason, failure)),
             (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {
-                TrackEnd::Motion(reason)
+                BifurcationCurveEnd::Motion(reason)
             }
-            (Ok(Outcome::Stopped(Stop::ReachedEnd | Stop::LeftAtStart)), _) => TrackEnd::Left,
-            (Ok(Outcome::Stopped(Stop::Closed)), _) => TrackEnd::Closed,
-            (Ok(Outcome::Stopped(stop)), _) => TrackEnd::Stopped(stop),
+            (Ok(Outcome::Stopped(Stop::ReachedEnd | Stop::LeftAtStart)), _) => {
+                BifurcationCurveEnd::Left
+            }
+            (Ok(Outcome::Stopped(Stop::Closed)), _) => BifurcationCurveEnd::Closed,
+            (Ok(Outcome::Stopped(stop)), _) => BifurcationCurveEnd::Stopped(stop),
             // A curve is never resized.
-            (Ok(Outcome::Halted(_)), _) => TrackEnd::Stopped(Stop::Interrupted),
+            (Ok(Outcome::Halted(_)), _) => BifurcationCurveEnd::Stopped(Stop::Interrupted),
         })
     }
 }

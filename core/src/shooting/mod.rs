@@ -35,7 +35,9 @@ mod tested;
 mod tests;
 
 pub(crate) use bifurcation_curve::Plane;
-pub use bifurcation_curve::{Special, SpecialKind, Track, TrackEnd, TrackPoint};
+pub use bifurcation_curve::{
+    BifurcationCurve, BifurcationCurveEnd, BifurcationCurvePoint, Special, SpecialKind,
+};
 pub(crate) use checked::Asked;
 pub use options::Shooting;
 pub(crate) use sampled_states::with_states;

@@ -7,7 +7,7 @@ use hertzian::attractors::basin::{Basin, Basins};
 use hertzian::backbone::{Backbone, FreeOscillation, FreePoint, PhaseResonance, ResonancePoint};
 use hertzian::bifurcation::Diagram;
 use hertzian::generic::Interpreted;
-use hertzian::shooting::Track;
+use hertzian::shooting::BifurcationCurve;
 use hertzian::structure::Structure;
 use hertzian::time::affine::Affine;
 use hertzian::time::divergence::Divergence;
@@ -52,7 +52,7 @@ fn everything_computed_can_be_kept_and_sent() {
     is::<Point>();
     is::<Event>();
     is::<FrequencyResponse<Shooting>>();
-    is::<Track>();
+    is::<BifurcationCurve>();
     is::<Bifurcations>();
     is::<Diagram>();
     is::<FreeOscillation>();

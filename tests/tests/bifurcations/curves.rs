@@ -1,7 +1,7 @@
 //! Curves of bifurcations in two parameters: points of them are found again by following branches, where another test function
 //! decides.
 
-use hertzian::shooting::{SpecialKind, Track};
+use hertzian::shooting::{BifurcationCurve, SpecialKind};
 use hertzian::{Error, EventKind, FrequencyResponse, RequestError, Shooting, System};
 use hertzian_tests::{OneSidedLinear, nearest};
 
@@ -26,7 +26,7 @@ fn model(hertz: bool, drive: f64) -> Box<dyn System> {
 }
 
 /// Five points, spread by the golden ratio, are events of branches in the frequency.
-fn assert_confirmed(track: &Track, hertz: bool) {
+fn assert_confirmed(track: &BifurcationCurve, hertz: bool) {
     for index in 1..=5 {
         let part = (f64::from(index) * 0.618_033_988_749_895).fract();
         let point = &track.points[(part * track.points.len() as f64) as usize];
@@ -52,7 +52,7 @@ fn assert_confirmed(track: &Track, hertz: bool) {
     }
 }
 
-pub fn folds(hertz: bool, omega: [f64; 2]) -> Track {
+pub fn folds(hertz: bool, omega: [f64; 2]) -> BifurcationCurve {
     let model = model(hertz, 0.1);
     let shooting = FrequencyResponse::of(&*model)
         .by(Shooting::new())
@@ -64,7 +64,7 @@ pub fn folds(hertz: bool, omega: [f64; 2]) -> Track {
 }
 
 /// Folds are born in a cusp: below its drive there are none, above it two.
-fn assert_cusp(track: &Track, hertz: bool) {
+fn assert_cusp(track: &BifurcationCurve, hertz: bool) {
     let cusps = track.special.iter().filter(|s| s.kind == SpecialKind::Cusp);
     let [cusp] = cusps.collect::<Vec<_>>()[..] else {
         panic!("{:?}", track.special);

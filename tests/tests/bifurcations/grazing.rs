@@ -1,6 +1,6 @@
 //! Where a gap touches a level.
 
-use hertzian::shooting::{Track, TrackEnd};
+use hertzian::shooting::{BifurcationCurve, BifurcationCurveEnd};
 use hertzian::{Event, EventKind, FrequencyResponse, Shooting, System};
 
 use crate::cascade::MODEL;
@@ -65,7 +65,12 @@ hertzian::oscillator! {
 }
 
 /// The curves through all grazing of a branch in the frequency.
-fn curves(model: &dyn System, [from, to]: [f64; 2], second: &str, within: [f64; 2]) -> Vec<Track> {
+fn curves(
+    model: &dyn System,
+    [from, to]: [f64; 2],
+    second: &str,
+    within: [f64; 2],
+) -> Vec<BifurcationCurve> {
     let shooting = FrequencyResponse::of(model)
         .by(Shooting::new())
         .from(from)
@@ -77,7 +82,7 @@ fn curves(model: &dyn System, [from, to]: [f64; 2], second: &str, within: [f64; 
 }
 
 /// Five points, spread by the golden ratio: the branch in the frequency through each of them touches the level there.
-fn assert_touches(track: &Track, model: impl Fn(f64) -> Box<dyn System>) {
+fn assert_touches(track: &BifurcationCurve, model: impl Fn(f64) -> Box<dyn System>) {
     for index in 1..=5 {
         let part = (f64::from(index) * 0.618_033_988_749_895).fract();
         let point = &track.points[(part * track.points.len() as f64) as usize];
@@ -110,11 +115,11 @@ fn a_hertzian_contact_is_lost_on_one_curve() {
     let curves = curves(&model, [0.6, 1.6], "drive", [0.03, 0.5]);
     assert_eq!(curves.len(), 2);
     for track in &curves {
-        assert_eq!(track.ends, [TrackEnd::Left; 2]);
+        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
         assert_touches(track, |drive| Box::new(Hertz { zeta, load, drive }));
     }
     // Both events are on one curve, which leaves the range at the same two places.
-    let ends = |track: &Track| {
+    let ends = |track: &BifurcationCurve| {
         let mut ends = [0, track.points.len() - 1].map(|index| track.points[index].values);
         ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
         ends
@@ -135,7 +140,7 @@ fn a_curve_of_grazing_reaches_the_end_of_its_range() {
         drive,
     };
     for track in curves(&model, [0.6, 1.6], "zeta", [0.0, 0.2]) {
-        assert_eq!(track.ends, [TrackEnd::Left; 2]);
+        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
         assert_touches(&track, |zeta| Box::new(Hertz { zeta, load, drive }));
     }
 }
@@ -147,11 +152,11 @@ fn a_stop_is_touched_on_a_curve() {
     let tracks = curves(&model, [0.3, 0.8], "drive", [0.1, 1.0]);
     assert!(!tracks.is_empty());
     for track in &tracks {
-        assert_eq!(track.ends, [TrackEnd::Left; 2]);
+        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
         assert_touches(track, |drive| Box::new(Stopped { drive, clearance }));
     }
     for track in curves(&model, [0.3, 0.8], "clearance", [0.1, 1.0]) {
-        assert_eq!(track.ends, [TrackEnd::Left; 2]);
+        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
         assert_touches(&track, |clearance| Box::new(Stopped { drive, clearance }));
     }
 }
@@ -166,7 +171,7 @@ fn an_exponent_below_one_is_tracked_too() {
     let curves = curves(&model, [0.5, 2.0], "drive", [0.03, 0.5]);
     assert_eq!(curves.len(), 2);
     for track in &curves {
-        assert_eq!(track.ends, [TrackEnd::Left; 2]);
+        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
         assert_touches(track, |drive| Box::new(Softening { zeta: 0.032, drive }));
     }
 }

@@ -1,7 +1,7 @@
 //! Results through serde: what JSON has is what the result has, and what is read is what was written.
 
 use hertzian::bifurcation::{Bifurcations, Diagram, Reason};
-use hertzian::shooting::{Track, TrackEnd};
+use hertzian::shooting::{BifurcationCurve, BifurcationCurveEnd};
 use hertzian::time::FlowError;
 use hertzian::{EventKind, FrequencyResponse, NewtonError, Shooting, Stop};
 use serde::Serialize;
@@ -106,7 +106,10 @@ fn why_a_branch_ended() {
     for (stop, written) in stops {
         assert_eq!(to_value(stop).unwrap(), written);
         assert_eq!(again(&stop), stop);
-        assert_eq!(again(&TrackEnd::Stopped(stop)), TrackEnd::Stopped(stop));
+        assert_eq!(
+            again(&BifurcationCurveEnd::Stopped(stop)),
+            BifurcationCurveEnd::Stopped(stop)
+        );
     }
     let touch = EventKind::Grazing { turns: true };
     assert_eq!(
@@ -172,7 +175,7 @@ fn a_curve_in_two_parameters() {
     let request = FrequencyResponse::of(&model).by(Shooting::new());
     let branch = request.from(0.8).to(1.2).run().unwrap();
     let fold = branch.folds().next().unwrap();
-    let track: Track = branch.track(fold, "drive", [0.09, 0.11]).unwrap();
+    let track: BifurcationCurve = branch.track(fold, "drive", [0.09, 0.11]).unwrap();
     assert!(track.points.len() > 2);
     assert_eq!(again(&track), track);
 }
