@@ -78,7 +78,8 @@ impl Numbers for Complex<f64> {
         (self.re.written(), self.im.written())
     }
 
-    fn read((re, im): Self::Written) -> Option<Self> {
+    fn read(written: Self::Written) -> Option<Self> {
+        let (re, im) = written;
         Some(Self::new(f64::read(re)?, f64::read(im)?))
     }
 }
@@ -126,7 +127,8 @@ impl<N: Numbers> Numbers for [N; 2] {
         (self[0].written(), self[1].written())
     }
 
-    fn read((first, second): Self::Written) -> Option<Self> {
+    fn read(written: Self::Written) -> Option<Self> {
+        let (first, second) = written;
         Some([N::read(first)?, N::read(second)?])
     }
 }
@@ -139,7 +141,8 @@ impl<N: Numbers, T: Clone + Serialize + DeserializeOwned> Numbers for (N, T) {
         (self.0.written(), self.1.clone())
     }
 
-    fn read((number, beside): Self::Written) -> Option<Self> {
+    fn read(written: Self::Written) -> Option<Self> {
+        let (number, beside) = written;
         Some((N::read(number)?, beside))
     }
 }
