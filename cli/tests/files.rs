@@ -32,8 +32,8 @@ fn quoted(text: &str) -> Vec<String> {
 }
 
 /// What is quoted of a field of the JSON, of the part before its kinds are listed.
-fn described(field: &str) -> BTreeSet<String> {
-    let rows = table("response --json");
+fn described(heading: &str, field: &str) -> BTreeSet<String> {
+    let rows = table(heading);
     let row = rows.iter().find(|(names, _)| quoted(names) == [field]);
     let (_, text) = row.unwrap_or_else(|| panic!("a row for {field}"));
     let fields = text.split(" Kinds: ").next().unwrap_or_default();
@@ -47,10 +47,6 @@ fn names(object: &Value) -> BTreeSet<String> {
         .keys()
         .cloned()
         .collect()
-}
-
-fn set(names: &[&str]) -> BTreeSet<String> {
-    names.iter().map(|&name| name.to_owned()).collect()
 }
 
 /// Every field of every object, which `list` must have at least one of.
@@ -119,49 +115,66 @@ fn columns_are_those_of_the_chapter() {
 fn fields_are_those_of_the_chapter() {
     let command = "--alpha 1 --from 1.4 --to 0.705 --harmonics 10 --samples 256 --aft sampled --max-points 3000 --at 1.2";
     let (all, _) = written("sampled", command);
-    let rows = table("response --json");
-    let fields: BTreeSet<String> = rows.iter().flat_map(|(names, _)| quoted(names)).collect();
-    assert_eq!(names(&all), fields);
-    let lists = set(&[
-        "drive",
-        "multipliers",
-        "amplitudes",
-        "phases",
-        "contact_forces",
-        "contact_pieces",
-    ]);
-    assert_eq!(described("points"), lists);
-    let point: BTreeSet<String> = columns().union(&lists).cloned().collect();
-    assert_fields(&all["points"], &point);
-    assert_fields(&all["at"], &point);
-    assert_fields(&all["turns"], &described("turns"));
-    assert_eq!(names(&all["statistics"]), described("statistics"));
-    assert_eq!(names(&all["parameters"]), set(&["zeta", "load", "drive"]));
+    let fields = |heading: &str| -> BTreeSet<String> {
+        let rows = table(heading);
+        rows.iter().flat_map(|(names, _)| quoted(names)).collect()
+    };
+    let (branch_in, orbit_in) = ("### A branch in JSON", "### An orbit in JSON");
+    assert_eq!(names(&all), fields("response --json"));
+    assert_fields(&all["branches"], &fields(branch_in));
+    let branch = &all["branches"][0];
+    assert_fields(&branch["points"], &fields(orbit_in));
+    assert_fields(&all["at"], &fields(orbit_in));
+    assert_fields(&branch["turns"], &described(branch_in, "turns"));
+    for field in ["statistics", "work"] {
+        assert_eq!(names(&branch[field]), described(branch_in, field));
+    }
+    let point = &branch["points"][0];
+    for (object, heading, field) in [
+        (&branch["model"], branch_in, "model"),
+        (&point["orbit"], orbit_in, "orbit"),
+        (&point["stability"], orbit_in, "stability"),
+        (&point["observed"], orbit_in, "observed"),
+        (&point["observed"]["motions"][0], orbit_in, "observed"),
+        (&point["observed"]["contacts"][0], orbit_in, "observed"),
+    ] {
+        assert!(
+            names(object).is_subset(&described(heading, field)),
+            "{field}: {object}"
+        );
+    }
 
     let command =
         "--alpha 1 --to 1.4 --bifurcations --track fold --in omega,drive --within 0.03,0.5";
     let (all, _) = written("track", command);
-    assert_fields(&all["events"], &described("events"));
-    assert_fields(&all["points"], &point);
-    let special = set(&["kind", "values", "error"]);
-    let track = set(&["kind", "period", "names", "points", "special"]);
-    assert_eq!(
-        described("tracks"),
-        track.union(&special).cloned().collect()
+    assert!(
+        all["branches"]
+            .as_array()
+            .is_some_and(|list| list.len() > 1)
     );
-    assert_fields(&all["tracks"], &track);
-    assert_fields(&all["tracks"][0]["special"], &special);
+    for branch in all["branches"].as_array().expect("branches") {
+        assert_fields(&branch["events"], &described(branch_in, "events"));
+        assert_fields(&branch["points"], &fields(orbit_in));
+    }
+    let said = described("response --json", "tracks");
+    let track = &all["tracks"][0];
+    for object in [track, &track["points"][0], &track["special"][0]] {
+        assert!(names(object).is_subset(&said), "{object}");
+    }
+}
 
+#[test]
+fn fields_of_a_backbone_are_those_of_the_chapter() {
     let (all, _) = written("backbone", "--continuous --load 0 --backbone --harmonics 5");
-    let curves = set(&["free", "resonance"]);
-    let point = set(&["omega", "peak_to_peak", "drive"]);
-    assert_eq!(
-        described("backbone"),
-        curves.union(&point).cloned().collect()
-    );
-    assert_eq!(names(&all["backbone"]), curves);
-    assert_fields(&all["backbone"]["free"], &point);
-    assert_fields(&all["backbone"]["resonance"], &point);
+    let said = described("response --json", "backbone");
+    let (free, resonance) = (&all["backbone"]["free"], &all["backbone"]["resonance"]);
+    for object in [
+        &all["backbone"],
+        &free["points"][0],
+        &resonance["points"][0],
+    ] {
+        assert!(names(object).is_subset(&said), "{object}");
+    }
 }
 
 /// A linear spring in both directions is no contact.
@@ -169,8 +182,8 @@ fn fields_are_those_of_the_chapter() {
 fn without_a_contact_nothing_is_said_of_one() {
     let (all, csv) = written("linear", "--alpha 1 --continuous --from 0.9 --to 1.1");
     let contact = ["contact_fraction", "contacts", "peak_force"];
-    for point in all["points"].as_array().expect("points") {
-        assert!(contact.iter().all(|&name| point[name].is_null()), "{point}");
+    for point in all["branches"][0]["points"].as_array().expect("points") {
+        assert_eq!(point["observed"]["contacts"], serde_json::json!([]));
     }
     let mut reader = csv::Reader::from_reader(csv.as_bytes());
     let head = reader.headers().expect("a head").clone();

@@ -92,7 +92,8 @@ fn folds_at_negative_loads_mirror_those_at_positive_ones() {
         let tracks = all["tracks"].as_array().expect("curves");
         let ends = tracks.iter().flat_map(|track| {
             let points = track["points"].as_array().expect("points");
-            [&points[0], &points[points.len() - 1]].map(|end| [number(&end[0]), number(&end[1])])
+            let ends = [&points[0], &points[points.len() - 1]].map(|end| &end["values"]);
+            ends.map(|end| [number(&end[0]), number(&end[1])])
         });
         ends.collect::<Vec<_>>()
     };

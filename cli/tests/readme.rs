@@ -53,10 +53,13 @@ fn response(name: &str, command: &str) -> (String, Vec<[f64; 2]>) {
     assert!(outcome.complete);
     let text = std::fs::read_to_string(&json).expect("a file");
     let all: Value = serde_json::from_str(&text).expect("JSON");
-    let folds = all["events"].as_array().expect("events").iter();
+    let folds = all["branches"][0]["events"]
+        .as_array()
+        .expect("events")
+        .iter();
     let folds = folds.filter(|event| event["kind"] == "fold");
     let number = |value: &Value| value.as_f64().expect("a number");
-    let folds = folds.map(|fold| [number(&fold["value"]), number(&fold["error"])]);
+    let folds = folds.map(|fold| [number(&fold["point"]["value"]), number(&fold["error"])]);
     let mut folds: Vec<_> = folds.collect();
     folds.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let _ = std::fs::remove_dir_all(&folder);

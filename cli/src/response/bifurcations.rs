@@ -6,14 +6,14 @@ use std::ops::ControlFlow;
 use hertzian::bifurcation::{Bifurcations, Diagram, DiagramBranch, Origin, Reason};
 use hertzian::chart::{Chart, Markers, Scale, Trace};
 use hertzian::error::{ErrorKind, chain};
-use hertzian::export::{Decimal, Table};
+use hertzian::export::Decimal;
 use hertzian::shooting::BifurcationCurve;
 use hertzian::{
-    Cancel, Error, Event, EventKind, FrequencyResponse, Point, RequestError, Shooting, System,
+    Branch, Cancel, Error, Event, EventKind, FrequencyResponse, Point, RequestError, Shooting,
+    System,
 };
 
 use super::options::{Options, Tracked};
-use super::records::{EventRecord, PointRecord, Record, TrackRecord};
 use super::run::Failure;
 use super::search::basin;
 use super::summary;
@@ -176,38 +176,18 @@ impl Found {
         Ok(())
     }
 
-    /// Puts the events, and the branches other than the first, into the record and the table.
+    /// The branches, with everything that is read off their orbits.
     ///
     /// # Errors
     /// If the motion of an orbit cannot be computed.
-    pub fn add_to(
-        &self,
-        record: &mut Record,
-        table: &mut Table,
-        model: &dyn System,
-    ) -> Result<(), Error> {
-        let facts = model.facts();
-        record.events.clear();
-        for (number, branch) in self.diagram.branches.iter().enumerate() {
-            let events = branch.branch.events.iter();
-            record
-                .events
-                .extend(events.map(|event| EventRecord::of(number, event, facts)));
-            if number == 0 {
-                continue;
-            }
-            for point in &branch.branch.points {
-                let point = branch.branch.complete(point)?;
-                table.add(number, &point);
-                let point = PointRecord::of(&point, facts);
-                record.points.push(PointRecord {
-                    branch: number,
-                    ..point
-                });
-            }
-        }
-        record.tracks = self.tracks.iter().map(TrackRecord::of).collect();
-        Ok(())
+    pub fn branches(&self) -> Result<Vec<Branch>, Error> {
+        let completed = |found: &DiagramBranch| {
+            let mut branch = found.branch.clone();
+            let points = branch.points.iter().map(|point| branch.complete(point));
+            branch.points = points.collect::<Result<_, _>>()?;
+            Ok(branch)
+        };
+        self.diagram.branches.iter().map(completed).collect()
     }
 
     /// The picture: of the curves in two parameters if there are any, of the branches otherwise.
@@ -276,7 +256,7 @@ impl Found {
 
     fn write(&self, text: &mut String) -> fmt::Result {
         for (number, branch) in self.diagram.branches.iter().enumerate() {
-            describe(text, number, branch)?;
+            describe(text, number + 1, branch)?;
         }
         let deep = |reason: &Reason| matches!(reason, Reason::Depth);
         let left = self.diagram.omitted.iter();
@@ -294,7 +274,11 @@ impl Found {
                 Reason::Failed(_) | Reason::Budget | Reason::Interrupted
             );
             if worth_saying {
-                writeln!(text, "omitted    on branch {}: {reason}", omitted.branch)?;
+                writeln!(
+                    text,
+                    "omitted    on branch {}: {reason}",
+                    omitted.branch + 1
+                )?;
             }
         }
         for (value, reason) in &self.diagram.missed {
@@ -326,7 +310,7 @@ impl Found {
 
 fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt::Result {
     let from = match branch.origin {
-        Origin::Event { branch, .. } => format!(", from branch {branch}"),
+        Origin::Event { branch, .. } => format!(", from branch {}", branch + 1),
         Origin::Attractor { value } => format!(", found at {value}"),
         _ => String::new(),
     };

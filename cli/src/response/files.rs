@@ -3,9 +3,26 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use hertzian::export;
+use hertzian::shooting::BifurcationCurve;
+use hertzian::{Branch, Point, export};
+use serde::Serialize;
 
-use super::records::Record;
+use super::backbone::Backbone;
+
+/// What `--json` writes: results of the library as they are.
+#[derive(Debug, Serialize)]
+pub struct Record<'r> {
+    /// The version of the form.
+    pub version: u32,
+    /// The branch that was asked for, and those of its bifurcations.
+    pub branches: &'r [Branch],
+    /// Every orbit at the values that were asked for.
+    pub at: &'r [Point],
+    /// Curves of bifurcations in two parameters.
+    pub tracks: &'r [BifurcationCurve],
+    /// Free oscillation and phase resonance.
+    pub backbone: &'r Backbone,
+}
 
 /// Whether a file can be written there; one that is there is not touched.
 ///
@@ -61,11 +78,11 @@ fn place(path: &Path) -> PathBuf {
     place.unwrap_or_else(|| path.to_path_buf())
 }
 
-/// Writes everything as JSON. A number that is not finite becomes `null`.
+/// Writes everything as JSON.
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn write_json(path: &Path, record: &Record) -> io::Result<()> {
+pub fn write_json(path: &Path, record: &Record<'_>) -> io::Result<()> {
     let mut text = serde_json::to_vec(record)?;
     text.push(b'\n');
     export::write(path, text)

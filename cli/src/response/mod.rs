@@ -8,7 +8,6 @@ pub mod model_file;
 pub mod models;
 pub mod options;
 pub mod progress;
-pub mod records;
 pub mod run;
 pub mod search;
 pub mod summary;

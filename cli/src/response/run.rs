@@ -11,15 +11,14 @@ use hertzian::{
     Branch, Cancel, Error, FrequencyResponse, OrbitError, Point, Stop, System, remarks,
 };
 
-use super::backbone;
+use super::backbone::{self, Backbone};
 use super::bifurcations;
 use super::boundary::loss_of_contact;
-use super::files;
+use super::files::{self, Record};
 use super::model_file::{ModelError, Varied};
 use super::models::model;
 use super::options::Options;
 use super::progress::Progress;
-use super::records::Record;
 use super::search;
 use super::summary;
 use crate::model::FREQUENCY_VARIES;
@@ -130,9 +129,6 @@ pub fn run(
     let remarks = remarks::of(&*model, omega).into_iter();
     let mut warnings: Vec<String> = remarks.map(|remark| remark.to_string()).collect();
     let at = solutions_at(options, &branch, &mut warnings);
-    let mut record = Record::of(&branch, &*model, options, &at);
-    let mut table = Table::of(&*model);
-    branch.points.iter().for_each(|point| table.add(0, point));
     let found = match branch.stopped {
         Stop::Interrupted => None,
         _ => bifurcations::find(options, &*model, cancel, &mut see)?,
@@ -141,17 +137,27 @@ pub fn run(
         Some(found) => found.chart(options, &*model),
         None => picture(options, &branch, &*model, cancel),
     };
+    let mut backbone = Backbone::default();
     if options.backbone && !cancel.is_cancelled() {
-        let (backbone, missing) = backbone::of(options, &*model, &branch, cancel);
+        let missing;
+        (backbone, missing) = backbone::of(options, &*model, &branch, cancel);
         chart = backbone.references().fold(chart, Chart::reference);
-        record.backbone = backbone;
         warnings.extend(missing);
     }
+    let mut branches = vec![branch];
     if let Some(found) = &found {
-        found.add_to(&mut record, &mut table, &*model)?;
+        branches.extend(found.branches()?);
         warnings.extend(found.warnings.iter().cloned());
     }
-    let written = write(options, &record, &table, &chart)?;
+    let record = Record {
+        version: export::JSON_VERSION,
+        branches: &branches,
+        at: &at,
+        tracks: found.as_ref().map_or(&[], |found| &found.tracks),
+        backbone: &backbone,
+    };
+    let written = write(options, &*model, &record, &chart)?;
+    let branch = &branches[0];
     let reached = branch.stopped == Stop::ReachedEnd;
     if !reached {
         warnings.push(format!("the branch ended early: {}", branch.stopped));
@@ -161,7 +167,7 @@ pub fn run(
     let complete = reached && !cancel.is_cancelled();
     let further = found.map_or_else(String::new, |found| found.summary());
     Ok(Outcome {
-        summary: summary::of(options, &branch, &at, &written) + &further,
+        summary: summary::of(options, branch, &at, &written) + &further,
         warnings,
         complete,
     })
@@ -275,8 +281,8 @@ fn picture(options: &Options, branch: &Branch, model: &dyn System, cancel: &Canc
 /// Writes the files that were asked for; returns their paths.
 fn write<'a>(
     options: &'a Options,
-    record: &Record,
-    table: &Table,
+    model: &dyn System,
+    record: &Record<'_>,
     chart: &Chart,
 ) -> Result<Vec<&'a Path>, Failure> {
     let failed = |path: &Path| {
@@ -286,6 +292,13 @@ fn write<'a>(
     let svg = &options.svg;
     export::write(svg, chart.to_svg()).map_err(failed(svg))?;
     if let Some(path) = &options.csv {
+        let mut table = Table::of(model);
+        for (number, branch) in record.branches.iter().enumerate() {
+            branch
+                .points
+                .iter()
+                .for_each(|point| table.add(number, point));
+        }
         export::write(path, table.to_csv()).map_err(failed(path))?;
     }
     if let Some(path) = &options.json {

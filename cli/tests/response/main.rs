@@ -54,36 +54,23 @@ fn numbers<'a>(object: &'a Value, names: &'a [&str]) -> impl Iterator<Item = f64
 }
 
 fn check_point(point: &Value) {
-    let names = [
-        "omega",
-        "drive",
-        "peak_to_peak",
-        "max",
-        "min",
-        "mean",
-        "rms",
-        "contact_fraction",
-        "peak_force",
-        "dissipated_power",
-        "harmonics",
-        "error",
-    ];
-    assert!(numbers(point, &names).all(f64::is_finite));
-    let stability = point["stability"].as_str().expect("a verdict");
-    assert!(["stable", "unstable", "undecided"].contains(&stability));
-    assert_eq!(point["harmonics"], 5);
-    assert_eq!(point["contacts"], 1);
-    assert_eq!(point["contact_fraction"], 1.0);
-    for (list, length) in [("multipliers", 2), ("amplitudes", 6), ("phases", 6)] {
-        assert_eq!(point[list].as_array().map(Vec::len), Some(length), "{list}");
-    }
-    let names = ["max", "min", "peak_to_peak", "mean"];
-    let [max, min, size, mean]: [f64; 4] = numbers(point, &names)
-        .collect::<Vec<_>>()
-        .try_into()
-        .expect("four numbers");
-    assert!(near(max - min, size));
-    assert!(near(point["amplitudes"][0].as_f64().unwrap_or(0.0), mean));
+    let (orbit, observed) = (&point["orbit"], &point["observed"]);
+    assert!(numbers(point, &["value", "error"]).all(f64::is_finite));
+    let verdict = point["stability"]["verdict"].as_str();
+    let verdict = verdict.expect("a verdict");
+    assert!(["stable", "unstable", "undecided"].contains(&verdict));
+    let length = |list: &Value| list.as_array().map(Vec::len);
+    assert_eq!(length(&point["stability"]["multipliers"]), Some(2));
+    assert_eq!(length(&orbit["series"]), Some(11));
+    let contact = &observed["contacts"][0];
+    assert_eq!(
+        (&contact["count"], &contact["fraction"]),
+        (&1.into(), &1.0.into())
+    );
+    let names = ["maximum", "minimum", "mean", "rms"];
+    assert!(numbers(&observed["motions"][0], &names).all(f64::is_finite));
+    let mean = orbit["series"][0].as_f64().expect("a number");
+    assert!(numbers(&observed["motions"][0], &["mean"]).all(|observed| near(observed, mean)));
 }
 
 /// Whether two numbers are the same but for the rounding of a reader.
@@ -91,30 +78,52 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-13 * a.abs().max(b.abs())
 }
 
+/// The points of all branches, each with the number of its branch.
+fn points(all: &Value) -> Vec<(usize, &Value)> {
+    let branches = all["branches"].as_array().expect("branches").iter();
+    let points = branches.enumerate().flat_map(|(number, branch)| {
+        let points = branch["points"].as_array().expect("points").iter();
+        points.map(move |point| (number, point))
+    });
+    points.collect()
+}
+
 /// The rows say the same as the points.
-fn check_csv(path: &str, points: &[Value]) {
+fn check_csv(path: &str, all: &Value) {
     let mut reader = csv::Reader::from_path(path).expect("a file");
     let header = reader.headers().expect("a header").clone();
     assert_eq!(header.iter().take(20).collect::<Vec<_>>(), COLUMNS);
     let rows: Vec<_> = reader.records().collect::<Result<_, _>>().expect("rows");
+    let points = points(all);
     assert_eq!(rows.len(), points.len());
-    for (row, point) in rows.iter().zip(points) {
-        for (cell, column) in row.iter().zip(COLUMNS) {
-            let expected = match column.strip_prefix("multiplier_") {
-                Some("1_re") => &point["multipliers"][0][0],
-                Some("1_im") => &point["multipliers"][0][1],
-                Some("2_re") => &point["multipliers"][1][0],
-                Some("2_im") => &point["multipliers"][1][1],
-                _ => &point[column],
-            };
-            match expected {
-                Value::String(text) => assert_eq!(cell, text),
-                number => {
-                    let number = number.as_f64().expect("a number");
-                    let cell = cell.parse().expect("a number");
-                    assert!(near(cell, number), "{column}: {cell} {number}");
-                }
-            }
+    for (row, (number, point)) in rows.iter().zip(points) {
+        let cell = |column: &str| {
+            let index = COLUMNS.iter().position(|name| *name == column);
+            &row[index.expect("a column")]
+        };
+        assert_eq!(cell("branch"), number.to_string());
+        assert_eq!(cell("stability"), point["stability"]["verdict"]);
+        let motion = &point["observed"]["motions"][0];
+        for (column, value) in [
+            ("omega", &point["orbit"]["omega"]),
+            ("period", &point["orbit"]["period"]),
+            ("value", &point["value"]),
+            ("error", &point["error"]),
+            ("max", &motion["maximum"]),
+            ("min", &motion["minimum"]),
+            ("mean", &motion["mean"]),
+            ("rms", &motion["rms"]),
+            ("multiplier_1_re", &point["stability"]["multipliers"][0][0]),
+            ("multiplier_2_im", &point["stability"]["multipliers"][1][1]),
+            (
+                "peak_force",
+                &point["observed"]["contacts"][0]["peak_force"],
+            ),
+            ("contacts", &point["observed"]["contacts"][0]["count"]),
+        ] {
+            let value = value.as_f64().expect("a number");
+            let cell: f64 = cell(column).parse().expect("a number");
+            assert!(near(cell, value), "{column}: {cell} {value}");
         }
     }
 }
