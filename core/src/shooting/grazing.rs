@@ -2,7 +2,8 @@
 //!
 //! There test functions have the root of the distance in them, or jump. But how often levels are crossed is known exactly, so
 //! the place is where that number changes, and is halved down to rounding. The numbers are compared between the orbits of the
-//! branch: what touches twice within one step, and then is as before, is not seen.
+//! branch: what touches twice within one step, and then is as before, is not seen. The balance has another way, from its series:
+//! `balance_branch/run/grazing.rs`.
 
 use super::equations::Equations;
 use super::run::{Run, observe};

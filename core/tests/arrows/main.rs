@@ -47,7 +47,7 @@ const STAGES: &[&str] = &[
 /// Packages that the runtime is built on, and which of them each is built on itself.
 const LEAVES: &[(&str, &[&str])] = &[("contract", &[]), ("file", &[]), ("chart", &["file"])];
 
-/// The rooms, the lowest first. Shooting stands after the responses since it takes its first orbit from the balance.
+/// The rooms, the lowest first. What is asked of either method stands behind both.
 const ROOMS: &[&str] = &[
     "numeric",
     "error",

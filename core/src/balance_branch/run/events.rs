@@ -1,4 +1,5 @@
-//! Folds between two points of a branch, and the end of a branch of longer orbits.
+//! What is read off where the [engine](crate::branches::engine) has located a fold, and where a branch of longer orbits ends. Touches are
+//! located here.
 
 use super::Run;
 use crate::balance::subharmonics::{is_shifted, passes_shorter_period};
