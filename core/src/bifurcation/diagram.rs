@@ -230,7 +230,7 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         let number = self.diagram.branches.len();
         let begins = (0..branch.events.len()).filter(|&index| match branch.events[index].kind {
             EventKind::PeriodDoubling | EventKind::SymmetryBreaking => true,
-            EventKind::BranchPoint => !is_joint(&branch, index),
+            EventKind::BranchPoint => !is_joint(&branch, index, self.range),
             _ => false,
         });
         self.queue.extend(begins.map(|index| (number, index)));
@@ -376,10 +376,12 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         let is_joint = |end: Option<Stop>, joint: Option<&Event>| match end {
             Some(Stop::Joined { period, value, .. }) => {
                 period == event.point.orbit.period
-                    && joint.map_or_else(
-                        || matching::is_same_value(value, event, self.range),
-                        |joint| matching::is_same_place(joint, event, self.range),
-                    )
+                    && joint
+                        .filter(|joint| matching::is_same_value(value, joint, self.range))
+                        .map_or_else(
+                            || matching::is_same_value(value, event, self.range),
+                            |joint| matching::is_same_place(joint, event, self.range),
+                        )
             }
             _ => false,
         };
@@ -392,9 +394,13 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
     }
 }
 
-/// Whether a branch ends at one of its events on a branch of more regular orbits.
-fn is_joint(branch: &Branch, index: usize) -> bool {
-    let joined = |end: Option<Stop>| matches!(end, Some(Stop::Joined { .. }));
+/// Whether a branch, in a range of some length, ends at one of its events on a branch of more regular orbits.
+fn is_joint(branch: &Branch, index: usize, range: f64) -> bool {
+    let event = &branch.events[index];
+    let joined = |end: Option<Stop>| match end {
+        Some(Stop::Joined { value, .. }) => matching::is_same_value(value, event, range),
+        _ => false,
+    };
     let points = || {
         let events = branch.events.iter().enumerate();
         let points = events.filter(|(_, event)| event.kind == EventKind::BranchPoint);

@@ -86,6 +86,6 @@ pub(super) fn contains<M: OrbitMethod>(
 /// be whole periods.
 fn is_later<M: OrbitMethod>(response: &FrequencyResponse<M>, found: &Point, orbit: &Point) -> bool {
     let several = orbit.orbit.symmetric && orbit.orbit.period > 1;
-    let returns = || response.request.returns(orbit);
+    let returns = || response.request.returns(response.shooting(), orbit);
     several && returns().is_ok_and(|states| states.iter().any(|state| visits(found, state)))
 }

@@ -90,12 +90,12 @@ impl Bifurcations {
 }
 
 impl<M: OrbitMethod> Bifurcations<M> {
-    /// Computes orbits by another method, with its options. The balance looks for what it is
-    /// [told to](crate::HarmonicBalance::bifurcations).
+    /// Computes orbits by another method, with its options. The balance looks for all
+    /// bifurcations here, whatever its options say.
     #[must_use]
     pub fn by<N: OrbitMethod>(self, method: N) -> Bifurcations<N> {
         Bifurcations {
-            response: self.response.by(method),
+            response: self.response.by(method.for_diagram()),
             depth: self.depth,
             branches: self.branches,
             points: self.points,
@@ -171,7 +171,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
     /// Also looks for branches that nothing leads to: at a value of what is varied, motions from a grid of initial states are
     /// followed until they have settled, and the branch of every periodic orbit that they settle to, of whatever period, is
     /// followed unless it is known. The basin is of the same system, with its grid, the longest period, the patience, the bound and the
-    /// threads; frequency, tolerance and parameters are those of this request at the value.
+    /// threads; frequency and parameters are those of this request at the value.
     #[must_use]
     pub fn search(mut self, value: f64, basin: Basin) -> Self {
         self.searched.push((value, basin));

@@ -7,8 +7,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::point::{Event, Point};
+use crate::cancel::Cancel;
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
+use crate::error::Error;
 use crate::event::{EventKind, Turn};
 use crate::system::{ParameterFacts, System, SystemFacts};
 use crate::time::Work;
@@ -179,6 +181,26 @@ impl Branch {
     /// The folds.
     pub fn folds(&self) -> impl DoubleEndedIterator<Item = &Event> {
         self.events(EventKind::Fold)
+    }
+
+    /// A branch with its part to the other side, if there is one: without it where that was cancelled.
+    ///
+    /// # Errors
+    /// If the other part could not be followed.
+    pub(crate) fn with_back(
+        forth: Self,
+        back: Option<Result<Self, Error>>,
+        cancel: &Cancel,
+    ) -> Result<Self, Error> {
+        match back {
+            None => Ok(forth),
+            Some(Ok(back)) => Ok(Self::joined(back, forth)),
+            Some(Err(_)) if cancel.is_cancelled() => Ok(Self {
+                begin: Some(Stop::Interrupted),
+                ..forth
+            }),
+            Some(Err(error)) => Err(error),
+        }
     }
 
     /// Two parts of one branch from the same orbit on as one branch, the first backwards.

@@ -93,7 +93,7 @@ impl fmt::Display for Event {
             ..
         } = self;
         // What is left out of series shows earlier than what a flow leaves.
-        let digits = if point.orbit.has_series() {
+        let digits = if point.orbit.states.is_empty() {
             [9, 6]
         } else {
             [12, 9]

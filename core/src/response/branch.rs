@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::by_shooting::{self, Second};
 use super::sealed::Follow;
+use crate::balance::symmetry::is_broken;
 use crate::balance_branch::check::Asked;
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
@@ -42,7 +43,16 @@ impl Branch {
     /// [model](Self::attach).
     pub fn at(&self, value: f64) -> Result<Vec<Point>, Error> {
         validate::finite("at", value)?;
-        match self.following()? {
+        let following = self.following()?;
+        let places = self.points.iter().map(|point| point.value);
+        let places = places.chain(self.events.iter().map(|event| event.point.value));
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
+            (low.min(place), high.max(place))
+        });
+        if !(low..=high).contains(&value) {
+            return Ok(Vec::new());
+        }
+        match following {
             Following::Balance(context, ..) => context.at(self, value),
             Following::Shooting(request, shooting) => {
                 let Some(point) = self.points.first() else {
@@ -118,7 +128,7 @@ impl Branch {
     }
 
     /// Gives a branch that was read from a file its model back, so that it can compute further orbits: by the method that followed it,
-    /// with that method's default options.
+    /// with that method's default options, but that the balance looks for all bifurcations, in the range that the branch has.
     ///
     /// # Errors
     /// If the model has another name, other equations, or other values of what the branch does not vary.
@@ -148,7 +158,15 @@ impl Branch {
             request.vary = Some(self.varied.clone());
             request.omega = Some(point.orbit.omega);
         }
-        let values = || self.points.iter().map(|point| point.value);
+        let values = || {
+            let events = self.events.iter().map(|event| event.point.value);
+            let turns = self.turns.iter().map(|turn| turn.value);
+            let points = self.points.iter().map(|point| point.value);
+            points
+                .chain(events)
+                .chain(turns)
+                .filter(|value| value.is_finite())
+        };
         let ends = [
             values().fold(f64::INFINITY, f64::min),
             values().fold(f64::NEG_INFINITY, f64::max),
@@ -171,8 +189,14 @@ impl Branch {
         if !point.orbit.states.is_empty() {
             return Ok(Following::Shooting(request, shooting));
         }
+        // A branch may pass from orbits with a symmetry to others.
+        let broken = |point: &&Point| {
+            let orbit = &point.orbit;
+            orbit.has_series() && is_broken(&orbit.series, orbit.row(0).len())
+        };
+        let near = self.points.iter().find(broken).unwrap_or(point);
         let near = Request {
-            near: Some(Guess::Orbit(point.orbit.clone())),
+            near: Some(Guess::Orbit(near.orbit.clone())),
             ..request.clone()
         };
         let asked = Asked {
@@ -190,17 +214,20 @@ impl Branch {
             Following::Shooting(request, _) => request,
         };
         let balance = HarmonicBalance::new();
+        // With the symmetry that this orbit has, and no other.
         let mut request = Request {
-            near: None,
+            near: Some(Guess::Orbit(point.orbit.clone())),
             period: Some(point.orbit.period),
-            from: Some(point.value),
             ..request.clone()
         };
-        let asked = Asked {
-            request: &request,
-            balance: &balance,
-        };
-        request.to = Some(asked.aside(point.value)?);
+        if request.from.is_none() || request.to.is_none() {
+            request.from = Some(point.value);
+            let asked = Asked {
+                request: &request,
+                balance: &balance,
+            };
+            request.to = Some(asked.aside(point.value)?);
+        }
         let asked = Asked {
             request: &request,
             balance: &balance,

@@ -25,10 +25,15 @@ use crate::continuation::follow::{FollowOptions, Start, Stop};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::{EventKind, Side};
+use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::shooting::Shooting;
 
 impl Follow for HarmonicBalance {
+    fn for_diagram(self) -> Self {
+        self.bifurcations(true)
+    }
+
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
         let aside = Asked {
             request,
@@ -52,7 +57,7 @@ impl Follow for HarmonicBalance {
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
         let started = Instant::now();
-        let request = &with_series(request, request.from)?;
+        let request = &with_series(request, self, request.from)?;
         let asked = Asked {
             request,
             balance: self,
@@ -76,12 +81,12 @@ impl Follow for HarmonicBalance {
         visit: See<'_>,
     ) -> Result<Branch, Error> {
         let started = Instant::now();
-        let event = &in_series(request, event)?;
-        Asked {
+        let asked = Asked {
             request,
             balance: self,
-        }
-        .has(event)?;
+        };
+        asked.has(event)?;
+        let event = &in_series(request, event)?;
         let doubles = event.kind == EventKind::PeriodDoubling;
         let request = &Request {
             period: Some(event.point.orbit.period * if doubles { 2 } else { 1 }),
@@ -111,7 +116,7 @@ impl Follow for HarmonicBalance {
             "must be between from and to",
         )?;
         let started = Instant::now();
-        let request = &with_series(request, Some(value))?;
+        let request = &with_series(request, self, Some(value))?;
         let asked = Asked {
             request,
             balance: self,
@@ -135,11 +140,8 @@ impl Follow for HarmonicBalance {
         let forth = part([from, to])?;
         // Once around, or interrupted: there is no other side.
         let whole = matches!(forth.stopped, Stop::Closed | Stop::Interrupted);
-        let mut branch = if whole {
-            forth
-        } else {
-            Branch::joined(part([to, from])?, forth)
-        };
+        let back = if whole { None } else { Some(part([to, from])) };
+        let mut branch = Branch::with_back(forth, back, &asked.request.cancel)?;
         branch.statistics += statistics;
         branch.elapsed = started.elapsed();
         Ok(branch)
@@ -230,18 +232,35 @@ fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Br
 /// The same request with the series of the orbit that it begins near.
 ///
 /// # Errors
-/// If a motion is given by a state, and cannot be computed.
-fn with_series(request: &Request, value: Option<f64>) -> Result<Request, Error> {
+/// If the request is not usable, or an orbit is given by states and there is none like it.
+fn with_series(
+    request: &Request,
+    balance: &HarmonicBalance,
+    value: Option<f64>,
+) -> Result<Request, Error> {
     let (Some(guess), Some(value)) = (&request.near, value) else {
         return Ok(request.clone());
     };
-    let orbit = match guess {
-        Guess::Orbit(orbit) if orbit.has_series() => return Ok(request.clone()),
-        Guess::Orbit(orbit) => by_shooting::in_series(request, orbit, value)?,
-        Guess::State(_) => Shooting::new()
-            .orbit(request, value)
-            .and_then(|point| by_shooting::in_series(request, &point.orbit, value))?,
+    if matches!(guess, Guess::Orbit(orbit) if orbit.has_series()) {
+        return Ok(request.clone());
+    }
+    // What is wrong is said before any work.
+    let alone = &Request {
+        near: None,
+        period: Some(request.period()),
+        ..request.clone()
     };
+    Asked {
+        request: alone,
+        balance,
+    }
+    .check()?;
+    let quick = Request {
+        stability: false,
+        ..request.clone()
+    };
+    let point = Shooting::new().orbit(&quick, value)?;
+    let orbit = by_shooting::completed(&quick, Shooting::new(), &point)?.orbit;
     Ok(Request {
         near: Some(Guess::Orbit(orbit)),
         ..request.clone()
@@ -251,17 +270,21 @@ fn with_series(request: &Request, value: Option<f64>) -> Result<Request, Error> 
 /// An event with the series of its orbit.
 ///
 /// # Errors
-/// If its motion cannot be computed, or branches cross there and the direction is known in states only.
+/// If it is not one of this request, its motion cannot be computed, or branches cross there, whose direction is known in states only.
 fn in_series(request: &Request, event: &Event) -> Result<Event, Error> {
-    if event.point.orbit.has_series() && event.point.orbit.states.is_empty() {
+    if event.point.orbit.states.is_empty() {
         return Ok(event.clone());
     }
-    let orbit = by_shooting::in_series(request, &event.point.orbit, event.point.value)?;
+    if event.kind == EventKind::BranchPoint {
+        return Err(RequestError::Option {
+            name: "event",
+            value: event.point.value,
+            must: "is a crossing that shooting found: switch there by shooting",
+        }
+        .into());
+    }
     Ok(Event {
-        point: Point {
-            orbit,
-            ..event.point.clone()
-        },
+        point: by_shooting::completed(request, Shooting::new(), &event.point)?,
         tangent: Vec::new(),
         ..event.clone()
     })

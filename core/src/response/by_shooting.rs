@@ -6,12 +6,9 @@ use super::branch::Following;
 use super::sealed::Follow;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Further};
-use crate::branches::observed::Observed;
-use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::{Guess, Request};
-use crate::branches::stability::Stability;
 use crate::error::Error;
 use crate::event::{EventKind, Side};
 use crate::model::request::RequestError;
@@ -19,7 +16,6 @@ use crate::model::validate;
 use crate::shooting::{
     Asked, BifurcationCurve, Plane, Shooting, bifurcation_curve, complete, compute, with_states,
 };
-use crate::system::Variable;
 
 impl Follow for Shooting {
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
@@ -129,30 +125,6 @@ pub(super) fn track(
         ranges: [range, second.range],
     };
     bifurcation_curve::track(&problem, &with_states(&problem, event), &plane, visit)
-}
-
-/// An orbit with its series.
-///
-/// # Errors
-/// If its motion cannot be computed.
-pub(super) fn in_series(request: &Request, orbit: &Orbit, value: f64) -> Result<Orbit, Error> {
-    request.fits(orbit)?;
-    if orbit.has_series() {
-        return Ok(orbit.clone());
-    }
-    let mut parameters = request.parameters();
-    if let Variable::Parameter(index) = request.variable()? {
-        parameters[index] = value;
-    }
-    let point = Point {
-        value,
-        parameters,
-        orbit: orbit.clone(),
-        stability: Stability::unknown(),
-        observed: Observed::extremes(Vec::new(), 0),
-        error: None,
-    };
-    Ok(completed(request, Shooting::new(), &point)?.orbit)
 }
 
 /// An orbit with its series and everything that is read off.

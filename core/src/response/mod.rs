@@ -28,6 +28,14 @@ mod sealed {
 
     /// What a method of computing periodic orbits does for a request.
     pub trait Follow {
+        /// The same method, looking for all that branches begin at.
+        fn for_diagram(self) -> Self
+        where
+            Self: Sized,
+        {
+            self
+        }
+
         /// The one orbit at a value.
         fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error>;
 
@@ -58,7 +66,7 @@ impl OrbitMethod for Shooting {}
 ///
 /// Only the two ends of the range have to be given. By default the excitation frequency is varied, the orbit has the
 /// period of the excitation, orbits are found by [`HarmonicBalance`], and everything else follows from the tolerance. Setters may be
-/// called in any order.
+/// called in any order; [`by`](Self::by) replaces the options of a method.
 ///
 /// ```
 /// hertzian::oscillator! {
@@ -216,8 +224,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     }
 
     /// Relative accuracy asked of peak-to-peak. Default: 1e-6. The balance chooses harmonics at every point such that its estimated
-    /// error, [`Point::error`], is below the tolerance, at most 150 for each period of the excitation; the
-    /// [tolerance of flows](Shooting::tolerance) and that of Newton's method follow from it.
+    /// error, [`Point::error`], is below the tolerance, at most 150 for each period of the excitation. By shooting the
+    /// [tolerance of the flow](Shooting::tolerance) follows from it, and a closed form has none; what came of it is in [`Point::error`].
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.request.tolerance = tolerance;
@@ -388,7 +396,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     }
 
     /// The options of shooting, where that is the method, or those by default.
-    fn shooting(&self) -> Shooting {
+    pub(crate) fn shooting(&self) -> Shooting {
         let method: &dyn std::any::Any = &self.method;
         method.downcast_ref().copied().unwrap_or_default()
     }

@@ -169,7 +169,7 @@ impl Asked<'_> {
                 "must be from 1e-12 to 0.1",
             ),
             (
-                "tolerance",
+                "tolerance of the flow",
                 self.tolerance(),
                 1e-14..=1e-3,
                 "must be from 1e-14 to 1e-3",
@@ -222,8 +222,12 @@ impl Asked<'_> {
 
 impl Request {
     /// The states of an orbit at the beginnings of its periods of the declaration, the first of which it is given by.
-    pub(crate) fn returns(&self, point: &Point) -> Result<Vec<Vec<f64>>, Error> {
-        let tolerance = Shooting::new().flow_tolerance(self.tolerance);
+    pub(crate) fn returns(
+        &self,
+        shooting: Shooting,
+        point: &Point,
+    ) -> Result<Vec<Vec<f64>>, Error> {
+        let tolerance = shooting.flow_tolerance(self.tolerance);
         let flow = time::at(
             &self.system,
             &point.parameters,

@@ -94,7 +94,8 @@ pub(crate) fn branch_through(
     if matches!(forth.stopped, Stop::Closed | Stop::Interrupted) {
         return Ok(forth);
     }
-    Ok(Branch::joined(part([to, from])?, forth))
+    let back = part([to, from]);
+    Branch::with_back(forth, Some(back), &problem.cancel)
 }
 
 /// A frequency that velocities count by.

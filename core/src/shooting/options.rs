@@ -44,7 +44,7 @@ impl Shooting {
     }
 
     /// Segments that the orbit is divided into: multiple shooting. Default: one for each period of the declaration. More of them help
-    /// where neighbouring motions part fast.
+    /// where neighbouring motions part fast. What goes on from an orbit that is known, as from an event, keeps the division of that orbit.
     #[must_use]
     pub fn segments(mut self, segments: usize) -> Self {
         self.segments = Some(segments);
@@ -52,7 +52,7 @@ impl Shooting {
     }
 
     /// Tolerance of the flow, relative to the size of the motion. Default: 1e-4 times the
-    /// [tolerance](crate::FrequencyResponse::tolerance) of the output, so 1e-10, and at least 1e-13. A flow in closed form has none.
+    /// [tolerance](crate::FrequencyResponse::tolerance) of the output, so 1e-10, and from 1e-13 to 1e-6. A flow in closed form has none.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = Some(tolerance);

@@ -98,6 +98,9 @@ impl<'r> Run<'r> {
             });
         }
         match (outcome, self.failure, failure) {
+            (_, Some(reason), _) if self.points.is_empty() => {
+                Err(MotionError { value, reason }.into())
+            }
             (Ok(_), _, Some(FlowError::Cancelled { .. })) if !self.points.is_empty() => {
                 Ok(Stop::Interrupted)
             }

@@ -139,7 +139,7 @@ fn diagrams_are_made_by_both_methods() {
         .from(1.0)
         .to(1.4);
     let by_shooting = request.clone().depth(1).run().expect("a diagram");
-    let balance = HarmonicBalance::new().harmonics(20).bifurcations(true);
+    let balance = HarmonicBalance::new().harmonics(20);
     let by_balance = request.by(balance).depth(1).run().expect("a diagram");
     for diagram in [by_shooting, by_balance] {
         let branches = diagram.branches.iter();
@@ -167,6 +167,52 @@ fn a_model_is_attached_to_its_own_branches_only() {
         error.downcast_ref(),
         Some(RequestError::OtherModel { .. })
     ));
+}
+
+/// An orbit by shooting is a guess for the balance at another value, and an event of another system is refused.
+#[test]
+fn what_one_method_found_is_checked_by_the_other() {
+    let shooting = over_drive().by(Shooting::new());
+    let orbit = shooting.orbit(1.1).expect("an orbit").orbit;
+    let near = over_drive().near_orbit(&orbit);
+    let there = near.orbit(1.15).expect("an orbit");
+    let exact = shooting.orbit(1.15).expect("an orbit");
+    assert!((there.peak_to_peak() / exact.peak_to_peak() - 1.0).abs() < 1e-5);
+    let branch = shooting.run().expect("a branch");
+    let doubling = branch.events(EventKind::PeriodDoubling).next();
+    let doubling = doubling.expect("it doubles");
+    let heavier = OneSided { load: 1.1, ..MODEL };
+    let heavier = FrequencyResponse::of(&heavier).vary("drive").omega(1.0);
+    let error = heavier.from(1.0).to(1.4).switch(doubling, Side::One);
+    let error = error.expect_err("another load");
+    let named = |name: &str| name == "load";
+    assert!(
+        matches!(error.downcast_ref(), Some(RequestError::Parameter { name, .. }) if named(name)),
+        "{error}"
+    );
+}
+
+hertzian::oscillator! {
+    /// Two wells.
+    Wells(x) {
+        param drive;
+        ddot(x) + 0.3*dot(x) - x + x^3 = drive*cos(omega*t);
+    }
+}
+
+/// The balance that judges an orbit in one of two wells has all harmonics.
+#[test]
+fn multipliers_of_an_orbit_without_the_symmetry_of_its_system() {
+    let model = Wells { drive: 0.05 };
+    let request = FrequencyResponse::of(&model).by(Shooting::new());
+    let request = request.near_state(&[1.0, 0.0]).from(1.0).to(1.1);
+    let branch = request.run().expect("a branch");
+    let point = &branch.points[0];
+    assert!(point.motion().minimum > 0.5);
+    let answer = branch.multipliers(point, Method::default());
+    let found = answer.expect("they are known").stability;
+    let [a, b] = [&found, &point.stability].map(|stability| stability.multipliers[0].norm());
+    assert!((a - b).abs() < 1e-6 && found.error < 1e-4, "{a} {b}");
 }
 
 type Setter<M> = fn(FrequencyResponse<M>) -> FrequencyResponse<M>;

@@ -154,6 +154,11 @@ fn numbers_of_a_request() {
     let parted = |&n: &usize| shooting().by(Shooting::new().segments(n)).run().map(drop);
     refused(parted, &counts);
     let flows = |&v: &f64| shooting().by(Shooting::new().tolerance(v)).run().map(drop);
+    let tolerances = [
+        (NAN, "the flow = NaN"),
+        (0.0, "the flow = 0"),
+        (-1.0, "the flow = -1"),
+    ];
     refused(flows, &tolerances);
     let names = [("omego", "no parameter omego; there are bend, drive")];
     let vary = |&name: &&str| response().vary(name).run().map(drop);

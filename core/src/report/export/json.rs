@@ -98,10 +98,23 @@ impl Branch {
 
     /// Where an orbit, one of events too, has not as many numbers as those of the model.
     fn disagrees(&self) -> Option<f64> {
+        if let Some(value) = self.changes_form() {
+            return Some(value);
+        }
         let events = self.events.iter().filter(|event| !self.holds_event(event));
         let points = self.points.iter().filter(|point| !self.holds(point));
         let mut points = points.chain(events.map(|event| &event.point));
         points.next().map(|point| point.value)
+    }
+
+    /// The value of an orbit that is not of the period and the form of the first one.
+    fn changes_form(&self) -> Option<f64> {
+        let form = |point: &Point| (point.orbit.period, point.orbit.states.len());
+        let first = form(self.points.first()?);
+        let events = self.events.iter().map(|event| &event.point);
+        let mut others = self.points.iter().chain(events);
+        let other = others.find(|point| form(point) != first);
+        other.map(|point| point.value)
     }
 
     fn holds_event(&self, event: &Event) -> bool {

@@ -307,6 +307,9 @@ impl PhaseResonance {
         let response = response.harmonics(self.harmonics).stability(false);
         let response = response.cancel(&self.cancel);
         let branch = response.run()?;
+        if branch.stopped == Stop::Interrupted {
+            return Err(OrbitError::Cancelled { value }.into());
+        }
         let mut balance = self.balance(parameters, low);
         let mut room = vec![0.0; balance.unknowns()];
         if load(&balance, &mut room).1 == [0.0; 2] {
