@@ -10,10 +10,9 @@ pub fn assert_stated(cycle: &Point, finer: &Point) {
     let pairs = cycle.orbit.state().into_iter().zip(finer.orbit.state());
     let state = pairs.fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()));
     let omega = cycle.omega().max(1.0);
-    assert!(
-        state <= cycle.error.unwrap() * omega,
-        "{state:.1e} {cycle:?}"
-    );
+    // What is stated is relative to peak-to-peak.
+    let stated = cycle.error.unwrap() * cycle.peak_to_peak();
+    assert!(state <= stated * omega, "{state:.1e} {cycle:?}");
     let found = &cycle.stability;
     let error = distance(&found.multipliers, &finer.stability.multipliers);
     assert!(error <= found.error, "{error:.1e} {cycle:?}");
@@ -112,7 +111,8 @@ fn the_finest_tolerance_has_an_error() {
         assert!(error <= event.error + 3e-15, "{event} {error:.1e}");
         // More than the rounding of the value alone.
         assert!(event.error > 3e-15, "{event}");
-        assert!(event.point.error.unwrap() > 1e-14, "{event}");
+        let of_states = event.point.error.unwrap() * event.point.peak_to_peak();
+        assert!(of_states > 1e-14, "{event}");
         assert!(event.error < 1e-10, "{event}");
     }
 }
