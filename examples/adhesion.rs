@@ -5,7 +5,7 @@
 //! belong to one frequency. Lengths are in nanometres, forces in those that bend the lever by one, time in units of its free resonance.
 //! To make it your own, change the lever, the sample, or the distance.
 
-use hertzian::chart::{Chart, Curve, Reference};
+use hertzian::chart::{Chart, Curve, Series};
 use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
@@ -49,7 +49,7 @@ pub fn main() -> Result<(), Error> {
         let branch = FrequencyResponse::of(&model).from(0.994).to(1.006).run()?;
         println!("surface {distance} nm from the tip at rest:");
         for fold in branch.folds() {
-            println!("  {fold}");
+            println!("  {}", branch.describe(fold));
         }
         // The other end of a branch that turned back.
         let again = FrequencyResponse::of(&model).from(1.006).to(0.994).run()?;
@@ -66,7 +66,7 @@ pub fn main() -> Result<(), Error> {
             runs: branch.runs(),
         });
     }
-    let surface = Reference {
+    let surface = Series {
         label: "8 nm to the surface".to_owned(),
         points: vec![[0.994, 16.0], [1.006, 16.0]],
     };

@@ -5,7 +5,7 @@
 //! highest position says how far the free oscillation is followed.
 
 use hertzian::backbone::{FreeOscillation, PhaseResonance};
-use hertzian::chart::{Chart, Curve, Reference, Trace};
+use hertzian::chart::{Chart, Curve, Series};
 use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
@@ -67,11 +67,11 @@ pub fn main() -> Result<(), Error> {
     let resonance = resonance.points.iter();
     let resonance = resonance.map(|p| [p.orbit.omega, p.motion.peak_to_peak()]);
     chart
-        .reference(Reference {
+        .reference(Series {
             label: "free oscillation".to_owned(),
             points: free.collect(),
         })
-        .trace(Trace {
+        .trace(Series {
             label: "phase resonance".to_owned(),
             points: resonance.collect(),
         })

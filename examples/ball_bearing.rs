@@ -4,7 +4,7 @@
 //! varying compliance, after Sunnersjo (1978). Lengths are in units in which the load presses one ball by one, times in units of the
 //! mass on that spring. To make it your own, change the number of balls, the clearance, or add an unbalance on the right.
 
-use hertzian::chart::{Chart, Reference, Trace};
+use hertzian::chart::{Chart, Series};
 use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
@@ -44,7 +44,7 @@ pub fn main() -> Result<(), Error> {
     println!("{} points, {}", branch.points.len(), branch.stopped);
 
     // A curve over the frequency for each coordinate.
-    let curve = |coordinate: usize, label: &str| Trace {
+    let curve = |coordinate: usize, label: &str| Series {
         label: label.to_owned(),
         points: branch
             .points
@@ -64,7 +64,7 @@ pub fn main() -> Result<(), Error> {
         peak[0],
         8.0 * 0.4 * peak[0] / std::f64::consts::TAU
     );
-    let resonance = Reference {
+    let resonance = Series {
         label: "largest along the load".to_owned(),
         points: vec![[peak[0], 0.0], peak],
     };

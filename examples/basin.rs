@@ -4,7 +4,7 @@
 //! motion is followed until it is known where it settles. To make it your own, change the equation and the ranges of the grid.
 
 use hertzian::attractors::basin::{Axis, Basin, Fate, Grid};
-use hertzian::chart::{Chart, Colour, Markers, Raster};
+use hertzian::chart::{Chart, Colour, Raster, Series};
 
 hertzian::oscillator! {
     /// Contact that opens
@@ -47,7 +47,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         let label = format!("period {}: {:.1} %", attractor.period, 100.0 * share);
         println!("{label} of the starts");
         let points = attractor.points.iter().map(|state| [state[0], state[1]]);
-        markers.push(Markers {
+        markers.push(Series {
             label: format!("points of period {}", attractor.period),
             points: points.collect(),
         });

@@ -27,6 +27,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let structure = Structure::of(&mass, &damping, &stiffness)
         .name("Cantilever with a stop")
         .cosine(0, 1, parameter("drive", 2e-4))
+        .output("tip", direction.clone())
         .contact(
             Contact::new(Stop)
                 .arguments([parameter("k", 20.0)])
@@ -41,7 +42,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         .run()?;
     println!("{} points, {}", branch.points.len(), branch.stopped);
     for fold in branch.folds() {
-        println!("{fold}");
+        println!("{}", branch.describe(fold));
     }
     let chart = branch
         .chart()

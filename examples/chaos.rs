@@ -5,7 +5,7 @@
 //! the equation, the start, and the phase at which states are looked at.
 
 use hertzian::attractors::lyapunov::Lyapunov;
-use hertzian::chart::{Chart, Cloud};
+use hertzian::chart::{Chart, Series};
 use hertzian::time::stroboscope::Stroboscope;
 
 hertzian::oscillator! {
@@ -60,7 +60,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     Chart::new("Chaos: ζ = 0.032, W = 1, A = 1.785, ω = 1")
         .x("x at the beginning of each period")
         .y("rate of x")
-        .cloud(Cloud {
+        .cloud(Series {
             label: "20000 periods".to_owned(),
             points,
         })

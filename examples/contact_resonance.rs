@@ -10,7 +10,7 @@
 //! The chapter "A measured contact" of the book says what agrees with what they describe, and what could not be compared.
 
 use hertzian::backbone::FreeOscillation;
-use hertzian::chart::{Chart, Curve, Markers, Reference};
+use hertzian::chart::{Chart, Curve, Series};
 use hertzian::{Branch, Error, FrequencyResponse};
 
 hertzian::oscillator! {
@@ -57,11 +57,11 @@ pub fn main() -> Result<(), Error> {
     if let Some([omega, size]) = touch {
         println!("free oscillation leaves contact at {omega:.6}, peak-to-peak {size:.6}");
     }
-    let free = Reference {
+    let free = Series {
         label: "free oscillation".to_owned(),
         points: free_oscillation(3.0)?,
     };
-    let markers = |label: &str, points| Markers {
+    let markers = |label: &str, points| Series {
         label: label.to_owned(),
         points,
     };

@@ -4,7 +4,7 @@
 //! resonance. Where the motion exceeds the mean deformation of the teeth they part, and the resonance leans to lower frequencies.
 //! To make it your own, change the torque, the error of the profile, or the stiffness of one flank.
 
-use hertzian::chart::{Chart, Curve, Markers};
+use hertzian::chart::{Chart, Curve, Series};
 use hertzian::{Error, EventKind, FrequencyResponse};
 
 hertzian::oscillator! {
@@ -53,7 +53,7 @@ pub fn main() -> Result<(), Error> {
             runs: branch.runs(),
         });
     }
-    let parted = Markers {
+    let parted = Series {
         label: "teeth begin to part".to_owned(),
         points: parted,
     };

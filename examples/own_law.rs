@@ -52,7 +52,7 @@ pub fn main() -> Result<(), Error> {
         let largest = largest.fold(0.0, f64::max);
         println!("{drive} N: up to {largest:.3} mm");
         for fold in branch.folds() {
-            println!("  {fold}");
+            println!("  {}", branch.describe(fold));
         }
         chart = chart.curve(Curve {
             label: format!("{drive} N"),

@@ -4,7 +4,7 @@
 //! the preload. Where orbits begin to touch it the branch has a corner, and turns there without a fold. To make it your own, change the
 //! preload, the stiffness, or add a second stop.
 
-use hertzian::chart::{Chart, Curve, Markers};
+use hertzian::chart::{Chart, Curve, Series};
 use hertzian::{Error, EventKind, FrequencyResponse};
 
 hertzian::oscillator! {
@@ -63,7 +63,7 @@ pub fn main() -> Result<(), Error> {
             runs: branch.runs(),
         });
     }
-    let markers = |label: &str, points| Markers {
+    let markers = |label: &str, points| Series {
         label: label.to_owned(),
         points,
     };

@@ -3,7 +3,7 @@
 //! The contact opens where the ball moves away, so that the resonance leans to lower frequencies. To make it your own, change the
 //! equation, its parameters and the range of frequencies. Figure 5b of Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722.
 
-use hertzian::chart::Markers;
+use hertzian::chart::Series;
 use hertzian::{Branch, Error, EventKind, FrequencyResponse, Point};
 
 hertzian::oscillator! {
@@ -35,7 +35,7 @@ pub fn main() -> Result<(), Error> {
     let branch = FrequencyResponse::of(&model).from(0.6).to(1.6).run()?;
     describe(&branch);
 
-    let lost = Markers {
+    let lost = Series {
         label: "contact is lost".to_owned(),
         points: contact_is_lost(&branch.points),
     };

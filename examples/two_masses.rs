@@ -4,7 +4,7 @@
 //! stability in between. In the manner of the third example of `NLvib`, Krack and Gross (2019). To make it your own, add coordinates
 //! (`x[8]` declares eight), springs between them, and stops.
 
-use hertzian::chart::{Chart, Curve, Line, Markers, Run};
+use hertzian::chart::{Chart, Curve, Line, Run, Series};
 use hertzian::{Error, FrequencyResponse, Point, Verdict};
 
 hertzian::oscillator! {
@@ -46,7 +46,7 @@ pub fn main() -> Result<(), Error> {
         .curve(curve("first mass", &branch.points, 0))
         .curve(curve("second mass", &branch.points, 1));
     for event in &branch.events {
-        println!("{event}");
+        println!("{}", branch.describe(event));
     }
     let mut kinds: Vec<_> = branch.events.iter().map(|event| event.kind).collect();
     kinds.dedup();
@@ -54,7 +54,7 @@ pub fn main() -> Result<(), Error> {
         kinds.retain(|other| *other != kind);
         let points = branch.events(kind);
         let points = points.map(|event| [event.point.value, event.point.peak_to_peak()]);
-        chart = chart.markers(Markers {
+        chart = chart.markers(Series {
             label: kind.to_string(),
             points: points.collect(),
         });

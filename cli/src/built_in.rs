@@ -32,10 +32,13 @@ pub const MODELS: &[BuiltIn] = built_in! {
     "continuous" "continuous.txt"
     "cubic-with-stop" "cubic_with_stop.txt"
     "gear-pair" "gear_pair.txt"
+    "gear-mesh" "gear_mesh.txt"
     "two-masses" "two_masses.txt"
     "preloaded-stop" "preloaded_stop.txt"
     "ball-bearing" "ball_bearing.txt"
     "tip" "tip.txt"
+    "bolted-joint" "bolted_joint.txt"
+    "cantilever" "cantilever.txt"
 };
 
 impl BuiltIn {

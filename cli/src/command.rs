@@ -9,7 +9,7 @@ use crate::attractors::{self, figures};
 use crate::built_in;
 use crate::install;
 use crate::misplaced::{self, Given};
-use crate::{multipliers, paper, program, response, work_precision};
+use crate::{map, multipliers, paper, program, response, show, work_precision};
 
 /// Vibration of oscillators whose forces are piecewise power laws: contacts that open, springs of any exponent, play, stops.
 ///
@@ -40,6 +40,8 @@ pub struct Program {
 )]
 pub enum Task {
     Response(Box<response::options::Options>),
+    Show(show::Options),
+    Map(Box<map::Options>),
     Attractors(Box<attractors::options::Options>),
     Multipliers(multipliers::Options),
     Paper(paper::options::Options),
@@ -66,6 +68,7 @@ impl Program {
     fn fault(&self, given: &Given<'_>) -> Option<String> {
         match &self.task {
             Task::Response(options) => options.fault(given),
+            Task::Map(options) => options.fault(given),
             Task::Attractors(options) => options.fault(given),
             _ => None,
         }
@@ -80,6 +83,8 @@ pub fn main() -> ExitCode {
     };
     match program.task {
         Task::Response(options) => response::start(&options),
+        Task::Show(options) => show::start(&options),
+        Task::Map(options) => map::start(&options),
         Task::Attractors(options) => attractors::start(&options),
         Task::Multipliers(options) => multipliers::start(&options),
         Task::Paper(options) => paper::start(&options),

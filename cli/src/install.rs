@@ -10,8 +10,10 @@ use crate::command::Program;
 use crate::program;
 
 /// Subcommands that have a page of their own.
-const PAGES: [&str; 6] = [
+const PAGES: [&str; 8] = [
     "response",
+    "show",
+    "map",
     "attractors",
     "multipliers",
     "paper",

@@ -176,7 +176,7 @@ impl ModelOptions {
 }
 
 /// Reads `NAME=VALUE`.
-fn setting(text: &str) -> Result<(String, f64), String> {
+pub(crate) fn setting(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     let value = value
         .trim()

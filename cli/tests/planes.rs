@@ -1,18 +1,25 @@
-//! The subcommand `response`: curves in two parameters, and where attractors are looked for.
+//! The subcommand `response` in planes: curves in two parameters, and where attractors are looked for; and `map`.
 
+mod cancels;
 mod folder;
+
+use std::ffi::OsString;
 
 use clap::Parser;
 use hertzian::Cancel;
 use hertzian::attractors::basin::Axis;
+use hertzian::bifurcation::Map;
+use hertzian_cli::command::{Program, Task};
 use hertzian_cli::response::model_file::Varied;
 use hertzian_cli::response::models::model;
 use hertzian_cli::response::options::Options;
 use hertzian_cli::response::progress::Progress;
 use hertzian_cli::response::run::{Failure, Outcome, run};
 use hertzian_cli::response::search;
+use hertzian_cli::{map, show};
 use serde_json::Value;
 
+use cancels::CancelsWhereWritten;
 use folder::Folder;
 
 impl Folder {
@@ -158,4 +165,149 @@ fn what_cannot_be_searched_is_refused() {
         assert_eq!(failure.exit_code(), 2);
         assert!(failure.to_string().contains(message), "{failure}");
     }
+}
+
+/// The subcommand `map` with these words, into files of a folder.
+fn mapped(folder: &Folder, words: &str, progress: &mut Progress, cancel: &Cancel) -> Mapped {
+    let [svg, csv, json] = ["svg", "csv", "json"].map(|kind| folder.file(&format!("map.{kind}")));
+    let words = format!("hertzian map {words} --svg {svg} --csv {csv} --json {json}");
+    let program = Program::read(words.split_whitespace().map(OsString::from));
+    let program = program.map_err(|error| error.to_string())?;
+    let Task::Map(options) = program.task else {
+        panic!("another task");
+    };
+    let ended = map::run(&options, cancel, progress).map_err(|failure| {
+        assert_eq!(failure.exit_code(), 2);
+        failure.to_string()
+    })?;
+    let read = |path: String| std::fs::read_to_string(path).expect("a file");
+    let all = Map::read(&json).expect("a map");
+    assert_eq!(all.to_csv(), read(csv));
+    Ok((ended, all, read(svg)))
+}
+
+type Mapped = Result<(hertzian_cli::program::Ended, Map, String), String>;
+
+/// Figure 5a of Wang et al. (2021) has its folds at 0.7151 and 0.9602, and at a fifth of the drive contact is not lost.
+#[test]
+fn a_map_has_a_cell_for_every_pair() {
+    let folder = Folder::new("map");
+    let never = Cancel::new();
+    let words =
+        "--alpha 1 --from 0.7 --to 1.1 --count 3 --over drive --low 0.02 --high 0.1 --rows 2";
+    for (what, label) in [
+        ("stable", "\"2 stable orbits\""),
+        ("largest", "largest peak-to-peak of x of stable orbits"),
+        ("verdict", "\"stable and unstable\""),
+    ] {
+        let words = format!("{words} --what {what}");
+        let found = mapped(&folder, &words, &mut Progress::new(false), &never);
+        let (ended, map, svg) = found.expect("a map");
+        assert!(ended.complete && ended.complaints.is_empty());
+        let stable: Vec<usize> = map.cells.iter().map(|cell| cell.stable).collect();
+        assert_eq!(stable, [1, 1, 1, 1, 2, 1]);
+        assert_eq!(map.values, [vec![0.7, 0.9, 1.1], vec![0.02, 0.1]]);
+        assert!(ended.summary.contains("2 stable orbits in 1 cell\n"));
+        assert!(
+            svg.contains("One-sided, α = 1: zeta = 0.032, load = 1; "),
+            "{svg}"
+        );
+        assert!(svg.contains(label), "{svg}");
+    }
+}
+
+#[test]
+fn a_map_is_shown_from_its_file() {
+    let folder = Folder::new("map-shown");
+    let words =
+        "--alpha 1 --from 0.7 --to 1.1 --count 3 --over drive --low 0.02 --high 0.1 --rows 2";
+    let never = Cancel::new();
+    let (ended, map, _) = mapped(&folder, words, &mut Progress::new(false), &never).expect("a map");
+    let [json, svg, csv] = ["map.json", "again.svg", "again.csv"].map(|name| folder.file(name));
+    let shown = |words: &str| {
+        let words = format!("hertzian show {json} {words}");
+        let program = Program::read(words.split_whitespace().map(OsString::from)).expect("options");
+        let Task::Show(options) = program.task else {
+            panic!("another task");
+        };
+        show::show(&options)
+    };
+    let said = shown(&format!("--svg {svg} --csv {csv}")).expect("shown");
+    assert!(ended.summary.starts_with(&said.summary), "{}", said.summary);
+    let read = |path: &str| std::fs::read_to_string(path).expect("a file");
+    assert_eq!(read(&csv), map.to_csv());
+    let panels = ["2 stable orbits", "all stable", "largest peak-to-peak of x"];
+    assert!(panels.iter().all(|label| read(&svg).contains(label)));
+    let refused = shown("--at 0.9").expect_err("refused");
+    assert!(
+        refused.message.starts_with("--at is for branches"),
+        "{}",
+        refused.message
+    );
+    let over = shown(&format!("--csv {json}")).expect_err("refused");
+    assert!(over.message.contains("more than once"), "{}", over.message);
+}
+
+#[test]
+fn a_map_that_is_interrupted_is_written() {
+    let folder = Folder::new("interrupted");
+    let cancel = Cancel::new();
+    let mut progress = Progress::to(CancelsWhereWritten(cancel.clone()));
+    let words = "--alpha 1 --count 2 --over omega --sweep drive --from 0.02 --to 0.1 --low 0.8 --high 1 --rows 2";
+    let (ended, map, svg) = mapped(&folder, words, &mut progress, &cancel).expect("a map");
+    assert!(!ended.complete && map.omega.is_none());
+    assert!(ended.complaints[0].starts_with("interrupted"));
+    assert_eq!(map.cells.len(), 4);
+    assert!(svg.contains("\"not looked at\""));
+}
+
+#[test]
+fn what_makes_no_map_is_refused() {
+    let folder = Folder::new("no-map");
+    let over = "--over drive --low 0.02 --high 0.1";
+    for (words, message) in [
+        ("", "--over"),
+        ("--over drive --low 1", "--high"),
+        (
+            "--over force --low 1 --high 2",
+            "there is no parameter force",
+        ),
+        (
+            "--over omega --low 1 --high 2",
+            "two different ones make a map",
+        ),
+        (&format!("{over} --omega 1"), "the range gives it"),
+        (
+            &format!("{over} --drive 1"),
+            "--over drive takes the place of the value of drive",
+        ),
+        (
+            &format!("{over} --sweep load --load 1"),
+            "--sweep load takes the place",
+        ),
+        (
+            "--over drive --low 1 --high 1",
+            "the range from 1 to 1 is empty",
+        ),
+        ("--over zeta --low -1 --high 1", "outside its range"),
+        (&format!("{over} --rows 0"), "--rows 0: must be from 1"),
+        (
+            &format!("{over} --count 20000"),
+            "--count 20000: must be from 1",
+        ),
+        (&format!("{over} --from nan"), "--from NaN: must be finite"),
+        (&format!("{over} --from -1"), "omega = -1"),
+        (
+            &format!("{over} --set load=1"),
+            "--set load belongs to --model",
+        ),
+        (&format!("{over} --model gear-pair"), "no parameter"),
+    ] {
+        let never = Cancel::new();
+        let said = mapped(&folder, words, &mut Progress::new(false), &never);
+        let said = said.err().unwrap_or_default();
+        assert!(said.contains(message), "{words}: {said}");
+    }
+    let left = std::fs::read_dir(&folder.0).expect("a folder").count();
+    assert_eq!(left, 0, "nothing is written");
 }

@@ -158,11 +158,10 @@ fn transients_can_be_ended() {
 
 /// One row for each class of what cannot be used. Nothing is computed or written before it is refused.
 #[test]
-fn branches_that_cannot_be_followed_are_refused_before_any_work() {
-    let folder = Folder::new("table");
-    let svg = folder.file("a.svg");
+fn curves_that_cannot_be_followed_are_refused_before_any_work() {
+    let folder = Folder::new("curves");
     let track = "--bifurcations --track fold --in";
-    for (command, message) in [
+    let commands = [
         (
             format!("{track} omega,drive --within nan,1"),
             "--within NaN: must be finite",
@@ -197,6 +196,14 @@ fn branches_that_cannot_be_followed_are_refused_before_any_work() {
             "--in names omega more than once",
         ),
         (format!("{track} load,drive"), "load,drive"),
+    ];
+    all_are_refused(&folder, commands);
+}
+
+#[test]
+fn branches_that_cannot_be_followed_are_refused_before_any_work() {
+    let folder = Folder::new("table");
+    let commands = [
         (
             "--bifurcations --search nan".to_owned(),
             "--search NaN: must be between",
@@ -220,12 +227,18 @@ fn branches_that_cannot_be_followed_are_refused_before_any_work() {
         (format!("--csv {}", folder.0.display()), "is a directory"),
         (format!("--model {}", folder.0.display()), "cannot read"),
         (format!("--model {}", folder.file("none")), "none: "),
-    ] {
+    ];
+    all_are_refused(&folder, commands);
+}
+
+fn all_are_refused<const N: usize>(folder: &Folder, commands: [(String, &str); N]) {
+    let svg = folder.file("a.svg");
+    for (command, message) in commands {
         let text = refused_by_response(&format!("{command} --svg {svg}"));
         assert!(text.contains(message), "{command}: {text}");
         assert!(text.lines().count() == 1 && text.len() < 250, "{text}");
     }
-    assert_empty(&folder);
+    assert_empty(folder);
 }
 
 fn assert_empty(folder: &Folder) {

@@ -1,6 +1,7 @@
 //! What happens along a branch, whichever method follows it.
 
 use std::fmt;
+use std::mem::discriminant;
 
 /// What happens at an [`Event`](crate::Event).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -10,9 +11,12 @@ use std::fmt;
 pub enum EventKind {
     /// The branch turns back in what it varies; a multiplier is one.
     Fold,
-    /// An orbit with odd symmetry loses it: a branch of orbits without it crosses.
+    /// Orbits with a symmetry of the system cease to have it: a branch of orbits without it crosses, which the symmetry takes into each
+    /// other. It is the odd one, or one of coordinates in each other's place, at every time or a part of the period later.
     SymmetryBreaking,
-    /// A branch of orbits of twice the period begins; a multiplier is minus one.
+    /// A branch of orbits begins that come back after twice the time: a multiplier over the shortest time in which these come back is minus
+    /// one. That is a period of the declaration or several, or a part of one where contacts take each other's place, as the passage of a
+    /// ball in a bearing: see [`Orbit::parts`](crate::Orbit::parts).
     PeriodDoubling,
     /// Another branch of orbits crosses or is met; a multiplier is one.
     BranchPoint,
@@ -26,6 +30,21 @@ pub enum EventKind {
 }
 
 impl EventKind {
+    /// Every kind, of grazing the one at which the branch does not turn.
+    pub const ALL: [Self; 6] = [
+        Self::Fold,
+        Self::PeriodDoubling,
+        Self::SymmetryBreaking,
+        Self::BranchPoint,
+        Self::NeimarkSacker,
+        Self::Grazing { turns: false },
+    ];
+
+    /// Whether both are of one kind; whether the branch turns back is not asked.
+    pub fn is_like(self, other: Self) -> bool {
+        discriminant(&self) == discriminant(&other)
+    }
+
     /// Whether the branch turns back in what it varies at an event of this kind.
     pub fn turns(self) -> bool {
         matches!(self, Self::Fold | Self::Grazing { turns: true })
@@ -45,7 +64,9 @@ impl fmt::Display for EventKind {
     }
 }
 
-/// A place where a test function changed its sign without an event that could be located: it jumped there, or corrections failed.
+/// A place where a test function changed its sign without an event that could be located: it jumped there, or corrections failed. Where all
+/// events are looked for, also a place where the verdict changes and nothing was found: its kind is what the multiplier nearest to the
+/// unit circle suggests.
 ///
 /// Of kind [`EventKind::Fold`] it is a place where the branch turned back, but not through a fold. A sampled balance of a force
 /// that jumps does this, and so does an orbit that grazes a level.

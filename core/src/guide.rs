@@ -8,6 +8,9 @@ struct DeclaringContacts;
 #[doc = include_str!("../../docs/book/src/response-curves.md")]
 struct ResponseCurves;
 
+#[doc = include_str!("../../docs/book/src/outputs.md")]
+struct Outputs;
+
 #[doc = include_str!("../../docs/book/src/bifurcations.md")]
 struct Bifurcations;
 

@@ -48,7 +48,7 @@
 //!
 //! - `parallel` (default): basins of attraction on several threads.
 //! - `plot` (default): draws branches as SVG.
-//! - `serde`: results are serialised and read back; branches as JSON, `Branch::write_json` and `Branch::read_json`.
+//! - `serde`: results are serialised and read back; branches as JSON, `Branch::write` and `Branch::read`.
 //! - `text`: reads declarations from text at run time; brings the compiler in.
 //! - `serde`: results are written and read by serde.
 //!
@@ -78,6 +78,7 @@ mod balance_branch;
 pub mod bifurcation;
 mod branches;
 mod cancel;
+mod contact_equation;
 mod continuation;
 pub mod error;
 mod event;
@@ -108,7 +109,9 @@ pub use branches::error::{Attempts, OrbitError};
 pub use branches::orbit::Orbit;
 pub use branches::point::{Event, Point};
 pub use branches::progress::{Progress, Stage};
+pub use branches::winding::Winding;
 pub use cancel::Cancel;
+pub use contact_equation::ContactEquation;
 pub use continuation::follow::Stop;
 pub use continuation::newton::NewtonError;
 pub use continuation::statistics::Statistics;
@@ -120,6 +123,7 @@ pub use laws::generic;
 pub use model::error::ModelError;
 pub use model::request::RequestError;
 pub use model::{remarks, structure};
+#[doc(no_inline)]
 pub use nalgebra::Complex;
 pub use numeric::{fourier, power};
 pub use orbit::stability::{Method, Stability, Verdict};
@@ -128,14 +132,16 @@ pub use report::error::FileError;
 pub use report::export;
 #[doc(hidden)]
 pub use response::stages;
-pub use response::{FrequencyResponse, OrbitMethod};
+pub use response::{FrequencyResponse, OrbitMethod, Resume};
 pub use shooting::Shooting;
 pub use system::System;
 
 /// Charts as SVG, and what a branch draws on them.
 #[cfg(feature = "plot")]
 pub mod chart {
+    pub use crate::report::error::ViewError;
     pub use crate::report::picture::event_markers;
+    pub use crate::report::view::{Frequency, View};
     pub use hertzian_chart::*;
 }
 
@@ -174,7 +180,7 @@ pub mod chart {
 /// ```text
 /// model       = { doc } [ visibility ] name "(" coordinate { "," coordinate } [ "," ] ")" "{" { item } "}"
 /// coordinate  = name [ "[" number "]" ] [ ":" unit ]
-/// item        = { doc } ( parameter | law | let | statement )
+/// item        = { doc } ( parameter | law | let | statement | output )
 /// parameter   = "param" name [ ":" unit ] [ "=" bound ] [ range ] ";"
 /// range       = "in" [ bound ] ( ".." | "..=" ) [ bound ] | ( ">" | ">=" | "<" | "<=" ) bound
 /// bound       = [ "-" ] number
@@ -189,6 +195,7 @@ pub mod chart {
 /// let         = "let" name "=" expression ";"
 /// statement   = equation | "for" head "{" { let } { statement } "}"
 /// equation    = expression "=" expression ";"
+/// output      = "output" name [ ":" unit ] "=" expression ";"
 /// head        = name "in" expression ( ".." | "..=" ) expression
 /// expression  = product { ( "+" | "-" ) product }
 /// product     = signed { ( "*" | "/" ) signed }
@@ -227,6 +234,18 @@ pub mod chart {
 /// coordinate has a unit, the equations are checked for them; `1` is the unit of a plain number. Exponents of units are
 /// exact, as in `N/m^1.5`. A power whose exponent is a parameter has a plain number as its base. Values are used as they
 /// are: `mm` and `m` do not agree.
+///
+/// # Outputs
+///
+/// What the model is read by: sums of coordinates, of `dot` and `ddot` of them, of forces of laws and of waves of `omega*t`, with
+/// coefficients that may depend on parameters and `omega`. `force(law)` is the force of the one contact of a law; a law with several is
+/// called as in the equation, with the gap of the one that is meant. A model with units gives an output its unit; one that is written
+/// converts it by its power of ten.
+///
+/// ```text
+/// output tip: um = x[9] - x[0];
+/// output tooth = force(mesh);
+/// ```
 ///
 /// # Equations
 ///

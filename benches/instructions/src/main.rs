@@ -3,6 +3,10 @@
 //!
 //! Two batches: 1027 samples on all pieces, as sampled methods ask for them, and not a whole number of vectors; and 40 on
 //! one piece, as quadrature between two crossings does.
+//!
+//! With the argument `numerics` it calls what a [branch](numerics) is made of instead, inside of `counted`.
+
+mod numerics;
 
 use std::hint::black_box;
 
@@ -135,7 +139,21 @@ impl Batch {
     }
 }
 
-fn main() {
+fn main() -> Result<(), hertzian::Error> {
+    if std::env::args().any(|argument| argument == "numerics") {
+        return numerics::all(&mut |name, work| {
+            // Tables and workspaces are made before.
+            work();
+            counted(work);
+            println!("{name}");
+        });
+    }
+    laws();
+    Ok(())
+}
+
+/// Every law, in every way that it is called.
+fn laws() {
     for subject in &SUBJECTS {
         let pieces = subject.1.facts().pieces.len();
         for (name, mut batch) in [
@@ -161,6 +179,13 @@ fn main() {
 #[inline(never)]
 extern "Rust" fn measured(subject: &Subject, call: Call, batch: &mut Batch) {
     evaluate(subject, call, batch);
+}
+
+/// The same of what is not a law.
+#[unsafe(no_mangle)]
+#[inline(never)]
+extern "Rust" fn counted(work: &mut dyn FnMut()) {
+    work();
 }
 
 #[inline]

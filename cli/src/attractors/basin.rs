@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 
 use hertzian::attractors::basin::{Attractor, Axis, Basin, Basins, Fate, Grid};
-use hertzian::chart::{Chart, Colour, Markers, Raster};
+use hertzian::chart::{Chart, Colour, Raster, Series};
 use hertzian::export::Npy;
 use hertzian::{Complex, Progress};
 
@@ -183,7 +183,7 @@ fn chart(task: &Task<'_>, grid: &Grid, basins: &Basins) -> Result<Chart, Failure
         let inside = |[x, v]: &[f64; 2]| {
             (columns.from..=columns.to).contains(x) && (rows.from..=rows.to).contains(v)
         };
-        chart = chart.markers(Markers {
+        chart = chart.markers(Series {
             label: format!("points of {}", name(&basins.attractors, index)),
             points: attractor.points.iter().map(entry).filter(inside).collect(),
         });

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
+use hertzian::chart::{Chart, Page, Series};
 use hertzian::time::history;
 use hertzian::time::history::Span;
 use hertzian::time::stroboscope::Stroboscope;
@@ -70,7 +70,7 @@ fn whole(task: &Task<'_>, dots: Vec<[f64; 2]>) -> Result<Chart, Failure> {
     let chart = Chart::new(task.title(None, "")?)
         .x("time in excitation periods")
         .y(format!("{name} {looked}"));
-    Ok(chart.cloud(Cloud {
+    Ok(chart.cloud(Series {
         label: String::new(),
         points: dots,
     }))
@@ -102,11 +102,11 @@ fn enlargement(
         .x("time in excitation periods")
         .y(task.system.facts().coordinates[0].to_string());
     Ok(chart
-        .trace(Trace {
+        .trace(Series {
             label: String::new(),
             points: curve,
         })
-        .markers(Markers {
+        .markers(Series {
             label: "beginning of each period".to_owned(),
             points: shown
                 .map(|(index, state)| [index as f64, state[0]])

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use hertzian::attractors::lyapunov::{Exponents, Lyapunov};
-use hertzian::chart::{Chart, Cloud, Page, Trace};
+use hertzian::chart::{Chart, Page, Series};
 use hertzian::time::divergence::Divergence;
 
 use super::output::{Results, Table};
@@ -102,11 +102,11 @@ fn chart(title: &str, batches: &[f64], length: usize, found: &Exponents) -> Char
     let mut chart = Chart::new(title)
         .x("periods")
         .y("largest Lyapunov exponent per period")
-        .trace(Trace {
+        .trace(Series {
             label: "mean so far".to_owned(),
             points: means,
         })
-        .cloud(Cloud {
+        .cloud(Series {
             label: "means of batches".to_owned(),
             points: batches
                 .iter()
@@ -116,7 +116,7 @@ fn chart(title: &str, batches: &[f64], length: usize, found: &Exponents) -> Char
         });
     if largest.standard_error.is_finite() {
         for (by, label) in [(-1.0, "one standard error"), (1.0, "")] {
-            chart = chart.trace(Trace {
+            chart = chart.trace(Series {
                 label: label.to_owned(),
                 points: level(by),
             });

@@ -7,6 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Parser, ValueEnum};
 
 use super::figures;
+use crate::look::Axis;
 use crate::misplaced::{Given, count};
 use crate::model::ModelOptions;
 
@@ -88,6 +89,15 @@ pub struct Options {
     /// --sweep: look where x rises through this value, instead of once in each period
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub section: Option<f64>,
+
+    /// --sweep: what is drawn of the states, a coordinate or an output by its name; a chart for each [default: the first coordinate, or its
+    /// rate with --section]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub plot: Vec<String>,
+
+    /// --sweep omega: what is at the axis of the frequency in the picture
+    #[arg(long, value_enum, value_name = "UNIT", default_value_t = Axis::Omega)]
+    pub axis: Axis,
 
     /// The state that motions start from, x and x' [default: rest at zero]
     #[arg(long, value_name = "VALUE", num_args = 2..)]
@@ -171,13 +181,15 @@ pub struct Options {
 }
 
 /// Options and the tasks that look at them.
-const BELONGS: [(&str, &[&str]); 22] = [
+const BELONGS: [(&str, &[&str]); 24] = [
     ("up", &["sweep"]),
     ("down", &["sweep"]),
     ("from", &["sweep"]),
     ("to", &["sweep"]),
     ("values", &["sweep"]),
     ("section", &["sweep"]),
+    ("plot", &["sweep"]),
+    ("axis", &["sweep"]),
     ("transient", &["sweep", "lyapunov", "history"]),
     ("periods", &["sweep", "lyapunov", "history"]),
     ("batches", &["lyapunov"]),

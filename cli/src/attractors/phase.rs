@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 
 use hertzian::attractors::basin::{Attractor, Basins, Fate};
-use hertzian::chart::{Chart, Cloud, Markers, Page, Trace};
+use hertzian::chart::{Chart, Page, Series};
 use hertzian::time::history;
 use hertzian::time::history::Span;
 use hertzian::time::stroboscope::Stroboscope;
@@ -121,7 +121,7 @@ impl Gallery {
             return;
         }
         let drive = task.options.mark.unwrap_or(value);
-        portrait.chart = portrait.chart.clone().markers(Markers {
+        portrait.chart = portrait.chart.clone().markers(Series {
             label: format!("period {} at A = {drive}", marked.period),
             points: marked.points.iter().map(|state| place(state)).collect(),
         });
@@ -202,11 +202,11 @@ impl Portrait {
         let curve = self.curve(&attractor.points[0], attractor.period)?;
         self.chart = self
             .chart
-            .trace(Trace {
+            .trace(Series {
                 label: String::new(),
                 points: curve,
             })
-            .markers(Markers {
+            .markers(Series {
                 label,
                 points: attractor.points.iter().map(|state| place(state)).collect(),
             });
@@ -236,11 +236,11 @@ impl Portrait {
         let curve = self.curve(&points[before], CURVE)?;
         self.chart = self
             .chart
-            .trace(Trace {
+            .trace(Series {
                 label: format!("{label}, {CURVE} periods"),
                 points: curve,
             })
-            .cloud(Cloud {
+            .cloud(Series {
                 label: "beginning of each period".to_owned(),
                 points: points.iter().map(|state| place(state)).collect(),
             });

@@ -1,6 +1,6 @@
 //! The pictures: errors by harmonics and by time, both axes logarithmic.
 
-use hertzian::chart::{Chart, Markers, Page, Reference, Scale, Trace};
+use hertzian::chart::{Chart, Page, Scale, Series};
 use hertzian::stability::Method;
 
 use super::study::{METHODS, Measured};
@@ -23,7 +23,7 @@ pub fn by_harmonics(all: &[(&str, Vec<Measured>)]) -> Page {
         page.chart(
             chart
                 .x("harmonics per period of the excitation")
-                .reference(Reference {
+                .reference(Series {
                     label: "orders 2 and 4".to_owned(),
                     points: lines,
                 }),
@@ -50,11 +50,11 @@ fn chart(name: &str, measured: &[Measured], point: impl Fn(&Measured) -> [f64; 2
         let points: Vec<_> = of_method.map(&point).collect();
         let label = method.to_string();
         chart = chart
-            .trace(Trace {
+            .trace(Series {
                 label: String::new(),
                 points: points.clone(),
             })
-            .markers(Markers { label, points });
+            .markers(Series { label, points });
     }
     chart
 }

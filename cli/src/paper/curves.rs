@@ -1,7 +1,7 @@
 //! Figures of frequency-response curves: 2 to 7.
 
 use hertzian::Side;
-use hertzian::chart::{Chart, Curve, Reference, Scale, event_markers};
+use hertzian::chart::{Chart, Curve, Scale, Series, event_markers};
 use hertzian::error::chain;
 use hertzian::export;
 use hertzian::{Branch, Event, EventKind, FrequencyResponse, Stop, System};
@@ -249,7 +249,7 @@ impl<'t> Curves<'t> {
     /// Adds a line to compare with.
     #[must_use]
     pub fn reference(mut self, label: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
-        self.chart = self.chart.reference(Reference {
+        self.chart = self.chart.reference(Series {
             label: label.into(),
             points,
         });
@@ -293,7 +293,7 @@ impl<'t> Curves<'t> {
             ..
         } = self;
         let drawn = lines.into_iter().fold(chart, Chart::curve);
-        drawing.svg = event_markers(marks).fold(drawn, Chart::markers).to_svg();
+        drawing.svg = event_markers(marks).fold(drawn, Chart::marks).to_svg();
         drawing.note = notes.join(" ");
         drawing
     }

@@ -3,7 +3,7 @@
 //! Every piece of its force is affine, so that motions are known in closed form and nothing is truncated.
 
 use hertzian::bifurcation::Bifurcations;
-use hertzian::chart::{Chart, Curve, Markers, Scale, event_markers};
+use hertzian::chart::{Chart, Curve, Scale, Series, event_markers};
 use hertzian::error::chain;
 use hertzian::{Branch, Error, Event, EventKind, FrequencyResponse, OrbitError, Point, Shooting};
 
@@ -119,9 +119,7 @@ impl<'t> Cycles<'t> {
         for curve in self.curves {
             chart = chart.curve(curve);
         }
-        self.drawing.svg = event_markers(self.marks)
-            .fold(chart, Chart::markers)
-            .to_svg();
+        self.drawing.svg = event_markers(self.marks).fold(chart, Chart::marks).to_svg();
         self.drawing
     }
 }
@@ -244,7 +242,7 @@ pub fn table_1(task: &Task<'_>) -> Result<Drawing, String> {
             label: String::new(),
             runs: branch.runs_of(leading),
         })
-        .markers(Markers {
+        .markers(Series {
             label: "printed in the paper".to_owned(),
             points: exact::TABLE_1
                 .iter()

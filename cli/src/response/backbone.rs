@@ -3,7 +3,7 @@
 use hertzian::backbone::{
     Backbone as Curve, FreeOscillation, FreePoint, PhaseResonance, ResonancePoint,
 };
-use hertzian::chart::Reference;
+use hertzian::chart::Series;
 use hertzian::error::chain;
 use hertzian::{Branch, Cancel, Error, System};
 use serde::Serialize;
@@ -74,7 +74,7 @@ fn resonance(
 
 impl Backbone {
     /// Lines for the picture.
-    pub fn references(&self) -> impl Iterator<Item = Reference> {
+    pub fn references(&self) -> impl Iterator<Item = Series> {
         let free = self.free.iter().map(|curve| {
             let points = curve.points.iter();
             let points = points.map(|point| [point.omega, point.peak_to_peak()]);
@@ -87,7 +87,7 @@ impl Backbone {
         });
         let curves = free.chain(resonance);
         let curves = curves.filter(|(_, points)| !points.is_empty());
-        curves.map(|(label, points)| Reference {
+        curves.map(|(label, points)| Series {
             label: label.to_owned(),
             points,
         })

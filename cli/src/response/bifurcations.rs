@@ -1,19 +1,20 @@
-//! `--bifurcations`, `--follow` and `--track`: what begins on the branch, by shooting.
+//! `--bifurcations`, `--follow` and `--track`: what begins on the branch, by shooting where that finds orbits.
 
 use std::fmt::{self, Write};
-use std::ops::ControlFlow;
 
 use hertzian::bifurcation::{Bifurcations, Diagram, DiagramBranch, Origin, Reason};
-use hertzian::chart::{Chart, Markers, Scale, Trace};
+use hertzian::chart::{Chart, Scale, Series, View};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::export::Decimal;
 use hertzian::shooting::BifurcationCurve;
 use hertzian::{
-    Branch, Cancel, Error, Event, EventKind, FrequencyResponse, Point, RequestError, Shooting,
-    System,
+    Branch, Cancel, Error, Event, EventKind, FrequencyResponse, HarmonicBalance, ModelError, Point,
+    RequestError, Shooting, System,
 };
 
+use super::covered;
 use super::options::{Options, Tracked};
+use super::progress::Seen;
 use super::run::Failure;
 use super::search::basin;
 use super::summary;
@@ -32,8 +33,8 @@ pub struct Found {
     pub warnings: Vec<String>,
 }
 
-/// Everything beyond the branch itself that was asked for; nothing if nothing was, or if it was cancelled before there was anything. `see` is shown
-/// the value of every orbit.
+/// Everything beyond the branch itself that was asked for; nothing if nothing was, or if it was cancelled before there was anything. `seen` is shown
+/// every orbit.
 ///
 /// # Errors
 /// If an option cannot be used, or there is no first orbit.
@@ -41,7 +42,7 @@ pub fn find(
     options: &Options,
     model: &dyn System,
     cancel: &Cancel,
-    see: &mut dyn FnMut(f64),
+    seen: &mut Seen<'_>,
 ) -> Result<Option<Found>, Error> {
     if !options.bifurcations && options.track.is_none() {
         return Ok(None);
@@ -50,8 +51,13 @@ pub fn find(
         .from(options.from)
         .to(options.to)
         .period(options.period)
-        .max_points(options.max_points)
         .depth(options.follow.unwrap_or(0));
+    if let Some(points) = options.max_points {
+        request = request.max_points(points);
+    }
+    if let Some(settling) = covered::settling(options).filter(|_| options.bifurcations) {
+        request = request.cover(settling);
+    }
     if !options.over_frequency() {
         request = request
             .vary(options.varied())
@@ -60,10 +66,14 @@ pub fn find(
     for &value in &options.search {
         request = request.search(value, basin(options, model, value));
     }
-    let diagram = request.cancel(cancel).run_with(|progress| {
-        see(progress.value.unwrap_or(options.from));
-        ControlFlow::Continue(())
-    });
+    let request = request.cancel(cancel);
+    let diagram = match request.run_with(|progress| seen.see(progress)) {
+        // Nothing holds the system somewhere, which shooting has no equation for.
+        Err(error) if matches!(error.downcast_ref(), Some(ModelError::Free { .. })) => request
+            .by(HarmonicBalance::new())
+            .run_with(|progress| seen.see(progress)),
+        diagram => diagram,
+    };
     let diagram = match diagram {
         Err(error) if error.kind() == ErrorKind::Cancelled => return Ok(None),
         diagram => diagram?,
@@ -74,7 +84,7 @@ pub fn find(
         warnings: Vec::new(),
     };
     if let Some(kind) = options.track {
-        found.track(options, model, kind, cancel, see)?;
+        found.track(options, model, kind, cancel, seen)?;
     }
     Ok(Some(found))
 }
@@ -132,7 +142,7 @@ impl Found {
         model: &dyn System,
         tracked: Tracked,
         cancel: &Cancel,
-        see: &mut dyn FnMut(f64),
+        seen: &mut Seen<'_>,
     ) -> Result<(), Error> {
         let is_wanted = |kind: EventKind| match tracked {
             Tracked::Fold => kind == EventKind::Fold,
@@ -157,15 +167,12 @@ impl Found {
             if cancel.is_cancelled() {
                 break;
             }
-            see(event.point.value);
+            seen.at(event.point.value);
             let on_it = |track: &&BifurcationCurve| passes(track, &event, value);
             if self.tracks.iter().any(|track| on_it(&track)) {
                 continue;
             }
-            let tracked = shooting.track_with(&event, second, range, |progress| {
-                see(progress.value.unwrap_or(event.point.value));
-                ControlFlow::Continue(())
-            });
+            let tracked = shooting.track_with(&event, second, range, |progress| seen.see(progress));
             match tracked {
                 Ok(track) => self.tracks.push(track),
                 Err(error) => self
@@ -191,27 +198,31 @@ impl Found {
     }
 
     /// The picture: of the curves in two parameters if there are any, of the branches otherwise.
-    pub fn chart(&self, options: &Options, model: &dyn System) -> Chart {
+    ///
+    /// # Errors
+    /// If what was asked for is not there.
+    pub fn chart(
+        &self,
+        options: &Options,
+        model: &dyn System,
+        view: &View,
+    ) -> Result<Chart, Error> {
         let Some(track) = self.tracks.first() else {
-            let varied = if options.over_frequency() {
-                "excitation frequency ω"
+            let chart = self.diagram.chart_of(view)?;
+            let free = options.plot.is_empty() && options.look.stack == 0;
+            let chart = if free && options.look.scale.is_none() {
+                chart.scales(Scale::Linear, self.scale())
             } else {
-                options.varied()
+                chart
             };
-            return self
-                .diagram
-                .chart()
-                .scales(Scale::Linear, self.scale())
-                .title(summary::title(options, model, &[]))
-                .x(varied)
-                .y("peak-to-peak of x");
+            return Ok(summary::titled(chart, options, model));
         };
         let [x, y] = &track.names;
         let title = summary::title(options, model, &track.names);
         let mut chart = Chart::new(title).x(x).y(y);
         let mut special = Vec::new();
         for track in &self.tracks {
-            chart = chart.trace(Trace {
+            chart = chart.trace(Series {
                 label: format!("{}, period {}", track.kind, track.period),
                 points: track.points.iter().map(|point| point.values).collect(),
             });
@@ -222,10 +233,10 @@ impl Found {
             let points: Vec<_> = of_kind.map(|special| special.values).collect();
             if !points.is_empty() {
                 let label = kind.to_owned();
-                chart = chart.markers(Markers { label, points });
+                chart = chart.markers(Series { label, points });
             }
         }
-        chart
+        Ok(chart)
     }
 
     /// Orbits of very different sizes are drawn over decades.
@@ -247,14 +258,14 @@ impl Found {
     }
 
     /// For people.
-    pub fn summary(&self) -> String {
+    pub fn summary(&self, varied: &str) -> String {
         let mut text = String::new();
         // Writing to a string does not fail.
-        let _ = self.write(&mut text);
+        let _ = self.write(&mut text, varied);
         text
     }
 
-    fn write(&self, text: &mut String) -> fmt::Result {
+    fn write(&self, text: &mut String, varied: &str) -> fmt::Result {
         for (number, branch) in self.diagram.branches.iter().enumerate() {
             describe(text, number + 1, branch)?;
         }
@@ -281,9 +292,7 @@ impl Found {
                 )?;
             }
         }
-        for (value, reason) in &self.diagram.missed {
-            writeln!(text, "missed     an attractor at {value}: {reason}")?;
-        }
+        covered::write_search(text, &self.diagram, varied)?;
         for track in &self.tracks {
             let count = track.points.len();
             let [x, y] = &track.names;
@@ -308,10 +317,15 @@ impl Found {
     }
 }
 
-fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt::Result {
+/// A branch, and what is on it.
+///
+/// # Errors
+/// None: writing to a string does not fail.
+pub fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt::Result {
     let from = match branch.origin {
         Origin::Event { branch, .. } => format!(", from branch {}", branch + 1),
         Origin::Attractor { value } => format!(", found at {value}"),
+        Origin::OtherEnd => ", from the other end".to_owned(),
         _ => String::new(),
     };
     let (period, count) = (branch.period(), branch.branch.points.len());
@@ -321,7 +335,7 @@ fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt::Re
         branch.branch.stopped
     )?;
     for event in &branch.branch.events {
-        writeln!(text, "  {event}")?;
+        writeln!(text, "  {}", branch.branch.describe(event))?;
     }
     for turn in &branch.branch.turns {
         writeln!(

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use hertzian::bifurcation::Searched;
 use hertzian::shooting::BifurcationCurve;
 use hertzian::{Branch, Point, export};
 use serde::Serialize;
@@ -14,8 +15,12 @@ use super::backbone::Backbone;
 pub struct Record<'r> {
     /// The version of the form.
     pub version: u32,
-    /// The branch that was asked for, and those of its bifurcations.
+    /// The branch that was asked for, and those that were joined or are of its bifurcations.
     pub branches: &'r [Branch],
+    /// Where motions were followed until they settled, to find further branches.
+    pub searched: &'r [Searched],
+    /// Parts of the range without an orbit.
+    pub uncovered: &'r [[f64; 2]],
     /// Every orbit at the values that were asked for.
     pub at: &'r [Point],
     /// Curves of bifurcations in two parameters.

@@ -3,11 +3,15 @@
 pub mod backbone;
 pub mod bifurcations;
 pub mod boundary;
+pub mod covered;
 pub mod files;
 pub mod model_file;
 pub mod models;
+pub mod near;
 pub mod options;
+pub mod panels;
 pub mod progress;
+pub mod resumed;
 pub mod run;
 pub mod search;
 pub mod summary;

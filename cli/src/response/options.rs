@@ -3,10 +3,13 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use hertzian::chart::View;
+use hertzian::observe::Wanted;
 use hertzian::stability::{Method, Projection, Sorting};
 
+use crate::look::{Axis, Look};
 use crate::misplaced::{Given, count};
-use crate::model::ModelOptions;
+use crate::model::{ModelOptions, setting};
 
 /// Traces the periodic response of a mass on a power-law contact, or of a declared oscillator, says what is stable, and draws it.
 ///
@@ -22,11 +25,22 @@ use crate::model::ModelOptions;
     after_help = "Examples:\n  \
         hertzian response --alpha 1 --to 1.4                figure 5a of the paper\n  \
         hertzian response --at 1.1 --csv orbits.csv         every orbit at omega = 1.1; all of them as a table\n  \
+        hertzian response --at 1.1 --panels page.svg        with spectrum, motion and force of each\n  \
         hertzian response --bifurcations --follow 1         and what begins where the period doubles\n  \
         hertzian response --sweep drive --omega 0.9 --from 0.01 --to 0.3\n  \
         hertzian response --model two-masses --set drive=0.2\n  \
-        hertzian response --model FILE --set zeta=0.01 --to 2.2\n\n\
-        Exit codes: 0 the end of the range was reached; 2 bad input; 3 the branch ended before (what was computed is written)."
+        hertzian response --model FILE --set zeta=0.01 --to 2.2\n  \
+        hertzian response --model gear-pair --values 20     and what motions settle to at 20 values\n  \
+        hertzian response --model FILE --plot tip:rms,stop:max --axis hz\n  \
+        hertzian response --model FILE --plot tip --stack 5 --scale db --events fold,period-doubling\n\n\
+        Where the branch turns back or ends early, that from the other end is followed too, and where there is no stable orbit,\n\
+        those of what motions settle to; what was joined is said. --one-branch leaves that out.\n\n\
+        Exit codes: 0 the range is covered; 2 bad input; 3 a part of it has no orbit, or the one branch\n\
+        ended before (what was computed is written)."
+)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a flag of the command line"
 )]
 pub struct Options {
     /// The oscillator
@@ -84,11 +98,24 @@ pub struct Options {
     )]
     pub tolerance: f64,
 
-    /// Stop after this many points
-    #[arg(long, value_name = "COUNT", default_value_t = 20_000, value_parser = count)]
-    pub max_points: usize,
+    /// Stop after this many points, those of a branch that is resumed included [default: 20000]
+    #[arg(long, value_name = "COUNT", value_parser = count)]
+    pub max_points: Option<usize>,
 
-    /// Also compute every orbit of the branch at exactly these values of what varies
+    /// Only the branch that begins at the start of the range, even if it turns back or ends before the other end
+    #[arg(long)]
+    pub one_branch: bool,
+
+    /// Follow motions until they settle at so many values of what varies, evenly over the range, to find further branches; without it
+    /// only where no stable orbit was found
+    #[arg(long, value_name = "COUNT", default_value_t = 0, conflicts_with = "one_branch", value_parser = count)]
+    pub values: usize,
+
+    /// Motions from so many initial states at each of these values
+    #[arg(long, value_name = "COUNT", default_value_t = 4, conflicts_with = "one_branch", value_parser = count)]
+    pub starts: usize,
+
+    /// Also compute every orbit of the branches at exactly these values of what varies
     #[arg(long, value_name = "VALUE", num_args = 1..)]
     pub at: Vec<f64>,
 
@@ -138,9 +165,33 @@ pub struct Options {
     #[arg(long, conflicts_with = "track")]
     pub backbone: bool,
 
+    /// What is drawn of each orbit: an output, a coordinate or a contact by its name, and what is measured of it: p2p, max, min, mean,
+    /// rms, crest, the amplitude of a harmonic as h3, its phase as phase3, of contacts impulse, impacts, piece2; a chart for each
+    /// [default: p2p of the first output, or of the coordinate that moves most]
+    #[arg(
+        long,
+        value_name = "NAME:MEASURE",
+        value_delimiter = ',',
+        conflicts_with_all = ["track", "backbone"]
+    )]
+    pub plot: Vec<Wanted>,
+
+    /// What is at the axis of the frequency in the picture
+    #[arg(long, value_enum, value_name = "UNIT", default_value_t = Axis::Omega, conflicts_with_all = ["track", "backbone"])]
+    pub axis: Axis,
+
+    /// How charts look
+    #[command(flatten)]
+    pub look: Look,
+
     /// The picture
     #[arg(long, value_name = "FILE", default_value = "response.svg")]
     pub svg: PathBuf,
+
+    /// Draw a page about every orbit at the values of --at into this file: the response with the orbit marked, the spectrum and the motion of
+    /// what --plot names first, and the forces of the contacts over the period
+    #[arg(long, value_name = "FILE", requires = "at")]
+    pub panels: Option<PathBuf>,
 
     /// Write one row per point to this file
     #[arg(long, value_name = "FILE")]
@@ -149,6 +200,28 @@ pub struct Options {
     /// Write everything to this file
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+
+    /// The first orbit is near one of this file, of `--json` or --keep: that whose value is nearest to the start of the range
+    #[arg(long, value_name = "FILE", conflicts_with = "at_rest")]
+    pub near: Option<PathBuf>,
+
+    /// The first orbit is near the motion from rest at this position of a coordinate; the others are at zero
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    pub at_rest: Vec<(String, f64)>,
+
+    /// Keep the branch in this file while it is followed, for --resume and `hertzian show`; that from the start of the range, where
+    /// others are joined
+    #[arg(long, value_name = "FILE")]
+    pub keep: Option<PathBuf>,
+
+    /// Go on with the branch that was kept in this file, of the same oscillator, in the range and with the options that it has; alone,
+    /// and kept in the file as it goes on
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = ["keep", "bifurcations", "track", "backbone", "values", "starts", "one_branch", "period", "near", "at_rest"]
+    )]
+    pub resume: Option<PathBuf>,
 
     /// Say nothing but errors
     #[arg(long)]
@@ -235,6 +308,37 @@ impl Options {
                 "--sweep {swept} takes the place of the value of {swept}: --from and --to say where it begins and ends"
             ));
         }
+        let kept = [
+            "from",
+            "to",
+            "sweep",
+            "harmonics",
+            "samples",
+            "aft",
+            "multipliers",
+            "tolerance",
+        ];
+        if self.resume.is_some() && kept.iter().any(|option| given.has(option)) {
+            let fault = "--resume takes range and options from the file: leave them out, but those of the oscillator";
+            return Some(fault.to_owned());
+        }
+        let motions = given.has("values") || given.has("starts");
+        if motions && self.track.is_some() && !self.bifurcations {
+            let fault = "--values and --starts do nothing beside --track: add --bifurcations";
+            return Some(fault.to_owned());
+        }
+        let look = ["scale", "events", "stack"];
+        let look = look.into_iter().find(|option| given.has(option));
+        if let Some(option) = look.filter(|_| self.track.is_some()) {
+            return Some(format!(
+                "--{option} does nothing beside --track: the chart is of curves in two parameters"
+            ));
+        }
+        if self.backbone && given.has("stack") {
+            let fault =
+                "--backbone is of peak-to-peak, and --stack draws amplitudes: leave one out";
+            return Some(fault.to_owned());
+        }
         let samples = given.has("samples") && self.aft == Aft::Switched;
         samples.then(|| {
             "--samples belongs to --aft sampled or --aft primitive: nothing is sampled here"
@@ -245,6 +349,11 @@ impl Options {
     /// Name of what varies, as the models call it.
     pub fn varied(&self) -> &str {
         &self.sweep
+    }
+
+    /// What the charts show: one for each.
+    pub fn views(&self) -> Vec<View> {
+        self.look.views(self.axis, &self.plot)
     }
 
     /// Whether that is the frequency.

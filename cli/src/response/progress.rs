@@ -1,7 +1,12 @@
 //! A line on the terminal while a long computation runs.
 
 use std::io::{self, Write};
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
+
+use hertzian::Stage;
+
+use super::options::Options;
 
 /// Time between two updates: often enough to see that something happens.
 const INTERVAL: Duration = Duration::from_millis(200);
@@ -61,5 +66,49 @@ impl Progress {
             let _ = write!(out, "\r\x1b[K");
             let _ = out.flush();
         }
+    }
+}
+
+/// Counts what a computation shows, and says it on the line.
+pub struct Seen<'p> {
+    progress: &'p mut Progress,
+    points: usize,
+    varied: String,
+    from: f64,
+}
+
+impl<'p> Seen<'p> {
+    /// Nothing seen.
+    pub fn new(progress: &'p mut Progress, options: &Options) -> Self {
+        let (varied, from) = (options.varied().to_owned(), options.from);
+        Self {
+            progress,
+            points: 0,
+            varied,
+            from,
+        }
+    }
+
+    /// Something was done; it goes on.
+    pub fn see(&mut self, done: hertzian::Progress<'_>) -> ControlFlow<()> {
+        let value = done.value.unwrap_or(self.from);
+        match (done.stage, done.total) {
+            (Stage::Settling, Some(total)) => {
+                let varied = &self.varied;
+                let motions = done.done;
+                self.progress
+                    .update(|| format!("{motions} of {total} motions, {varied} = {value:.6}"));
+            }
+            _ => self.at(value),
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// A point more, at a value.
+    pub fn at(&mut self, value: f64) {
+        self.points += 1;
+        let (points, varied) = (self.points, &self.varied);
+        self.progress
+            .update(|| format!("{points} points, {varied} = {value:.6}"));
     }
 }

@@ -1,26 +1,31 @@
 //! From options to files and a summary.
 
 use std::io;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use hertzian::chart::{Chart, Reference};
+use hertzian::bifurcation::Diagram;
+use hertzian::chart::{Chart, Page, Series, View};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::export::{self, Table};
 use hertzian::{
-    Branch, Cancel, Error, FrequencyResponse, OrbitError, Point, Stop, System, remarks,
+    Branch, Cancel, Error, FrequencyResponse, Model, OrbitError, Point, Stop, System, remarks,
 };
 
 use super::backbone::{self, Backbone};
 use super::bifurcations;
 use super::boundary::loss_of_contact;
+use super::covered;
 use super::files::{self, Record};
 use super::model_file::{ModelError, Varied};
 use super::models::model;
+use super::near;
 use super::options::Options;
-use super::progress::Progress;
+use super::panels;
+use super::progress::{Progress, Seen};
+use super::resumed;
 use super::search;
 use super::summary;
+use crate::look::Axis;
 use crate::model::FREQUENCY_VARIES;
 use crate::values;
 
@@ -31,7 +36,7 @@ pub struct Outcome {
     pub summary: String,
     /// What could not be done, besides.
     pub warnings: Vec<String>,
-    /// Whether the end of the range was reached.
+    /// Whether the range is covered.
     pub complete: bool,
 }
 
@@ -90,7 +95,7 @@ impl From<Error> for Failure {
     }
 }
 
-/// Traces the branch, writes the files and sums up. Cancelling ends the branch where it is.
+/// Traces the branches, writes the files and sums up. Cancelling ends the branch where it is.
 ///
 /// # Errors
 /// If the options are not usable, no orbit was found to start from, or a file cannot be written.
@@ -103,6 +108,100 @@ pub fn run(
         model: options.model.resolved().map_err(Failure::Option)?,
         ..options.clone()
     };
+    let (options, resumed) = &resumed::of(options)?;
+    let model = checked(options)?;
+    let mut seen = Seen::new(progress, options);
+    let mut note = None;
+    let mut diagram = if let Some(branch) = resumed {
+        resumed::find(options, branch, &*model, cancel, &mut seen)?
+    } else {
+        let plain = request(options, &*model).cancel(cancel);
+        let request;
+        (request, note) = near::of(options, &*model, plain)?;
+        covered::find(options, &request, |progress| seen.see(progress))?
+    };
+    let covered = diagram.branches.iter();
+    let mut branches: Vec<Branch> = covered.map(|found| found.branch.clone()).collect();
+    let mut warnings = remarks_on(&branches[0], &*model);
+    warnings.extend(note);
+    warnings.extend(windings(&branches));
+    let solutions = solutions_at(options, &branches, &mut warnings);
+    let missing = panels::write(options, &branches, &solutions)?;
+    let all_panels = missing.is_empty();
+    warnings.extend(missing);
+    let at: Vec<Point> = solutions.into_iter().map(|(_, point)| point).collect();
+    let found = match branches[0].stopped {
+        Stop::Interrupted => None,
+        _ => bifurcations::find(options, &*model, cancel, &mut seen)?,
+    };
+    let draw = |view: &View| match &found {
+        Some(found) => found.chart(options, &*model, view),
+        None => picture(options, &diagram, &*model, view, cancel),
+    };
+    let (mut charts, undrawn) = drawn(options, draw)?;
+    let all_drawn = undrawn.is_empty();
+    warnings.extend(undrawn);
+    let mut backbone = Backbone::default();
+    if options.backbone && !cancel.is_cancelled() {
+        let missing;
+        (backbone, missing) = backbone::of(options, &*model, &branches[0], cancel);
+        let drawn = |chart| backbone.references().fold(chart, Chart::reference);
+        charts = charts.into_iter().map(drawn).collect();
+        warnings.extend(missing);
+    }
+    let mut further = covered::summary(&diagram, options.varied());
+    let mut tracks = Vec::new();
+    if let Some(found) = found {
+        branches.extend(found.branches()?);
+        further = found.summary(options.varied());
+        warnings.extend(found.warnings);
+        tracks = found.tracks;
+        if options.bifurcations {
+            diagram = found.diagram;
+        }
+    }
+    let record = Record {
+        version: export::JSON_VERSION,
+        branches: &branches,
+        searched: &diagram.searched,
+        uncovered: &diagram.uncovered,
+        at: &at,
+        tracks: &tracks,
+        backbone: &backbone,
+    };
+    let written = write(options, &*model, &record, charts)?;
+    Ok(Outcome {
+        summary: summary::of(options, &branches[0], &at, &written) + &further,
+        complete: is_complete(options, &branches[0], &diagram, cancel, &mut warnings)
+            && all_drawn
+            && all_panels,
+        warnings,
+    })
+}
+
+/// The charts that were asked for, and why one cannot be drawn: what was computed is not lost for that.
+///
+/// # Errors
+/// If nothing can be drawn.
+fn drawn(
+    options: &Options,
+    draw: impl Fn(&View) -> Result<Chart, Error>,
+) -> Result<(Vec<Chart>, Vec<String>), Failure> {
+    let (mut charts, mut undrawn) = (Vec::new(), Vec::new());
+    for view in options.views() {
+        match draw(&view) {
+            Ok(chart) => charts.push(chart),
+            Err(error) => undrawn.push(chain(&error).to_string()),
+        }
+    }
+    if charts.is_empty() {
+        charts.push(draw(&View::new().frequency(options.axis.into()))?);
+    }
+    Ok((charts, undrawn))
+}
+
+/// The model at the options, once everything that was asked for is checked.
+fn checked(options: &Options) -> Result<Box<dyn System>, Failure> {
     check(options)?;
     let varied = Varied {
         name: options.varied(),
@@ -112,65 +211,44 @@ pub fn run(
         let path = options.model.file.clone().unwrap_or_default();
         Failure::Model(path, error)
     })?;
+    let known = Model::of(&*model);
+    for wanted in &options.plot {
+        known.check(wanted)?;
+    }
     search::check(options, &*model)?;
     bifurcations::check(options, &*model)?;
-    let mut count = 0_usize;
-    let mut see = |value: f64| {
-        count += 1;
-        progress.update(|| format!("{count} points, {} = {value:.6}", options.varied()));
-    };
-    let request = request(options, &*model).cancel(cancel);
-    let branch = request.run_with(|progress| {
-        see(progress.value.unwrap_or(options.from));
-        ControlFlow::Continue(())
-    })?;
+    Ok(model)
+}
 
+/// Where branches wind, which takes long and is seldom what was looked for.
+fn windings(branches: &[Branch]) -> impl Iterator<Item = String> {
+    let windings = branches.iter().filter_map(Branch::winding);
+    windings.map(|winding| winding.to_string())
+}
+
+/// What is unusual about the model, at the frequency where the branch begins.
+fn remarks_on(branch: &Branch, model: &dyn System) -> Vec<String> {
     let omega = branch.points.first().map_or(1.0, |point| point.orbit.omega);
-    let remarks = remarks::of(&*model, omega).into_iter();
-    let mut warnings: Vec<String> = remarks.map(|remark| remark.to_string()).collect();
-    let at = solutions_at(options, &branch, &mut warnings);
-    let found = match branch.stopped {
-        Stop::Interrupted => None,
-        _ => bifurcations::find(options, &*model, cancel, &mut see)?,
-    };
-    let mut chart = match &found {
-        Some(found) => found.chart(options, &*model),
-        None => picture(options, &branch, &*model, cancel),
-    };
-    let mut backbone = Backbone::default();
-    if options.backbone && !cancel.is_cancelled() {
-        let missing;
-        (backbone, missing) = backbone::of(options, &*model, &branch, cancel);
-        chart = backbone.references().fold(chart, Chart::reference);
-        warnings.extend(missing);
-    }
-    let mut branches = vec![branch];
-    if let Some(found) = &found {
-        branches.extend(found.branches()?);
-        warnings.extend(found.warnings.iter().cloned());
-    }
-    let record = Record {
-        version: export::JSON_VERSION,
-        branches: &branches,
-        at: &at,
-        tracks: found.as_ref().map_or(&[], |found| &found.tracks),
-        backbone: &backbone,
-    };
-    let written = write(options, &*model, &record, &chart)?;
-    let branch = &branches[0];
-    let reached = branch.stopped == Stop::ReachedEnd;
+    let remarks = remarks::of(model, omega).into_iter();
+    remarks.map(|remark| remark.to_string()).collect()
+}
+
+/// Whether everything that was asked for is there; if not, why.
+fn is_complete(
+    options: &Options,
+    branch: &Branch,
+    diagram: &Diagram,
+    cancel: &Cancel,
+    warnings: &mut Vec<String>,
+) -> bool {
+    let covered = || !options.one_branch && covered::is_complete(diagram);
+    let reached = branch.stopped == Stop::ReachedEnd || covered();
     if !reached {
         warnings.push(format!("the branch ended early: {}", branch.stopped));
     } else if cancel.is_cancelled() {
         warnings.push("interrupted: what was found until then is kept".to_owned());
     }
-    let complete = reached && !cancel.is_cancelled();
-    let further = found.map_or_else(String::new, |found| found.summary());
-    Ok(Outcome {
-        summary: summary::of(options, branch, &at, &written) + &further,
-        warnings,
-        complete,
-    })
+    reached && !cancel.is_cancelled()
 }
 
 /// What the library does not check: options that do not go together, values to look at, and files.
@@ -214,6 +292,8 @@ fn numbers(options: &Options) -> Result<(), String> {
 
 fn paths(options: &Options) -> impl Iterator<Item = &Path> {
     let optional = options.csv.iter().chain(&options.json);
+    let optional = optional.chain(&options.panels);
+    let optional = optional.chain(&options.keep).chain(&options.resume);
     std::iter::once(&options.svg)
         .chain(optional)
         .map(PathBuf::as_path)
@@ -227,8 +307,10 @@ fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
         .period(options.period)
         .tolerance(options.tolerance)
         .aft(options.aft.into())
-        .multipliers(options.multipliers.into())
-        .max_points(options.max_points);
+        .multipliers(options.multipliers.into());
+    if let Some(points) = options.max_points {
+        request = request.max_points(points);
+    }
     if !options.over_frequency() {
         request = request
             .vary(options.varied())
@@ -240,42 +322,71 @@ fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
     if let Some(samples) = options.samples {
         request = request.samples(samples);
     }
+    if let Some(path) = &options.keep {
+        request = request.keep(path);
+    }
     request
 }
 
-/// Every orbit of the branch at each value that was asked for.
-fn solutions_at(options: &Options, branch: &Branch, warnings: &mut Vec<String>) -> Vec<Point> {
+/// Every orbit of the branches at each value that was asked for, with the number of its branch.
+fn solutions_at(
+    options: &Options,
+    branches: &[Branch],
+    warnings: &mut Vec<String>,
+) -> Vec<(usize, Point)> {
     let name = options.varied();
     let mut solutions = Vec::new();
     for &value in &options.at {
-        match branch.at(value) {
-            Ok(found) if found.is_empty() => {
-                warnings.push(format!("the branch does not pass {name} = {value}"));
+        let (before, said) = (solutions.len(), warnings.len());
+        for (number, branch) in branches.iter().enumerate() {
+            match branch.at(value) {
+                Ok(found) => solutions.extend(found.into_iter().map(|point| (number, point))),
+                Err(error) => warnings.push(format!("at {name} = {value}: {}", chain(&error))),
             }
-            Ok(found) => solutions.extend(found),
-            Err(error) => warnings.push(format!("at {name} = {value}: {}", chain(&error))),
+        }
+        if solutions.len() == before && warnings.len() == said {
+            warnings.push(format!("the branch does not pass {name} = {value}"));
         }
     }
     solutions
 }
 
-/// The library's picture of the branch, with the boundary of lost contact.
-fn picture(options: &Options, branch: &Branch, model: &dyn System, cancel: &Cancel) -> Chart {
-    if options.model.file.is_some() {
-        return branch.chart();
+/// The library's picture of the branches, with the boundary of lost contact.
+fn picture(
+    options: &Options,
+    diagram: &Diagram,
+    model: &dyn System,
+    view: &View,
+    cancel: &Cancel,
+) -> Result<Chart, Error> {
+    let chart = match &diagram.branches[..] {
+        [alone] => alone.branch.chart_of(view)?,
+        _ => diagram.chart_of(view)?,
+    };
+    let chart = summary::titled(chart, options, model);
+    let peak_to_peak = options.plot.is_empty() && options.look.stack == 0;
+    let is_usual = peak_to_peak && options.axis == Axis::Omega;
+    if options.model.file.is_some() || !options.over_frequency() || !is_usual {
+        return Ok(chart);
     }
-    let chart = branch.chart().title(summary::title(options, model, &[]));
-    if !options.over_frequency() {
-        return chart;
-    }
-    let values = branch.points.iter().map(|point| point.value);
+    let branches = diagram.branches.iter();
+    let points = branches.flat_map(|found| &found.branch.points);
+    let values = points.map(|point| point.value);
     let (low, high) = values.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), value| {
         (low.min(value), high.max(value))
     });
-    chart.reference(Reference {
+    Ok(chart.reference(Series {
         label: "loss of contact".to_owned(),
         points: loss_of_contact(&options.model, low..=high, cancel),
-    })
+    }))
+}
+
+/// Charts as one picture.
+pub fn page(charts: Vec<Chart>) -> String {
+    match charts.as_slice() {
+        [chart] => chart.to_svg(),
+        _ => charts.into_iter().fold(Page::new(2), Page::chart).to_svg(),
+    }
 }
 
 /// Writes the files that were asked for; returns their paths.
@@ -283,14 +394,14 @@ fn write<'a>(
     options: &'a Options,
     model: &dyn System,
     record: &Record<'_>,
-    chart: &Chart,
+    charts: Vec<Chart>,
 ) -> Result<Vec<&'a Path>, Failure> {
     let failed = |path: &Path| {
         let path = path.to_path_buf();
         move |error| Failure::File(path, error)
     };
     let svg = &options.svg;
-    export::write(svg, chart.to_svg()).map_err(failed(svg))?;
+    export::write(svg, page(charts)).map_err(failed(svg))?;
     if let Some(path) = &options.csv {
         let mut table = Table::of(model);
         for (number, branch) in record.branches.iter().enumerate() {

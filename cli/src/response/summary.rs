@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 use std::path::Path;
 
+use hertzian::chart::Chart;
 use hertzian::export::Decimal;
 use hertzian::{Branch, Event, EventKind, Point, System, Verdict};
 
@@ -45,6 +46,15 @@ pub fn title(options: &Options, model: &dyn System, axes: &[String]) -> String {
     format!("{kind}, {}{period}", shown.join(", "))
 }
 
+/// A chart with the title of the oscillator that has options of its own; a declared one has its own title.
+pub fn titled(chart: Chart, options: &Options, model: &dyn System) -> Chart {
+    if options.model.file.is_some() {
+        chart
+    } else {
+        chart.title(title(options, model, &[]))
+    }
+}
+
 /// Signs, names and values of the parameters of a declared oscillator.
 fn parameters(options: &ModelOptions) -> [(&'static str, &'static str, f64); 4] {
     [
@@ -79,9 +89,9 @@ fn write_all(
     stability(text, branch)?;
     let solutions = at.iter().map(|point| {
         let value = Decimal::plain(point.value);
-        let size = Decimal::rounded(point.peak_to_peak(), 6);
+        let size = branch.describe_size(point);
         let verdict = point.stability.verdict;
-        format!("{} {value}: peak-to-peak {size}, {verdict}", branch.varied)
+        format!("{} {value}: {size}, {verdict}", branch.varied)
     });
     for solution in solutions {
         writeln!(text, "at         {solution}")?;
@@ -167,10 +177,10 @@ fn range(text: &mut String, branch: &Branch) -> fmt::Result {
 fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
     let folds = branch.folds().map(|fold| {
         let point = &fold.point;
-        let value = Decimal::rounded(point.value, 9);
-        let size = Decimal::rounded(point.peak_to_peak(), 6);
+        let value = Decimal::to_error(point.value, fold.error);
+        let size = branch.describe_size(point);
         format!(
-            "{} {value} (error {:.0e}), peak-to-peak {size}",
+            "{} {value} (error {:.0e}), {size}",
             branch.varied, fold.error
         )
     });
@@ -193,7 +203,7 @@ fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
             format!(
                 "{} {} (error {:.0e}), broken: a branch without it crosses",
                 branch.varied,
-                Decimal::rounded(event.point.value, 9),
+                Decimal::to_error(event.point.value, event.error),
                 event.error
             )
         });

@@ -1,6 +1,6 @@
 //! Error over time, both logarithmic.
 
-use hertzian::chart::{Chart, Markers, Note, Scale, Trace};
+use hertzian::chart::{Chart, Note, Scale, Series};
 
 use super::measure::Measured;
 use super::method::Family;
@@ -38,17 +38,17 @@ pub fn chart(
             points.clone()
         };
         chart = chart
-            .trace(Trace {
+            .trace(Series {
                 label: String::new(),
                 points: line,
             })
-            .markers(Markers {
+            .markers(Series {
                 label: family.name().to_owned(),
                 points,
             });
     }
     let failed = measured.iter().filter(|one| one.failure.is_some());
-    chart.markers(Markers {
+    chart.markers(Series {
         label: "any of them, failed".to_owned(),
         points: failed.filter_map(place).collect(),
     })
@@ -94,11 +94,11 @@ pub fn multipliers(problem: &Problem, answers: &[Answer]) -> Chart {
             .map(|one| [1e3 * one.seconds, one.error.max(FLOOR)])
             .collect();
         chart = chart
-            .trace(Trace {
+            .trace(Series {
                 label: String::new(),
                 points: points.clone(),
             })
-            .markers(Markers {
+            .markers(Series {
                 label: name.to_owned(),
                 points,
             });

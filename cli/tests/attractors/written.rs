@@ -168,3 +168,48 @@ fn other_exponents_are_integrated() {
         assert!(error.abs() < 2e-8, "{found:?} {error:e}");
     }
 }
+
+/// A linear motion: at the beginning of a period its spring force is that of where it is.
+#[test]
+fn a_sweep_draws_what_is_asked_for() {
+    let folder = Folder::new("plotted");
+    let model = folder.file("m.txt");
+    let text = "Mount(x: mm) {
+        param m: t = 1e-3 > 0;
+        param k: N/mm = 40;
+        param drive: N = 2;
+        m*ddot(x) + 0.1*m*omega*dot(x) + k*x = drive*cos(omega*t);
+        output spring: N = k*x;
+        output shaking: m/s^2 = ddot(x);
+    }";
+    std::fs::write(&model, text).expect("written");
+    let sweep = [
+        "--sweep", "omega", "--model", &model, "--from", "50", "--to", "100",
+    ];
+    let few = ["--values", "3", "--transient", "300", "--periods", "1"];
+    let run = |more: &[&str]| run_in(&folder, "m", &[&sweep[..], &few, more].concat());
+    run(&["--plot", "spring,shaking,x", "--axis", "hz"]).expect("a sweep");
+    let svg = folder.text("m.svg");
+    for part in [
+        "spring at the beginning of each period [N]",
+        "shaking at the beginning of each period [m/s^2]",
+        "x at the beginning of each period [mm]",
+        "excitation frequency [Hz]",
+    ] {
+        assert!(svg.contains(part), "{part}");
+    }
+    let refused = |more: &[&str]| run(more).expect_err("it is none").to_string();
+    let said = refused(&["--plot", "tip"]);
+    assert!(said.contains("there are spring, shaking, x"), "{said}");
+    let said = refused(&["--plot", "spring", "--section", "0"]);
+    assert!(said.contains("--section looks elsewhere"), "{said}");
+    let drive = [
+        "--sweep", "drive", "--from", "1", "--to", "2", "--axis", "hz",
+    ];
+    let said = run_in(&folder, "m", &[&drive[..], &few].concat());
+    assert!(
+        said.expect_err("no frequency")
+            .to_string()
+            .contains("--axis is for --sweep omega")
+    );
+}

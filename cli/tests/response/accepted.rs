@@ -6,7 +6,9 @@ use std::path::Path;
 use hertzian_cli::response::boundary::loss_of_contact;
 use hertzian_cli::response::options::Multipliers;
 
-use crate::{Folder, coarse, options, read, run_with};
+use serde_json::Value;
+
+use crate::{Folder, all, coarse, options, read, run_with};
 
 #[test]
 fn without_arguments_it_is_figure_5b() {
@@ -146,12 +148,13 @@ fn an_oscillator_is_read_from_a_file() {
     let outcome = coarse(&folder, &arguments).expect("a branch");
     assert!(outcome.complete);
     let peak_to_peak = 2e-5 / (1.0 - 0.36_f64).hypot(0.06);
-    let found = format!("at         omega 0.6: peak-to-peak {peak_to_peak:.6e}, stable");
-    assert!(
-        outcome.summary.contains(&found),
-        "{found} in\n{}",
-        outcome.summary
-    );
+    let summary = &outcome.summary;
+    let found = summary.split_once("at         omega 0.6: peak-to-peak ");
+    let found = found.and_then(|(_, rest)| rest.split_once(", stable"));
+    let (found, _) = found.expect(summary);
+    let found: f64 = found.parse().expect("a number");
+    // The cubic force is smaller by the square of the amplitude.
+    assert!((found / peak_to_peak - 1.0).abs() < 1e-8, "{summary}");
     assert!(outcome.summary.contains("zeta = 0.05, drive = 0.00001"));
 }
 
@@ -200,6 +203,10 @@ fn options_that_would_do_nothing_are_refused() {
         ),
         (&["--omega", "2"], "--sweep omega takes the place"),
         (
+            &["--track", "fold", "--in", "omega,drive", "--values", "3"],
+            "--values and --starts do nothing beside --track",
+        ),
+        (
             &["--samples", "512"],
             "--samples belongs to --aft sampled or --aft primitive",
         ),
@@ -243,5 +250,32 @@ fn faults_of_a_file_are_said_once_with_what_to_write_instead() {
         let said = failure.to_string();
         assert!(said.ends_with(expected), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
+/// Gears that turn freely, which shooting has no equation for. As long as the teeth press, the mesh is linear: by an integration of its own over a
+/// period, of `r'' = -3/2 (k (1 + cos(omega t)/5) r + c r')`, the determinant of the derivative plus one vanishes at these frequencies.
+#[test]
+fn doublings_of_what_nothing_holds_are_found() {
+    let folder = Folder::new("free");
+    let json = folder.file("a.json");
+    let command = "--model gear-mesh --from 3.3e4 --to 3.6e4 --bifurcations --one-branch --json";
+    let arguments: Vec<&str> = command.split(' ').chain([json.as_str()]).collect();
+    let outcome = run_with(&[&arguments[..], &["--svg", &folder.file("a.svg")]].concat());
+    assert!(outcome.expect("a branch").complete);
+    let all = all(&json);
+    let branches = all["branches"].as_array().expect("branches").iter();
+    let events = branches.flat_map(|branch| branch["events"].as_array().expect("events"));
+    let doublings: Vec<_> = events
+        .filter(|event| event["kind"] == "period-doubling")
+        .collect();
+    assert_eq!(doublings.len(), 2);
+    for (event, exact) in doublings
+        .iter()
+        .zip([33_721.404_775_401_5, 35_452.857_836_518_1])
+    {
+        let [value, error] = [&event["point"]["value"], &event["error"]].map(Value::as_f64);
+        let apart = (value.expect("a number") - exact).abs();
+        assert!(apart <= error.expect("a number") && apart < 1e-6, "{event}");
     }
 }

@@ -50,7 +50,7 @@ fn json_has_the_documented_names() {
     assert_eq!(branch["stopped"], "reached-end");
     assert!(branch["statistics"]["jacobians"].as_u64() > Some(20));
     assert!(branch["elapsed"].as_f64() > Some(0.0));
-    let read = hertzian::Branch::read_json(&json).expect("the library reads it");
+    let read = hertzian::Branch::read(&json).expect("the library reads it");
     assert_eq!(read.points.len(), points.len());
 
     check_csv(&csv, &all);
@@ -85,7 +85,7 @@ fn a_branch_that_ends_early_is_written_all_the_same() {
     assert!(outcome.summary.contains("limit of 7 points"));
     assert!(outcome.warnings[0].contains("does not pass omega = 1.5"));
     assert!(outcome.warnings[1].contains("ended early: reached the limit"));
-    let read = hertzian::Branch::read_json(&json).expect("a branch");
+    let read = hertzian::Branch::read(&json).expect("a branch");
     assert_eq!(read.points.len(), 7);
 }
 
@@ -144,7 +144,7 @@ fn any_parameter_varies_and_the_record_says_of_what() {
     let arguments: Vec<_> = command.split_whitespace().collect();
     let outcome = coarse(&folder, &arguments);
     assert!(outcome.expect("a branch").complete);
-    let branch = hertzian::Branch::read_json(&json).expect("a branch");
+    let branch = hertzian::Branch::read(&json).expect("a branch");
     assert_eq!((&branch.model.name[..], &branch.varied[..]), ("Stop", "k"));
     assert_eq!(branch.model.parameters[1].name, "zeta");
     assert_eq!(branch.points[0].parameters, [0.5, 0.1]);
@@ -282,4 +282,123 @@ fn grazing_is_tracked_in_two_parameters() {
         assert!((end - 0.5).abs() < 1e-12, "{end}");
     }
     assert!(drives.iter().copied().fold(f64::INFINITY, f64::min) < 0.1);
+}
+
+/// The branch at 1.0 turns back at 1.1445: that from the other end is joined, and one branch alone does not cover the range.
+#[test]
+fn a_branch_that_turns_back_is_joined_from_the_other_end() {
+    let folder = Folder::new("joined");
+    let json = folder.file("a.json");
+    let csv = folder.file("a.csv");
+    let range = ["--from", "1", "--to", "1.6", "--json", &json, "--csv", &csv];
+    let svg = folder.file("a.svg");
+    let outcome = run_with(&[&range[..], &["--svg", &svg, "--at", "1.1"]].concat());
+    let outcome = outcome.expect("branches");
+    assert!(outcome.complete && outcome.warnings.is_empty());
+    for part in [
+        "ended      turned back and left the range at its start",
+        "branch 2   period 1, from the other end: ",
+    ] {
+        assert!(outcome.summary.contains(part), "{}", outcome.summary);
+    }
+    let solutions = outcome
+        .summary
+        .lines()
+        .filter(|line| line.starts_with("at "));
+    assert_eq!(solutions.count(), 3, "{}", outcome.summary);
+    let record = all(&json);
+    assert_eq!(record["branches"].as_array().map(Vec::len), Some(2));
+    assert_eq!(record["searched"].as_array().map(Vec::len), Some(0));
+    assert_eq!(record["uncovered"].as_array().map(Vec::len), Some(0));
+    assert!(points(&record).iter().any(|(number, _)| *number == 1));
+    let alone = run_with(&[&range[..], &["--svg", &svg, "--one-branch"]].concat());
+    let alone = alone.expect("a branch");
+    assert!(!alone.complete);
+    assert!(alone.warnings[0].contains("ended early: turned back"));
+    let record = all(&json);
+    assert_eq!(record["branches"].as_array().map(Vec::len), Some(1));
+}
+
+/// Where all orbits of the branch are unstable, what motions settle to is said and drawn.
+#[test]
+fn what_motions_settle_to_is_joined() {
+    let folder = Folder::new("settled");
+    let [svg, json] = ["a.svg", "a.json"].map(|name| folder.file(name));
+    let command = "--alpha 1 --sweep drive --omega 1 --from 1.2 --to 1.5";
+    let files = ["--svg", &svg, "--json", &json];
+    let arguments: Vec<&str> = command.split_whitespace().chain(files).collect();
+    let outcome = run_with(&arguments).expect("branches");
+    assert!(outcome.complete);
+    assert!(
+        outcome.summary.contains("settle to period 2 on branch 2"),
+        "{}",
+        outcome.summary
+    );
+    let record = all(&json);
+    assert_eq!(record["searched"][0]["orbits"][0]["period"], 2);
+    let picture = std::fs::read_to_string(&svg).expect("a picture");
+    assert!(picture.contains("period 2"));
+}
+
+/// Two masses in units, with outputs.
+const MACHINE: &str = "Machine(base: mm, head: mm) {
+    param m: t = 1e-3 > 0;
+    param k: N/mm = 40 in 0.0..;
+    param c: N*s/mm = 0.02 in 0.0..;
+    param stiff: N/mm^1.5 = 4e3 in 0.0..;
+    param play: mm = 0.02;
+    param drive: N = 1;
+    law stop(gap) { gap > 0 => stiff*gap^1.5, else => 0 }
+    m*ddot(base) + c*dot(base) + 2*k*base - k*head = drive*cos(omega*t);
+    m*ddot(head) + c*dot(head) + k*(head - base) + stop(head - play) = 0;
+    /// stretch of the spring between them
+    output stretch: um = head - base;
+    output impact = force(stop);
+}";
+
+#[test]
+fn signals_are_drawn_and_written_by_their_names() {
+    let folder = Folder::new("signals");
+    let (model, csv) = (folder.file("machine.txt"), folder.file("a.csv"));
+    std::fs::write(&model, MACHINE).expect("a file");
+    let range = [
+        "--model",
+        &model,
+        "--from",
+        "110",
+        "--to",
+        "112",
+        "--one-branch",
+    ];
+    let plot = ["--plot", "stretch:rms,impact:max,head", "--axis", "hz"];
+    let outcome = coarse(&folder, &[&range[..], &plot, &["--csv", &csv]].concat());
+    assert!(outcome.expect("a branch").complete);
+    let picture = std::fs::read_to_string(folder.file("response.svg")).expect("a picture");
+    for part in [
+        "rms of stretch (stretch of the spring between them) [um]",
+        "largest of impact [N]",
+        "peak-to-peak of head [mm]",
+        "excitation frequency [Hz]",
+        "stiff = 4000 N/mm^1.5",
+    ] {
+        assert!(picture.contains(part), "{part}");
+    }
+    let table = std::fs::read_to_string(&csv).expect("a table");
+    assert!(table.starts_with("omega [rad/s],peak_to_peak [mm],"));
+    assert!(table.contains(",stretch_rms [um],") && table.contains(",head_p2p [mm],"));
+    for (wrong, said) in [
+        (
+            "strtch:rms",
+            "no output, coordinate or contact is called strtch",
+        ),
+        (
+            "head:impacts",
+            "impacts per period is one of contacts, and head is none",
+        ),
+    ] {
+        let failure = coarse(&folder, &[&range[..], &["--plot", wrong]].concat());
+        let message = failure.expect_err("no such signal").to_string();
+        assert!(message.contains(said), "{message}");
+    }
+    assert!(crate::read(&["--plot", "head:power"]).is_err());
 }

@@ -9,6 +9,8 @@ pub enum Scale {
     Linear,
     /// By their logarithm. Values that are not positive are not drawn.
     Logarithmic,
+    /// By their logarithm too, with ticks in decibels: twenty times that to the base ten. What stands for one is said by the label.
+    Decibel,
 }
 
 /// The part of an axis that is drawn.
@@ -78,39 +80,17 @@ impl Range {
 
     /// At most about `count` labelled ticks, and minor ones between them.
     pub(super) fn ticks(&self, count: usize) -> Ticks {
+        let by_value = |value: f64| self.position(value);
         match self.scale {
-            Scale::Linear => self.linear_ticks(self.low, self.high, count),
+            Scale::Linear => even_ticks([self.low, self.high], count, by_value),
             Scale::Logarithmic if self.high - self.low < 0.9 => {
-                self.linear_ticks(10_f64.powf(self.low), 10_f64.powf(self.high), count)
+                let ends = [self.low, self.high].map(|end| 10_f64.powf(end));
+                even_ticks(ends, count, by_value)
             }
             Scale::Logarithmic => self.decades(count),
-        }
-    }
-
-    fn linear_ticks(&self, low: f64, high: f64, count: usize) -> Ticks {
-        let step = Step::of((high - low) / count.max(2) as f64);
-        let size = low.abs().max(high.abs()).log10().floor() as i32;
-        let power = if (-3..5).contains(&size) {
-            0
-        } else {
-            size.clamp(-300, 300)
-        };
-        let decimals = (power - step.power).clamp(0, 17) as usize;
-        let multiples = |step: f64| ((low / step).ceil() as i64)..=((high / step).floor() as i64);
-        let labelled = multiples(step.size())
-            .filter_map(|i| {
-                let value = i as f64 * step.size();
-                let label = format!("{:.decimals$}", value / 10_f64.powi(power));
-                Some((self.position(value)?, label.replace('-', "−")))
-            })
-            .collect();
-        let minor = step.size() / step.parts();
-        Ticks {
-            labelled,
-            minor: multiples(minor)
-                .filter_map(|i| self.position(i as f64 * minor))
-                .collect(),
-            power,
+            Scale::Decibel => even_ticks([self.low, self.high], count, |level| {
+                Some((level - self.low) / (self.high - self.low))
+            }),
         }
     }
 
@@ -136,6 +116,34 @@ impl Range {
             }
         }
         ticks
+    }
+}
+
+/// Ticks at round numbers between two ends, each at the place that it has on the axis.
+fn even_ticks([low, high]: [f64; 2], count: usize, place: impl Fn(f64) -> Option<f64>) -> Ticks {
+    let step = Step::of((high - low) / count.max(2) as f64);
+    let size = low.abs().max(high.abs()).log10().floor() as i32;
+    let power = if (-3..5).contains(&size) {
+        0
+    } else {
+        size.clamp(-300, 300)
+    };
+    let decimals = (power - step.power).clamp(0, 17) as usize;
+    let multiples = |step: f64| ((low / step).ceil() as i64)..=((high / step).floor() as i64);
+    let labelled = multiples(step.size())
+        .filter_map(|i| {
+            let value = i as f64 * step.size();
+            let label = format!("{:.decimals$}", value / 10_f64.powi(power));
+            Some((place(value)?, label.replace('-', "−")))
+        })
+        .collect();
+    let minor = step.size() / step.parts();
+    Ticks {
+        labelled,
+        minor: multiples(minor)
+            .filter_map(|i| place(i as f64 * minor))
+            .collect(),
+        power,
     }
 }
 
@@ -178,7 +186,8 @@ fn coordinate(scale: Scale, value: f64) -> Option<f64> {
     let coordinate = match scale {
         Scale::Linear => value,
         Scale::Logarithmic if value > 0.0 => value.log10(),
-        Scale::Logarithmic => return None,
+        Scale::Decibel if value > 0.0 => 20.0 * value.log10(),
+        Scale::Logarithmic | Scale::Decibel => return None,
     };
     // Beyond that, the width of the range may overflow.
     (coordinate.abs() < 1e300).then_some(coordinate)
@@ -251,6 +260,26 @@ mod tests {
     }
 
     #[test]
+    fn decibels_are_twenty_times_the_logarithm() {
+        let range = Range::between(Scale::Decibel, [0.1, 1000.0]);
+        // 1 is 0 dB, 10 is 20 dB, and twice as much is 6.02 dB more.
+        assert!((range.position(1.0).unwrap() - 0.25).abs() < 1e-15);
+        assert!((range.position(10.0).unwrap() - 0.5).abs() < 1e-15);
+        let twice = range.position(20.0).unwrap() - range.position(10.0).unwrap();
+        assert!((80.0 * twice - 6.020_599_913_279_624).abs() < 1e-12);
+        let ticks = range.ticks(4).labelled;
+        let found: Vec<(i32, &str)> = ticks
+            .iter()
+            .map(|(place, label)| ((100.0 * place).round() as i32, label.as_str()))
+            .collect();
+        assert_eq!(
+            found,
+            [(0, "−20"), (25, "0"), (50, "20"), (75, "40"), (100, "60")]
+        );
+        assert_eq!(range.position(0.0), None);
+    }
+
+    #[test]
     fn any_values_give_a_range() {
         let extreme = [
             vec![],
@@ -262,7 +291,7 @@ mod tests {
             vec![1.0, 1.0 + f64::EPSILON],
         ];
         for values in extreme {
-            for scale in [Scale::Linear, Scale::Logarithmic] {
+            for scale in [Scale::Linear, Scale::Logarithmic, Scale::Decibel] {
                 let range = Range::of(scale, values.iter().copied(), true);
                 assert!(range.low < range.high, "{values:?}");
                 let ticks = range.ticks(6);

@@ -1,5 +1,6 @@
 //! The legend: its entries, a place where it covers nothing, and how it is drawn.
 
+use super::along;
 use super::shape::{Shape, draw_shape};
 use super::svg::{Anchor, Pen, Pixel, Rectangle, Svg, fitted, width_of};
 
@@ -22,6 +23,8 @@ pub(super) struct Entry {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sample {
     Line(Pen),
+    /// A line with small shapes along it.
+    Shaped(Pen, Shape),
     Marker(Shape),
     Dots(Pen),
     /// A colour of cells.
@@ -111,6 +114,10 @@ impl Legend {
             match entry.sample {
                 Sample::Line(pen) => {
                     svg.lines(&[vec![[start, middle], [start + SAMPLE, middle]]], pen);
+                }
+                Sample::Shaped(pen, shape) => {
+                    svg.lines(&[vec![[start, middle], [start + SAMPLE, middle]]], pen);
+                    along::draw(svg, shape, [start + SAMPLE / 2.0, middle], pen.colour);
                 }
                 Sample::Marker(shape) => draw_shape(svg, shape, [start + SAMPLE / 2.0, middle]),
                 Sample::Dots(pen) => {

@@ -2,7 +2,7 @@
 //!
 //! Stable parts of a curve are solid, unstable ones dashed, undecided ones dotted, so that a chart says the same in
 //! black and white; the colours are ones that colour-blind readers tell apart as well, and the first four
-//! differ in lightness.
+//! differ in lightness. Where there are several curves, small shapes along them tell them apart without colours.
 //!
 //! The SVG is written here, by a small writer of its own, rather than through a plotting library. By its source, the
 //! one considered (plotters 0.3) would have rounded every point to a whole pixel, which puts steps into a smooth curve,
@@ -22,16 +22,21 @@
 //! assert!(svg.starts_with("<svg"));
 //! ```
 
+mod along;
+mod area;
 mod axis;
 mod cloud;
+mod contents;
 mod drawing;
 mod glyphs;
 mod legend;
+mod mark;
 mod note;
 mod page;
 mod polyline;
 mod raster;
 mod shape;
+mod smooth;
 mod svg;
 #[cfg(test)]
 mod tests;
@@ -41,7 +46,8 @@ use std::path::{Path, PathBuf};
 
 pub use axis::Scale;
 pub use page::Page;
-pub use raster::{Colour, Raster};
+pub use raster::{Colour, Raster, STEPS};
+pub use smooth::{Bend, smoothed};
 
 /// A chart that is put together by parts and then written. Without any part it is an empty frame.
 ///
@@ -53,11 +59,14 @@ pub struct Chart {
     x: Axis,
     y: Axis,
     curves: Vec<Curve>,
-    references: Vec<Reference>,
+    references: Vec<Series>,
+    areas: Vec<Series>,
     markers: Vec<Markers>,
-    traces: Vec<Trace>,
-    clouds: Vec<Cloud>,
+    traces: Vec<Series>,
+    clouds: Vec<Series>,
     notes: Vec<Note>,
+    texts: Vec<Note>,
+    remarks: Vec<String>,
     raster: Option<Raster>,
     limits: Option<[[f64; 2]; 2]>,
 }
@@ -92,41 +101,13 @@ pub enum Line {
     Undecided,
 }
 
-/// A line to compare with, such as the limit of permanent contact: thin, grey and dash-dotted.
+/// Points under one name. How they are drawn says the method of [`Chart`] that takes them: as a [reference](Chart::reference), a
+/// [trace](Chart::trace), a [cloud](Chart::cloud) or [markers](Chart::markers).
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Reference {
-    /// What the legend says of it; nothing if it is empty.
+pub struct Series {
+    /// What the legend says of them; nothing if it is empty.
     pub label: String,
-    /// Points `[x, y]` in the order of the line.
-    pub points: Vec<[f64; 2]>,
-}
-
-/// A plain line, such as a motion: the first solid, the others dashed or dotted.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Trace {
-    /// What the legend says of it; nothing if it is empty.
-    pub label: String,
-    /// Points `[x, y]` in the order of the line.
-    pub points: Vec<[f64; 2]>,
-}
-
-/// Many points, drawn as dots. Of several clouds the last is dark and drawn over the others, which are lighter and have larger
-/// dots.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Cloud {
-    /// What the legend says of it; nothing if it is empty.
-    pub label: String,
-    /// Points `[x, y]` in any order.
-    pub points: Vec<[f64; 2]>,
-}
-
-/// Points marked by a shape: circles for the first kind added to a chart, then squares, diamonds, triangles, and these upside
-/// down or crossed.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Markers {
-    /// What the legend says of them.
-    pub label: String,
-    /// Points `[x, y]`.
+    /// Points `[x, y]`, of a line in its order.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -137,6 +118,13 @@ pub struct Note {
     pub label: String,
     /// The point `[x, y]`.
     pub point: [f64; 2],
+}
+
+/// Markers, and whether those upon each other are one.
+#[derive(Debug, Clone, PartialEq)]
+struct Markers {
+    series: Series,
+    merged: bool,
 }
 
 /// Why a chart was not written.
@@ -220,30 +208,54 @@ impl Chart {
         self
     }
 
-    /// Adds a line to compare with.
+    /// Adds a line to compare with, such as the limit of permanent contact: thin, grey and dash-dotted.
     #[must_use]
-    pub fn reference(mut self, reference: Reference) -> Self {
+    pub fn reference(mut self, reference: Series) -> Self {
         self.references.push(reference);
         self
     }
 
-    /// Adds one kind of markers.
+    /// Adds points marked by a shape: circles for the first kind added to a chart, then squares, diamonds, triangles, and these upside
+    /// down or crossed.
     #[must_use]
-    pub fn markers(mut self, markers: Markers) -> Self {
-        self.markers.push(markers);
+    pub fn markers(mut self, markers: Series) -> Self {
+        self.markers.push(Markers {
+            series: markers,
+            merged: false,
+        });
         self
     }
 
-    /// Adds a plain line.
+    /// Adds marks of events: as [`markers`](Self::markers), but marks upon each other are drawn as one, with a count beside it, and with
+    /// names where they are of several kinds.
     #[must_use]
-    pub fn trace(mut self, trace: Trace) -> Self {
+    pub fn marks(mut self, marks: Series) -> Self {
+        self.markers.push(Markers {
+            series: marks,
+            merged: true,
+        });
+        self
+    }
+
+    /// Fills the area between a line and zero, or the lower end of a logarithmic axis, behind everything else. It has the colour of the
+    /// curve with the same label, and no row in the legend. A line that turns back covers what is below any part of it.
+    #[must_use]
+    pub fn area(mut self, area: Series) -> Self {
+        self.areas.push(area);
+        self
+    }
+
+    /// Adds a plain line, such as a motion: the first solid, the others dashed or dotted.
+    #[must_use]
+    pub fn trace(mut self, trace: Series) -> Self {
         self.traces.push(trace);
         self
     }
 
-    /// Adds a cloud of dots.
+    /// Adds a cloud: many points, drawn as dots. Of several clouds the last is dark and drawn over the others, which are lighter and
+    /// have larger dots.
     #[must_use]
-    pub fn cloud(mut self, cloud: Cloud) -> Self {
+    pub fn cloud(mut self, cloud: Series) -> Self {
         self.clouds.push(cloud);
         self
     }
@@ -252,6 +264,20 @@ impl Chart {
     #[must_use]
     pub fn note(mut self, note: Note) -> Self {
         self.notes.push(note);
+        self
+    }
+
+    /// Adds a text beside a point, which is not drawn itself.
+    #[must_use]
+    pub fn text(mut self, text: Note) -> Self {
+        self.texts.push(text);
+        self
+    }
+
+    /// Adds a line of text below the chart: what is not shown, and why.
+    #[must_use]
+    pub fn remark(mut self, remark: impl Into<String>) -> Self {
+        self.remarks.push(remark.into());
         self
     }
 

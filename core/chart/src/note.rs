@@ -16,53 +16,65 @@ const LEADER: Pen = Pen {
     dashes: "",
 };
 
+/// A name and what it is of.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Named {
+    pub(super) label: String,
+    pub(super) point: Pixel,
+    /// Whether a dot is drawn there.
+    pub(super) dot: bool,
+}
+
 /// A note with the place of its name.
 pub(super) struct Placed {
-    point: Pixel,
-    label: String,
+    of: Named,
     room: Rectangle,
     /// Whether a line leads to the name.
     far: bool,
 }
 
 /// Places the names one after the other: each where it covers neither what is drawn nor a name before it.
-pub(super) fn place<'n>(
-    notes: impl Iterator<Item = (&'n str, Pixel)>,
-    frame: &Rectangle,
-    drawn: &[Vec<Pixel>],
-) -> Vec<Placed> {
-    let notes: Vec<(&str, Pixel)> = notes.collect();
+pub(super) fn place(notes: Vec<Named>, frame: &Rectangle, drawn: &[Vec<Pixel>]) -> Vec<Placed> {
     let mut taken = drawn.to_vec();
-    taken.extend(notes.iter().map(|(_, point)| vec![*point]));
-    let mut placed = Vec::new();
-    for (label, point) in notes {
-        let size = [width_of(label, SIZE), SIZE];
+    taken.extend(notes.iter().map(|note| vec![note.point]));
+    let mut placed: Vec<Placed> = Vec::new();
+    for of in notes {
+        let point = of.point;
+        let size = [width_of(&of.label, SIZE), SIZE];
         let inside = |room: &Rectangle| {
             room.left >= frame.left
                 && room.top >= frame.top
                 && room.right() <= frame.right()
                 && room.bottom() <= frame.bottom()
         };
-        let covered = |room: &Rectangle| {
+        let covered = |far: bool, room: &Rectangle| {
             let kept = room.grown(CLEARANCE);
             let others = taken.iter().filter(|line| line[..] != [point]);
-            others.filter(|line| crosses(line, &kept)).count()
+            let lines = others.filter(|line| crosses(line, &kept)).count();
+            let leader = leader(point, room);
+            let names = placed.iter().filter(|_| far);
+            lines + names.filter(|name| crosses(&leader, &name.room)).count()
         };
         // Where nothing is free, a name over few lines is better than none.
         let best = candidates(point, size)
             .filter(|(_, room)| inside(room))
-            .min_by_key(|(_, room)| covered(room));
+            .min_by_key(|(far, room)| covered(*far, room));
         let (far, room) =
             best.unwrap_or_else(|| (false, beside(point, size, [1.0, 0.0], DISTANCES[0])));
         taken.extend(room.scanned());
-        placed.push(Placed {
-            point,
-            label: label.to_owned(),
-            room,
-            far,
-        });
+        taken.extend(far.then(|| leader(point, &room)));
+        placed.push(Placed { of, room, far });
     }
     placed
+}
+
+/// The line from a point to the nearest place of a name's room.
+fn leader(point: Pixel, room: &Rectangle) -> Vec<Pixel> {
+    let nearest = [
+        point[0].clamp(room.left, room.right()),
+        point[1].clamp(room.top, room.bottom()),
+    ];
+    vec![point, nearest]
 }
 
 /// Places around a point, near ones first, and whether they are far.
@@ -102,22 +114,21 @@ impl Placed {
     /// What a legend must not cover.
     pub(super) fn lines(&self) -> Vec<Vec<Pixel>> {
         let mut lines = self.room.scanned();
-        lines.push(vec![self.point]);
+        lines.push(vec![self.of.point]);
         lines
     }
 
     pub(super) fn draw(&self, svg: &mut Svg) {
-        let Self { point, room, .. } = self;
-        if self.far {
-            let nearest = [
-                point[0].clamp(room.left, room.right()),
-                point[1].clamp(room.top, room.bottom()),
-            ];
-            svg.lines(&[vec![*point, nearest]], LEADER);
+        let Self { of, room, far } = self;
+        let point = of.point;
+        if *far {
+            svg.lines(&[leader(point, room)], LEADER);
         }
-        svg.circle(*point, DOT, INK, LEADER);
+        if of.dot {
+            svg.circle(point, DOT, INK, LEADER);
+        }
         let start = [room.left, room.bottom() - 0.22 * SIZE];
-        svg.text(start, SIZE, Anchor::Start, &self.label);
+        svg.text(start, SIZE, Anchor::Start, &of.label);
     }
 }
 
@@ -132,11 +143,20 @@ mod tests {
         height: 300.0,
     };
 
+    fn named(label: &str, point: Pixel) -> Named {
+        Named {
+            label: label.to_owned(),
+            point,
+            dot: true,
+        }
+    }
+
     #[test]
     fn names_cover_neither_lines_nor_each_other() {
         let line = vec![[0.0, 150.0], [400.0, 150.0]];
         let notes = [("first", [200.0, 150.0]), ("second", [205.0, 150.0])];
-        let placed = place(notes.into_iter(), &FRAME, std::slice::from_ref(&line));
+        let notes = notes.map(|(label, point)| named(label, point)).to_vec();
+        let placed = place(notes, &FRAME, std::slice::from_ref(&line));
         for note in &placed {
             assert!(!crosses(&line, &note.room));
             assert!(FRAME.contains([note.room.left, note.room.top]));
@@ -147,8 +167,32 @@ mod tests {
     }
 
     #[test]
+    fn lines_to_names_cross_no_other_name() {
+        // Points along a rising curve, closer in its middle, as events are on a cascade.
+        let curve: Vec<Pixel> = (0..40)
+            .map(|i| [10.0 * f64::from(i), 250.0 - 5.0 * f64::from(i)])
+            .collect();
+        let notes = (0..6).map(|i| {
+            let x = 180.0 + 9.0 * f64::from(i);
+            named("fold ×2, grazing", [x, 250.0 - 0.5 * x])
+        });
+        let placed = place(notes.collect(), &FRAME, std::slice::from_ref(&curve));
+        let far = placed.iter().filter(|note| note.far);
+        assert!(far.clone().count() > 2);
+        for note in far {
+            let line = leader(note.of.point, &note.room);
+            let others = placed
+                .iter()
+                .filter(|other| other.of.point != note.of.point);
+            for other in others {
+                assert!(!crosses(&line, &other.room), "{:?} {:?}", note.of, other.of);
+            }
+        }
+    }
+
+    #[test]
     fn a_name_at_the_edge_stays_inside() {
-        let placed = place([("a long name", [398.0, 2.0])].into_iter(), &FRAME, &[]);
+        let placed = place(vec![named("a long name", [398.0, 2.0])], &FRAME, &[]);
         let room = placed[0].room;
         assert!(room.right() <= 400.0 && room.top >= 0.0);
     }

@@ -36,6 +36,13 @@ impl Page {
         self
     }
 
+    /// Adds all charts of another page.
+    #[must_use]
+    pub fn page(mut self, other: Self) -> Self {
+        self.charts.extend(other.charts);
+        self
+    }
+
     /// The page as the text of an SVG document.
     pub fn to_svg(&self) -> String {
         let columns = self.columns.min(self.charts.len()).max(1);

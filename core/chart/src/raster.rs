@@ -5,7 +5,7 @@
 //!
 //! Source: PNG specification (ISO/IEC 15948); RFC 1950, 1951 (stored blocks) and 4648.
 
-use super::svg::{Rectangle, Svg};
+use super::svg::{Pixel, Rectangle, Svg};
 
 /// Coloured cells over a range of both axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +28,11 @@ pub struct Raster {
 pub enum Colour {
     /// One of twelve; neighbours in the list are far from each other in lightness. Others repeat them.
     Class(usize),
+    /// One of [`STEPS`] from light to dark, for classes that have an order; the last for what is beyond.
+    Step(usize),
+    /// White with thin lines or dots, in one of four patterns: diagonals, crossed diagonals, dots, uprights. Others repeat them. For what
+    /// has no place in an order, as no colour stands beside five steps of lightness in grey.
+    Hatched(usize),
     /// White.
     None,
     /// Light grey.
@@ -44,16 +49,80 @@ const COLOURS: [&str; 12] = [
     "#6a2c8c", "#e9a3c9", "#3f88c5", "#7a4a1e",
 ];
 
+/// Number of the colours that have an order.
+pub const STEPS: usize = 5;
+/// From the map `viridis` of Smith and van der Walt (2015), at lightnesses 91, 71, 47, 32, 15 of 100.
+const ORDERED: [&str; STEPS] = ["#fde725", "#52c569", "#2a788e", "#414487", "#440154"];
+
 impl Colour {
+    /// That of a class among so many in order, such that they are as far apart as can be.
+    pub const fn in_order(class: usize, count: usize) -> Self {
+        if count < 2 {
+            return Self::Step(0);
+        }
+        Self::Step(class * (STEPS - 1) / (count - 1))
+    }
+
     fn code(self) -> &'static str {
         match self {
             Self::Class(index) => COLOURS[index % COLOURS.len()],
-            Self::None => "#ffffff",
+            Self::Step(index) => ORDERED[index.min(STEPS - 1)],
+            Self::None | Self::Hatched(_) => "#ffffff",
             Self::Light => "#c8c8c8",
             Self::Middle => "#8a8a8a",
             Self::Fault => "#e00000",
         }
     }
+
+    /// What an area is filled with.
+    fn fill(self) -> &'static str {
+        match self {
+            Self::Hatched(index) => HATCHES[index % HATCHES.len()].fill,
+            _ => self.code(),
+        }
+    }
+}
+
+/// A pattern of a square of eight pixels.
+struct Hatch {
+    id: &'static str,
+    fill: &'static str,
+    path: &'static str,
+    width: f64,
+}
+
+const HATCHES: [Hatch; 4] = [
+    Hatch {
+        id: "hatch-0",
+        fill: "url(#hatch-0)",
+        path: "M0 8L8 0M-2 2L2 -2M6 10L10 6",
+        width: 1.2,
+    },
+    Hatch {
+        id: "hatch-1",
+        fill: "url(#hatch-1)",
+        path: "M0 0L8 8M0 8L8 0",
+        width: 1.2,
+    },
+    Hatch {
+        id: "hatch-2",
+        fill: "url(#hatch-2)",
+        path: "M2 2h0M6 6h0",
+        width: 2.2,
+    },
+    Hatch {
+        id: "hatch-3",
+        fill: "url(#hatch-3)",
+        path: "M4 0V8",
+        width: 1.2,
+    },
+];
+
+/// A rectangle of cells: the first of its columns and rows, and what follows the last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Area {
+    columns: [usize; 2],
+    rows: [usize; 2],
 }
 
 /// Classes that a palette of four bits has room for, besides white.
@@ -65,13 +134,64 @@ impl Raster {
         let classes = self.classes.iter().take(usize::from(CLASSES)).enumerate();
         classes
             .filter(|(class, _)| self.cells.iter().any(|&cell| usize::from(cell) == *class))
-            .map(|(_, (label, colour))| (colour.code(), label.as_str()))
+            .map(|(_, (label, colour))| (colour.fill(), label.as_str()))
     }
 
     pub(super) fn draw(&self, svg: &mut Svg, place: &Rectangle) {
-        if self.columns > 0 && self.cells.len() >= self.columns {
-            svg.image(place, &base64(&self.png()));
+        if self.columns == 0 || self.cells.len() < self.columns {
+            return;
         }
+        svg.image(place, &base64(&self.png()));
+        for hatch in &HATCHES {
+            let areas = self.areas(hatch.fill);
+            if areas.is_empty() {
+                continue;
+            }
+            svg.pattern(hatch.id, hatch.path, hatch.width);
+            let corners: Vec<Vec<Pixel>> =
+                areas.iter().map(|area| self.corners(area, place)).collect();
+            svg.areas(&corners, hatch.fill);
+        }
+    }
+
+    /// The rectangles of cells that are filled so: as tall as rows that follow each other have the same columns.
+    fn areas(&self, fill: &str) -> Vec<Area> {
+        let filled = |class: &u8| {
+            let class = self.classes.get(usize::from(*class));
+            class.is_some_and(|(_, colour)| colour.fill() == fill)
+        };
+        let mut areas: Vec<Area> = Vec::new();
+        let mut open: Vec<Area> = Vec::new();
+        for (row, cells) in self.cells.chunks_exact(self.columns).enumerate() {
+            let mut next = Vec::new();
+            let mut from = 0;
+            for run in cells.chunk_by(|a, b| filled(a) == filled(b)) {
+                let columns = [from, from + run.len()];
+                from = columns[1];
+                if !filled(&run[0]) {
+                    continue;
+                }
+                let same = open.iter().position(|area| area.columns == columns);
+                let first = same.map_or(row, |place| open.swap_remove(place).rows[0]);
+                let rows = [first, row + 1];
+                next.push(Area { columns, rows });
+            }
+            areas.append(&mut open);
+            open = next;
+        }
+        areas.append(&mut open);
+        areas
+    }
+
+    fn corners(&self, area: &Area, place: &Rectangle) -> Vec<Pixel> {
+        let rows = (self.cells.len() / self.columns) as f64;
+        let [left, right] = area
+            .columns
+            .map(|column| place.left + place.width * column as f64 / self.columns as f64);
+        let [bottom, top] = area
+            .rows
+            .map(|row| place.bottom() - place.height * row as f64 / rows);
+        vec![[left, bottom], [right, bottom], [right, top], [left, top]]
     }
 
     /// The cells as a PNG file with a palette.
@@ -205,5 +325,38 @@ mod tests {
         };
         let shown: Vec<_> = raster.shown().map(|(_, label)| label).collect();
         assert_eq!(shown, ["a", "c"]);
+    }
+
+    #[test]
+    fn hatched_cells_are_joined_to_rectangles() {
+        let raster = Raster {
+            x: [0.0, 3.0],
+            y: [0.0, 3.0],
+            columns: 3,
+            cells: vec![1, 1, 0, 1, 1, 0, 0, 1, 1],
+            classes: vec![
+                ("a".to_owned(), Colour::Step(0)),
+                ("b".to_owned(), Colour::Hatched(5)),
+            ],
+        };
+        let area = |columns, rows| Area { columns, rows };
+        let expected = [area([0, 2], [0, 2]), area([1, 3], [2, 3])];
+        assert_eq!(raster.areas("url(#hatch-1)"), expected);
+        assert_eq!(raster.areas("url(#hatch-0)"), []);
+        let place = Rectangle {
+            left: 10.0,
+            top: 20.0,
+            width: 30.0,
+            height: 60.0,
+        };
+        let corners = raster.corners(&expected[1], &place);
+        let known = [[20.0, 40.0], [40.0, 40.0], [40.0, 20.0], [20.0, 20.0]];
+        assert_eq!(corners, known);
+        let mut svg = Svg::new(90.0, 90.0, "");
+        raster.draw(&mut svg, &place);
+        let text = svg.finish();
+        assert!(text.contains("<pattern id=\"hatch-1\""), "{text}");
+        assert_eq!(text.matches("url(#hatch-1)").count(), 1);
+        assert!(!text.contains("hatch-0"));
     }
 }

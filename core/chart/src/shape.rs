@@ -37,23 +37,34 @@ impl Shape {
 }
 
 /// Draws a marker: white inside, so that it shows on a curve.
-pub(super) fn draw_shape(svg: &mut Svg, shape: Shape, [x, y]: Pixel) {
-    let mut closed = |corners: &[Pixel]| {
-        let corners: Vec<Pixel> = corners.iter().map(|[u, v]| [x + u, y + v]).collect();
-        svg.polygon(&corners, "#ffffff", MARKER);
-    };
-    match shape {
-        Shape::Circle => svg.circle([x, y], 5.0, "#ffffff", MARKER),
-        Shape::Square => closed(&[[-4.5, -4.5], [4.5, -4.5], [4.5, 4.5], [-4.5, 4.5]]),
-        Shape::Diamond => closed(&[[0.0, -6.5], [6.5, 0.0], [0.0, 6.5], [-6.5, 0.0]]),
-        Shape::Triangle => closed(&[[0.0, -6.0], [5.8, 4.2], [-5.8, 4.2]]),
-        Shape::Down => closed(&[[0.0, 6.0], [5.8, -4.2], [-5.8, -4.2]]),
-        Shape::Cross => closed(&turned(&PLUS)),
-        Shape::Plus => closed(&PLUS),
-        Shape::Crossed => {
-            svg.circle([x, y], 5.0, "#ffffff", MARKER);
-            let bar = |u: f64, v: f64| vec![[x - u, y - v], [x + u, y + v]];
-            svg.lines(&[bar(3.5, 3.5), bar(3.5, -3.5)], MARKER);
+pub(super) fn draw_shape(svg: &mut Svg, shape: Shape, place: Pixel) {
+    shape.draw(svg, place, 1.0, "#ffffff", MARKER);
+}
+
+impl Shape {
+    /// Draws it so many times as large as a marker.
+    pub(super) fn draw(self, svg: &mut Svg, [x, y]: Pixel, size: f64, fill: &str, pen: Pen) {
+        let mut closed = |corners: &[Pixel]| {
+            let corners = corners.iter();
+            let corners: Vec<Pixel> = corners.map(|[u, v]| [x + size * u, y + size * v]).collect();
+            svg.polygon(&corners, fill, pen);
+        };
+        match self {
+            Self::Circle => svg.circle([x, y], size * 5.0, fill, pen),
+            Self::Square => closed(&[[-4.5, -4.5], [4.5, -4.5], [4.5, 4.5], [-4.5, 4.5]]),
+            Self::Diamond => closed(&[[0.0, -6.5], [6.5, 0.0], [0.0, 6.5], [-6.5, 0.0]]),
+            Self::Triangle => closed(&[[0.0, -6.0], [5.8, 4.2], [-5.8, 4.2]]),
+            Self::Down => closed(&[[0.0, 6.0], [5.8, -4.2], [-5.8, -4.2]]),
+            Self::Cross => closed(&turned(&PLUS)),
+            Self::Plus => closed(&PLUS),
+            Self::Crossed => {
+                svg.circle([x, y], size * 5.0, fill, pen);
+                let bar = |u: f64, v: f64| {
+                    let (u, v) = (size * u, size * v);
+                    vec![[x - u, y - v], [x + u, y + v]]
+                };
+                svg.lines(&[bar(3.5, 3.5), bar(3.5, -3.5)], pen);
+            }
         }
     }
 }

@@ -24,6 +24,14 @@ pub(super) struct Pen {
     pub(super) dashes: &'static str,
 }
 
+pub(super) const fn pen(colour: &'static str, width: f64, dashes: &'static str) -> Pen {
+    Pen {
+        colour,
+        width,
+        dashes,
+    }
+}
+
 /// Where a text stands relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Anchor {
@@ -139,12 +147,42 @@ impl Svg {
         ));
     }
 
+    /// Polygons that all go round in one sense, as one pale area.
+    pub(super) fn pale_area(&mut self, polygons: &[Vec<Pixel>], colour: &str) {
+        if polygons.is_empty() {
+            return;
+        }
+        let mut path = String::new();
+        for polygon in polygons {
+            // Writing to a string does not fail.
+            let _ = write!(path, "{}Z", Path(std::slice::from_ref(polygon)));
+        }
+        self.push(format_args!(
+            "<path d=\"{path}\" fill=\"{colour}\" fill-opacity=\"0.13\" fill-rule=\"nonzero\"/>"
+        ));
+    }
+
     /// A closed shape.
     pub(super) fn polygon(&mut self, corners: &[Pixel], fill: &str, pen: Pen) {
         let path = Path(&[corners.to_vec()]).to_string();
         let Pen { colour, width, .. } = pen;
         self.push(format_args!(
             "<path d=\"{path}Z\" fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"{width}\"/>"
+        ));
+    }
+
+    /// Closed shapes of one filling, without an outline.
+    pub(super) fn areas(&mut self, shapes: &[Vec<Pixel>], fill: &str) {
+        let path = Path(shapes);
+        self.push(format_args!("<path d=\"{path}\" fill=\"{fill}\"/>"));
+    }
+
+    /// A pattern to fill areas with: a white square of eight pixels with a path.
+    pub(super) fn pattern(&mut self, id: &str, path: &str, width: f64) {
+        self.push(format_args!(
+            "<pattern id=\"{id}\" width=\"8\" height=\"8\" patternUnits=\"userSpaceOnUse\">\
+             <rect width=\"8\" height=\"8\" fill=\"#ffffff\"/>\
+             <path d=\"{path}\" fill=\"none\" stroke=\"#555555\" stroke-width=\"{width}\" stroke-linecap=\"round\"/></pattern>"
         ));
     }
 

@@ -38,13 +38,13 @@ fn response() -> Chart {
                 run(Line::Stable, &tail),
             ],
         })
-        .reference(Reference {
+        .reference(Series {
             label: "loss of contact".into(),
             points: (0..50)
                 .map(|i| [0.3 + 0.04 * f64::from(i), 1.6 - 0.1 * f64::from(i)])
                 .collect(),
         })
-        .markers(Markers {
+        .markers(Series {
             label: "fold".into(),
             points: folds,
         })
@@ -143,19 +143,19 @@ fn motions_dots_and_cells_have_their_place_and_legend() {
         (0..30).map(at).collect::<Vec<_>>()
     };
     let chart = Chart::new("phase portrait")
-        .trace(Trace {
+        .trace(Series {
             label: "period 1".into(),
             points: circle(1.0),
         })
-        .trace(Trace {
+        .trace(Series {
             label: String::new(),
             points: circle(2.0),
         })
-        .cloud(Cloud {
+        .cloud(Series {
             label: "up".into(),
             points: circle(0.5),
         })
-        .cloud(Cloud {
+        .cloud(Series {
             label: "down".into(),
             points: vec![[0.0, f64::NAN]],
         })
@@ -192,4 +192,71 @@ fn motions_dots_and_cells_have_their_place_and_legend() {
         svg.contains("<svg x=\"900\" y=\"0\" xmlns")
             && svg.contains("<svg x=\"0\" y=\"600\" xmlns")
     );
+}
+
+#[test]
+fn dashed_lines_upon_each_other_stay_dashed() {
+    // One line twice, from both ends, as two methods follow one branch.
+    let there: Vec<[f64; 2]> = (0..=20).map(|i| [f64::from(i), 1.0]).collect();
+    let back = there.iter().rev().copied().collect();
+    let curve = |points| Curve {
+        label: "period 1".into(),
+        runs: vec![Run {
+            line: Line::Unstable,
+            points,
+        }],
+    };
+    let solid = Curve {
+        label: "period 2".into(),
+        runs: vec![run(Line::Stable, &[[0.0, 0.5], [20.0, 1.5]])],
+    };
+    let chart = Chart::new("")
+        .curve(solid)
+        .curve(curve(there))
+        .curve(curve(back));
+    let svg = chart.to_svg();
+    let all: Vec<&str> = svg.lines().collect();
+    let places = |mark: &str| -> Vec<usize> {
+        let found = all
+            .iter()
+            .enumerate()
+            .filter(|(_, line)| line.contains(mark));
+        found.map(|(index, _)| index).collect()
+    };
+    let (covers, dashes) = (
+        places("stroke=\"#ffffff\""),
+        places("stroke-dasharray=\"8 4\""),
+    );
+    assert_eq!((covers.len(), dashes[..2].len()), (2, 2));
+    assert!(covers[0] < dashes[0] && dashes[0] < covers[1] && covers[1] < dashes[1]);
+    // A solid line is cut by none of them.
+    assert!(places("stroke=\"#0b4f8a\" stroke-width=\"2.2\"")[0] > dashes[1]);
+}
+
+#[test]
+fn marks_upon_each_other_are_counted_and_markers_are_not() {
+    let points = vec![[0.0, 0.0], [1.0, 1.0], [1.0 + 1e-6, 1.0]];
+    let series = |label: &str| Series {
+        label: label.into(),
+        points: points.clone(),
+    };
+    let marked = Chart::new("").marks(series("fold")).to_svg();
+    assert!(marked.contains("aria-label=\"×2\""));
+    // Two at their places, and one in the legend.
+    assert_eq!(marked.matches("<circle").count(), 3);
+    let plain = Chart::new("").markers(series("fold")).to_svg();
+    assert_eq!(plain.matches("<circle").count(), 4);
+    assert!(!plain.contains('×'));
+    // What is said below the chart, and beside a point.
+    let note = Note {
+        label: "drive = 2".into(),
+        point: [0.5, 0.5],
+    };
+    let said = Chart::new("")
+        .marks(series("fold"))
+        .text(note)
+        .remark("not marked: 3 grazing");
+    let svg = said.to_svg();
+    assert!(svg.contains("not marked: 3 grazing") && svg.contains("drive = 2"));
+    assert_eq!(svg.matches("<circle").count(), 3);
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::data::LawData;
 use crate::law::{Exponent, LawFacts, RateDependence, TermFacts, Variation};
-use crate::system::{ContactFacts, ParameterFacts, Place, SystemFacts, Wave};
+use crate::system::{ContactFacts, OutputFacts, ParameterFacts, Place, SystemFacts, Wave};
 
 pub use crate::data::Node;
 pub use crate::data::Node::*;
@@ -13,6 +13,7 @@ pub use crate::law::Quantity::{self, *};
 pub use crate::law::Variation::*;
 pub use crate::law::{ArgumentFacts, LevelFacts, PieceFacts};
 pub use crate::system::Bound::{self, *};
+pub use crate::system::Signal;
 
 /// The force does not depend on the rate.
 pub const INDEPENDENT: RateDependence = RateDependence::None;
@@ -83,16 +84,67 @@ pub const fn system_facts(
     contacts: &'static [ContactFacts],
     places: &'static [Place],
 ) -> SystemFacts {
+    measured_system(
+        name,
+        equation,
+        coordinates,
+        &[],
+        parameters,
+        divisor,
+        laws,
+        contacts,
+        places,
+        &[],
+    )
+}
+
+/// The facts of a system with units or outputs.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "written by the compiler, in the order of the fields"
+)]
+pub const fn measured_system(
+    name: &'static str,
+    equation: &'static str,
+    coordinates: &'static [Cow<'static, str>],
+    units: &'static [Cow<'static, str>],
+    parameters: &'static [ParameterFacts],
+    divisor: u32,
+    laws: usize,
+    contacts: &'static [ContactFacts],
+    places: &'static [Place],
+    outputs: &'static [OutputFacts],
+) -> SystemFacts {
     SystemFacts {
         name: Cow::Borrowed(name),
         equation: Cow::Borrowed(equation),
         coordinates: Cow::Borrowed(coordinates),
+        units: Cow::Borrowed(units),
         parameters: Cow::Borrowed(parameters),
         divisor,
         laws,
         contacts: Cow::Borrowed(contacts),
         places: Cow::Borrowed(places),
+        outputs: Cow::Borrowed(outputs),
     }
+}
+
+/// The facts of an output.
+pub const fn output(
+    name: &'static str,
+    documentation: &'static str,
+    unit: &'static str,
+) -> OutputFacts {
+    OutputFacts {
+        name: Cow::Borrowed(name),
+        documentation: Cow::Borrowed(documentation),
+        unit: Cow::Borrowed(unit),
+    }
+}
+
+/// A coefficient of an output.
+pub const fn output_term(output: usize, of: Signal, wave: Wave) -> Place {
+    Place::Output { output, of, wave }
 }
 
 /// An argument of a law that may have any value.
@@ -195,9 +247,21 @@ pub const fn parameter(
     minimum: Bound,
     maximum: Bound,
 ) -> ParameterFacts {
+    parameter_in(name, documentation, "", minimum, maximum)
+}
+
+/// The facts of a parameter with a unit.
+pub const fn parameter_in(
+    name: &'static str,
+    documentation: &'static str,
+    unit: &'static str,
+    minimum: Bound,
+    maximum: Bound,
+) -> ParameterFacts {
     ParameterFacts {
         name: Cow::Borrowed(name),
         documentation: Cow::Borrowed(documentation),
+        unit: Cow::Borrowed(unit),
         minimum,
         maximum,
     }

@@ -151,25 +151,17 @@ impl LawFacts {
         }
     }
 
-    /// The arguments, in the order of the argument slice.
-    #[must_use]
-    pub fn arguments(mut self, arguments: impl IntoIterator<Item = ArgumentFacts>) -> Self {
-        self.arguments = arguments.into_iter().collect();
-        self
-    }
+    crate::setters! { self:
+        /// The arguments, in the order of the argument slice.
+        arguments(arguments: impl IntoIterator<Item = ArgumentFacts>) {
+            self.arguments = arguments.into_iter().collect();
+        }
 
-    /// How the force depends on the rate.
-    #[must_use]
-    pub fn rate(mut self, rate: RateDependence) -> Self {
-        self.rate = rate;
-        self
-    }
+        /// How the force depends on the rate.
+        rate(rate: RateDependence) { self.rate = rate }
 
-    /// Whether the force is odd in gap and rate together.
-    #[must_use]
-    pub fn odd(mut self, odd: bool) -> Self {
-        self.odd = odd;
-        self
+        /// Whether the force is odd in gap and rate together.
+        odd(odd: bool) { self.odd = odd }
     }
 }
 
@@ -351,34 +343,24 @@ impl PieceFacts {
         }
     }
 
-    /// How the force varies.
-    #[must_use]
-    pub fn force(mut self, force: Variation) -> Self {
-        self.force = force;
-        self
-    }
+    crate::setters! { self:
+        /// How the force varies.
+        force(force: Variation) { self.force = force }
 
-    /// How the derivatives by gap and by rate vary. Where both do not, the piece is affine.
-    #[must_use]
-    pub fn slopes(mut self, by_gap: Variation, by_rate: Variation) -> Self {
-        self.by_gap = by_gap;
-        self.by_rate = by_rate;
-        self.affine = ![by_gap, by_rate].contains(&Variation::Varying);
-        self
-    }
+        /// How the derivatives by gap and by rate vary. Where both do not, the piece is affine.
+        slopes(by_gap: Variation, by_rate: Variation) {
+            self.by_gap = by_gap;
+            self.by_rate = by_rate;
+            self.affine = ![by_gap, by_rate].contains(&Variation::Varying);
+        }
 
-    /// How the derivatives by the arguments vary.
-    #[must_use]
-    pub fn by_argument(mut self, by_argument: impl IntoIterator<Item = Variation>) -> Self {
-        self.by_argument = by_argument.into_iter().collect();
-        self
-    }
+        /// How the derivatives by the arguments vary.
+        by_argument(by_argument: impl IntoIterator<Item = Variation>) {
+            self.by_argument = by_argument.into_iter().collect();
+        }
 
-    /// The terms of the force and of each derivative with their exponents; those that are smooth need not be there.
-    #[must_use]
-    pub fn terms(mut self, terms: impl IntoIterator<Item = TermFacts>) -> Self {
-        self.terms = terms.into_iter().collect();
-        self
+        /// The terms of the force and of each derivative with their exponents; those that are smooth need not be there.
+        terms(terms: impl IntoIterator<Item = TermFacts>) { self.terms = terms.into_iter().collect() }
     }
 }
 

@@ -5,8 +5,11 @@
 
 #[doc(hidden)]
 pub mod constants;
+#[doc(hidden)]
 pub mod data;
 #[doc(hidden)]
 pub mod declared;
 pub mod law;
+mod output;
+mod setters;
 pub mod system;

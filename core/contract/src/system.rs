@@ -17,6 +17,7 @@ use std::sync::Arc;
 
 pub use crate::law::Bound;
 use crate::law::{Law, is_within};
+pub use crate::output::{OutputFacts, Signal};
 
 /// A system of oscillators as the runtime sees it; object safe, so that the engine is compiled once.
 ///
@@ -46,6 +47,12 @@ pub trait System: Send + Sync {
     /// A copy with the present values, for whoever keeps the system: requests and results own one, so that they can be returned and
     /// sent to other threads. Of a type that is `Clone` it is `Arc::new(self.clone())`.
     fn shared(&self) -> Arc<dyn System>;
+}
+
+impl std::fmt::Debug for dyn System + '_ {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "System({})", self.facts().name)
+    }
 }
 
 /// What is shared already is not copied again.
@@ -103,10 +110,12 @@ pub enum Variable {
 pub struct SystemFacts {
     /// Name of the declared type.
     pub name: Cow<'static, str>,
-    /// The equations of motion, as written.
+    /// The equations of motion, as written, and the constants and laws that are in them; one in each line.
     pub equation: Cow<'static, str>,
     /// Names of the coordinates.
     pub coordinates: Cow<'static, [Cow<'static, str>]>,
+    /// Units of the coordinates, empty for plain numbers; none at all where the system has no units. Time is in seconds where it has.
+    pub units: Cow<'static, [Cow<'static, str>]>,
     /// Parameters, in the order of the value slice.
     pub parameters: Cow<'static, [ParameterFacts]>,
     /// The base frequency is `omega / divisor`, so that every harmonic in the declaration is a whole one.
@@ -117,6 +126,8 @@ pub struct SystemFacts {
     pub contacts: Cow<'static, [ContactFacts]>,
     /// Where each coefficient stands. Several coefficients at one place add up.
     pub places: Cow<'static, [Place]>,
+    /// What the system is read by.
+    pub outputs: Cow<'static, [OutputFacts]>,
 }
 
 impl SystemFacts {
@@ -126,11 +137,13 @@ impl SystemFacts {
             name: name.into(),
             equation: Cow::Borrowed(""),
             coordinates: Cow::Borrowed(&[]),
+            units: Cow::Borrowed(&[]),
             parameters: Cow::Borrowed(&[]),
             divisor: 1,
             laws: 0,
             contacts: Cow::Borrowed(&[]),
             places: Cow::Borrowed(&[]),
+            outputs: Cow::Borrowed(&[]),
         }
     }
 
@@ -151,37 +164,35 @@ impl SystemFacts {
         self
     }
 
-    /// The parameters, in the order of the value slice.
+    /// Units of the coordinates, empty for plain numbers.
     #[must_use]
-    pub fn parameters(mut self, parameters: impl IntoIterator<Item = ParameterFacts>) -> Self {
-        self.parameters = parameters.into_iter().collect();
+    pub fn units<N: Into<Cow<'static, str>>>(mut self, units: impl IntoIterator<Item = N>) -> Self {
+        self.units = units.into_iter().map(Into::into).collect();
         self
     }
 
-    /// By what `omega` is divided in the base frequency.
-    #[must_use]
-    pub fn divisor(mut self, divisor: u32) -> Self {
-        self.divisor = divisor;
-        self
-    }
+    crate::setters! { self:
+        /// The parameters, in the order of the value slice.
+        parameters(parameters: impl IntoIterator<Item = ParameterFacts>) {
+            self.parameters = parameters.into_iter().collect();
+        }
 
-    /// The number of laws, and the contacts that they act in.
-    #[must_use]
-    pub fn contacts(
-        mut self,
-        laws: usize,
-        contacts: impl IntoIterator<Item = ContactFacts>,
-    ) -> Self {
-        self.laws = laws;
-        self.contacts = contacts.into_iter().collect();
-        self
-    }
+        /// By what `omega` is divided in the base frequency.
+        divisor(divisor: u32) { self.divisor = divisor }
 
-    /// Where each coefficient stands.
-    #[must_use]
-    pub fn places(mut self, places: impl IntoIterator<Item = Place>) -> Self {
-        self.places = places.into_iter().collect();
-        self
+        /// The number of laws, and the contacts that they act in.
+        contacts(laws: usize, contacts: impl IntoIterator<Item = ContactFacts>) {
+            self.laws = laws;
+            self.contacts = contacts.into_iter().collect();
+        }
+
+        /// Where each coefficient stands.
+        places(places: impl IntoIterator<Item = Place>) { self.places = places.into_iter().collect() }
+
+        /// What the system is read by.
+        outputs(outputs: impl IntoIterator<Item = OutputFacts>) {
+            self.outputs = outputs.into_iter().collect();
+        }
     }
 }
 
@@ -193,6 +204,8 @@ pub struct ParameterFacts {
     pub name: Cow<'static, str>,
     /// Its documentation.
     pub documentation: Cow<'static, str>,
+    /// The unit of its values; empty where the system has none, and for plain numbers.
+    pub unit: Cow<'static, str>,
     /// Lower end of the range.
     pub minimum: Bound,
     /// Upper end of the range.
@@ -205,24 +218,26 @@ impl ParameterFacts {
         Self {
             name: name.into(),
             documentation: Cow::Borrowed(""),
+            unit: Cow::Borrowed(""),
             minimum: Bound::Unbounded,
             maximum: Bound::Unbounded,
         }
     }
 
-    /// What it is; the first line is what charts say of it.
-    #[must_use]
-    pub fn documentation(mut self, documentation: impl Into<Cow<'static, str>>) -> Self {
-        self.documentation = documentation.into();
-        self
-    }
+    crate::setters! { self:
+        /// What it is; the first line is what charts say of it.
+        documentation(documentation: impl Into<Cow<'static, str>>) {
+            self.documentation = documentation.into();
+        }
 
-    /// The range that its values must be in.
-    #[must_use]
-    pub fn range(mut self, minimum: Bound, maximum: Bound) -> Self {
-        self.minimum = minimum;
-        self.maximum = maximum;
-        self
+        /// The unit of its values.
+        unit(unit: impl Into<Cow<'static, str>>) { self.unit = unit.into() }
+
+        /// The range that its values must be in.
+        range(minimum: Bound, maximum: Bound) {
+            self.minimum = minimum;
+            self.maximum = maximum;
+        }
     }
 
     /// Whether a value is finite and within the range.
@@ -298,7 +313,7 @@ pub enum Part {
     Sine,
 }
 
-/// Where a coefficient stands in equations (1) and (2).
+/// Where a coefficient stands in equations (1) and (2), and in outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Place {
@@ -363,5 +378,14 @@ pub enum Place {
         contact: usize,
         /// Position in [`LawFacts::arguments`](crate::law::LawFacts::arguments).
         index: usize,
+    },
+    /// A coefficient of an output (4).
+    Output {
+        /// Output, by position in [`SystemFacts::outputs`].
+        output: usize,
+        /// What it is a coefficient of.
+        of: Signal,
+        /// Its dependence on the phase.
+        wave: Wave,
     },
 }

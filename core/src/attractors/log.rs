@@ -9,8 +9,6 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use crate::error::Error;
-
 /// What every such file begins with; the number is that of the format.
 const HEAD: &str = "hertzian log 1, ";
 /// As much is shown of what another file says it belongs to, in bytes.
@@ -46,8 +44,8 @@ pub enum LogError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    LogError:
+crate::error::room_error! {
+    LogError, |_| crate::error::ErrorKind::File;
     File { path, kind }
     Other { path, found }
     ;
@@ -198,12 +196,6 @@ fn of_another(path: &Path, found: &str) -> String {
         format!("{path} is no checkpoint")
     } else {
         format!("the checkpoint {path} belongs to another computation: {found}")
-    }
-}
-
-impl From<LogError> for Error {
-    fn from(error: LogError) -> Self {
-        Self::new(crate::error::ErrorKind::File, error)
     }
 }
 

@@ -47,6 +47,7 @@ const RESOLVED: f64 = 1e-10;
 /// assert!((motion.exponents().sum.value + 0.2 * TAU).abs() < 1e-9);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
+#[derive(Debug)]
 pub struct Lyapunov<'s> {
     map: &'s mut Stroboscope,
     divergence: Option<Divergence>,
@@ -54,15 +55,6 @@ pub struct Lyapunov<'s> {
     tangent: Tangent,
     sums: Vec<f64>,
     batches: Vec<Batch>,
-}
-
-impl std::fmt::Debug for Lyapunov<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Lyapunov")
-            .field("state", &self.state)
-            .field("batches", &self.batches)
-            .finish_non_exhaustive()
-    }
 }
 
 /// What one batch of periods gave.
@@ -225,28 +217,11 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::testing::one_sided::one_sided;
     use crate::time::affine::Affine;
 
-    crate::oscillator! {
-        /// Wang et al. (2021), Eq. (1), one-sided, exponent one.
-        OneSided(x) {
-            param zeta in 0.0..;
-            param load;
-            param drive;
-            law contact(gap) {
-                gap > 0 => 2*zeta*dot(gap) + gap,
-                else    => 0,
-            }
-            ddot(x) + contact(x) = drive*cos(omega*t) + load;
-        }
-    }
-
     fn exponents(drive: f64, state: [f64; 2], batches: usize, periods: usize) -> Exponents {
-        let model = OneSided {
-            zeta: 0.032,
-            load: 1.0,
-            drive,
-        };
+        let model = one_sided(drive);
         let values = [model.zeta, model.load, model.drive];
         let flow = Affine::new(&model, &values, 1.0).expect("affine");
         let divergence = Divergence::new(&model, &values, 1.0).expect("a mass");

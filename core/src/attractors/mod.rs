@@ -3,4 +3,5 @@
 pub mod basin;
 pub mod log;
 pub mod lyapunov;
+mod request;
 pub mod sweep;

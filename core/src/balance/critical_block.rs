@@ -43,13 +43,21 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// What happens where it is singular. A doubling of the time in which orbits come back that is a part of the declared period is
-    /// no doubling of that: it crosses another branch of the same period.
+    /// What happens where it is singular. The time in which orbits come back may double within the declared period, or beyond it.
     pub(crate) fn kind(self) -> EventKind {
         match self {
             Self::Even => EventKind::SymmetryBreaking,
-            Self::Doubled => EventKind::PeriodDoubling,
-            Self::Own | Self::Between => EventKind::BranchPoint,
+            Self::Between | Self::Doubled => EventKind::PeriodDoubling,
+            Self::Own => EventKind::BranchPoint,
+        }
+    }
+
+    /// What is singular where the time in which orbits come back doubles, whose harmonics are multiples of this one.
+    pub(crate) fn doubled(stride: usize) -> Self {
+        if stride.is_multiple_of(2) {
+            Self::Between
+        } else {
+            Self::Doubled
         }
     }
 }

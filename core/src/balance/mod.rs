@@ -44,6 +44,7 @@ pub(crate) mod terms;
 mod tests;
 
 use crate::balance::aft::{Aft, ContactForces};
+use crate::branches::recurrence::{Recurrence, SignedPermutation};
 use crate::cancel::Cancel;
 use crate::continuation::jacobian::Partition;
 use crate::model::layout::Layout;
@@ -53,10 +54,12 @@ use crate::system::{System, Variable};
 use blocks::Block;
 use contacts::Scratch;
 use harmonics::Harmonics;
-pub(crate) use terms::{gap_series, rate_series};
+pub(crate) use terms::{gap_series, rate_series, stretched};
 
 /// Which harmonics are unknowns; the others are zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Parity {
     /// All.
     All,
@@ -68,6 +71,7 @@ pub enum Parity {
 
 /// How finely an orbit is represented.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Resolution {
     /// Harmonics of the base frequency.
     pub harmonics: usize,
@@ -87,6 +91,7 @@ pub struct Resolution {
 
 /// Harmonics at equal distances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Lattice {
     pub(crate) first: usize,
     pub(crate) step: usize,
@@ -102,6 +107,20 @@ impl Resolution {
             Parity::Even => (0, 2 * stride),
         };
         Lattice { first, step }
+    }
+
+    /// How orbits come back that have these harmonics.
+    pub(crate) fn recurrence(&self, coordinates: usize) -> Recurrence {
+        let odd = self.parity == Parity::Odd;
+        Recurrence {
+            period: self.period,
+            parts: self.stride * if odd { 2 } else { 1 },
+            image: if odd {
+                SignedPermutation::minus(coordinates)
+            } else {
+                SignedPermutation::identity()
+            },
+        }
     }
 }
 

@@ -32,11 +32,15 @@ const PATIENCE: usize = 3;
 const MEMORY: usize = 15;
 /// Points for which the number is kept after another one has failed; each further time twice as many.
 const KEPT: usize = 5;
+/// The number of such points ceases to grow.
+const MOST_KEPT: usize = 1 << 20;
 
 /// Decides on the number of harmonics.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Chooser {
     /// Relative error of peak-to-peak.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     tolerance: f64,
     /// Fewest harmonics.
     least: usize,
@@ -52,10 +56,12 @@ pub(crate) struct Chooser {
 }
 
 /// A number of harmonics that was not enough.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct TooFew {
     harmonics: usize,
     /// Error over tolerance.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     excess: f64,
     /// Points for which it is remembered.
     points: usize,
@@ -77,6 +83,18 @@ impl Chooser {
         }
     }
 
+    /// Most harmonics.
+    pub(crate) fn most(&self) -> usize {
+        self.most
+    }
+
+    /// Whether it is the other one some points later.
+    pub(crate) fn continues(&self, other: &Self) -> bool {
+        let same =
+            (self.least, self.most, self.lattice) == (other.least, other.most, other.lattice);
+        same && self.tolerance == other.tolerance && self.keep <= MOST_KEPT
+    }
+
     /// The number nearest to one that may be taken.
     pub(crate) fn admitted(&self, harmonics: usize) -> usize {
         self.rounded(harmonics as f64).max(self.least)
@@ -85,7 +103,7 @@ impl Chooser {
     /// Keeps the number for some points: another one has failed here.
     pub(crate) fn keep(&mut self) {
         self.kept = self.keep;
-        self.keep *= 2;
+        self.keep = (2 * self.keep).min(MOST_KEPT);
         self.calm = 0;
     }
 

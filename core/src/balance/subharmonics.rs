@@ -28,17 +28,17 @@ fn primes(period: usize) -> impl Iterator<Item = usize> {
     (2..=period).filter(move |p| period.is_multiple_of(*p) && (2..*p).all(|q| !p.is_multiple_of(q)))
 }
 
-/// Orbits of a shorter period that a branch passes.
+/// Orbits that come back earlier, which a branch passes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shorter {
-    /// The shorter period.
+    /// Their period, in periods of the declaration.
     pub(crate) period: usize,
-    /// How many times it is contained.
+    /// Their harmonics are multiples of this one.
     times: usize,
 }
 
 impl Shorter {
-    /// What an orbit has beyond the shorter period, beside that of another one.
+    /// What an orbit has beyond those, beside that of another one.
     pub(crate) fn addition(self, from: &Orbit, u: &[f64]) -> Addition {
         Addition::of(from, u, |harmonic| !harmonic.is_multiple_of(self.times))
     }
@@ -95,21 +95,35 @@ impl Addition {
     }
 }
 
-/// Whether an orbit of a shorter period lies between an orbit and the next one of its branch, and which.
-pub(crate) fn passes_shorter_period(from: &Orbit, u: &[f64]) -> Option<Shorter> {
+/// Whether an orbit that comes back earlier lies between an orbit and the next one of its branch, and which: one of a shorter period, or
+/// one with more of the harmonics that are multiples of the stride of the system.
+pub(crate) fn passes_shorter_period(from: &Orbit, u: &[f64], stride: usize) -> Option<Shorter> {
+    let own = from.recurrence().stride();
     let shorter = |times| Shorter {
         period: from.period / times,
         times,
     };
+    let within = |times| Shorter {
+        period: from.period,
+        times: own * times,
+    };
+    let parts = if stride.is_multiple_of(own) {
+        stride / own
+    } else {
+        1
+    };
     primes(from.period)
         .map(shorter)
+        .chain(primes(parts).map(within))
         .find(|shorter| shorter.addition(from, u).vanished())
 }
 
-/// Whether two orbits are the same to three digits but for a shift by whole excitation periods.
-pub(crate) fn is_shifted(a: &Orbit, b: &Orbit) -> bool {
-    (0..a.period).any(|shift| {
-        let angle = std::f64::consts::TAU * shift as f64 / a.period as f64;
+/// Whether two orbits are the same to three digits but for a shift by whole excitation periods, or by that part of one after which the
+/// system of this stride is the same.
+pub(crate) fn is_shifted(a: &Orbit, b: &Orbit, stride: usize) -> bool {
+    let parts = a.period * stride;
+    (0..parts).any(|shift| {
+        let angle = std::f64::consts::TAU * shift as f64 / parts as f64;
         let (mut apart, mut size) = (0.0, 0.0);
         for i in 0..a.coordinates() {
             let (x, y) = (a.row(i), b.row(i));
@@ -129,6 +143,7 @@ pub(crate) fn is_shifted(a: &Orbit, b: &Orbit) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::branches::recurrence::SignedPermutation;
 
     fn orbit(period: usize, series: &[f64]) -> Orbit {
         Orbit {
@@ -139,6 +154,8 @@ mod tests {
             period,
             states: Vec::new(),
             symmetric: false,
+            parts: 1,
+            image: SignedPermutation::identity(),
         }
     }
 
@@ -147,12 +164,12 @@ mod tests {
         let a = [0.3, 1.0, -0.5, 0.2, 0.1, 0.0, 0.4, 0.05, 0.06];
         // x(tau + pi): odd harmonics change their sign.
         let b = [0.3, -1.0, 0.5, 0.2, 0.1, 0.0, -0.4, 0.05, 0.06];
-        assert!(is_shifted(&orbit(2, &a), &orbit(2, &b)));
-        assert!(!is_shifted(&orbit(1, &a), &orbit(1, &b)));
-        assert!(is_shifted(&orbit(1, &a), &orbit(1, &a)));
+        assert!(is_shifted(&orbit(2, &a), &orbit(2, &b), 1));
+        assert!(!is_shifted(&orbit(1, &a), &orbit(1, &b), 1));
+        assert!(is_shifted(&orbit(1, &a), &orbit(1, &a), 1));
         let mut c = b;
         c[4] += 0.01;
-        assert!(!is_shifted(&orbit(2, &a), &orbit(2, &c)));
+        assert!(!is_shifted(&orbit(2, &a), &orbit(2, &c), 1));
     }
 
     /// A branch of period three may pass near an orbit of period one without meeting it: what it has in addition turns round.
@@ -160,16 +177,33 @@ mod tests {
     fn what_turns_does_not_vanish() {
         let from = orbit(3, &[0.3, 0.1, 0.0, 0.0, 0.0, 0.5, 0.0]);
         let next =
-            |c: f64, s: f64| passes_shorter_period(&from, &[0.3, c, s, 0.0, 0.0, 0.5, 0.0, 1.0]);
+            |c: f64, s: f64| passes_shorter_period(&from, &[0.3, c, s, 0.0, 0.0, 0.5, 0.0, 1.0], 1);
         assert!(next(-0.02, 0.1).is_none());
         assert!(next(-0.05, 0.01).is_some());
+    }
+
+    /// Of orbits with even harmonics, the second changes its sign: one with the fourth alone lies in between.
+    #[test]
+    fn an_orbit_that_comes_back_within_the_period_is_seen() {
+        let series = |k: f64| [0.3, 0.0, 0.0, k, 0.0, 0.0, 0.0, 0.5, 0.0];
+        let from = Orbit {
+            parts: 2,
+            ..orbit(1, &series(0.1))
+        };
+        let next = |stride: usize| {
+            let u: Vec<f64> = [&series(-0.1)[..], &[1.0]].concat();
+            passes_shorter_period(&from, &u, stride).map(|shorter| shorter.period)
+        };
+        assert_eq!(next(4), Some(1));
+        assert_eq!(next(2), None);
+        assert_eq!(next(1), None);
     }
 
     #[test]
     fn an_orbit_of_a_shorter_period_in_between_is_seen() {
         let from = orbit(6, &[0.3, 0.0, 0.1, 0.0, 0.2, 0.5, 0.0]);
         let next = |first: f64, second: f64, third: f64| {
-            passes_shorter_period(&from, &[0.3, 0.0, first, 0.0, second, third, 0.0, 1.0])
+            passes_shorter_period(&from, &[0.3, 0.0, first, 0.0, second, third, 0.0, 1.0], 1)
                 .map(|shorter| shorter.period)
         };
         assert_eq!(next(0.09, 0.18, 0.45), None);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::balance::aft::Aft;
 use crate::balance::resolution::Chooser;
-use crate::balance::symmetry::{Over, has_stride, is_broken};
+use crate::balance::symmetry::{Over, Permutations, has_stride, is_broken};
 use crate::balance::{Lattice, Parity, Resolution};
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
@@ -38,6 +38,15 @@ const SAME: f64 = 1e-9;
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
 
+/// What orbits of a system may have, and those that are looked for.
+struct Symmetries {
+    /// The system has odd symmetry, and those that are looked for have not.
+    asymmetric: bool,
+    /// Harmonics of the most regular ones are multiples of this one.
+    stride: usize,
+    permutations: Permutations,
+}
+
 /// What was asked for.
 #[derive(Clone, Copy)]
 pub(crate) struct Asked<'r> {
@@ -45,7 +54,11 @@ pub(crate) struct Asked<'r> {
     pub(crate) balance: &'r HarmonicBalance,
 }
 
-impl Asked<'_> {
+impl<'r> Asked<'r> {
+    pub(crate) fn of(request: &'r Request, balance: &'r HarmonicBalance) -> Self {
+        Self { request, balance }
+    }
+
     /// Checks everything that was asked for.
     pub(crate) fn check(&self) -> Result<(BranchContext, FollowOptions), Error> {
         let facts = self.request.system.facts();
@@ -66,7 +79,7 @@ impl Asked<'_> {
             omega,
             variable,
         };
-        let asymmetric = self.use_symmetries(place, range, &mut resolution);
+        let symmetries = self.use_symmetries(place, range, &mut resolution);
         check_ends(place, range)?;
         let newton = NewtonOptions {
             tolerance: (1e-3 * self.request.tolerance).clamp(1e-11, 1e-6),
@@ -94,12 +107,15 @@ impl Asked<'_> {
                 resolution,
                 newton,
                 selection: self.balance.selection(),
-                asymmetric,
+                asymmetric: symmetries.asymmetric,
+                stride: symmetries.stride,
+                permutations: symmetries.permutations,
                 stability: self.request.stability.then_some(self.balance.multipliers),
                 chooser,
                 from,
                 to,
                 cancel: self.request.cancel.clone(),
+                keep: self.request.keep.clone(),
             },
             options,
         ))
@@ -123,22 +139,14 @@ impl Asked<'_> {
         Ok((parameters, omega))
     }
 
-    /// Takes only the harmonics that orbits with the symmetries of the system have, where such orbits are wanted. Says whether orbits
-    /// without its odd symmetry are.
+    /// Takes only the harmonics that orbits with the symmetries of the system have, where such orbits are wanted.
     fn use_symmetries(
         &self,
         place: Place<'_>,
         range: [f64; 2],
         resolution: &mut Resolution,
-    ) -> bool {
-        let over = Over {
-            system: place.system,
-            layout: place.layout,
-            parameters: place.parameters,
-            omega: place.omega,
-            variable: place.variable,
-            range,
-        };
+    ) -> Symmetries {
+        let over = Over { place, range };
         let odd = over.is_odd() && self.request.period() == 1;
         let kept = self.balance.symmetric && !self.near().is_some_and(lacks_symmetry);
         if odd && kept {
@@ -148,10 +156,16 @@ impl Asked<'_> {
                 resolution.harmonics |= 1;
             }
         }
+        let mut stride = 1;
         if self.request.period() == 1 && self.balance.symmetric {
-            self.take_stride(over.stride(), resolution);
+            stride = over.stride();
+            self.take_stride(stride, resolution);
         }
-        odd && !kept
+        Symmetries {
+            asymmetric: odd && !kept,
+            stride,
+            permutations: over.permutations(),
+        }
     }
 
     /// Another value that what is varied may have, next to one.
@@ -272,16 +286,19 @@ impl Asked<'_> {
         })
     }
 
-    /// Takes multiples of a harmonic as unknowns, where the orbit that is given has no others and some are below the highest.
+    /// Takes multiples of a harmonic as unknowns, or of the largest part of it of which the orbit that is given has no others and some
+    /// are below the highest.
     fn take_stride(&self, stride: usize, resolution: &mut Resolution) {
-        // What is odd of a sum of even harmonics is nothing.
-        let odd = resolution.parity == Parity::Odd && stride.is_multiple_of(2);
         let given = self.near();
-        let has = given.is_none_or(|orbit| has_stride(orbit, stride));
-        let few = stride > resolution.harmonics;
-        if stride == 1 || odd || few || !has {
+        let admitted = |part: &usize| {
+            // What is odd of a sum of even harmonics is nothing.
+            let odd = resolution.parity == Parity::Odd && part.is_multiple_of(2);
+            let has = given.is_none_or(|orbit| has_stride(orbit, *part));
+            stride.is_multiple_of(*part) && *part <= resolution.harmonics && !odd && has
+        };
+        let Some(stride) = (2..=stride).rev().find(admitted) else {
             return;
-        }
+        };
         resolution.stride = stride;
         resolution.core *= stride;
         if self.balance.harmonics.is_none() {

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use crate::balance::critical_block::{CriticalBlock, Part};
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::start::{Motion, StartRequest};
+use crate::balance::symmetry::Permutations;
 use crate::balance::truncation::RefinedBalance;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::balance_branch::point_evaluator::PointEvaluator;
 use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
+use crate::branches::keep::Keep;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::solve::{Toward, along};
@@ -44,7 +46,7 @@ pub(crate) enum EventSelection {
 }
 
 /// What it takes to compute further orbits of a branch.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(crate) struct BranchContext {
     pub(crate) system: Arc<dyn System>,
     pub(crate) parameters: Vec<f64>,
@@ -54,6 +56,11 @@ pub(crate) struct BranchContext {
     pub(crate) newton: NewtonOptions,
     /// The orbits lack the odd symmetry that others of the system have.
     pub(crate) asymmetric: bool,
+    /// Harmonics of the most regular orbits of the system, whose contacts are in each other's place after a part of the period, are
+    /// multiples of this one.
+    pub(crate) stride: usize,
+    /// Coordinates that may be in each other's place, at every time or a part of the period later.
+    pub(crate) permutations: Permutations,
     /// Which events are looked for.
     pub(crate) selection: EventSelection,
     /// How multipliers are computed, where they are.
@@ -63,14 +70,8 @@ pub(crate) struct BranchContext {
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) cancel: Cancel,
-}
-
-impl std::fmt::Debug for BranchContext {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("BranchContext")
-            .field("variable", &self.variable)
-            .finish_non_exhaustive()
-    }
+    /// Keeps what was found.
+    pub(crate) keep: Option<Arc<dyn Keep>>,
 }
 
 impl BranchContext {
@@ -104,14 +105,10 @@ impl BranchContext {
     pub(crate) fn blocks(&self, resolution: Resolution) -> Vec<CriticalBlock<'_>> {
         let odd = resolution.parity == Parity::Odd;
         let all = self.selection == EventSelection::All;
-        let halves = resolution.stride.is_multiple_of(2);
+        let doublings = !odd && self.selection != EventSelection::Folds;
         let wanted = [
             (odd, Part::Even),
-            (
-                !odd && !halves && self.selection != EventSelection::Folds,
-                Part::Doubled,
-            ),
-            (!odd && halves && all, Part::Between),
+            (doublings, Part::doubled(resolution.stride)),
             (all, Part::Own),
         ];
         let wanted = wanted.into_iter().filter(|(wanted, _)| *wanted);

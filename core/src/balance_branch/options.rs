@@ -25,6 +25,7 @@ use crate::orbit::stability::Method;
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HarmonicBalance {
     pub(crate) harmonics: Option<usize>,
     pub(crate) samples: Option<usize>,
@@ -55,67 +56,41 @@ impl HarmonicBalance {
         Self::default()
     }
 
-    /// The same number of harmonics at every point, whatever the tolerance. They are harmonics of the base frequency, which is
-    /// omega over the divisor of the declaration (one, unless it has fractions of omega), for an orbit of period one; an orbit of
-    /// period `n` has `n` times as many. Default: chosen by the tolerance; where the force is sampled, 20 times the divisor at the
-    /// default tolerance, twice as many for every two digits more, and between 5 and 100.
-    #[must_use]
-    pub fn harmonics(mut self, harmonics: usize) -> Self {
-        self.harmonics = Some(harmonics);
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// The same number of harmonics at every point, whatever the tolerance. They are harmonics of the base frequency, which is
+        /// omega over the divisor of the declaration (one, unless it has fractions of omega), for an orbit of period one; an orbit of
+        /// period `n` has `n` times as many. Default: chosen by the tolerance; where the force is sampled, 20 times the divisor at the
+        /// default tolerance, twice as many for every two digits more, and between 5 and 100.
+        harmonics(harmonics: usize) { self.harmonics = Some(harmonics) }
 
-    /// How the harmonics of contact forces are found. Default: [`Aft::Switched`], exact; the others are for comparison.
-    #[must_use]
-    pub fn aft(mut self, aft: Aft) -> Self {
-        self.aft = aft;
-        self
-    }
+        /// How the harmonics of contact forces are found. Default: [`Aft::Switched`], exact; the others are for comparison.
+        aft(aft: Aft) { self.aft = aft }
 
-    /// Samples per period of the declaration, for the methods that sample. Default: at least 200 per harmonic, a power of two. The
-    /// derivative of a force like `g^1.5` has a kink where contact begins; folds feel it as the power -1.5 of the samples.
-    #[must_use]
-    pub fn samples(mut self, samples: usize) -> Self {
-        self.samples = Some(samples);
-        self
-    }
+        /// Samples per period of the declaration, for the methods that sample. Default: at least 200 per harmonic, a power of two. The
+        /// derivative of a force like `g^1.5` has a kink where contact begins; folds feel it as the power -1.5 of the samples.
+        samples(samples: usize) { self.samples = Some(samples) }
 
-    /// How Floquet multipliers are computed. Default: [`Method::Default`].
-    /// [`Branch::multipliers`](crate::Branch::multipliers) applies any method to an orbit that is there already.
-    #[must_use]
-    pub fn multipliers(mut self, method: Method) -> Self {
-        self.multipliers = method;
-        self
-    }
+        /// How Floquet multipliers are computed. Default: [`Method::Default`].
+        /// [`Branch::multipliers`](crate::Branch::multipliers) applies any method to an orbit that is there already.
+        multipliers(method: Method) { self.multipliers = method }
 
-    /// Whether doublings of the period are located too, where another balance, of twice the period, has the branch that begins.
-    /// Orbits of odd symmetry have none. Default: no, since it takes about as long again. [`bifurcations`](Self::bifurcations)
-    /// include doublings, whatever is said here.
-    #[must_use]
-    pub fn doublings(mut self, wanted: bool) -> Self {
-        self.doublings = wanted;
-        self
-    }
+        /// Whether doublings of the period are located too, where another balance, of twice the period, has the branch that begins.
+        /// Orbits of odd symmetry have none. Default: no, since it takes about as long again. [`bifurcations`](Self::bifurcations)
+        /// include doublings, whatever is said here.
+        doublings(wanted: bool) { self.doublings = wanted }
 
-    /// Whether all bifurcations are located and not folds alone: doublings of the period, crossings with other branches,
-    /// Neimark-Sacker bifurcations, and where a gap touches a level. Default: no. Neimark-Sacker bifurcations are seen by the
-    /// multipliers, so they need [`stability`](crate::FrequencyResponse::stability).
-    #[must_use]
-    pub fn bifurcations(mut self, wanted: bool) -> Self {
-        self.bifurcations = wanted;
-        self
-    }
+        /// Whether all bifurcations are located and not folds alone: doublings of the period, crossings with other branches,
+        /// Neimark-Sacker bifurcations, and where a gap touches a level. Default: no. Neimark-Sacker bifurcations are seen by the
+        /// multipliers, so they need [`stability`](crate::FrequencyResponse::stability).
+        bifurcations(wanted: bool) { self.bifurcations = wanted }
 
-    /// Whether orbits of period one have the symmetry that the system has. Default: yes. Of the odd symmetry, `x(t + T/2) = -x(t)`,
-    /// they have odd harmonics only then, and where the symmetry breaks is located. Otherwise a first orbit without the symmetry is
-    /// looked for, as in one of two wells, and one with it taken if none is found; the branch may pass from one to the other. Where
-    /// contacts take each other's place after a part of the period, as the balls of a bearing or the blades of a rotor, orbits come
-    /// back after that part; otherwise all harmonics are unknowns, whatever the orbits have. An orbit without the symmetry that is
-    /// [given](crate::FrequencyResponse::near_orbit) does not need this.
-    #[must_use]
-    pub fn symmetric(mut self, wanted: bool) -> Self {
-        self.symmetric = wanted;
-        self
+        /// Whether orbits of period one have the symmetry that the system has. Default: yes. Of the odd symmetry, `x(t + T/2) = -x(t)`,
+        /// they have odd harmonics only then, and where the symmetry breaks is located. Otherwise a first orbit without the symmetry is
+        /// looked for, as in one of two wells, and one with it taken if none is found; the branch may pass from one to the other. Where
+        /// contacts take each other's place after a part of the period, as the balls of a bearing or the blades of a rotor, orbits come
+        /// back after that part; otherwise all harmonics are unknowns, whatever the orbits have. An orbit without the symmetry that is
+        /// [given](crate::FrequencyResponse::near_orbit) does not need this.
+        symmetric(wanted: bool) { self.symmetric = wanted }
     }
 
     /// Which events are looked for.

@@ -1,7 +1,7 @@
 //! Everything that is read off an orbit.
 
+use crate::balance::Balance;
 use crate::balance::truncation::{BEYOND, RefinedBalance};
-use crate::balance::{Balance, Parity};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::continuation::newton::Newton;
@@ -73,6 +73,9 @@ impl<'a> PointEvaluator<'a> {
             .map_or_else(Stability::unknown, |judge| {
                 judge.stability(balance, corrected.then_some(&self.finer), u)
             });
+        let recurrence = balance
+            .resolution()
+            .recurrence(balance.layout().coordinates);
         let orbit = Orbit {
             series: u[..n].to_vec(),
             coordinates: balance.layout().coordinates,
@@ -80,7 +83,9 @@ impl<'a> PointEvaluator<'a> {
             base: balance.base(),
             period: balance.resolution().period,
             states: Vec::new(),
-            symmetric: balance.resolution().parity == Parity::Odd,
+            parts: recurrence.parts,
+            symmetric: recurrence.image.is_minus(),
+            image: recurrence.image,
         };
         let observed = self.observer.observe(balance, u);
         self.across = f64::INFINITY;

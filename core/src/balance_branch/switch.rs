@@ -29,13 +29,13 @@ const FIRST_STEPS: [f64; 4] = [0.02, 0.05, 0.01, 0.1];
 
 /// Which part of the Jacobian is singular at an event, and the parity of the harmonics that its orbits have; `None` if no branch begins
 /// there. The harmonics of the old branch are multiples of a stride.
-fn critical(event: &Event, stride: usize, of_branch: usize) -> Option<(Part, Parity)> {
-    let halved = stride == 2 * of_branch;
+fn critical(event: &Event, stride: usize) -> Option<(Part, Parity)> {
     Some(match event.kind {
-        EventKind::PeriodDoubling => (Part::Doubled, Parity::All),
+        EventKind::PeriodDoubling => (Part::doubled(stride), Parity::All),
+        EventKind::BranchPoint | EventKind::SymmetryBreaking if !event.tangent.is_empty() => {
+            (Part::Own, Parity::All)
+        }
         EventKind::SymmetryBreaking => (Part::Even, Parity::Odd),
-        EventKind::BranchPoint if !event.tangent.is_empty() => (Part::Own, Parity::All),
-        EventKind::BranchPoint if halved => (Part::Between, Parity::All),
         _ => return None,
     })
 }
@@ -58,7 +58,7 @@ pub(crate) fn switch_branch(
     let orbit = &event.point.orbit;
     let mut u = orbit.series.clone();
     u.push(event.point.value);
-    let Some((part, parity)) = critical(event, stride, context.resolution.stride) else {
+    let Some((part, parity)) = critical(event, stride) else {
         return Err(nothing.into());
     };
     let mut old = context.with_harmonics(orbit.harmonics(), orbit.harmonics());

@@ -8,14 +8,17 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use super::cover::Searched;
 use super::matching;
 use crate::branches::branch::Branch;
+use crate::branches::error::{Attempts, OrbitError};
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See};
 use crate::continuation::follow::Stop;
 use crate::error::{Error, ErrorKind, chain};
 use crate::event::{EventKind, Side};
 use crate::response::{FrequencyResponse, OrbitMethod};
+use crate::shooting::Shooting;
 
 /// Branches of periodic orbits and how they are connected.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -29,6 +32,11 @@ pub struct Diagram {
     /// Attractors whose branch was not followed, and searches that failed: the value and why.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub missed: Vec<(f64, Reason)>,
+    /// Where motions were followed until they settled, and what they settled to.
+    pub searched: Vec<Searched>,
+    /// Parts of the range that was asked for in which no branch has an orbit, in increasing order.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub uncovered: Vec<[f64; 2]>,
     /// Time of the computation.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub elapsed: Duration,
@@ -66,6 +74,8 @@ pub enum Origin {
         /// Side of the event.
         side: Side,
     },
+    /// It begins at the other end of the range, where the first one ended before.
+    OtherEnd,
     /// Nothing that was followed leads to it: motions were found to settle to one of its orbits.
     Attractor {
         /// Where, in what is varied.
@@ -106,12 +116,14 @@ impl fmt::Display for Omitted {
 pub enum Reason {
     /// It is deeper than asked for.
     Depth,
+    /// Its orbits are of a longer period than was asked for.
+    Period,
     /// There are as many branches or orbits as were allowed.
     Budget,
     /// It is the mirror image of a branch that is followed.
     Mirrored,
-    /// A branch that is known ends there.
-    Known {
+    /// A branch that was followed ends there.
+    BranchEnds {
         /// Its number in the diagram.
         branch: usize,
     },
@@ -135,9 +147,10 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Depth => f.write_str("deeper than asked for"),
+            Self::Period => f.write_str("of a longer period than was asked for"),
             Self::Budget => f.write_str("no more branches or orbits are allowed"),
             Self::Mirrored => f.write_str("the mirror image of a branch that is followed"),
-            Self::Known { branch } => write!(f, "branch {branch} ends there"),
+            Self::BranchEnds { branch } => write!(f, "branch {branch} ends there"),
             Self::Interrupted => f.write_str("interrupted"),
             Self::Failed(error) => chain(error).fmt(f),
         }
@@ -148,6 +161,22 @@ impl DiagramBranch {
     /// Period of its orbits in periods of the declaration.
     pub fn period(&self) -> usize {
         self.branch.period()
+    }
+}
+
+/// Branches by themselves, as they are read from a file: nothing is known of what connects them.
+impl From<Vec<Branch>> for Diagram {
+    fn from(branches: Vec<Branch>) -> Self {
+        let alone = |branch: Branch| DiagramBranch {
+            origin: Origin::First,
+            depth: 0,
+            branch,
+            mirrored: false,
+        };
+        Self {
+            branches: branches.into_iter().map(alone).collect(),
+            ..Self::default()
+        }
     }
 }
 
@@ -184,10 +213,13 @@ impl<'v> Observer<'v> {
     }
 }
 
-/// How far a search goes: bifurcations between a branch and the first one, and numbers of branches and of orbits.
+/// How far a search goes: bifurcations between a branch and the first one, the longest period, and numbers of branches and of orbits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     pub(super) depth: usize,
+    pub(super) period: usize,
+    /// Whether what begins on the mirror image of a branch is followed too.
+    pub(super) mirrored: bool,
     pub(super) branches: usize,
     pub(super) points: usize,
 }
@@ -195,12 +227,16 @@ pub(super) struct Limits {
 /// The search, and what it has found.
 pub(super) struct Search<'v, M> {
     pub(super) observer: Observer<'v>,
-    response: FrequencyResponse<M>,
+    pub(super) response: FrequencyResponse<M>,
+    /// The range of the first branch.
+    pub(super) asked: [f64; 2],
     /// Length of the range.
     range: f64,
     depth: usize,
+    longest: usize,
+    mirrored: bool,
     most_branches: usize,
-    points_left: usize,
+    pub(super) points_left: usize,
     /// Branch and event.
     queue: VecDeque<(usize, usize)>,
     pub(super) diagram: Diagram,
@@ -209,13 +245,17 @@ pub(super) struct Search<'v, M> {
 impl<'v, M: OrbitMethod> Search<'v, M> {
     pub(super) fn new(
         response: FrequencyResponse<M>,
+        asked: [f64; 2],
         limits: Limits,
         observer: Observer<'v>,
     ) -> Self {
         Self {
+            asked,
             range: response.request.length(),
             response,
             depth: limits.depth,
+            longest: limits.period,
+            mirrored: limits.mirrored,
             most_branches: limits.branches,
             points_left: limits.points,
             observer,
@@ -271,36 +311,81 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
         }
     }
 
-    /// Takes in the branch through an attractor, unless it is known.
+    /// Whether a branch more may be followed, of two parts.
+    ///
+    /// # Errors
+    /// Why not.
+    pub(super) fn may_go_on(&self) -> Result<(), Reason> {
+        if self.observer.interrupted {
+            return Err(Reason::Interrupted);
+        }
+        if self.diagram.branches.len() >= self.most_branches || self.points_left < 4 {
+            return Err(Reason::Budget);
+        }
+        Ok(())
+    }
+
+    /// The branch that the orbit with these states at the beginnings of its periods lies on.
+    pub(super) fn branch_of(&self, value: f64, states: &[Vec<f64>]) -> Option<usize> {
+        let contains =
+            |branch: &DiagramBranch| matching::contains(&self.response, branch, value, states);
+        self.diagram.branches.iter().position(contains)
+    }
+
+    /// Takes in the branch through an attractor, given by its states at the beginnings of its periods, unless it is known; returns its
+    /// number.
     ///
     /// # Errors
     /// Why it was not followed.
     pub(super) fn add_attractor(
         &mut self,
         value: f64,
-        period: usize,
-        state: &[f64],
-    ) -> Result<(), Reason> {
+        states: &[Vec<f64>],
+    ) -> Result<usize, Reason> {
         if self.observer.interrupted {
             return Err(Reason::Interrupted);
         }
-        let request = self.response.clone().period(period).near_state(state);
-        let orbit = request.orbit(value).map_err(Reason::of)?;
-        let known = |branch: &DiagramBranch| matching::contains(&self.response, branch, &orbit);
-        if self.diagram.branches.iter().any(known) {
-            return Ok(());
+        if let Some(number) = self.branch_of(value, states) {
+            return Ok(number);
         }
-        if self.diagram.branches.len() >= self.most_branches || self.points_left < 4 {
-            return Err(Reason::Budget);
+        self.may_go_on()?;
+        let request = self.response.clone();
+        let branch = match self.through(request, value, states) {
+            Err(error) if error.kind() != ErrorKind::Cancelled => {
+                let by_shooting = self.response.clone().by(Shooting::new());
+                // What the method that was asked for says.
+                self.through(by_shooting, value, states).map_err(|_| error)
+            }
+            found => found,
+        };
+        self.add(Origin::Attractor { value }, 0, branch.map_err(Reason::of)?);
+        Ok(self.diagram.branches.len() - 1)
+    }
+
+    /// The branch through the orbit with these states.
+    fn through<N: OrbitMethod>(
+        &mut self,
+        request: FrequencyResponse<N>,
+        value: f64,
+        states: &[Vec<f64>],
+    ) -> Result<Branch, Error> {
+        let period = states.len();
+        let request = request.period(period).near_state(&states[0]);
+        let orbit = request.orbit(value)?;
+        if !matching::passes(&orbit, states) {
+            let attempts = Attempts::default();
+            return Err(OrbitError::NoSuchPeriod {
+                period,
+                value,
+                attempts,
+            }
+            .into());
         }
         // Each of two parts may have half.
         let request = request
             .near_orbit(&orbit.orbit)
             .max_points(self.points_left / 2);
-        let branch = request.through_with(value, |progress| self.observer.see(progress));
-        let branch = branch.map_err(Reason::of)?;
-        self.add(Origin::Attractor { value }, 0, branch);
-        Ok(())
+        request.through_with(value, |progress| self.observer.see(progress))
     }
 
     fn follow(&mut self, number: usize, index: usize) -> Result<(), Reason> {
@@ -312,16 +397,20 @@ impl<'v, M: OrbitMethod> Search<'v, M> {
             _ => &[Side::One],
         };
         if let Some(branch) = self.crossing_at(number, &event) {
-            return Err(Reason::Known { branch });
+            return Err(Reason::BranchEnds { branch });
         }
         let known = self.ending_at(&event);
         if known.len() >= sides.len() {
-            return Err(Reason::Known { branch: known[0] });
+            return Err(Reason::BranchEnds { branch: known[0] });
         }
         if depth > self.depth {
             return Err(Reason::Depth);
         }
-        if mirrored {
+        let doubles = event.kind == EventKind::PeriodDoubling;
+        if event.point.orbit.period * if doubles { 2 } else { 1 } > self.longest {
+            return Err(Reason::Period);
+        }
+        if mirrored && !self.mirrored {
             return Err(Reason::Mirrored);
         }
         let mut failed = None;

@@ -1,7 +1,7 @@
 //! Why there is no diagram, or no backbone curve.
 
 use crate::attractors::basin::BasinError;
-use crate::error::{Error, ErrorKind};
+use crate::error::ErrorKind;
 use crate::numeric::decimal::Decimal;
 
 /// Why there is no diagram, or no backbone curve.
@@ -51,8 +51,8 @@ pub enum BifurcationError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    BifurcationError:
+crate::error::room_error! {
+    BifurcationError, BifurcationError::kind;
     NeverAtRest { position }
     NotFree { apart }
     NoLoad {}
@@ -61,15 +61,12 @@ crate::error::sentence_as_debug! {
     ;
 }
 
-impl From<BifurcationError> for Error {
-    fn from(error: BifurcationError) -> Self {
-        let kind = match &error {
-            BifurcationError::NotFree { .. } | BifurcationError::NoLoad => ErrorKind::Model,
-            BifurcationError::NeverAtRest { .. } | BifurcationError::NoResonance { .. } => {
-                ErrorKind::NoOrbit
-            }
-            BifurcationError::Search { reason, .. } => reason.kind(),
-        };
-        Self::new(kind, error)
+impl BifurcationError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NotFree { .. } | Self::NoLoad => ErrorKind::Model,
+            Self::NeverAtRest { .. } | Self::NoResonance { .. } => ErrorKind::NoOrbit,
+            Self::Search { reason, .. } => reason.kind(),
+        }
     }
 }

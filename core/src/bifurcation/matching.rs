@@ -6,6 +6,7 @@ use super::diagram::DiagramBranch;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::response::{FrequencyResponse, OrbitMethod};
+use crate::shooting::Shooting;
 
 /// Values of one event, found on two branches, differ by no more than this part of the range, or by their stated errors.
 const SAME: f64 = 1e-6;
@@ -41,51 +42,58 @@ fn beginnings(orbit: &Orbit) -> Vec<Vec<f64>> {
 }
 
 /// Whether an orbit passes through a state at the beginning of one of its segments.
-pub(super) fn visits(point: &Point, state: &[f64]) -> bool {
-    let size = 2.0 * point.size();
-    let n = state.len() / 2;
-    beginnings(&point.orbit).iter().any(|other| {
-        let mut pairs = other.iter().zip(state).enumerate();
-        pairs.all(|(i, (x, y))| {
-            let unit = if i < n { 1.0 } else { point.orbit.omega };
-            // At a branch point states are known to the root of what the value is known to.
-            (x - y).abs() <= SAME.sqrt() * size * unit
-        })
-    })
+fn visits(point: &Point, state: &[f64]) -> bool {
+    let mut others = beginnings(&point.orbit).into_iter();
+    others.any(|other| is_same_state(point, &other, state))
 }
 
-/// Whether an orbit is on a branch: one of those near its value leads to it.
+/// Whether the orbit at a value with these states at the beginnings of its periods is on a branch.
 pub(super) fn contains<M: OrbitMethod>(
     response: &FrequencyResponse<M>,
     branch: &DiagramBranch,
-    orbit: &Point,
+    value: f64,
+    states: &[Vec<f64>],
 ) -> bool {
-    if branch.period() != orbit.orbit.period {
+    if branch.period() != states.len() {
         return false;
     }
-    let passes = |pair: &&[Point]| {
-        let [a, b] = [pair[0].value, pair[1].value];
-        (a - orbit.value) * (b - orbit.value) <= 0.0
-    };
-    branch.branch.points.windows(2).filter(passes).any(|pair| {
-        let nearer = |point: &Point| (point.value - orbit.value).abs();
-        let start = if nearer(&pair[0]) < nearer(&pair[1]) {
-            &pair[0]
-        } else {
-            &pair[1]
-        };
-        let request = response.clone().period(orbit.orbit.period);
-        let found = request.near_orbit(&start.orbit).orbit(orbit.value);
-        found.is_ok_and(|found| {
-            visits(&found, &orbit.orbit.state()) || is_later(response, &found, orbit)
+    let found = branch.branch.at(value).unwrap_or_default();
+    found.iter().any(|found| passes(found, states))
+        || around(branch, value).any(|near| {
+            // A series may not resolve a state, and an orbit between two others may be lost.
+            let shooting = response.clone().by(Shooting::new()).stability(false);
+            let near = shooting.period(states.len()).near_orbit(&near.orbit);
+            near.orbit(value).is_ok_and(|found| passes(&found, states))
         })
+}
+
+/// Of every two neighbours on a branch between which it passes a value, the nearer one.
+fn around(branch: &DiagramBranch, value: f64) -> impl Iterator<Item = &Point> {
+    let off = move |point: &Point| point.value - value;
+    let pairs = branch.branch.points.windows(2);
+    let passing = pairs.filter(move |pair| off(&pair[0]) * off(&pair[1]) <= 0.0);
+    passing.map(move |pair| {
+        let first = off(&pair[0]).abs() < off(&pair[1]).abs();
+        if first { &pair[0] } else { &pair[1] }
     })
 }
 
-/// Whether a symmetric orbit of several periods begins in another one of them: its segments are parts of half of it, which need not
-/// be whole periods.
-fn is_later<M: OrbitMethod>(response: &FrequencyResponse<M>, found: &Point, orbit: &Point) -> bool {
-    let several = orbit.orbit.symmetric && orbit.orbit.period > 1;
-    let returns = || response.request.returns(response.shooting(), orbit);
-    several && returns().is_ok_and(|states| states.iter().any(|state| visits(found, state)))
+/// Whether an orbit passes through one of some states at phase zero.
+pub(super) fn passes(point: &Point, states: &[Vec<f64>]) -> bool {
+    let here = point.orbit.state();
+    states
+        .iter()
+        .any(|state| is_same_state(point, &here, state))
+}
+
+/// Whether two states are the same beside the size of an orbit.
+fn is_same_state(point: &Point, one: &[f64], other: &[f64]) -> bool {
+    let size = 2.0 * point.size();
+    let n = other.len() / 2;
+    let mut pairs = one.iter().zip(other).enumerate();
+    pairs.all(|(i, (x, y))| {
+        let unit = if i < n { 1.0 } else { point.orbit.omega };
+        // At a branch point states are known to the root of what the value is known to.
+        (x - y).abs() <= SAME.sqrt() * size * unit
+    })
 }

@@ -1,10 +1,18 @@
 //! Bifurcations of periodic orbits: the branches that begin at them, and the curves that they lie on.
 
 pub mod backbone;
+mod cover;
 pub(crate) mod diagram;
 pub(crate) mod error;
+pub(crate) mod map;
 mod matching;
 mod request;
+mod settle;
+mod solutions;
+mod stretches;
 
+pub use cover::{Searched, SettledTo, Settling};
 pub use diagram::{Diagram, DiagramBranch, Omitted, Origin, Reason};
+pub use map::{Cell, CellVerdict, Map};
 pub use request::Bifurcations;
+pub use solutions::{Solution, Solutions, SolutionsAt};

@@ -3,13 +3,14 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use super::cover::Settling;
 use super::diagram::{Diagram, Limits, Observer, Origin, Reason, Search};
 use crate::attractors::basin::{Basin, Basins, Visit};
 use crate::bifurcation::error::BifurcationError;
 use crate::branches::progress::Progress;
 use crate::cancel::Cancel;
 use crate::continuation::step;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::response::{FrequencyResponse, OrbitMethod};
@@ -56,40 +57,46 @@ const MARGIN: f64 = 0.1;
 /// assert!((doublings[0] - 1.531044135499983).abs() < 1e-11);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Bifurcations<M = Shooting> {
     response: FrequencyResponse<M>,
     depth: usize,
+    longest: usize,
     branches: usize,
     points: usize,
     margin: f64,
     searched: Vec<(f64, Basin)>,
-}
-
-impl<M: std::fmt::Debug> std::fmt::Debug for Bifurcations<M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Bifurcations")
-            .field("response", &self.response)
-            .field("depth", &self.depth)
-            .finish_non_exhaustive()
-    }
+    settling: Option<Settling>,
+    settled_at: Vec<f64>,
 }
 
 impl Bifurcations {
     /// Of this system, at the values that its parameters have now.
     pub fn of(system: &dyn System) -> Self {
         Self {
-            response: FrequencyResponse::of(system).by(Shooting::new()),
-            depth: 3,
-            branches: BRANCHES,
             points: POINTS,
-            margin: MARGIN,
-            searched: Vec::new(),
+            ..Self::starting_with(FrequencyResponse::of(system).by(Shooting::new()))
         }
     }
 }
 
 impl<M: OrbitMethod> Bifurcations<M> {
+    /// The first branch is that of a request, with its range, method and options; what its method looks for on a branch, further
+    /// branches begin at. [Its limit](FrequencyResponse::max_points) is that of all branches together.
+    pub fn starting_with(response: FrequencyResponse<M>) -> Self {
+        Self {
+            depth: 3,
+            longest: usize::MAX,
+            branches: BRANCHES,
+            points: response.request.max_points,
+            margin: MARGIN,
+            searched: Vec::new(),
+            settling: None,
+            settled_at: Vec::new(),
+            response,
+        }
+    }
+
     /// Computes orbits by another method, with its options. The balance looks for all
     /// bifurcations here, whatever its options say.
     #[must_use]
@@ -97,106 +104,94 @@ impl<M: OrbitMethod> Bifurcations<M> {
         Bifurcations {
             response: self.response.by(method.for_diagram()),
             depth: self.depth,
+            longest: self.longest,
             branches: self.branches,
             points: self.points,
             margin: self.margin,
             searched: self.searched,
+            settling: self.settling,
+            settled_at: self.settled_at,
         }
     }
 
-    /// Where the first branch starts.
-    #[must_use]
-    pub fn from(mut self, value: f64) -> Self {
-        self.response = self.response.from(value);
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// Where the first branch starts.
+        from(value: f64) { self.response = self.response.from(value) }
 
-    /// Where it ends.
-    #[must_use]
-    pub fn to(mut self, value: f64) -> Self {
-        self.response = self.response.to(value);
-        self
-    }
+        /// Where it ends.
+        to(value: f64) { self.response = self.response.to(value) }
 
-    /// Varies a parameter instead of the excitation frequency, which is then [`omega`](Self::omega).
-    #[must_use]
-    pub fn vary(mut self, parameter: impl Into<String>) -> Self {
-        self.response = self.response.vary(parameter);
-        self
-    }
+        /// Varies a parameter instead of the excitation frequency, which is then [`omega`](Self::omega).
+        vary(parameter: impl Into<String>) { self.response = self.response.vary(parameter) }
 
-    /// The excitation frequency, in radians per unit of time, when a parameter is varied.
-    #[must_use]
-    pub fn omega(mut self, omega: f64) -> Self {
-        self.response = self.response.omega(omega);
-        self
-    }
+        /// The excitation frequency, in radians per unit of time, when a parameter is varied.
+        omega(omega: f64) { self.response = self.response.omega(omega) }
 
-    /// Period of the orbits of the first branch, in periods of the declaration; see [`FrequencyResponse::period`]. Default: 1.
-    #[must_use]
-    pub fn period(mut self, period: usize) -> Self {
-        self.response = self.response.period(period);
-        self
-    }
+        /// Period of the orbits of the first branch, in periods of the declaration; see [`FrequencyResponse::period`]. Default: 1.
+        period(period: usize) { self.response = self.response.period(period) }
 
-    /// So many bifurcations may lie between a branch and the first one. Default: 3.
-    #[must_use]
-    pub fn depth(mut self, depth: usize) -> Self {
-        self.depth = depth;
-        self
-    }
+        /// So many bifurcations may lie between a branch and the first one. Default: 3.
+        depth(depth: usize) { self.depth = depth }
 
-    /// No more branches than this. Default: 64.
-    #[must_use]
-    pub fn max_branches(mut self, branches: usize) -> Self {
-        self.branches = branches;
-        self
-    }
+        /// What begins at a doubling is followed up to this period, in periods of the declaration. Default: without end.
+        max_period(period: usize) { self.longest = period }
 
-    /// No more orbits than this on all branches together. Default: 50000.
-    #[must_use]
-    pub fn max_points(mut self, points: usize) -> Self {
-        self.points = points;
-        self
-    }
+        /// No more branches than this. Default: 64.
+        max_branches(branches: usize) { self.branches = branches }
 
-    /// Branches other than the first may go beyond the ends of the range by this part of it, as far as the equations
-    /// make sense there. Default: 0.1.
-    #[must_use]
-    pub fn margin(mut self, part: f64) -> Self {
-        self.margin = part;
-        self
-    }
+        /// No more orbits than this on all branches together. Default: 50000.
+        max_points(points: usize) { self.points = points }
 
-    /// Also looks for branches that nothing leads to: at a value of what is varied, motions from a grid of initial states are
-    /// followed until they have settled, and the branch of every periodic orbit that they settle to, of whatever period, is
-    /// followed unless it is known. The basin is of the same system, with its grid, the longest period, the patience, the bound and the
-    /// threads; frequency and parameters are those of this request at the value.
-    #[must_use]
-    pub fn search(mut self, value: f64, basin: Basin) -> Self {
-        self.searched.push((value, basin));
-        self
-    }
+        /// Branches other than the first may go beyond the ends of the range by this part of it, as far as the equations
+        /// make sense there. Default: 0.1.
+        margin(part: f64) { self.margin = part }
 
-    /// Accuracy of the output; see [`FrequencyResponse::tolerance`].
-    #[must_use]
-    pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.response = self.response.tolerance(tolerance);
-        self
-    }
+        /// Also looks for branches that nothing leads to: at a value of what is varied, motions from a grid of initial states are
+        /// followed until they have settled, and the branch of every periodic orbit that they settle to, of whatever period, is
+        /// followed unless it is known. The basin is of the same system, with its grid, the longest period, the patience, the bound and the
+        /// threads; frequency and parameters are those of this request at the value.
+        search(value: f64, basin: Basin) { self.searched.push((value, basin)) }
 
-    /// Largest step along a branch; see [`FrequencyResponse::largest_step`].
-    #[must_use]
-    pub fn largest_step(mut self, step: f64) -> Self {
-        self.response = self.response.largest_step(step);
-        self
-    }
+        /// Covers the range by what exists there. Where the first branch turns back or ends before the other end, the branch from there is
+        /// followed too. Then motions are followed until they have settled, for any number of coordinates: at the values that `settling`
+        /// says, and at others where no stable orbit is known; and the branch of every orbit that they settle to is followed both ways.
+        /// [`Diagram::searched`] says what was searched and found, [`Diagram::uncovered`] where there is no orbit. What begins on the mirror
+        /// image of a branch is followed like any other.
+        ///
+        /// What exists and is not met by any of these motions is not found: more [values](Settling::values) and
+        /// [initial states](Settling::starts) find more.
+        ///
+        /// ```
+        /// use hertzian::FrequencyResponse;
+        /// use hertzian::bifurcation::{Bifurcations, Settling};
+        ///
+        /// hertzian::oscillator! {
+        ///     Duffing(x) {
+        ///         param drive;
+        ///         ddot(x) + 0.05*dot(x) + x + x^3 = drive*cos(omega*t);
+        ///     }
+        /// }
+        ///
+        /// let model = Duffing { drive: 0.3 };
+        /// let request = Bifurcations::of(&model).from(1.2).to(2.4).depth(1);
+        /// let diagram = request.cover(Settling::new().values(3).starts(8)).run()?;
+        /// assert!(diagram.uncovered.is_empty());
+        /// assert!(diagram.searched.iter().all(|searched| searched.fates.len() == 8));
+        /// # Ok::<(), hertzian::Error>(())
+        /// ```
+        cover(settling: Settling) { self.settling = Some(settling) }
 
-    /// What is computed ends when this token is cancelled, the search for a first orbit too.
-    #[must_use]
-    pub fn cancel(mut self, cancel: &Cancel) -> Self {
-        self.response = self.response.cancel(cancel);
-        self
+        /// Where the range is [covered](Self::cover), motions are followed at these values too.
+        settled_at(values: &[f64]) { self.settled_at = values.to_vec() }
+
+        /// Accuracy of the output; see [`FrequencyResponse::tolerance`].
+        tolerance(tolerance: f64) { self.response = self.response.tolerance(tolerance) }
+
+        /// Largest step along a branch; see [`FrequencyResponse::largest_step`].
+        largest_step(step: f64) { self.response = self.response.largest_step(step) }
+
+        /// What is computed ends when this token is cancelled, the search for a first orbit too.
+        cancel(cancel: &Cancel) { self.response = self.response.cancel(cancel) }
     }
 
     /// Follows the first branch and all that are connected with it.
@@ -235,25 +230,53 @@ impl<M: OrbitMethod> Bifurcations<M> {
         self.check_searched([from, to])?;
         let mut seen = Observer::new(&mut visit);
         let first = self.response.clone().max_points(self.points.max(2));
-        let branch = first.run_with(|progress| seen.see(progress))?;
+        let found = first.run_with(|progress| seen.see(progress));
+        // Without a first branch the range may be covered by others.
+        let optional = |error: &Error| {
+            self.settling.is_some() && matches!(error.kind(), ErrorKind::NoOrbit | ErrorKind::Limit)
+        };
+        let (branch, none) = match found {
+            Ok(branch) => (Some(branch), None),
+            Err(error) if optional(&error) => (None, Some(error)),
+            Err(error) => return Err(error),
+        };
         let [low, high] = self.wider(from, to)?;
+        // The first branch alone is kept on the way.
+        let mut others = self.response.clone().from(low).to(high);
+        others.request.keep = None;
         let mut search = Search::new(
-            self.response.clone().from(low).to(high),
+            others,
+            [from, to],
             Limits {
                 depth: self.depth,
+                period: self.longest,
+                // Motions settle to them as well.
+                mirrored: self.settling.is_some(),
                 branches: self.branches,
                 points: self.points,
             },
             seen,
         );
-        search.add(Origin::First, 0, branch);
-        search.exhaust();
+        if let Some(branch) = branch {
+            search.add(Origin::First, 0, branch);
+            search.exhaust();
+        }
+        if let Some(settling) = &self.settling {
+            search.cover(settling, &self.settled_at);
+        }
         for &(value, ref basin) in &self.searched {
             if let Err(reason) = self.add_attractors(&mut search, value, basin, &mut watch) {
                 search.diagram.missed.push((value, reason));
             }
         }
         let mut diagram = search.diagram;
+        if let Some(error) = none {
+            if diagram.branches.is_empty() {
+                return Err(error);
+            }
+            diagram.missed.insert(0, (from, Reason::of(error)));
+        }
+        diagram.uncovered = diagram.without_orbits([from, to]);
         diagram.elapsed = started.elapsed();
         Ok(diagram)
     }
@@ -294,8 +317,7 @@ impl<M: OrbitMethod> Bifurcations<M> {
             return Err(Reason::Interrupted);
         }
         for attractor in found.attractors {
-            let (period, state) = (attractor.period, &attractor.points[0]);
-            if let Err(reason) = search.add_attractor(value, period, state) {
+            if let Err(reason) = search.add_attractor(value, &attractor.points) {
                 search.diagram.missed.push((value, reason));
             }
             search.exhaust();
@@ -326,6 +348,9 @@ impl<M: OrbitMethod> Bifurcations<M> {
     fn check(&self) -> Result<(), Error> {
         validate::option("margin", self.margin, 0.0..=10.0, "must be from 0 to 10")?;
         let branches = self.branches as f64;
+        if let Some(settling) = &self.settling {
+            settling.check()?;
+        }
         validate::option("max_branches", branches, 1.0..=1e6, "must be 1 or more")?;
         step::max_points(self.points).map(|_| ())
     }

@@ -1,10 +1,12 @@
 //! A branch of orbits as data.
 
 use std::any::Any;
-use std::fmt;
-use std::mem::discriminant;
+use std::fmt::Debug;
 use std::sync::Arc;
 use std::time::Duration;
+
+#[cfg(feature = "serde")]
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::point::{Event, Point};
 use crate::cancel::Cancel;
@@ -12,7 +14,7 @@ use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::{EventKind, Turn};
-use crate::system::{ParameterFacts, System, SystemFacts};
+use crate::system::{ContactFacts, OutputFacts, ParameterFacts, System, SystemFacts};
 use crate::time::Work;
 
 /// A branch of orbits in the order in which it was followed, by whatever method.
@@ -65,7 +67,8 @@ pub struct Branch {
     /// Time of the computation.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub elapsed: Duration,
-    #[cfg_attr(feature = "serde", serde(skip))]
+    /// What it takes to go on with it.
+    #[cfg_attr(feature = "serde", serde(default, rename = "request"))]
     pub(crate) further: Further,
 }
 
@@ -76,12 +79,21 @@ pub struct Branch {
 pub struct Model {
     /// Name of the declared type.
     pub name: String,
-    /// The equations of motion, as written.
+    /// The equations of motion, as written, and the constants and laws that are in them.
     pub equation: String,
     /// Names of the coordinates.
     pub coordinates: Vec<String>,
+    /// Their units, empty for plain numbers; none at all where the model has no units. Time is in seconds where it has.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub units: Vec<String>,
     /// The parameters, in the order of [`Point::parameters`].
     pub parameters: Vec<Parameter>,
+    /// The outputs, in the order of their declaration.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub outputs: Vec<Output>,
+    /// Names of the contacts: of their laws, with a number from one on where a law acts in several.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub contacts: Vec<String>,
     /// Number of pieces of the law of each contact.
     pub pieces: Vec<usize>,
 }
@@ -95,6 +107,30 @@ pub struct Parameter {
     pub name: String,
     /// Its documentation.
     pub documentation: String,
+    /// Its unit; empty where there is none.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub unit: String,
+}
+
+/// An output of a model.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Output {
+    /// Its name.
+    pub name: String,
+    /// Its documentation.
+    pub documentation: String,
+    /// Its unit; empty where there is none.
+    pub unit: String,
+}
+
+/// What a name stands for, by position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Source {
+    Output(usize),
+    Coordinate(usize),
+    Contact(usize),
 }
 
 impl Model {
@@ -106,7 +142,10 @@ impl Model {
             name: facts.name.to_string(),
             equation: facts.equation.to_string(),
             coordinates: facts.coordinates.iter().map(ToString::to_string).collect(),
+            units: facts.units.iter().map(ToString::to_string).collect(),
             parameters: facts.parameters.iter().map(Parameter::of).collect(),
+            outputs: facts.outputs.iter().map(Output::of).collect(),
+            contacts: contacts_of(system),
             pieces: pieces
                 .map(|contact| system.law(contact.law).facts().pieces.len())
                 .collect(),
@@ -123,6 +162,8 @@ impl Model {
             && self.equation == other.equation
             && names(self) == names(other)
             && self.pieces == other.pieces
+            && self.units == other.units
+            && self.outputs == other.outputs
     }
 }
 
@@ -131,33 +172,93 @@ impl Parameter {
         Self {
             name: facts.name.to_string(),
             documentation: facts.documentation.to_string(),
+            unit: facts.unit.to_string(),
         }
     }
 }
 
-/// What it takes to compute further orbits of a branch: the system, and what was asked for by the method that followed it. A branch read
-/// from a file has none. Not a part of what is compared.
-#[derive(Clone, Default)]
+impl Output {
+    fn of(facts: &OutputFacts) -> Self {
+        Self {
+            name: facts.name.to_string(),
+            documentation: facts.documentation.to_string(),
+            unit: facts.unit.to_string(),
+        }
+    }
+}
+
+/// A name for each contact: that of its law, numbered where the law acts in several.
+fn contacts_of(system: &dyn System) -> Vec<String> {
+    let contacts = &system.facts().contacts;
+    let number = |index: usize| {
+        let law = contacts[index].law;
+        let alike = |contacts: &[ContactFacts]| contacts.iter().filter(|c| c.law == law).count();
+        let name = &system.law(law).facts().name;
+        if alike(contacts) > 1 {
+            format!("{name}_{}", alike(&contacts[..=index]))
+        } else {
+            name.to_string()
+        }
+    };
+    (0..contacts.len()).map(number).collect()
+}
+
+/// What it takes to compute further orbits of a branch: the system, and what was asked for by the method that followed it. Of a branch
+/// read from a file it has what was written of that, until it is given a system. Not a part of what is compared.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Further {
     pub(crate) system: Option<Arc<dyn System>>,
-    pub(crate) request: Option<Arc<dyn Any + Send + Sync>>,
+    pub(crate) request: Option<Arc<dyn Asked>>,
+    #[cfg(feature = "serde")]
+    pub(crate) written: serde_json::Value,
+}
+
+impl Further {
+    /// Of a system, and what its branch was asked for by.
+    pub(crate) fn of(system: Arc<dyn System>, request: Arc<dyn Asked>) -> Self {
+        Self {
+            system: Some(system),
+            request: Some(request),
+            #[cfg(feature = "serde")]
+            written: serde_json::Value::Null,
+        }
+    }
+}
+
+/// What a branch was asked for by.
+pub(crate) trait Asked: Any + Debug + Send + Sync {
+    /// As JSON.
+    #[cfg(feature = "serde")]
+    fn written(&self) -> serde_json::Result<serde_json::Value>;
+}
+
+#[cfg(feature = "serde")]
+impl Serialize for Further {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        match &self.request {
+            Some(request) => {
+                let written = request.written().map_err(serde::ser::Error::custom)?;
+                written.serialize(to)
+            }
+            None => self.written.serialize(to),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> Deserialize<'de> for Further {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let written = serde_json::Value::deserialize(from)?;
+        Ok(Self {
+            written,
+            ..Self::default()
+        })
+    }
 }
 
 impl PartialEq for Further {
     fn eq(&self, _: &Self) -> bool {
         true
-    }
-}
-
-impl fmt::Debug for Further {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let system = self
-            .system
-            .as_ref()
-            .map(|system| system.facts().name.clone());
-        f.debug_struct("Further")
-            .field("system", &system)
-            .finish_non_exhaustive()
     }
 }
 
@@ -174,8 +275,9 @@ impl Branch {
 
     /// The events of one kind. Whether the branch turns back is not asked: `Grazing` of either kind gives all.
     pub fn events(&self, kind: EventKind) -> impl DoubleEndedIterator<Item = &Event> {
-        let alike = move |event: &&Event| discriminant(&event.kind) == discriminant(&kind);
-        self.events.iter().filter(alike)
+        self.events
+            .iter()
+            .filter(move |event| event.kind.is_like(kind))
     }
 
     /// The folds.

@@ -93,8 +93,8 @@ pub enum OrbitError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    OrbitError:
+crate::error::room_error! {
+    OrbitError, OrbitError::kind;
     NoStart { value, reason }
     SearchLimit { value, evaluations, multiplications, reason }
     NoSuchPeriod { period, value, attempts }
@@ -105,17 +105,16 @@ crate::error::sentence_as_debug! {
     ;
 }
 
-impl From<OrbitError> for Error {
-    fn from(error: OrbitError) -> Self {
-        let kind = match &error {
-            OrbitError::SearchLimit { .. } => ErrorKind::Limit,
-            OrbitError::NoSuchPeriod { attempts, .. } if attempts.made < attempts.planned => {
+impl OrbitError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::SearchLimit { .. } => ErrorKind::Limit,
+            Self::NoSuchPeriod { attempts, .. } if attempts.made < attempts.planned => {
                 ErrorKind::Limit
             }
-            OrbitError::Cancelled { .. } => ErrorKind::Cancelled,
+            Self::Cancelled { .. } => ErrorKind::Cancelled,
             _ => ErrorKind::NoOrbit,
-        };
-        Self::new(kind, error)
+        }
     }
 }
 

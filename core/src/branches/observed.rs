@@ -8,6 +8,10 @@
 pub struct Observed {
     /// One entry per coordinate.
     pub motions: Vec<Motion>,
+    /// One entry per output of the system; none where only the extremes of the coordinates were read off. Between switches of contacts an
+    /// output is smooth, and its extremes, mean and root of the mean square are those of the output itself.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub outputs: Vec<Motion>,
     /// One entry per contact; none where only the extremes were read off.
     pub contacts: Vec<ContactMotion>,
     /// For each contact, the part of the period that its gap spends on each piece of its law, from the piece of the lowest gaps to
@@ -30,6 +34,7 @@ impl Observed {
     pub(crate) fn extremes(motions: Vec<Motion>, switches: usize) -> Self {
         Self {
             motions,
+            outputs: Vec::new(),
             contacts: Vec::new(),
             on_pieces: Vec::new(),
             input_power: None,
@@ -81,16 +86,6 @@ impl Motion {
         self.minimum = self.minimum.min(x);
         self.maximum = self.maximum.max(x);
     }
-
-    /// Of an orbit of which this is half, `q(tau + pi n) = -q(tau)`.
-    pub(crate) fn mirrored(self) -> Self {
-        let largest = self.maximum.max(-self.minimum);
-        Self {
-            minimum: -largest,
-            maximum: largest,
-            ..self
-        }
-    }
 }
 
 /// What is read off one contact over a period of the orbit.
@@ -117,6 +112,9 @@ pub struct ContactMotion {
     pub fraction: f64,
     /// Number of separate intervals of contact: zero without contact, one for contact that is never lost.
     pub count: usize,
+    /// Integral of the law over the period of the orbit; `None` where it was not read off.
+    #[cfg_attr(feature = "serde", serde(default, with = "crate::serialise"))]
+    pub impulse: Option<f64>,
 }
 
 impl ContactMotion {
@@ -127,5 +125,11 @@ impl ContactMotion {
         maximum_force: 0.0,
         fraction: 0.0,
         count: 0,
+        impulse: None,
     };
+
+    /// How often contact begins in the period of the orbit: zero where it is never lost.
+    pub fn impacts(&self) -> usize {
+        if self.fraction < 1.0 { self.count } else { 0 }
+    }
 }

@@ -83,7 +83,31 @@ pub struct Event {
     pub(crate) tangent: Vec<f64>,
 }
 
+impl Event {
+    /// Period of the orbits of the branch that begins here, in periods of the declaration.
+    pub(crate) fn period_of_branch(&self) -> usize {
+        let orbit = &self.point.orbit;
+        match self.kind {
+            EventKind::PeriodDoubling => orbit.recurrence().doubled().period,
+            _ => orbit.period,
+        }
+    }
+}
+
+/// Drops those of the events from one on that their errors, so many times, do not tell apart from a touch at a value.
+pub(crate) fn drop_beside(events: &mut Vec<Event>, first: usize, touch: f64, errors: f64) {
+    let mut place = 0;
+    events.retain(|event| {
+        place += 1;
+        place <= first || (event.point.value - touch).abs() > errors * event.error
+    });
+}
+
+/// Decimals of the size of an orbit whose error was not asked for.
+pub(crate) const DECIMALS: usize = 6;
+
 impl fmt::Display for Event {
+    /// With the size of the first coordinate: [`Branch::describe`](crate::Branch::describe) names what leads, with units.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             kind,
@@ -92,17 +116,20 @@ impl fmt::Display for Event {
             contacts,
             ..
         } = self;
-        // What is left out of series shows earlier than what a flow leaves.
-        let digits = if point.orbit.states.is_empty() {
-            [9, 6]
-        } else {
-            [12, 9]
+        let value = Decimal::to_error(point.value, *error);
+        let size = point.peak_to_peak();
+        let size = match point.error {
+            Some(error) => Decimal::to_error(size, error * size),
+            None => Decimal::rounded(size, DECIMALS),
         };
-        let value = Decimal::rounded(point.value, digits[0]);
-        let size = Decimal::rounded(point.peak_to_peak(), digits[1]);
+        let of = if point.orbit.coordinates > 1 {
+            " of the first coordinate"
+        } else {
+            ""
+        };
         write!(
             f,
-            "{kind} at {value} (error {error:.0e}), peak-to-peak {size}"
+            "{kind} at {value} (error {error:.0e}), peak-to-peak{of} {size}"
         )?;
         if *contacts > 1 {
             write!(f, ", {contacts} contacts at once")?;

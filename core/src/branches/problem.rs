@@ -3,7 +3,10 @@
 //! The engine knows the curve, test functions and what their changes of sign mean. A method knows its equations, how orbits are read
 //! off solutions, what errors it makes, and where its branches end because they become those of more regular orbits.
 
-use crate::continuation::follow::{CurvePoint, Halted, Step, Stop};
+use super::engine::Walk;
+use super::extreme::Extreme;
+use super::point::{Event, Point};
+use crate::continuation::follow::{Continue, CurvePoint, Halted, Step, Stop};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{AsProblem, Problem};
@@ -11,8 +14,11 @@ use crate::event::{EventKind, Turn};
 
 /// Value of a test function: `mantissa exp(exponent)`, since determinants of many unknowns leave the range of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct TestValue {
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) mantissa: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) exponent: f64,
 }
 
@@ -59,6 +65,8 @@ pub(crate) enum Read {
     Kept,
     /// It was kept, and the walk goes on with other unknowns.
     Resize,
+    /// It was kept, and the walk goes on with other unknowns once the step to it has been looked at in the present ones.
+    ResizeBehind,
     /// It is to be read again with other unknowns.
     Refused,
     /// It was kept, and the walk ends: the caller asked for it, or the orbit could not be read.
@@ -80,6 +88,8 @@ pub(crate) enum ZeroOutcome {
 
 /// A test function of an event: the slope of the parameter, or one that is [`Watched`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub(crate) enum Test {
     Slope,
     Watched(usize),
@@ -107,6 +117,38 @@ pub(crate) struct Zero {
     pub(crate) root: Root,
     /// Test functions are in units of `exp(reference)`.
     pub(crate) reference: f64,
+    /// How much the test function changes with the parameter, at least: from the zero to either end of the step.
+    pub(crate) steepness: f64,
+    /// The lesser of its sizes at both ends.
+    pub(crate) least: f64,
+    /// Another test function, which is no modulus, changes its sign in the step too.
+    pub(crate) told: bool,
+    /// Number of points of the branch before it.
+    pub(crate) after: usize,
+}
+
+/// What was kept of a branch.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Kept<'k> {
+    pub(crate) points: &'k [Point],
+    pub(crate) events: &'k [Event],
+    pub(crate) turns: &'k [Turn],
+}
+
+/// An orbit of which a gap touches a level.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Touch {
+    /// The test function is the extreme less its level.
+    pub(crate) located: Located,
+    pub(crate) extreme: Extreme,
+    /// What the search leaves in the parameter.
+    pub(crate) error: f64,
+    /// What the parameter changes by while the extreme rises by half of the gap's range.
+    pub(crate) rate: f64,
+    /// Number of contacts that touch a level.
+    pub(crate) contacts: usize,
+    /// Whether the branch turns back there.
+    pub(crate) turns: bool,
     /// Number of points of the branch before it.
     pub(crate) after: usize,
 }
@@ -119,8 +161,14 @@ pub(crate) trait BranchProblem {
     /// Test functions besides the slope of the parameter.
     fn watched(&self) -> &[Watched];
 
-    /// Value of a test function. It may stay unknown where nothing happens near, unless it is `needed`.
-    fn test(&mut self, index: usize, at: &CurvePoint, needed: bool) -> TestValue;
+    /// Value of a test function, unknown where the orbit cannot be looked at.
+    fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue;
+
+    /// Number of complex multipliers outside of the unit circle, where moduli are watched.
+    fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
+        let _ = at;
+        None
+    }
 
     /// What is smaller is rounding: of all test functions, and of the slope.
     fn vanishing(&self) -> f64 {
@@ -141,6 +189,11 @@ pub(crate) trait BranchProblem {
 
     /// Number of points kept.
     fn points(&self) -> usize;
+
+    /// What was kept so far, where the verdicts on points are to be explained by events.
+    fn kept(&self) -> Kept<'_> {
+        Kept::default()
+    }
 
     /// Whether a point belongs to what comes after the end of the branch. It is not kept then.
     fn is_beyond(&mut self, at: &CurvePoint) -> bool {
@@ -164,9 +217,55 @@ pub(crate) trait BranchProblem {
     /// Keeps a place that is none.
     fn keep_turn(&mut self, turn: Turn);
 
-    /// Looks for touches of levels in a step, where the branch may have `turned` without a fold.
-    fn graze(&mut self, newton: &mut Newton, step: Step<'_>, turned: Option<Turn>) {
-        let _ = (newton, step, turned);
+    /// Drops one of those again, which turned out to be where a level is touched.
+    fn drop_turn(&mut self, turn: &Turn);
+
+    /// Whether touches of levels are looked for. Where the force jumps they always are.
+    fn seeks_touches(&self) -> bool {
+        false
+    }
+
+    /// Whether the force jumps at a level of some contact.
+    fn force_jumps(&self) -> bool {
+        false
+    }
+
+    /// Writes the extremes of all gaps over the period of a solution, seen from all levels: in order of contacts, levels and phases.
+    /// Says whether they could be read.
+    fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        let _ = (u, extremes);
+        false
+    }
+
+    /// Adds gaps at fixed phases to the extremes, seen from levels where the force jumps, if the unknowns have a kink where such a gap
+    /// passes a level.
+    fn add_beginnings(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) {
+        let _ = (u, extremes);
+    }
+
+    /// Writes the linear form of extended unknowns that gap less level is where an extreme of a solution lies, in its units. Of the
+    /// parameter a part of this `range` is little. Says whether that is known.
+    fn extreme_form(&mut self, u: &[f64], extreme: &Extreme, range: f64, form: &mut [f64]) -> bool {
+        let _ = (u, extreme, range, form);
+        false
+    }
+
+    /// Number of events kept.
+    fn events(&self) -> usize;
+
+    /// Drops those of the events from one on that their errors, so many times, do not tell apart from a touch at a value.
+    fn drop_beside(&mut self, first: usize, touch: f64, errors: f64);
+
+    /// How slowly, at a solution, a gap passes a level where the force jumps while it is slowed down: the height at which it would turn,
+    /// in units of half of the gap's range. The least of all; infinite where there is none, or it is not known.
+    fn slowest(&mut self, u: &[f64]) -> f64 {
+        let _ = u;
+        f64::INFINITY
+    }
+
+    /// Reads the orbit at a touch, whose factors Newton's method holds, and keeps it as an event. It was found near a step.
+    fn keep_touch(&mut self, newton: &mut Newton, step: Step<'_>, touch: &Touch) {
+        let _ = (newton, step, touch);
     }
 
     /// Takes more of the equations into the matrix from here on. Says whether there was something to take.
@@ -187,6 +286,12 @@ pub(crate) trait BranchProblem {
 
     /// Takes the last change back, since nothing was found with it. What changes its unknowns in [`remap`](Self::remap) must do so here.
     fn revert(&mut self) {}
+
+    /// Remembers where the walk is, in case that it is interrupted in the next step. The walk ends where this breaks.
+    fn onward(&mut self, walk: Walk) -> Continue {
+        let _ = walk;
+        Continue::Continue(())
+    }
 
     /// Adds up the work of a walk that ended or is resumed.
     fn count(&mut self, newton: &Newton);

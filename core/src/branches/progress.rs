@@ -72,6 +72,10 @@ pub enum Stage {
     Sweep,
     /// It lets motions settle, cell by cell: cells.
     Basin,
+    /// It lets motions settle at a value, to find further branches: motions.
+    Settling,
+    /// It looks for all solutions over two parameters, row by row: rows, of which the last is at this value of the second parameter.
+    Map,
 }
 
 impl std::fmt::Display for Stage {
@@ -82,6 +86,8 @@ impl std::fmt::Display for Stage {
             Self::Curve => "curve",
             Self::Sweep => "sweep",
             Self::Basin => "basin",
+            Self::Settling => "settling",
+            Self::Map => "map",
         })
     }
 }

@@ -2,17 +2,19 @@
 
 use std::sync::Arc;
 
+use super::branch::Branch;
 use super::error::unless_cancelled;
+use super::keep::Keep;
 use super::orbit::Orbit;
 use crate::cancel::Cancel;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::model::request::RequestError;
-use crate::model::validate;
+use crate::model::{self, validate};
 use crate::system::{System, Variable};
 
 /// The system, what is varied, and how far.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Request {
     pub(crate) system: Arc<dyn System>,
     pub(crate) vary: Option<String>,
@@ -29,26 +31,40 @@ pub struct Request {
     pub(crate) stability: bool,
     /// Ends what is computed.
     pub(crate) cancel: Cancel,
+    /// Keeps what is computed.
+    pub(crate) keep: Option<Arc<dyn Keep>>,
+}
+
+/// What is asked for beside the system.
+#[cfg(feature = "serde")]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Options {
+    vary: Option<String>,
+    #[serde(with = "crate::serialise")]
+    omega: Option<f64>,
+    #[serde(with = "crate::serialise")]
+    from: Option<f64>,
+    #[serde(with = "crate::serialise")]
+    to: Option<f64>,
+    period: Option<usize>,
+    near: Option<Guess>,
+    #[serde(with = "crate::serialise")]
+    tolerance: f64,
+    max_points: usize,
+    #[serde(with = "crate::serialise")]
+    largest_step: f64,
+    stability: bool,
 }
 
 /// What is known of the first orbit beforehand.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub(crate) enum Guess {
     /// Its state at phase zero.
-    State(Vec<f64>),
+    State(#[cfg_attr(feature = "serde", serde(with = "crate::serialise"))] Vec<f64>),
     /// An orbit near it.
     Orbit(Orbit),
-}
-
-impl std::fmt::Debug for Request {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Request")
-            .field("system", &self.system.facts().name)
-            .field("vary", &self.vary)
-            .field("from", &self.from)
-            .field("to", &self.to)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Request {
@@ -67,7 +83,50 @@ impl Request {
             largest_step: StepControl::default().largest,
             stability: true,
             cancel: Cancel::new(),
+            keep: None,
         }
+    }
+
+    /// What is asked for beside the system.
+    #[cfg(feature = "serde")]
+    pub(crate) fn options(&self) -> Options {
+        Options {
+            vary: self.vary.clone(),
+            omega: self.omega,
+            from: self.from,
+            to: self.to,
+            period: self.period,
+            near: self.near.clone(),
+            tolerance: self.tolerance,
+            max_points: self.max_points,
+            largest_step: self.largest_step,
+            stability: self.stability,
+        }
+    }
+
+    /// The same of a system. They may have been read from a file.
+    ///
+    /// # Errors
+    /// If the orbit near which the first one is to be is none of the system.
+    #[cfg(feature = "serde")]
+    pub(crate) fn with(system: &dyn System, options: Options) -> Result<Self, Error> {
+        let request = Self {
+            vary: options.vary,
+            omega: options.omega,
+            from: options.from,
+            to: options.to,
+            period: options.period,
+            near: options.near,
+            tolerance: options.tolerance,
+            max_points: options.max_points,
+            largest_step: options.largest_step,
+            stability: options.stability,
+            ..Self::of(system)
+        };
+        if let Some(Guess::Orbit(orbit)) = &request.near {
+            request.fits(orbit)?;
+        }
+        Ok(request)
     }
 
     /// Period of the orbits in periods of the declaration: as given, or that of the orbit given.
@@ -94,9 +153,7 @@ impl Request {
 
     /// Values of the parameters, of which one may be varied.
     pub(crate) fn parameters(&self) -> Vec<f64> {
-        let mut parameters = vec![0.0; self.system.facts().parameters.len()];
-        self.system.values(&mut parameters);
-        parameters
+        model::values(&self.system)
     }
 
     /// Both ends of the range.
@@ -137,6 +194,7 @@ impl Request {
     pub(crate) fn afterwards(&self) -> Self {
         Self {
             cancel: Cancel::new(),
+            keep: None,
             ..self.clone()
         }
     }
@@ -150,13 +208,38 @@ impl Request {
         found.map_err(|error| unless_cancelled(&self.cancel, value, error))
     }
 
+    /// The same of a branch, which is kept to its end; where it could not be kept, why.
+    pub(crate) fn unless_lost(
+        &self,
+        value: f64,
+        found: Result<Branch, Error>,
+    ) -> Result<Branch, Error> {
+        let found = self.unless_cancelled(value, found);
+        let Some(keep) = &self.keep else {
+            return found;
+        };
+        let ended = found.as_ref().is_ok_and(|branch| keep.end(branch));
+        match keep.failure().filter(|_| !ended) {
+            Some(failure) => Err(failure),
+            None => found,
+        }
+    }
+
+    /// The same, kept by nothing.
+    pub(crate) fn unkept(&self) -> Self {
+        Self {
+            keep: None,
+            ..self.clone()
+        }
+    }
+
     /// An orbit is one of a system with as many coordinates.
     ///
     /// # Errors
     /// If it is not.
     pub(crate) fn fits(&self, orbit: &Orbit) -> Result<(), Error> {
         let expected = self.system.facts().coordinates.len();
-        if orbit.coordinates == expected {
+        if orbit.is_of(expected) {
             return Ok(());
         }
         Err(RequestError::State {

@@ -11,7 +11,7 @@ use crate::model::rigid::Rigid;
 pub struct Stability {
     /// The verdict.
     pub verdict: Verdict,
-    /// Floquet multipliers over the orbit's own period, largest modulus first; those of the orbit corrected for the
+    /// Floquet multipliers over the orbit's own period, [whole](crate::Orbit::period) periods of the declaration, largest modulus first; those of the orbit corrected for the
     /// harmonics and samples that were left out. Those of [rigid motions](Self::rigid) are not among them.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub multipliers: Vec<Complex<f64>>,

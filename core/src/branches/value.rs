@@ -42,14 +42,48 @@ pub(crate) fn orbits_at(
     between: impl FnMut([&Point; 2]) -> Result<Point, Error>,
     is_same: impl Fn(&Point, &Point) -> bool,
 ) -> Result<Vec<Point>, Error> {
-    let points = &branch.points;
-    let turns = branch.events.iter().filter(|event| {
-        let place = event.point.value;
-        event.kind.turns() || turns_at(points, event.after, place, |point| point.value)
-    });
-    let turns: Vec<_> = turns.map(|event| (event.after, &event.point)).collect();
-    let chain = chain(points, &turns);
+    let chain = chain(&branch.points, &turns(branch));
     solutions(&chain, value, |point| point.value, between, is_same)
+}
+
+/// Where a branch turns, each with the number of points before it, in order along the branch. A step with a fold has other events whose values
+/// are not between those of its ends, as a touch: the branch does not turn at these. Events of a step are listed as they were found, folds
+/// before touches, and not in their order along it.
+fn turns(branch: &Branch) -> Vec<(usize, &Point)> {
+    let (points, events) = (&branch.points, &branch.events);
+    let folds = |after: usize| {
+        let mut here = events.iter().filter(move |event| event.after == after);
+        here.any(|event| event.kind.turns())
+    };
+    let turning = events.iter().filter(|event| {
+        let place = event.point.value;
+        event.kind.turns()
+            || turns_at(points, event.after, place, |point| point.value) && !folds(event.after)
+    });
+    let mut turns: Vec<_> = turning.map(|event| (event.after, &event.point)).collect();
+    turns.sort_by(|a, b| {
+        let along = |turn: &(usize, &Point)| along(points, turn.0, turn.1);
+        a.0.cmp(&b.0).then_with(|| along(a).total_cmp(&along(b)))
+    });
+    turns
+}
+
+/// Where an orbit between two neighbours is along the chord of their states; zero before the first one.
+fn along(points: &[Point], after: usize, point: &Point) -> f64 {
+    let neighbours = after
+        .checked_sub(1)
+        .map(|before| points.get(before..=after));
+    let Some(Some([a, b])) = neighbours else {
+        return 0.0;
+    };
+    let [from, to, here] = [a, b, point].map(|point| point.orbit.state());
+    let entries = from.iter().zip(&to).zip(&here).enumerate();
+    let products = entries.map(|(i, ((from, to), here))| {
+        let rate = i >= a.orbit.coordinates;
+        let unit = if rate { a.orbit.omega } else { 1.0 };
+        (to - from) * (here - from) / (unit * unit)
+    });
+    products.sum()
 }
 
 /// What a branch has at a value, in its order; what is the same is there once, since a closed branch ends where it began.

@@ -31,10 +31,13 @@ pub(crate) struct FollowOptions {
 
 /// A solution and the direction of the curve there.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct CurvePoint {
     /// Extended unknowns.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) u: Vec<f64>,
     /// Unit tangent in the scale of this point.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) tangent: Vec<f64>,
     /// The scale.
     pub(crate) scale: Scale,
@@ -72,13 +75,13 @@ impl Step<'_> {
     }
 }
 
-/// Why following ended.
+/// Why following a branch or a curve ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Stop {
-    /// The parameter reached the end of its range.
+    /// The parameter reached the end of its range; of a curve, one of both parameters.
     ReachedEnd,
     /// The branch turned back and left the range where it had passed.
     LeftAtStart,
@@ -95,6 +98,8 @@ pub enum Stop {
         #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         value: f64,
     },
+    /// A curve of folds met the curve of doublings at which its orbits begin, at the degenerate point that is the special one there.
+    JoinedDoublings,
     /// As many points as were allowed.
     PointLimit {
         /// The limit.
@@ -110,6 +115,13 @@ pub enum Stop {
         value: f64,
         /// What the last correction said.
         reason: NewtonError,
+    },
+    /// A gap touches a level at which the force jumps, and on its other side the force pulls it on: motions that pass the level go far
+    /// away, however slowly they pass it, so that the branch has no orbits beyond.
+    PulledOn {
+        /// Where.
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+        value: f64,
     },
     /// The motion near the last orbit, or the one that would be next, cannot be computed.
     Motion {
@@ -132,6 +144,13 @@ pub enum Stop {
     Interrupted,
 }
 
+impl Stop {
+    /// Whether nothing but the caller ended it.
+    pub(crate) fn can_be_resumed(self) -> bool {
+        matches!(self, Self::Interrupted | Self::PointLimit { .. })
+    }
+}
+
 impl std::fmt::Display for Stop {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -148,6 +167,7 @@ impl std::fmt::Display for Stop {
                 if *symmetric { "symmetric " } else { "" },
                 Decimal::rounded(*value, 9)
             ),
+            Self::JoinedDoublings => write!(f, "met the doublings at which its orbits begin"),
             Self::PointLimit { points } => write!(f, "reached the limit of {points} points"),
             Self::StepTooShort {
                 step,
@@ -160,6 +180,11 @@ impl std::fmt::Display for Stop {
                     Decimal::plain(*value)
                 )
             }
+            Self::PulledOn { value } => write!(
+                f,
+                "ends at {}, where a gap touches a level at which the force jumps: motions that pass it are pulled far away",
+                Decimal::rounded(*value, 9)
+            ),
             Self::Motion { value, reason } => write!(
                 f,
                 "no further motion computed at {}: {reason}",
@@ -174,6 +199,9 @@ impl std::fmt::Display for Stop {
         }
     }
 }
+
+/// No walk has had so many points.
+const MOST_POINTS: usize = 1 << 32;
 
 /// Why a visitor ends a walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -196,17 +224,23 @@ pub(crate) enum Start {
     At(Box<Halted>),
     /// At a solution, in the direction of its tangent.
     Along(Box<CurvePoint>),
+    /// Where another walk was about to make its next step, which is made at once.
+    Onward(Box<Halted>),
 }
 
 /// A halted walk, whose vectors may be given another length.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Halted {
     pub(crate) point: CurvePoint,
     /// The point before, for a turn between the two that has not been seen yet.
     pub(crate) previous: Option<CurvePoint>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) before: Option<Vec<f64>>,
     pub(crate) first: CurvePoint,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) step: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) largest: [f64; 2],
     pub(super) count: usize,
     /// The walk ends at the point.
@@ -214,6 +248,33 @@ pub(crate) struct Halted {
 }
 
 impl Halted {
+    /// To go on from another point instead, which was found beyond the last one, with a step of this length.
+    #[must_use]
+    pub(crate) fn moved_to(self, point: CurvePoint, step: f64) -> Self {
+        Self {
+            point,
+            step,
+            previous: None,
+            before: None,
+            ended: None,
+            ..self
+        }
+    }
+
+    /// Whether its step and its scales are numbers that a walk can have: they may have been read from a file.
+    pub(crate) fn is_possible(&self) -> bool {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let scaled = |point: &CurvePoint| {
+            let scale = point.scale;
+            positive(scale.oscillation) && positive(scale.mean) && positive(scale.parameter)
+        };
+        let mut points = [&self.point, &self.first].into_iter().chain(&self.previous);
+        self.count <= MOST_POINTS
+            && positive(self.step)
+            && self.largest.iter().all(|x| x.is_finite())
+            && points.all(scaled)
+    }
+
     /// The extended vectors of the walk.
     pub(crate) fn vectors(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         let Self {
@@ -271,31 +332,57 @@ pub(crate) fn follow_until_stuck<P: AsProblem + ?Sized>(
     visit: &mut dyn FnMut(&mut P, &mut Newton, Visit<'_>) -> Continue,
 ) -> Result<Walked, NewtonError> {
     let mut again = matches!(start, Start::At(_));
+    // What there was to see of its point has been seen.
+    let mut onward = matches!(start, Start::Onward(_));
     let mut position = Position::begin(problem.problem(), newton, start, options)?;
     loop {
-        let point = &position.point;
-        let seen = if again {
-            Visit::Again(point)
-        } else {
-            Visit::Point(point)
-        };
-        again = false;
-        if let Continue::Break(halt) = visit(problem, newton, seen) {
-            return Ok(position.halted(halt).into());
+        if !std::mem::take(&mut onward) {
+            let point = &position.point;
+            let seen = if again {
+                Visit::Again(point)
+            } else {
+                Visit::Point(point)
+            };
+            again = false;
+            if let Continue::Break(halt) = visit(problem, newton, seen) {
+                return Ok(position.halted(halt).into());
+            }
+            if let Some(from) = &position.previous
+                && let Continue::Break(halt) = visit(problem, newton, Visit::Between(from, point))
+            {
+                if halt == Halt::Resize {
+                    // The step has been looked at.
+                    position.previous = None;
+                    return Ok(position.halted(halt).into());
+                }
+                return Ok(Outcome::Stopped(Stop::Interrupted).into());
+            }
+            if let Some(stop) = position.ends(problem.problem(), newton) {
+                return Ok(Outcome::Stopped(stop).into());
+            }
         }
-        if let Some(from) = &position.previous
-            && visit(problem, newton, Visit::Between(from, point)).is_break()
-        {
+        if visit(problem, newton, Visit::Onward(&position)).is_break() {
             return Ok(Outcome::Stopped(Stop::Interrupted).into());
         }
-        if let Some(stop) = position.ends(problem.problem(), newton) {
-            return Ok(Outcome::Stopped(stop).into());
-        }
-        if let Err(stop) = position.step(problem.problem(), newton) {
-            return Ok(Walked {
-                outcome: Outcome::Stopped(stop),
-                stuck: Some(position.stuck()),
-            });
+        loop {
+            let tried = position.length();
+            let stop = match position.step(problem.problem(), newton) {
+                Ok(true) => break,
+                Ok(false) => None,
+                Err(stop) => Some(stop),
+            };
+            let failed = Visit::Failed(&position.point, tried);
+            if stop != Some(Stop::Interrupted)
+                && let Continue::Break(halt) = visit(problem, newton, failed)
+            {
+                return Ok(position.halted(halt).into());
+            }
+            if let Some(stop) = stop {
+                return Ok(Walked {
+                    outcome: Outcome::Stopped(stop),
+                    stuck: Some(position.stuck()),
+                });
+            }
         }
     }
 }
@@ -308,4 +395,8 @@ pub(crate) enum Visit<'a> {
     Again(&'a CurvePoint),
     /// The step between these two points.
     Between(&'a CurvePoint, &'a CurvePoint),
+    /// The last point again, from where a step of this length failed.
+    Failed(&'a CurvePoint, f64),
+    /// Where the walk is before its next step.
+    Onward(&'a Position),
 }

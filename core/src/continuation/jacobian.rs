@@ -141,54 +141,40 @@ impl Jacobian {
         for (row, &unknown) in self.partition.core.iter().enumerate() {
             self.core.row_mut(row)[last] = values[unknown];
         }
-        for (to, &unknown) in self.column.iter_mut().zip(&self.partition.tail) {
-            *to = values[unknown];
-        }
+        gather(&mut self.column, values, &self.partition.tail);
     }
 
     /// Writes the last row of (1), over the extended unknowns.
     pub(crate) fn set_border(&mut self, values: &[f64]) {
         let last = self.partition.core.len();
         let row = self.core.row_mut(last);
-        for (to, &unknown) in row.iter_mut().zip(&self.partition.core) {
-            *to = values[unknown];
-        }
+        gather(row, values, &self.partition.core);
         row[last] = values[self.partition.unknowns];
-        for (to, &unknown) in self.border.iter_mut().zip(&self.partition.tail) {
-            *to = values[unknown];
-        }
+        gather(&mut self.border, values, &self.partition.tail);
     }
 
     /// Measures every unknown in its unit, the parameter in the last one.
     pub(crate) fn scale_columns(&mut self, units: &[f64]) {
-        let Partition {
-            unknowns,
-            core,
-            tail,
-            group,
-        } = &self.partition;
+        let (core, tail) = (&self.partition.core, &self.partition.tail);
+        let (unknowns, group) = (self.partition.unknowns, self.partition.group);
         let last = core.len();
-        for (to, &unknown) in self.room.iter_mut().zip(core) {
-            *to = units[unknown];
-        }
-        self.room[last] = units[*unknowns];
-        for (to, &unknown) in self.tail_room.iter_mut().zip(tail) {
-            *to = units[unknown];
-        }
+        gather(&mut self.room, units, core);
+        self.room[last] = units[unknowns];
+        gather(&mut self.tail_room, units, tail);
         for row in 0..=last {
             scale(self.core.row_mut(row), &self.room);
         }
         for row in self.coupling.chunks_exact_mut(last.max(1)) {
             scale(row, &self.room);
         }
-        let groups = self.tail_room.chunks_exact(*group);
+        let groups = self.tail_room.chunks_exact(group);
         for (matrix, units) in self.groups.iter_mut().zip(groups) {
-            for row in 0..*group {
+            for row in 0..group {
                 scale(matrix.row_mut(row), units);
             }
         }
         for column in &mut self.column {
-            *column *= units[*unknowns];
+            *column *= units[unknowns];
         }
         scale(&mut self.border, &self.tail_room);
     }
@@ -240,31 +226,23 @@ impl Jacobian {
 
     /// Solves (1) in place, for an extended vector in the order of the unknowns.
     pub(crate) fn solve(&mut self, vector: &mut [f64]) {
-        let Partition {
-            unknowns,
-            core,
-            tail,
-            group,
-        } = &self.partition;
-        for (to, &unknown) in self.tail_room.iter_mut().zip(tail) {
-            *to = vector[unknown];
-        }
-        for (to, &unknown) in self.room.iter_mut().zip(core) {
-            *to = vector[unknown];
-        }
+        let (core, tail) = (&self.partition.core, &self.partition.tail);
+        let (unknowns, group) = (self.partition.unknowns, self.partition.group);
+        gather(&mut self.tail_room, vector, tail);
+        gather(&mut self.room, vector, core);
         let last = core.len();
-        self.room[last] = vector[*unknowns] - dot(&self.border, &self.tail_room);
+        self.room[last] = vector[unknowns] - dot(&self.border, &self.tail_room);
         self.lu.solve(&self.core, &mut self.room);
         let rows = self.coupling.chunks_exact(last.max(1));
         for (to, row) in self.tail_room.iter_mut().zip(rows) {
             *to -= dot(row, &self.room[..last]);
         }
         for (index, (matrix, lu)) in self.groups.iter().zip(&self.group_lus).enumerate() {
-            lu.solve(matrix, &mut self.tail_room[index * group..][..*group]);
+            lu.solve(matrix, &mut self.tail_room[index * group..][..group]);
         }
         let parameter = self.room[last];
         vector.fill(0.0);
-        vector[*unknowns] = parameter;
+        vector[unknowns] = parameter;
         for (from, &unknown) in self.room.iter().zip(core) {
             vector[unknown] = *from;
         }
@@ -275,22 +253,14 @@ impl Jacobian {
 
     /// Solves the transposed system in place.
     pub(crate) fn solve_transposed(&mut self, vector: &mut [f64]) {
-        let Partition {
-            unknowns,
-            core,
-            tail,
-            group,
-        } = &self.partition;
+        let (core, tail) = (&self.partition.core, &self.partition.tail);
+        let (unknowns, group) = (self.partition.unknowns, self.partition.group);
         let last = core.len();
-        for (to, &unknown) in self.tail_room.iter_mut().zip(tail) {
-            *to = vector[unknown];
-        }
-        for (to, &unknown) in self.room.iter_mut().zip(core) {
-            *to = vector[unknown];
-        }
-        self.room[last] = vector[*unknowns] - dot(&self.column, &self.tail_room);
+        gather(&mut self.tail_room, vector, tail);
+        gather(&mut self.room, vector, core);
+        self.room[last] = vector[unknowns] - dot(&self.column, &self.tail_room);
         for (index, (matrix, lu)) in self.groups.iter().zip(&self.group_lus).enumerate() {
-            lu.solve_transposed(matrix, &mut self.tail_room[index * group..][..*group]);
+            lu.solve_transposed(matrix, &mut self.tail_room[index * group..][..group]);
         }
         let rows = self.coupling.chunks_exact(last.max(1));
         for (row, y) in rows.zip(&self.tail_room) {
@@ -304,7 +274,7 @@ impl Jacobian {
             *x -= parameter * w;
         }
         vector.fill(0.0);
-        vector[*unknowns] = parameter;
+        vector[unknowns] = parameter;
         for (from, &unknown) in self.room.iter().zip(core) {
             vector[unknown] = *from;
         }
@@ -347,6 +317,13 @@ impl Jacobian {
 fn scale(row: &mut [f64], units: &[f64]) {
     for (x, unit) in row.iter_mut().zip(units) {
         *x *= unit;
+    }
+}
+
+/// Takes the entries of a vector at these places.
+fn gather(to: &mut [f64], from: &[f64], places: &[usize]) {
+    for (to, &place) in to.iter_mut().zip(places) {
+        *to = from[place];
     }
 }
 

@@ -13,7 +13,7 @@ const CLOSES_AFTER: usize = 10;
 const GROWTH: f64 = 1e10;
 
 /// Where a walk is.
-pub(super) struct Position {
+pub(crate) struct Position {
     stepper: Stepper,
     /// The last point, and the one before it.
     pub(super) point: CurvePoint,
@@ -44,21 +44,28 @@ impl Position {
                 let point = stepper.again(problem, newton, &along, false)?;
                 Ok(Self::at(stepper, point))
             }
-            Start::At(halted) => {
-                let mut stepper = Stepper::new(problem, options, halted.point.u.clone());
-                (stepper.step, stepper.largest) = (halted.step, halted.largest);
-                stepper.before = halted.before;
+            Start::At(mut halted) => {
+                let mut stepper = Stepper::of(problem, options, &mut halted);
                 let at_end = halted.ended.is_some();
                 let point = stepper.again(problem, newton, &halted.point, at_end)?;
-                Ok(Self {
-                    stepper,
-                    point,
-                    previous: halted.previous,
-                    first: halted.first,
-                    count: halted.count,
-                    ended: halted.ended,
-                })
+                Ok(Self::of(stepper, Halted { point, ..*halted }))
             }
+            Start::Onward(mut halted) => {
+                let stepper = Stepper::of(problem, options, &mut halted);
+                Ok(Self::of(stepper, *halted))
+            }
+        }
+    }
+
+    /// Where a walk was halted.
+    fn of(stepper: Stepper, halted: Halted) -> Self {
+        Self {
+            stepper,
+            point: halted.point,
+            previous: halted.previous,
+            first: halted.first,
+            count: halted.count,
+            ended: halted.ended,
         }
     }
 
@@ -110,7 +117,7 @@ impl Position {
         })
     }
 
-    /// Goes on to the next point.
+    /// Goes on to the next point. `false` if the step failed, and is to be tried again, shorter.
     ///
     /// # Errors
     /// If no step leads on.
@@ -118,14 +125,21 @@ impl Position {
         &mut self,
         problem: &mut dyn Problem,
         newton: &mut Newton,
-    ) -> Result<(), Stop> {
-        let next = self.stepper.next(problem, newton, &self.point)?;
+    ) -> Result<bool, Stop> {
+        let Some(next) = self.stepper.next(problem, newton, &self.point)? else {
+            return Ok(false);
+        };
         let (next, ended) = self
             .stepper
             .cut_at_range(problem, newton, &self.point, next)?;
         self.previous = Some(std::mem::replace(&mut self.point, next));
         self.ended = ended;
-        Ok(())
+        Ok(true)
+    }
+
+    /// The length of the step that is tried next.
+    pub(super) fn length(&self) -> f64 {
+        self.stepper.step
     }
 
     /// As a visitor has asked for it.
@@ -133,16 +147,21 @@ impl Position {
         if halt == Halt::Stop {
             return Outcome::Stopped(Stop::Interrupted);
         }
-        Outcome::Halted(Box::new(Halted {
-            point: self.point,
-            previous: self.previous,
-            before: self.stepper.before,
-            first: self.first,
+        Outcome::Halted(Box::new(self.here()))
+    }
+
+    /// What it takes to go on from here.
+    pub(crate) fn here(&self) -> Halted {
+        Halted {
+            point: self.point.clone(),
+            previous: self.previous.clone(),
+            before: self.stepper.before.clone(),
+            first: self.first.clone(),
             step: self.stepper.step,
             largest: self.stepper.largest,
             count: self.count,
             ended: self.ended,
-        }))
+        }
     }
 
     /// Where no step led on: to go on with the first step again. What was between this point and the one before has been seen. The

@@ -39,6 +39,16 @@ pub trait Problem {
     /// Whether an unknown is the mean of a coordinate, which is measured apart from what oscillates about it.
     fn is_mean(&self, unknown: usize) -> bool;
 
+    /// Changes unknowns from which Newton's method begins, where others tell them better than a prediction along the curve does.
+    fn prepare(&mut self, u: &mut [f64]) {
+        let _ = u;
+    }
+
+    /// Is told a solution that Newton's method has found.
+    fn found(&mut self, u: &[f64]) {
+        let _ = u;
+    }
+
     /// Whether the work with it is to end, which every iteration of Newton's method asks.
     fn is_cancelled(&self) -> bool {
         false
@@ -72,12 +82,16 @@ impl AsProblem for dyn Problem + '_ {
 ///
 /// A large mean, as under a heavy load, must not hide the oscillation from the step control; so it has a scale of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scale {
     /// For what oscillates.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub oscillation: f64,
     /// For means.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub mean: f64,
     /// For the parameter.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub parameter: f64,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Numbers of equations are those of [`follow`](super::follow).
 
-use super::follow::{CurvePoint, FollowOptions, Stop};
+use super::follow::{CurvePoint, FollowOptions, Halted, Stop};
 use super::problem::{Norm, Problem, Scale};
 use crate::continuation::newton::{Border, Newton, NewtonError};
 
@@ -40,6 +40,16 @@ impl Stepper {
             largest: [0.0; 2],
             before: None,
             curvature: vec![0.0; problem.unknowns() + 1],
+        }
+    }
+
+    /// Of a halted walk.
+    pub(super) fn of(problem: &dyn Problem, options: FollowOptions, halted: &mut Halted) -> Self {
+        Self {
+            step: halted.step,
+            largest: halted.largest,
+            before: halted.before.take(),
+            ..Self::new(problem, options, halted.point.u.clone())
         }
     }
 
@@ -154,49 +164,49 @@ impl Stepper {
         }
     }
 
-    /// One step, shortened until it succeeds.
+    /// One step; `None` where it failed, and the next one is shorter.
     pub(super) fn next(
         &mut self,
         problem: &mut dyn Problem,
         newton: &mut Newton,
         from: &CurvePoint,
-    ) -> Result<CurvePoint, Stop> {
+    ) -> Result<Option<CurvePoint>, Stop> {
         self.set_curvature(newton, from);
-        loop {
-            let steps = self.options.steps;
-            let shorter = match self.corrected(problem, newton, from, self.step) {
-                Ok((point, distance)) => {
-                    let norm = newton.norm();
-                    let cosine = norm.product(from.scale, &from.tangent, &point.tangent)
-                        / norm.length(from.scale, &point.tangent);
-                    let angle = cosine.clamp(-1.0, 1.0).acos();
-                    let looks_wrong = steps.turns_too_far(angle)
-                        || steps.is_too_far(distance)
-                        || passes_folds(norm, from, &point);
-                    let shorter = steps.after_doubt(self.step).filter(|_| looks_wrong);
-                    let Some(shorter) = shorter else {
-                        newton.statistics.accepted_steps += 1;
-                        self.remember(from, angle);
-                        let slope = point.parameter_slope();
-                        self.step = steps.after_success(self.step, angle, distance, slope);
-                        return Ok(point);
-                    };
-                    newton.statistics.rejected_steps += 1;
-                    shorter
-                }
-                Err(NewtonError::Cancelled { .. }) => return Err(Stop::Interrupted),
-                Err(reason) => {
-                    newton.statistics.rejected_steps += 1;
-                    steps.after_failure(self.step).ok_or(Stop::StepTooShort {
-                        step: self.step,
-                        value: from.parameter(),
-                        reason,
-                    })?
-                }
-            };
-            self.curvature.fill(0.0);
-            self.step = shorter;
-        }
+        let steps = self.options.steps;
+        let shorter = match self.corrected(problem, newton, from, self.step) {
+            Ok((point, distance)) => {
+                let norm = newton.norm();
+                let cosine = norm.product(from.scale, &from.tangent, &point.tangent)
+                    / norm.length(from.scale, &point.tangent);
+                let angle = cosine.clamp(-1.0, 1.0).acos();
+                let looks_wrong = steps.turns_too_far(angle)
+                    || steps.is_too_far(distance)
+                    || passes_folds(norm, from, &point);
+                let shorter = steps.after_doubt(self.step).filter(|_| looks_wrong);
+                let Some(shorter) = shorter else {
+                    newton.statistics.accepted_steps += 1;
+                    self.remember(from, angle);
+                    let slope = point.parameter_slope();
+                    self.step = steps.after_success(self.step, angle, distance, slope);
+                    return Ok(Some(point));
+                };
+                newton.statistics.rejected_steps += 1;
+                shorter
+            }
+            Err(NewtonError::Cancelled { .. }) => return Err(Stop::Interrupted),
+            Err(reason) => {
+                newton.statistics.rejected_steps += 1;
+                steps.after_failure(self.step).ok_or(Stop::StepTooShort {
+                    step: self.step,
+                    value: from.parameter(),
+                    reason,
+                })?
+            }
+        };
+        // The parabola may have led astray.
+        self.before = None;
+        self.step = shorter;
+        Ok(None)
     }
 
     /// The parabola through the point before, and this one with its tangent: at arc length `-h` before,

@@ -64,6 +64,7 @@ fn turns(mut problem: Bend) -> (usize, usize) {
                     turns +=
                         usize::from((a.parameter_slope() < 0.0) != (b.parameter_slope() < 0.0));
                 }
+                Visit::Onward(_) => {}
                 _ => points += 1,
             }
             ControlFlow::Continue(())
@@ -120,6 +121,7 @@ fn a_branch_that_turns_at_its_start_ends_on_the_other_limb() {
             match seen {
                 Visit::Between(a, b) => ends.push((a.parameter_slope(), b.parameter_slope())),
                 Visit::Point(point) | Visit::Again(point) => last = point.u[0],
+                Visit::Failed(..) | Visit::Onward(_) => {}
             }
             ControlFlow::Continue(())
         },

@@ -2,12 +2,20 @@
 //!
 //! A program whose `main` returns a `Result` shows `{:?}` of the error, and whoever runs it is to read the sentence.
 
-/// Writes [`Debug`](std::fmt::Debug) of an enum of errors, from its variants with their fields and, after a semicolon, the variants
-/// that hold another error. One that is missing, or a field of it, does not compile.
+/// What an enum of errors is to users: [`From`] for [`Error`](super::Error), where a function says its kind, and
+/// [`Debug`](std::fmt::Debug), from its variants with their fields and, after a semicolon, the variants that hold another error. One
+/// that is missing, or a field of it, does not compile.
 ///
 /// A variant must not show itself by `{:?}` alone: of `main() -> Result` that is all that a user reads.
-macro_rules! sentence_as_debug {
-    ($error:ident: $($variant:ident { $($field:ident),* })*; $($(#[$condition:meta])* $other:ident)*) => {
+macro_rules! room_error {
+    ($error:ident $(, $kind:expr)?; $($variant:ident { $($field:ident),* })*; $($(#[$condition:meta])* $other:ident)*) => {
+        $(impl From<$error> for crate::error::Error {
+            fn from(error: $error) -> Self {
+                let kind: fn(&$error) -> crate::error::ErrorKind = $kind;
+                Self::new(kind(&error), error)
+            }
+        })?
+
         impl std::fmt::Debug for $error {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 if !f.alternate() {
@@ -27,7 +35,7 @@ macro_rules! sentence_as_debug {
     };
 }
 
-pub(crate) use sentence_as_debug;
+pub(crate) use room_error;
 
 #[cfg(test)]
 mod tests {
@@ -40,7 +48,6 @@ mod tests {
     use crate::error::{Error, ErrorKind, chain};
     use crate::model::error::ModelError;
     use crate::model::structure::StructureError;
-    use crate::numeric::linear::Singular;
     use crate::response::FrequencyResponse;
     use crate::time::FlowError;
 
@@ -92,11 +99,11 @@ mod tests {
 
     #[test]
     fn sentences_hold_sentences_and_details_hold_details() {
-        let at = Singular {
+        let reason = crate::continuation::newton::NewtonError::Singular {
+            iterations: 2,
             column: 3,
             pivot: 0.0,
         };
-        let reason = crate::continuation::newton::NewtonError::Singular { iterations: 2, at };
         let error = Error::from(OrbitError::NoStart { value: 0.2, reason });
         let sentence = "no periodic orbit found at 0.2";
         let why = "the Jacobian is singular after 2 iterations: pivot 0.0e0 in column 3";

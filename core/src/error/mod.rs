@@ -11,9 +11,7 @@ use std::error::Error as StdError;
 use std::fmt;
 use std::sync::Arc;
 
-pub(crate) use debug::sentence_as_debug;
-
-pub use crate::numeric::linear::Singular;
+pub(crate) use debug::room_error;
 
 /// Why there is no result.
 ///

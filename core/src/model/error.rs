@@ -1,6 +1,6 @@
 //! What can be wrong with a system at values of its parameters.
 
-use crate::error::{Error, ErrorKind};
+use crate::error::ErrorKind;
 use crate::numeric::decimal::Decimal;
 
 /// What is wrong with a system at values of its parameters.
@@ -57,7 +57,7 @@ pub enum ModelError {
     },
     /// Nothing holds the system along a direction: where its orbits are along it, shooting has no equation for.
     #[error(
-        "nothing holds the system along {direction}, so that its orbits may be anywhere along it, and shooting finds none: `FrequencyResponse` does"
+        "nothing holds the system along {direction}, so that its orbits may be anywhere along it, and shooting finds none: the harmonic balance does"
     )]
     Free {
         /// The direction, as a sum of coordinates.
@@ -68,10 +68,16 @@ pub enum ModelError {
         "the motion has no closed form: a force is not affine on one of its pieces, or a stiffness or a direction varies in time"
     )]
     NotAffine,
+    /// The contact equation does not hold for systems of this kind.
+    #[error("not by the contact equation: {why}; `HarmonicBalance` and `Shooting` do that")]
+    NoContactEquation {
+        /// What it does not know.
+        why: &'static str,
+    },
 }
 
-crate::error::sentence_as_debug! {
-    ModelError:
+crate::error::room_error! {
+    ModelError, ModelError::kind;
     NoCoordinates {}
     Levels { law, levels }
     SingularMass { determinant }
@@ -80,15 +86,15 @@ crate::error::sentence_as_debug! {
     CarriedAway { value, load, direction }
     Free { direction }
     NotAffine {}
+    NoContactEquation { why }
     ;
 }
 
-impl From<ModelError> for Error {
-    fn from(error: ModelError) -> Self {
-        let kind = match error {
-            ModelError::CarriedAway { .. } => ErrorKind::NoOrbit,
+impl ModelError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::CarriedAway { .. } => ErrorKind::NoOrbit,
             _ => ErrorKind::Model,
-        };
-        Self::new(kind, error)
+        }
     }
 }

@@ -7,3 +7,13 @@ pub(crate) mod request;
 pub(crate) mod rigid;
 pub mod structure;
 pub(crate) mod validate;
+pub(crate) mod valued;
+
+use crate::system::System;
+
+/// The values that the parameters of a system have now.
+pub(crate) fn values(system: &dyn System) -> Vec<f64> {
+    let mut values = vec![0.0; system.facts().parameters.len()];
+    system.values(&mut values);
+    values
+}

@@ -5,6 +5,7 @@ use std::fmt;
 use nalgebra::DMatrix;
 
 use crate::model::layout::{Layout, constant};
+use crate::model::values;
 use crate::system::System;
 
 /// Entries that differ by less, relative to the largest, are equal.
@@ -65,8 +66,7 @@ impl fmt::Display for Remark {
 pub fn of(system: &dyn System, omega: f64) -> Vec<Remark> {
     let layout = Layout::of(system);
     let facts = system.facts();
-    let mut parameters = vec![0.0; facts.parameters.len()];
-    system.values(&mut parameters);
+    let parameters = values(system);
     let mut coefficients = vec![0.0; layout.coefficients];
     system.coefficients(&parameters, omega, &mut coefficients);
     let mut remarks = Vec::new();

@@ -1,6 +1,9 @@
 //! What can be wrong with a request.
 
-use crate::error::{Error, ErrorKind};
+use std::str::FromStr;
+
+use crate::error::ErrorKind;
+use crate::event::EventKind;
 use crate::numeric::decimal::Decimal;
 
 /// What is wrong with a request.
@@ -108,6 +111,61 @@ pub enum RequestError {
         /// Name of the one given.
         found: String,
     },
+    /// Neither an output nor a coordinate nor a contact has this name.
+    #[error("no output, coordinate or contact is called {name}: there are {}", listed(.known))]
+    UnknownSignal {
+        /// The name.
+        name: String,
+        /// The names of all of them.
+        known: Vec<String>,
+    },
+    /// What is asked of a signal is none of what can be.
+    #[error(
+        "nothing is measured by `{name}`: p2p, max, min, mean, rms, crest, h1 or phase1 with the number of a harmonic, and of contacts impulse, impacts and piece1"
+    )]
+    UnknownMeasure {
+        /// What was asked for.
+        name: String,
+    },
+    /// What only a contact has was asked of something else.
+    #[error("{measure} is one of contacts, and {name} is none")]
+    NoContactMeasure {
+        /// The name of the signal.
+        name: String,
+        /// What was asked for.
+        measure: String,
+    },
+    /// The law of a contact has no such piece.
+    #[error("{name} has no piece {piece}: its law has {pieces}")]
+    NoPiece {
+        /// The name of the contact.
+        name: String,
+        /// The number that was asked for, from one on.
+        piece: usize,
+        /// How many there are.
+        pieces: usize,
+    },
+    /// Orbits have no such harmonic.
+    #[error("harmonic {harmonic} of {name} was not computed: these orbits have {highest} of them")]
+    NoHarmonic {
+        /// The name of the signal.
+        name: String,
+        /// The number that was asked for.
+        harmonic: usize,
+        /// The highest number of an orbit.
+        highest: usize,
+    },
+    /// No kind of events has this name.
+    #[error("no event is called {name}: there are {}", listed(.known))]
+    UnknownEvent {
+        /// What was asked for.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// What a branch goes on from does not belong to it: the file that it was read from has been changed.
+    #[error("what the branch goes on from is none of this model and request")]
+    Rest,
     /// There are not as many values as parameters.
     #[error("{values} values were given for {expected} parameters")]
     Values {
@@ -118,8 +176,8 @@ pub enum RequestError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    RequestError:
+crate::error::room_error! {
+    RequestError, |_| ErrorKind::Request;
     Parameter { name, value, range }
     UnknownParameter { name, known }
     Option { name, value, must }
@@ -132,6 +190,13 @@ crate::error::sentence_as_debug! {
     State { entries, expected }
     Detached {}
     OtherModel { expected, found }
+    UnknownSignal { name, known }
+    UnknownMeasure { name }
+    NoContactMeasure { name, measure }
+    NoPiece { name, piece, pieces }
+    NoHarmonic { name, harmonic, highest }
+    UnknownEvent { name, known }
+    Rest {}
     Values { values, expected }
     ;
 }
@@ -140,6 +205,19 @@ fn listed(names: &[String]) -> String {
     match names {
         [] => "none".to_owned(),
         names => names.join(", "),
+    }
+}
+
+/// By the name that is shown: `fold`, `period-doubling` and so on.
+impl FromStr for EventKind {
+    type Err = RequestError;
+
+    fn from_str(text: &str) -> Result<Self, RequestError> {
+        let found = Self::ALL.into_iter().find(|kind| kind.to_string() == text);
+        found.ok_or_else(|| RequestError::UnknownEvent {
+            name: text.to_owned(),
+            known: Self::ALL.iter().map(ToString::to_string).collect(),
+        })
     }
 }
 
@@ -157,11 +235,5 @@ impl RequestError {
             "there is one excitation frequency, and it is not known",
         );
         Self::Missing { name, why }
-    }
-}
-
-impl From<RequestError> for Error {
-    fn from(error: RequestError) -> Self {
-        Self::new(ErrorKind::Request, error)
     }
 }

@@ -7,6 +7,10 @@ const PLAIN: std::ops::Range<f64> = 1e-6..1e15;
 /// Sizes that are written with a given number of decimals: below, digits would be lost; above, decimals mean nothing.
 const ROUNDED: std::ops::Range<f64> = 1e-3..1e6;
 
+/// Digits behind the first one: of a number of which nothing is known, and that a number has.
+const FEWEST: f64 = 2.0;
+const MOST: f64 = 15.0;
+
 /// A number to be printed.
 ///
 /// ```
@@ -38,6 +42,32 @@ impl Decimal {
             value,
             decimals: Some(decimals),
         }
+    }
+
+    /// With as many digits as an error bears: the first that it changes is the last. Nothing is known of a number whose error is not
+    /// finite, and it has three digits; without an error it has all.
+    ///
+    /// ```
+    /// use hertzian::export::Decimal;
+    ///
+    /// assert_eq!(Decimal::to_error(0.715119549676, 2e-7).to_string(), "0.7151195");
+    /// assert_eq!(Decimal::to_error(1234.5678, 20.0).to_string(), "1235");
+    /// assert_eq!(Decimal::to_error(2.54321e-8, 3e-11).to_string(), "2.543e-8");
+    /// assert_eq!(Decimal::to_error(2.54321, f64::INFINITY).to_string(), "2.54");
+    /// ```
+    pub fn to_error(value: f64, error: f64) -> Self {
+        if !value.is_finite() || value == 0.0 || error == 0.0 {
+            return Self::plain(value);
+        }
+        let first = value.abs().log10().floor();
+        let last = if error.is_finite() {
+            error.abs().log10().floor().max(first - MOST)
+        } else {
+            first - FEWEST
+        };
+        let written_out = ROUNDED.contains(&value.abs());
+        let decimals = if written_out { -last } else { first - last };
+        Self::rounded(value, decimals.max(0.0) as usize)
     }
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod decimal;
 pub(crate) mod exponential;
 pub mod fourier;
+pub(crate) mod golden;
 pub(crate) mod linear;
 pub mod power;
 pub(crate) mod roots;

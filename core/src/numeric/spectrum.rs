@@ -1,6 +1,7 @@
 //! Eigenvalues of small matrices, and how far two sets of them are apart.
 
-use nalgebra::{Complex, DMatrix, Schur};
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
+use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// More iterations for eigenvalues are never made.
 pub(crate) const ITERATIONS: usize = 10_000;
@@ -21,11 +22,26 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let values = eigenvalues_of_two([[a, b], [c, d]], a * d - b * c);
         return values.map_or(Vec::new(), |values| values.to_vec());
     }
+    let mut matrix = matrix.clone();
+    balance(&mut matrix);
     // With a bound on the iterations, which the plain call does not have.
-    let values: Vec<_> = Schur::try_new(matrix.clone(), f64::EPSILON, ITERATIONS)
+    let values: Vec<_> = Schur::try_new(matrix, f64::EPSILON, ITERATIONS)
         .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
         .unwrap_or_default();
     sort(values)
+}
+
+/// Makes rows and columns of the same number alike in size, by powers of two, as unlike as the units of states are: `A` becomes `D^-1 A D`,
+/// with the diagonal `D` that is returned. Eigenvalues are known to rounding of the largest entry, which may hide a small damping.
+///
+/// Source: Parlett and Reinsch (1969), Balancing a matrix for calculation of eigenvalues and eigenvectors, Numer. Math. 13.
+pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> DVector<f64> {
+    let squares = matrix.norm_squared();
+    // Sums of squares are compared.
+    if !squares.is_finite() {
+        return DVector::from_element(matrix.nrows(), 1.0);
+    }
+    balance_parlett_reinsch(matrix)
 }
 
 /// Sorts multipliers as [`eigenvalues`] does; none if one is not finite: products of entries overflow before the entries do,
@@ -131,6 +147,35 @@ mod tests {
     fn eigenvalues_that_overflow_are_unknown() {
         let matrix = DMatrix::from_row_slice(2, 2, &[1e200, 0.0, 0.0, -1e200]);
         assert_eq!(eigenvalues(&matrix), Vec::new());
+    }
+
+    /// Of the companion matrix of `(z + 0.01)(z^2 + 0.02 z + 1)` in units of time that make its entries unlike.
+    #[test]
+    fn eigenvalues_do_not_depend_on_units() {
+        for unit in [1.0, 1e-5, 1e5] {
+            let row = [-0.01, -1.0002, -0.03];
+            let matrix = DMatrix::from_row_slice(
+                3,
+                3,
+                &[
+                    0.0,
+                    unit,
+                    0.0, //
+                    0.0,
+                    0.0,
+                    unit, //
+                    row[0] / unit / unit,
+                    row[1] / unit,
+                    row[2],
+                ],
+            );
+            let exact = [
+                Complex::new(-0.01, 0.9999_f64.sqrt()),
+                Complex::new(-0.01, -0.9999_f64.sqrt()),
+                Complex::new(-0.01, 0.0),
+            ];
+            assert!(distance(&eigenvalues(&matrix), &exact) < 1e-14, "{unit}");
+        }
     }
 
     #[test]

@@ -1,39 +1,56 @@
 //! The chart of a diagram.
 
-use hertzian_chart::{Chart, Curve};
+use hertzian_chart::Chart;
 
 use crate::bifurcation::diagram::{Diagram, DiagramBranch};
-use crate::branches::branch::Branch;
 use crate::error::Error;
+use crate::orbit::observe::Wanted;
+use crate::report::drawn::Drawn;
 use crate::report::labels::Labels;
-use crate::report::picture::{empty_chart, event_markers, unlocated};
+use crate::report::picture;
+use crate::report::view::View;
 
 impl Diagram {
-    /// Peak-to-peak of the first coordinate over what is varied, one curve for each period: stable solid, unstable dashed,
+    /// What [leads](crate::Branch::leading) on the first branch over what is varied, one curve for each period: stable solid, unstable dashed,
     /// undecided dotted; events are marked, each kind by a shape of its own, and so are places where an event could not be
     /// located. Title and axes can be changed, and more can be added.
     pub fn chart(&self) -> Chart {
+        let first = self.branches.first().map(|first| &first.branch);
+        first.map_or_else(Chart::default, |first| {
+            let view = View::new();
+            let drawn = self.drawn(&view, &first.leading());
+            self.put_together(&view, &drawn)
+        })
+    }
+
+    /// The same of what one asks for.
+    ///
+    /// # Errors
+    /// As of [`Branch::chart_of`](crate::Branch::chart_of).
+    pub fn chart_of(&self, view: &View) -> Result<Chart, Error> {
         let Some(first) = self.branches.first() else {
+            return Ok(Chart::default());
+        };
+        let mut drawn = self.drawn(view, &view.on(&first.branch)?.wanted);
+        view.check(&mut drawn)?;
+        Ok(self.put_together(view, &drawn))
+    }
+
+    /// All branches as the first one is seen.
+    fn drawn(&self, view: &View, wanted: &Wanted) -> Vec<Drawn<'_>> {
+        let all = self.branches.iter();
+        all.map(|found| Drawn::of(view.seen(&found.branch, wanted.clone())))
+            .collect()
+    }
+
+    /// One curve for each period.
+    fn put_together(&self, view: &View, drawn: &[Drawn<'_>]) -> Chart {
+        let Some(first) = drawn.first() else {
             return Chart::default();
         };
-        let mut periods: Vec<usize> = self.branches.iter().map(DiagramBranch::period).collect();
-        periods.sort_unstable();
-        periods.dedup();
-        let curves = periods.iter().map(|&period| Curve {
-            label: format!("period {period}"),
-            runs: self
-                .branches
-                .iter()
-                .filter(|branch| branch.period() == period)
-                .flat_map(|branch| branch.branch.runs())
-                .collect(),
-        });
-        let chart = curves.fold(empty_chart(&Labels::of(&first.branch)), Chart::curve);
-        let branches = || self.branches.iter().map(|branch| &branch.branch);
-        let turns = branches().flat_map(Branch::unlocated).collect();
-        event_markers(branches().flat_map(Branch::marked))
-            .chain([unlocated(turns)])
-            .fold(chart, Chart::markers)
+        let periods = self.branches.iter().map(DiagramBranch::period);
+        let names: Vec<String> = periods.map(|period| format!("period {period}")).collect();
+        picture::chart_of(view, &Labels::of(&first.seen), drawn, &names)
     }
 
     /// Draws the [`chart`](Self::chart) as an SVG file.

@@ -3,7 +3,85 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::error::{Error, ErrorKind};
+use crate::error::ErrorKind;
+#[cfg(feature = "plot")]
+use crate::numeric::decimal::Decimal;
+
+/// Why there is no chart of what was asked for.
+#[cfg(feature = "plot")]
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// A value has no place on a logarithmic axis.
+    #[error(
+        "{name} is {} at {varied} = {}, which has no place on a logarithmic axis or one of decibels: take a linear one",
+        Decimal::plain(*.value), Decimal::plain(*.at)
+    )]
+    NotPositive {
+        /// What was asked for.
+        name: String,
+        /// Its value: negative, or zero where nothing is positive.
+        value: f64,
+        /// What is varied.
+        varied: String,
+        /// Its value there.
+        at: f64,
+    },
+    /// A phase is an angle.
+    #[error("the phase of harmonic {harmonic} of {name} is an angle: take a linear axis")]
+    Angle {
+        /// The signal.
+        name: String,
+        /// The number of the harmonic.
+        harmonic: usize,
+    },
+    /// Harmonics are shown by their amplitudes.
+    #[error(
+        "harmonics 1 to {count} of {name} are shown by their amplitudes, and {measure} is none"
+    )]
+    NoAmplitude {
+        /// The signal.
+        name: String,
+        /// How many harmonics were asked for.
+        count: usize,
+        /// What was asked of it.
+        measure: String,
+    },
+    /// Branches do not belong into one chart.
+    #[error("an axis of the chart is {expected}, and branch {branch} has {found}")]
+    OtherAxis {
+        /// The number of the branch, from one on.
+        branch: usize,
+        /// What is at the axis.
+        expected: String,
+        /// What the branch has.
+        found: String,
+    },
+    /// A waterfall of several harmonics.
+    #[error("a waterfall is of one measure, and {harmonics} harmonics were asked for")]
+    Waterfall {
+        /// How many harmonics were asked for.
+        harmonics: usize,
+    },
+    /// There is nothing to draw.
+    #[error("none of the {branches} branches has an orbit")]
+    Empty {
+        /// How many branches were given.
+        branches: usize,
+    },
+}
+
+#[cfg(feature = "plot")]
+crate::error::room_error! {
+    ViewError, |_| ErrorKind::Request;
+    NotPositive { name, value, varied, at }
+    Angle { name, harmonic }
+    NoAmplitude { name, count, measure }
+    OtherAxis { branch, expected, found }
+    Waterfall { harmonics }
+    Empty { branches }
+    ;
+}
 
 /// Why a result is not in its file, or cannot be had from it.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
@@ -31,8 +109,8 @@ pub enum FileError {
         /// Its path.
         path: PathBuf,
     },
-    /// A file is none of branches.
-    #[error("{} is no file of branches: {reason}", .path.display())]
+    /// A file is none of what is read from it.
+    #[error("{} is no file of this kind: {reason}", .path.display())]
     Format {
         /// Its path.
         path: PathBuf,
@@ -51,18 +129,12 @@ pub enum FileError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    FileError:
+crate::error::room_error! {
+    FileError, |_| ErrorKind::File;
     Write { path, kind }
     Read { path, kind }
     Truncated { path }
     Format { path, reason }
     Version { path, version, expected }
     ;
-}
-
-impl From<FileError> for Error {
-    fn from(error: FileError) -> Self {
-        Self::new(ErrorKind::File, error)
-    }
 }

@@ -3,9 +3,28 @@
 mod branch;
 #[cfg(feature = "plot")]
 pub(crate) mod diagram;
+#[cfg(feature = "plot")]
+mod drawn;
 pub(crate) mod error;
 pub mod export;
+#[cfg(feature = "serde")]
+mod keep;
 #[cfg(feature = "plot")]
 mod labels;
+mod map;
+#[cfg(feature = "plot")]
+mod map_chart;
+#[cfg(feature = "plot")]
+mod panels;
 #[cfg(feature = "plot")]
 pub(crate) mod picture;
+#[cfg(feature = "plot")]
+mod prefix;
+mod said;
+#[cfg(feature = "plot")]
+mod together;
+pub(crate) mod unit;
+#[cfg(feature = "plot")]
+pub(crate) mod view;
+#[cfg(all(test, feature = "plot"))]
+mod view_tests;

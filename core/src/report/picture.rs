@@ -1,20 +1,19 @@
 //! The chart of a branch.
 
-use std::mem::discriminant;
 use std::path::Path;
 
-use hertzian_chart::{Chart, ChartError, Curve, Line, Markers, Run};
+use hertzian_chart::{Chart, ChartError, Curve, Run, Scale, Series};
 
 use crate::branches::branch::Branch;
-use crate::branches::point::Point;
 use crate::error::Error;
 use crate::event::EventKind;
-use crate::orbit::stability::Verdict;
+use crate::report::drawn::Drawn;
 use crate::report::error::FileError;
 use crate::report::labels::Labels;
+use crate::report::view::View;
 
 impl Branch {
-    /// Draws peak-to-peak over what the branch varies, as an SVG file: stable solid, unstable dashed, folds marked.
+    /// Draws the [`chart`](Self::chart) as an SVG file: stable solid, unstable dashed, folds marked.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -22,100 +21,82 @@ impl Branch {
         Ok(self.chart().write(path)?)
     }
 
-    /// Peak-to-peak of the first coordinate over what the branch varies: stable solid, unstable dashed, undecided
+    /// [What leads](Self::leading) over what the branch varies: stable solid, unstable dashed, undecided
     /// dotted; events are marked, each kind by a shape of its own, and so are places where an event could not be located.
     /// More can be added before it is written.
     pub fn chart(&self) -> Chart {
-        let curve = Curve {
-            label: String::new(),
-            runs: self.runs(),
-        };
-        let labels = Labels::of(self).with_period(self.period());
-        event_markers(self.marked())
-            .chain([unlocated(self.unlocated().collect())])
-            .fold(empty_chart(&labels).curve(curve), Chart::markers)
+        let view = View::new();
+        let drawn = Drawn::of(view.seen(self, self.leading()));
+        alone(&view, drawn)
     }
 
-    /// Its events at their places.
-    pub(crate) fn marked(&self) -> impl Iterator<Item = (EventKind, [f64; 2])> {
-        let events = self.events.iter();
-        events.map(|event| (event.kind, place(&event.point)))
-    }
-
-    /// Where test functions change their sign without an event.
-    pub(crate) fn unlocated(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.turns.iter().filter_map(|turn| {
-            let [before, behind] = [
-                self.points.get(turn.after.checked_sub(1)?)?,
-                self.points.get(turn.after)?,
-            ];
-            let size = 0.5 * (before.peak_to_peak() + behind.peak_to_peak());
-            Some([turn.value, size])
-        })
-    }
-
-    /// The branch as runs of one stability each; neighbours share the point where they meet, which is the event if
-    /// there is one between them.
-    pub fn runs(&self) -> Vec<Run> {
-        self.runs_of(place)
-    }
-
-    /// The same with every orbit at a place of one's own.
-    pub fn runs_of(&self, place: impl Fn(&Point) -> [f64; 2]) -> Vec<Run> {
-        let points = self.points.iter();
-        let points = points.map(|point| (place(point), point.stability.verdict));
-        let events = self.events.iter();
-        let events = events.map(|event| (event.after, place(&event.point)));
-        runs(points, &events.collect::<Vec<_>>())
+    /// The same of what one asks for.
+    ///
+    /// # Errors
+    /// If nothing has the name that was asked for, or what is measured is not one of it; or it takes the model, and the branch was read from
+    /// a file and has [none](Self::attach).
+    pub fn chart_of(&self, view: &View) -> Result<Chart, Error> {
+        let mut drawn = Drawn::of(view.on(self)?);
+        view.check(std::slice::from_mut(&mut drawn))?;
+        Ok(alone(view, drawn))
     }
 }
 
-/// Points with their verdicts as runs of one stability each, with events, each behind so many points. Neighbours share the point
-/// where they meet.
-fn runs(
-    points: impl Iterator<Item = ([f64; 2], Verdict)>,
-    events: &[(usize, [f64; 2])],
-) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    let mut count = 0;
-    for (index, (here, verdict)) in points.enumerate() {
-        count = index + 1;
-        let line = line_of(verdict);
-        let between = events.iter().filter(|(after, _)| *after == index);
-        let joints: Vec<_> = between.map(|(_, place)| *place).collect();
-        match runs.last_mut() {
-            Some(run) if run.line == line => {
-                run.points.extend(&joints);
-                run.points.push(here);
-            }
-            Some(run) => {
-                let joint = joints.first().copied().unwrap_or(here);
-                run.points.push(joint);
-                let points = joints.into_iter().chain([here]).collect();
-                runs.push(Run { line, points });
-            }
-            None => runs.push(Run {
-                line,
-                points: joints.into_iter().chain([here]).collect(),
-            }),
+/// The chart of one branch.
+fn alone(view: &View, drawn: Drawn<'_>) -> Chart {
+    let branch = drawn.seen.branch;
+    let labels = Labels::of(&drawn.seen).with_period(branch.period());
+    chart_of(view, &labels, &[drawn], &[String::new()])
+}
+
+/// The chart of some branches, with curves that have names.
+pub(crate) fn chart_of(
+    view: &View,
+    labels: &Labels,
+    drawn: &[Drawn<'_>],
+    names: &[String],
+) -> Chart {
+    let chart = empty_chart(labels).scales(Scale::Linear, view.scale);
+    let mut distinct: Vec<&String> = Vec::new();
+    for name in names {
+        if !distinct.contains(&name) {
+            distinct.push(name);
         }
     }
-    let behind = events.iter().filter(|(after, _)| *after >= count);
-    if let Some(run) = runs.last_mut() {
-        run.points.extend(behind.map(|(_, place)| place));
+    let mut chart = chart;
+    let lines = view.harmonics.max(1);
+    for line in 0..lines {
+        for name in &distinct {
+            let label = match (view.harmonics, distinct.len()) {
+                (0, _) => (*name).clone(),
+                (_, 1) => harmonic(line),
+                _ => format!("{}, {name}", harmonic(line)),
+            };
+            let own = drawn.iter().zip(names).filter(|(_, own)| own == name);
+            let runs: Vec<Run> = own
+                .flat_map(|(drawn, _)| drawn.runs(line, view.scale))
+                .collect();
+            if view.harmonics > 0 && view.scale == Scale::Linear {
+                let between = [[f64::NAN; 2]];
+                let points = runs
+                    .iter()
+                    .flat_map(|run| run.points.iter().chain(&between));
+                chart = chart.area(Series {
+                    label: label.clone(),
+                    points: points.copied().collect(),
+                });
+            }
+            chart = chart.curve(Curve { label, runs });
+        }
     }
-    runs
+    view.marked(chart, drawn)
 }
 
-fn place(point: &Point) -> [f64; 2] {
-    [point.value, point.peak_to_peak()]
-}
-
-fn line_of(verdict: Verdict) -> Line {
-    match verdict {
-        Verdict::Stable => Line::Stable,
-        Verdict::Unstable => Line::Unstable,
-        Verdict::Undecided => Line::Undecided,
+/// The name of a harmonic, by its frequency.
+pub(crate) fn harmonic(line: usize) -> String {
+    match line {
+        0 => "amplitude at ω".to_owned(),
+        _ => format!("amplitude at {} ω", line + 1),
     }
 }
 
@@ -142,44 +123,27 @@ pub(crate) fn empty_chart(labels: &Labels) -> Chart {
 ///     (EventKind::Fold, [1.0, 2.0]),
 ///     (EventKind::PeriodDoubling, [1.5, 2.5]),
 /// ]);
-/// let chart = markers.fold(Chart::new("Two of them"), Chart::markers);
+/// let chart = markers.fold(Chart::new("Two of them"), Chart::marks);
 /// assert!(chart.to_svg().contains("</svg>"));
 /// ```
 pub fn event_markers(
     events: impl IntoIterator<Item = (EventKind, [f64; 2])>,
-) -> impl Iterator<Item = Markers> {
+) -> impl Iterator<Item = Series> {
     let events: Vec<_> = events.into_iter().collect();
-    let kinds = [
-        EventKind::Fold,
-        EventKind::PeriodDoubling,
-        EventKind::SymmetryBreaking,
-        EventKind::BranchPoint,
-        EventKind::NeimarkSacker,
-        EventKind::Grazing { turns: false },
-    ];
-    kinds.into_iter().map(move |kind| {
-        let of_kind = events
-            .iter()
-            .filter(|(other, _)| discriminant(other) == discriminant(&kind));
-        Markers {
+    EventKind::ALL.into_iter().map(move |kind| {
+        let of_kind = events.iter().filter(|(other, _)| other.is_like(kind));
+        Series {
             label: kind.to_string(),
             points: of_kind.map(|(_, place)| *place).collect(),
         }
     })
 }
 
-/// Markers of places where something was not located.
-pub(crate) fn unlocated(points: Vec<[f64; 2]>) -> Markers {
-    Markers {
-        label: "unlocated".to_owned(),
-        points,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use hertzian_chart::Line;
 
+    use crate::report::drawn::place;
     use crate::response::FrequencyResponse;
 
     hertzian::oscillator! {
@@ -212,12 +176,9 @@ mod tests {
             assert_ne!(pair[0].line, pair[1].line);
             assert_eq!(pair[0].points.last(), pair[1].points.first());
         }
-        let folds: Vec<_> = branch
-            .folds()
-            .map(|fold| super::place(&fold.point))
-            .collect();
+        let folds: Vec<_> = branch.folds().map(|fold| place(&fold.point)).collect();
         assert_eq!(folds.len(), 2);
-        let mut all = branch.points.iter().map(super::place).chain(folds);
+        let mut all = branch.points.iter().map(place).chain(folds);
         assert!(all.all(|place| runs.iter().any(|run| run.points.contains(&place))));
         assert_eq!(runs[0].line, Line::Stable);
         assert!(runs.iter().any(|run| run.line == Line::Unstable));
@@ -245,7 +206,7 @@ mod tests {
         let request = response(&SPRING).vary("drive").omega(2.5);
         let chart = request.from(0.01).to(0.02).run().unwrap().chart().to_svg();
         assert!(chart.contains("\"drive (excitation amplitude)\""));
-        assert!(chart.contains("Spring: zeta = 0.01, load = 5, omega = 2.5<"));
+        assert!(chart.contains("Spring: zeta = 0.01, load = 5, ω = 2.5<"));
         let request = response(&SPRING).vary("load").omega(2.5);
         let chart = request.from(5.0).to(5.1).run().unwrap().chart().to_svg();
         assert!(chart.contains("\"load\""));

@@ -1,9 +1,11 @@
 //! What a branch computes when it is asked: it knows what followed it.
 
+use std::any::Any;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::by_shooting::{self, Second};
+use super::following::Following;
 use super::sealed::Follow;
 use crate::balance::symmetry::is_broken;
 use crate::balance_branch::check::Asked;
@@ -19,20 +21,6 @@ use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::shooting::{self, BifurcationCurve, Shooting, at};
 use crate::system::System;
-
-/// What a branch was asked for by.
-pub(super) enum Following {
-    Balance(Box<BranchContext>, Request, HarmonicBalance),
-    Shooting(Request, Shooting),
-}
-
-impl Following {
-    fn request(&self) -> &Request {
-        match self {
-            Self::Balance(_, request, _) | Self::Shooting(request, _) => request,
-        }
-    }
-}
 
 impl Branch {
     /// Every orbit of the branch at a value of what it varies, in branch order; empty where the branch does not pass. Harmonics
@@ -53,17 +41,16 @@ impl Branch {
             return Ok(Vec::new());
         }
         match following {
-            Following::Balance(context, ..) => context.at(self, value),
-            Following::Shooting(request, shooting) => {
+            Following::Balance { context, .. } => context.at(self, value),
+            Following::Shooting {
+                request, shooting, ..
+            } => {
                 let Some(point) = self.points.first() else {
                     return Ok(Vec::new());
                 };
                 let period = point.orbit.period;
                 let (shooting, request) = by_shooting::of_period(*shooting, request, period);
-                let asked = shooting::Asked {
-                    request: &request,
-                    shooting: &shooting,
-                };
+                let asked = shooting::Asked::of(&request, &shooting);
                 at::at(&asked.problem(value, value)?, self, value)
             }
         }
@@ -76,10 +63,26 @@ impl Branch {
     /// If no branch begins there, its first orbit was not found, or the branch was read from a file and has no
     /// [model](Self::attach).
     pub fn switch(&self, event: &Event, side: Side) -> Result<Self, Error> {
-        let visit = &mut |_: Progress<'_>| ControlFlow::Continue(());
+        self.switch_with(event, side, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`switch`](Self::switch), and calls `visit` at every point as it is found: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`switch`](Self::switch).
+    pub fn switch_with(
+        &self,
+        event: &Event,
+        side: Side,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Self, Error> {
         match self.following()? {
-            Following::Balance(_, request, balance) => balance.switch(request, event, side, visit),
-            Following::Shooting(request, shooting) => shooting.switch(request, event, side, visit),
+            Following::Balance {
+                request, balance, ..
+            } => balance.switch(request, event, side, &mut visit),
+            Following::Shooting {
+                request, shooting, ..
+            } => shooting.switch(request, event, side, &mut visit),
         }
     }
 
@@ -94,17 +97,31 @@ impl Branch {
         second: &str,
         range: [f64; 2],
     ) -> Result<BifurcationCurve, Error> {
+        self.track_with(event, second, range, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`track`](Self::track), and calls `visit` at every bifurcation as it is found: to show progress, or to stop. What was found
+    /// until then comes back.
+    ///
+    /// # Errors
+    /// As [`track`](Self::track).
+    pub fn track_with(
+        &self,
+        event: &Event,
+        second: &str,
+        range: [f64; 2],
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<BifurcationCurve, Error> {
         let following = self.following()?;
         let shooting = match following {
-            Following::Balance(..) => Shooting::new(),
-            Following::Shooting(_, shooting) => *shooting,
+            Following::Balance { .. } => Shooting::new(),
+            Following::Shooting { shooting, .. } => *shooting,
         };
         let second = Second {
             name: second,
             range,
         };
-        let visit = &mut |_: Progress<'_>| ControlFlow::Continue(());
-        by_shooting::track(following.request(), shooting, event, second, visit)
+        by_shooting::track(following.request(), shooting, event, second, &mut visit)
     }
 
     /// An orbit of this branch with its Fourier series, and everything that is read off. By the balance it has that already; by shooting
@@ -118,17 +135,18 @@ impl Branch {
             return Ok(point.clone());
         }
         match self.following()? {
-            Following::Balance(_, request, _) => {
+            Following::Balance { request, .. } => {
                 by_shooting::completed(request, Shooting::new(), point)
             }
-            Following::Shooting(request, shooting) => {
-                by_shooting::completed(request, *shooting, point)
-            }
+            Following::Shooting {
+                request, shooting, ..
+            } => by_shooting::completed(request, *shooting, point),
         }
     }
 
     /// Gives a branch that was read from a file its model back, so that it can compute further orbits: by the method that followed it,
-    /// with that method's default options, but that the balance looks for all bifurcations, in the range that the branch has.
+    /// with the options that it was asked for. Where those are not in the file, by default options in the range that the branch has, and
+    /// the balance looks for all bifurcations.
     ///
     /// # Errors
     /// If the model has another name, other equations, or other values of what the branch does not vary.
@@ -141,14 +159,27 @@ impl Branch {
             .into());
         }
         let following = match self.points.first() {
-            Some(point) => self.followed_by(model, point)?,
-            None => Following::Shooting(Request::of(model), Shooting::new()),
+            Some(point) => self.asked_for(model, point)?,
+            None => Following::Shooting {
+                request: Request::of(model),
+                shooting: Shooting::new(),
+                rest: None,
+            },
         };
-        self.further = Further {
-            system: Some(model.shared()),
-            request: Some(Arc::new(following)),
-        };
+        self.further = Further::of(model.shared(), Arc::new(following));
         Ok(())
+    }
+
+    /// What a branch with this first point was asked for by, as it was written, or else as it must have been.
+    fn asked_for(&self, model: &dyn System, point: &Point) -> Result<Following, Error> {
+        #[cfg(feature = "serde")]
+        if !self.further.written.is_null() {
+            let written = serde_json::from_value(self.further.written.clone());
+            let following = Following::of(model, written.map_err(|_| RequestError::Rest)?)?;
+            shooting::Asked::of(following.request(), &Shooting::new()).belongs(point)?;
+            return Ok(following);
+        }
+        self.followed_by(model, point)
     }
 
     /// What a branch with this first point was followed by, if it was one of this system.
@@ -174,11 +205,7 @@ impl Branch {
         request.from = Some(ends[0]);
         request.period = Some(point.orbit.period);
         let (shooting, balance) = (Shooting::new(), HarmonicBalance::new().bifurcations(true));
-        shooting::Asked {
-            request: &request,
-            shooting: &shooting,
-        }
-        .belongs(point)?;
+        shooting::Asked::of(&request, &shooting).belongs(point)?;
         request.to = Some(if ends[0] < ends[1] {
             ends[1]
         } else {
@@ -187,7 +214,11 @@ impl Branch {
             Asked { request, balance }.aside(ends[0])?
         });
         if !point.orbit.states.is_empty() {
-            return Ok(Following::Shooting(request, shooting));
+            return Ok(Following::Shooting {
+                request,
+                shooting,
+                rest: None,
+            });
         }
         // A branch may pass from orbits with a symmetry to others.
         let broken = |point: &&Point| {
@@ -199,19 +230,21 @@ impl Branch {
             near: Some(Guess::Orbit(near.orbit.clone())),
             ..request.clone()
         };
-        let asked = Asked {
-            request: &near,
-            balance: &balance,
-        };
+        let asked = Asked::of(&near, &balance);
         let (context, _) = asked.check()?;
-        Ok(Following::Balance(Box::new(context), request, balance))
+        Ok(Following::Balance {
+            context: Box::new(context),
+            request,
+            balance,
+            rest: None,
+        })
     }
 
     /// A balance of orbits like this one of the branch, whatever method found it.
     pub(super) fn context(&self, point: &Point) -> Result<BranchContext, Error> {
         let request = match self.following()? {
-            Following::Balance(context, ..) => return Ok(context.as_ref().clone()),
-            Following::Shooting(request, _) => request,
+            Following::Balance { context, .. } => return Ok(context.as_ref().clone()),
+            Following::Shooting { request, .. } => request,
         };
         let balance = HarmonicBalance::new();
         // With the symmetry that this orbit has, and no other.
@@ -222,29 +255,24 @@ impl Branch {
         };
         if request.from.is_none() || request.to.is_none() {
             request.from = Some(point.value);
-            let asked = Asked {
-                request: &request,
-                balance: &balance,
-            };
+            let asked = Asked::of(&request, &balance);
             request.to = Some(asked.aside(point.value)?);
         }
-        let asked = Asked {
-            request: &request,
-            balance: &balance,
-        };
+        let asked = Asked::of(&request, &balance);
         Ok(asked.check()?.0)
     }
 
     /// What followed it, if it is one of the balance.
     pub(super) fn by_balance(&self) -> Option<&BranchContext> {
         match self.following() {
-            Ok(Following::Balance(context, ..)) => Some(context),
+            Ok(Following::Balance { context, .. }) => Some(context),
             _ => None,
         }
     }
 
-    fn following(&self) -> Result<&Following, Error> {
-        let request = self.further.request.as_ref();
+    pub(super) fn following(&self) -> Result<&Following, Error> {
+        let request = self.further.request.as_deref();
+        let request = request.map(|request| request as &dyn Any);
         let following = request.and_then(|request| request.downcast_ref::<Following>());
         following.ok_or_else(|| RequestError::Detached.into())
     }

@@ -4,19 +4,19 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::branch::Following;
 use super::by_shooting;
+use super::following::Following;
 use super::sealed::Follow;
 use crate::balance::Parity;
 use crate::balance::start::{Moving, start, without_symmetry};
-use crate::balance::symmetry::has_stride;
 use crate::balance_branch::check::Asked;
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::motion;
 use crate::balance_branch::options::HarmonicBalance;
-use crate::balance_branch::run::{Followed, Run};
+use crate::balance_branch::run::{Followed, Rest, Run};
 use crate::balance_branch::switch::switch_branch;
 use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::engine::Places;
 use crate::branches::error::{Attempts, OrbitError};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
@@ -35,11 +35,7 @@ impl Follow for HarmonicBalance {
     }
 
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
-        let aside = Asked {
-            request,
-            balance: self,
-        }
-        .aside(value)?;
+        let aside = Asked::of(request, self).aside(value)?;
         let request = Request {
             from: Some(value),
             to: Some(aside),
@@ -58,13 +54,11 @@ impl Follow for HarmonicBalance {
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
         let started = Instant::now();
         let request = &with_series(request, self, request.from)?;
-        let asked = Asked {
-            request,
-            balance: self,
-        };
+        let asked = Asked::of(request, self);
         let (context, options) = asked.check()?;
         let mut statistics = Statistics::default();
         let first = first(asked, &context, options, &mut statistics)?;
+        begin(asked, &context)?;
         let run = Run::new(&context, options, &first);
         let followed = run.follow(Start::Near(first), visit)?;
         let mut branch = as_branch(asked, context.clone(), followed);
@@ -81,25 +75,19 @@ impl Follow for HarmonicBalance {
         visit: See<'_>,
     ) -> Result<Branch, Error> {
         let started = Instant::now();
-        let asked = Asked {
-            request,
-            balance: self,
-        };
+        let asked = Asked::of(request, self);
         asked.has(event)?;
         let event = &in_series(request, event)?;
-        let doubles = event.kind == EventKind::PeriodDoubling;
         let request = &Request {
-            period: Some(event.point.orbit.period * if doubles { 2 } else { 1 }),
+            period: Some(event.period_of_branch()),
             near: None,
             ..request.clone()
         };
-        let asked = Asked {
-            request,
-            balance: self,
-        };
+        let asked = Asked::of(request, self);
         let (mut context, options) = asked.check()?;
         let stride = with_resolution_of(&mut context, event, request.period());
         let point = switch_branch(&context, event, stride, side.sign())?;
+        begin(asked, &context)?;
         let run = Run::new(&context, options, &point.u);
         let followed = run.follow(Start::Along(Box::new(point)), visit)?;
         let mut branch = as_branch(asked, context.clone(), followed);
@@ -117,10 +105,7 @@ impl Follow for HarmonicBalance {
         )?;
         let started = Instant::now();
         let request = &with_series(request, self, Some(value))?;
-        let asked = Asked {
-            request,
-            balance: self,
-        };
+        let asked = Asked::of(request, self);
         let (context, mut options) = asked.check()?;
         let mut statistics = Statistics::default();
         options.from = value;
@@ -135,6 +120,11 @@ impl Follow for HarmonicBalance {
             };
             let run = Run::new(&context, options, &first);
             let followed = run.follow(Start::Along(Box::new(point)), &mut *visit)?;
+            // The other side would be missing.
+            let followed = Followed {
+                rest: None,
+                ..followed
+            };
             Ok::<_, Error>(as_branch(asked, context.clone(), followed))
         };
         let forth = part([from, to])?;
@@ -146,6 +136,45 @@ impl Follow for HarmonicBalance {
         branch.elapsed = started.elapsed();
         Ok(branch)
     }
+}
+
+/// Goes on with a branch that was interrupted; its context has the resolution that it was followed with.
+///
+/// # Errors
+/// If what it goes on from does not belong to it.
+pub(super) fn resume(
+    asked: Asked<'_>,
+    context: BranchContext,
+    branch: &Branch,
+    rest: &Rest,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let started = Instant::now();
+    let (_, options) = asked.check()?;
+    let context = BranchContext {
+        cancel: asked.request.cancel.clone(),
+        keep: asked.request.keep.clone(),
+        ..context
+    };
+    begin(asked, &context)?;
+    let first = branch.points.first().ok_or(RequestError::Rest)?;
+    let first = context.unknowns_of(&first.orbit, first.value);
+    let run = Run::new(&context, options, &first);
+    let run = run.resumed(rest, &branch.points, &branch.events, &branch.turns);
+    let followed = run.ok_or(RequestError::Rest)?.resume(rest, visit)?;
+    let mut resumed = as_branch(asked, context.clone(), followed);
+    resumed.elapsed = started.elapsed();
+    Ok(resumed)
+}
+
+/// Tells what keeps the branch what it is.
+fn begin(asked: Asked<'_>, context: &BranchContext) -> Result<(), Error> {
+    let Some(keep) = &asked.request.keep else {
+        return Ok(());
+    };
+    let model = Model::of(asked.request.system.as_ref());
+    let further = further(asked, context.clone(), None);
+    keep.begin(&model, &asked.request.varied(), &further)
 }
 
 /// Unknowns of the first orbit.
@@ -174,13 +203,10 @@ fn with_resolution_of(context: &mut BranchContext, event: &Event, period: usize)
     context.resolution.parity = Parity::All;
     context.asymmetric = odd && !doubles;
     let orbit = &event.point.orbit;
-    let mut stride = context.resolution.stride;
-    if !has_stride(orbit, stride) {
-        stride = 1;
-    }
-    let halves = event.kind == EventKind::BranchPoint && event.tangent.is_empty();
-    context.resolution.stride = if halves && stride.is_multiple_of(2) {
-        stride / 2
+    let recurrence = orbit.recurrence();
+    let stride = recurrence.stride();
+    context.resolution.stride = if doubles {
+        recurrence.doubled().stride()
     } else {
         stride
     };
@@ -199,20 +225,20 @@ fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Br
         mut events,
         mut turns,
         statistics,
+        mut rest,
     } = followed;
+    if let Some(rest) = &mut rest {
+        let kept = rest.kept();
+        let after: Vec<usize> = events.iter().map(|event| event.after).collect();
+        Places::sorted(&mut kept.events, &after);
+        let after: Vec<usize> = turns.iter().map(|turn| turn.after).collect();
+        Places::sorted(&mut kept.turns, &after);
+    }
     // What a step hid is found one step later.
     events.sort_by_key(|event| event.after);
     turns.sort_by_key(|turn| turn.after);
-    let system = Arc::clone(&asked.request.system);
-    // What is asked of the branch later is not part of this run.
-    let request = asked.request.afterwards();
-    let context = BranchContext {
-        cancel: request.cancel.clone(),
-        ..context
-    };
-    let request = Following::Balance(Box::new(context), request, *asked.balance);
     Branch {
-        model: Model::of(system.as_ref()),
+        model: Model::of(asked.request.system.as_ref()),
         varied: asked.request.varied(),
         points,
         events,
@@ -222,11 +248,27 @@ fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Br
         statistics,
         work: crate::time::Work::default(),
         elapsed: std::time::Duration::default(),
-        further: Further {
-            system: Some(system),
-            request: Some(Arc::new(request)),
-        },
+        further: further(asked, context, rest),
     }
+}
+
+/// What it takes to go on with a branch.
+fn further(asked: Asked<'_>, context: BranchContext, rest: Option<Box<Rest>>) -> Further {
+    // What is asked of the branch later is not part of this run.
+    let request = asked.request.afterwards();
+    let context = BranchContext {
+        cancel: request.cancel.clone(),
+        keep: None,
+        ..context
+    };
+    let system = Arc::clone(&request.system);
+    let following = Following::Balance {
+        context: Box::new(context),
+        request,
+        balance: *asked.balance,
+        rest,
+    };
+    Further::of(system, Arc::new(following))
 }
 
 /// The same request with the series of the orbit that it begins near.
@@ -250,11 +292,7 @@ fn with_series(
         period: Some(request.period()),
         ..request.clone()
     };
-    Asked {
-        request: alone,
-        balance,
-    }
-    .check()?;
+    Asked::of(alone, balance).check()?;
     let quick = Request {
         stability: false,
         ..request.clone()
@@ -275,7 +313,9 @@ fn in_series(request: &Request, event: &Event) -> Result<Event, Error> {
     if event.point.orbit.states.is_empty() {
         return Ok(event.clone());
     }
-    if event.kind == EventKind::BranchPoint {
+    let orbit = &event.point.orbit;
+    let breaks = event.kind == EventKind::SymmetryBreaking && !orbit.image.is_minus();
+    if breaks || event.kind == EventKind::BranchPoint {
         return Err(RequestError::Option {
             name: "event",
             value: event.point.value,

@@ -2,40 +2,38 @@
 
 use std::sync::Arc;
 
-use super::branch::Following;
+use super::following::Following;
 use super::sealed::Follow;
 use crate::balance_branch::options::HarmonicBalance;
-use crate::branches::branch::{Branch, Further};
+use crate::branches::branch::{Branch, Further, Model, Source};
+use crate::branches::observed::Motion;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::{Guess, Request};
 use crate::error::Error;
-use crate::event::{EventKind, Side};
+use crate::event::Side;
 use crate::model::request::RequestError;
 use crate::model::validate;
+use crate::orbit::observe::Reading;
+use crate::shooting::compute::{self, Followed};
+use crate::shooting::reading::Found;
 use crate::shooting::{
-    Asked, BifurcationCurve, Plane, Shooting, bifurcation_curve, complete, compute, with_states,
+    Asked, BifurcationCurve, Plane, Rest, Shooting, bifurcation_curve, complete, with_states,
 };
+use crate::time::signals::Asked as Signal;
 
 impl Follow for Shooting {
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
-        let problem = Asked {
-            request,
-            shooting: self,
-        }
-        .problem(value, value)?;
+        let problem = Asked::of(request, self).problem(value, value)?;
         compute::orbit(&problem, &guess(request, value)?, value)
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
-        let (range, problem) = Asked {
-            request,
-            shooting: self,
-        }
-        .ranged()?;
+        let (range, problem) = Asked::of(request, self).ranged()?;
         let guess = guess(request, range[0])?;
-        let branch = compute::branch(&problem, &guess, range, visit)?;
-        Ok(with_request(branch, request, *self))
+        begin(request, *self)?;
+        let followed = compute::branch(&problem, &guess, range, visit)?;
+        Ok(with_request(followed, request, *self))
     }
 
     fn switch(
@@ -45,30 +43,18 @@ impl Follow for Shooting {
         side: Side,
         visit: See<'_>,
     ) -> Result<Branch, Error> {
-        Asked {
-            request,
-            shooting: self,
-        }
-        .belongs(&event.point)?;
-        let doubles = event.kind == EventKind::PeriodDoubling;
-        let period = event.point.orbit.period * if doubles { 2 } else { 1 };
+        Asked::of(request, self).belongs(&event.point)?;
+        let period = event.period_of_branch();
         let (shooting, request) = of_period(*self, request, period);
-        let (range, problem) = Asked {
-            request: &request,
-            shooting: &shooting,
-        }
-        .ranged()?;
+        let (range, problem) = Asked::of(&request, &shooting).ranged()?;
         let event = with_states(&problem, event);
-        let branch = compute::branch_at(&problem, &event, side.sign(), range, visit)?;
-        Ok(with_request(branch, &request, shooting))
+        begin(&request, shooting)?;
+        let followed = compute::branch_at(&problem, &event, side.sign(), range, visit)?;
+        Ok(with_request(followed, &request, shooting))
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        let ([from, to], problem) = Asked {
-            request,
-            shooting: self,
-        }
-        .ranged()?;
+        let ([from, to], problem) = Asked::of(request, self).ranged()?;
         validate::option(
             "through",
             value,
@@ -77,8 +63,35 @@ impl Follow for Shooting {
         )?;
         let guess = guess(request, value)?;
         let branch = compute::branch_through(&problem, &guess, value, [from, to], visit)?;
-        Ok(with_request(branch, request, *self))
+        let followed = Followed { branch, rest: None };
+        Ok(with_request(followed, request, *self))
     }
+}
+
+/// Goes on with a branch that was interrupted.
+///
+/// # Errors
+/// If what it goes on from does not belong to it.
+pub(super) fn resume(
+    request: &Request,
+    shooting: Shooting,
+    branch: &Branch,
+    rest: &Rest,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let (range, problem) = Asked::of(request, &shooting).ranged()?;
+    begin(request, shooting)?;
+    let followed = compute::resume(&problem, branch, rest, range, visit)?;
+    Ok(with_request(followed, request, shooting))
+}
+
+/// Tells what keeps the branch what it is.
+fn begin(request: &Request, shooting: Shooting) -> Result<(), Error> {
+    let Some(keep) = &request.keep else {
+        return Ok(());
+    };
+    let model = Model::of(request.system.as_ref());
+    keep.begin(&model, &request.varied(), &further(request, shooting, None))
 }
 
 /// The second parameter of a curve, and its range.
@@ -99,16 +112,9 @@ pub(super) fn track(
     second: Second<'_>,
     visit: See<'_>,
 ) -> Result<BifurcationCurve, Error> {
-    Asked {
-        request,
-        shooting: &shooting,
-    }
-    .belongs(&event.point)?;
+    Asked::of(request, &shooting).belongs(&event.point)?;
     let (shooting, request) = of_period(shooting, request, event.point.orbit.period);
-    let asked = Asked {
-        request: &request,
-        shooting: &shooting,
-    };
+    let asked = Asked::of(&request, &shooting);
     let (range, problem) = asked.ranged()?;
     let facts = request.system.facts();
     let variable = validate::variable(facts, Some(second.name))?;
@@ -137,12 +143,42 @@ pub(super) fn completed(
     point: &Point,
 ) -> Result<Point, Error> {
     let (shooting, request) = of_period(shooting, request, point.orbit.period);
-    let asked = Asked {
-        request: &request,
-        shooting: &shooting,
-    };
+    let asked = Asked::of(&request, &shooting);
     asked.belongs(point)?;
     complete::complete(&asked.problem(point.value, point.value)?, point)
+}
+
+/// A signal of an orbit that is known by its states.
+///
+/// # Errors
+/// If the orbit is not one of the system, or its motion cannot be computed.
+pub(super) fn reading(
+    request: &Request,
+    shooting: Shooting,
+    point: &Point,
+    source: Source,
+) -> Result<Reading, Error> {
+    let (shooting, request) = of_period(shooting, request, point.orbit.period);
+    let asked = Asked::of(&request, &shooting);
+    asked.belongs(point)?;
+    let signal = match source {
+        Source::Output(index) => Signal::Output(index),
+        Source::Coordinate(index) => Signal::Coordinate(index),
+        Source::Contact(index) => Signal::Contact(index),
+    };
+    let problem = asked.problem(point.value, point.value)?;
+    let found = complete::reading(&problem, point, signal)?
+        .into_iter()
+        .next();
+    let (motion, series) = found.map_or_else(
+        || (Motion::of(&[]), Vec::new()),
+        |Found { motion, series }| (motion, series),
+    );
+    Ok(Reading {
+        motion,
+        series,
+        base: point.orbit.base,
+    })
 }
 
 /// The same request for orbits of another period, with as many segments as it has periods.
@@ -168,6 +204,22 @@ fn guess(request: &Request, value: f64) -> Result<Guess, Error> {
     if let Some(guess) = &request.near {
         return Ok(guess.clone());
     }
+    Ok(Guess::Orbit(balanced(request, value)?.orbit))
+}
+
+/// The orbit at a value that others begin at, with its series: as the balance finds it, or from an orbit or a state that is given.
+pub(super) fn with_series(request: &Request, value: f64) -> Result<Point, Error> {
+    if request.near.is_some() {
+        let shooting = Shooting::new();
+        let problem = Asked::of(request, &shooting).problem(value, value)?;
+        let point = compute::orbit(&problem, &guess(request, value)?, value)?;
+        return complete::complete(&problem, &point);
+    }
+    balanced(request, value)
+}
+
+/// As the balance finds it.
+fn balanced(request: &Request, value: f64) -> Result<Point, Error> {
     let request = Request {
         from: None,
         to: None,
@@ -175,22 +227,25 @@ fn guess(request: &Request, value: f64) -> Result<Guess, Error> {
         tolerance: GUESSED,
         ..request.clone()
     };
-    let point = HarmonicBalance::new().orbit(&request, value)?;
-    Ok(Guess::Orbit(point.orbit))
+    HarmonicBalance::new().orbit(&request, value)
 }
 
 /// Accuracy of a first orbit that is corrected afterwards.
 const GUESSED: f64 = 1e-6;
 
-fn with_request(branch: Branch, request: &Request, shooting: Shooting) -> Branch {
+pub(super) fn with_request(followed: Followed, request: &Request, shooting: Shooting) -> Branch {
     Branch {
-        further: Further {
-            system: Some(Arc::clone(&request.system)),
-            request: Some(Arc::new(Following::Shooting(
-                request.afterwards(),
-                shooting,
-            ))),
-        },
-        ..branch
+        further: further(request, shooting, followed.rest),
+        ..followed.branch
     }
+}
+
+/// What it takes to go on with a branch.
+fn further(request: &Request, shooting: Shooting, rest: Option<Box<Rest>>) -> Further {
+    let following = Following::Shooting {
+        request: request.afterwards(),
+        shooting,
+        rest,
+    };
+    Further::of(Arc::clone(&request.system), Arc::new(following))
 }

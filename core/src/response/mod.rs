@@ -2,10 +2,18 @@
 
 mod branch;
 mod by_balance;
+mod by_contact_equation;
 mod by_shooting;
+mod following;
 mod multipliers;
+mod reading;
+mod resume;
 #[doc(hidden)]
 pub mod stages;
+#[cfg(feature = "serde")]
+mod written;
+
+pub use resume::Resume;
 
 use std::ops::ControlFlow;
 
@@ -17,8 +25,10 @@ use crate::branches::point::{Event, Point};
 use crate::branches::progress::{Progress, See};
 use crate::branches::request::{Guess, Request};
 use crate::cancel::Cancel;
+use crate::contact_equation::ContactEquation;
 use crate::error::Error;
 use crate::event::Side;
+use crate::model::request::RequestError;
 use crate::orbit::stability::Method;
 use crate::shooting::{BifurcationCurve, Shooting};
 use crate::system::System;
@@ -56,11 +66,12 @@ mod sealed {
     }
 }
 
-/// A method of computing periodic orbits: [`HarmonicBalance`] or [`Shooting`].
+/// A method of computing periodic orbits: [`HarmonicBalance`], [`Shooting`] or [`ContactEquation`].
 pub trait OrbitMethod: sealed::Follow + Clone + Send + Sync + 'static {}
 
 impl OrbitMethod for HarmonicBalance {}
 impl OrbitMethod for Shooting {}
+impl OrbitMethod for ContactEquation {}
 
 /// What to follow, set up step by step, then [run](FrequencyResponse::run).
 ///
@@ -84,19 +95,10 @@ impl OrbitMethod for Shooting {}
 /// assert!((a[0].peak_to_peak() - b[0].peak_to_peak()).abs() < 1e-6);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct FrequencyResponse<M = HarmonicBalance> {
     pub(crate) request: Request,
     pub(crate) method: M,
-}
-
-impl<M: std::fmt::Debug> std::fmt::Debug for FrequencyResponse<M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("FrequencyResponse")
-            .field("request", &self.request)
-            .field("method", &self.method)
-            .finish_non_exhaustive()
-    }
 }
 
 impl FrequencyResponse {
@@ -108,53 +110,27 @@ impl FrequencyResponse {
         }
     }
 
-    /// As [`HarmonicBalance::harmonics`].
-    #[must_use]
-    pub fn harmonics(mut self, harmonics: usize) -> Self {
-        self.method = self.method.harmonics(harmonics);
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// As [`HarmonicBalance::harmonics`].
+        harmonics(harmonics: usize) { self.method = self.method.harmonics(harmonics) }
 
-    /// As [`HarmonicBalance::samples`].
-    #[must_use]
-    pub fn samples(mut self, samples: usize) -> Self {
-        self.method = self.method.samples(samples);
-        self
-    }
+        /// As [`HarmonicBalance::samples`].
+        samples(samples: usize) { self.method = self.method.samples(samples) }
 
-    /// As [`HarmonicBalance::aft`].
-    #[must_use]
-    pub fn aft(mut self, aft: Aft) -> Self {
-        self.method = self.method.aft(aft);
-        self
-    }
+        /// As [`HarmonicBalance::aft`].
+        aft(aft: Aft) { self.method = self.method.aft(aft) }
 
-    /// As [`HarmonicBalance::multipliers`].
-    #[must_use]
-    pub fn multipliers(mut self, method: Method) -> Self {
-        self.method = self.method.multipliers(method);
-        self
-    }
+        /// As [`HarmonicBalance::multipliers`].
+        multipliers(method: Method) { self.method = self.method.multipliers(method) }
 
-    /// As [`HarmonicBalance::doublings`].
-    #[must_use]
-    pub fn doublings(mut self, wanted: bool) -> Self {
-        self.method = self.method.doublings(wanted);
-        self
-    }
+        /// As [`HarmonicBalance::doublings`].
+        doublings(wanted: bool) { self.method = self.method.doublings(wanted) }
 
-    /// As [`HarmonicBalance::bifurcations`].
-    #[must_use]
-    pub fn bifurcations(mut self, wanted: bool) -> Self {
-        self.method = self.method.bifurcations(wanted);
-        self
-    }
+        /// As [`HarmonicBalance::bifurcations`].
+        bifurcations(wanted: bool) { self.method = self.method.bifurcations(wanted) }
 
-    /// As [`HarmonicBalance::symmetric`].
-    #[must_use]
-    pub fn symmetric(mut self, wanted: bool) -> Self {
-        self.method = self.method.symmetric(wanted);
-        self
+        /// As [`HarmonicBalance::symmetric`].
+        symmetric(wanted: bool) { self.method = self.method.symmetric(wanted) }
     }
 }
 
@@ -187,95 +163,49 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         }
     }
 
-    /// Where the branch starts.
-    #[must_use]
-    pub fn from(mut self, value: f64) -> Self {
-        self.request.from = Some(value);
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// Where the branch starts.
+        from(value: f64) { self.request.from = Some(value) }
 
-    /// Where it ends.
-    #[must_use]
-    pub fn to(mut self, value: f64) -> Self {
-        self.request.to = Some(value);
-        self
-    }
+        /// Where it ends.
+        to(value: f64) { self.request.to = Some(value) }
 
-    /// Varies a parameter instead of the excitation frequency, which is then [`omega`](Self::omega).
-    #[must_use]
-    pub fn vary(mut self, parameter: impl Into<String>) -> Self {
-        self.request.vary = Some(parameter.into());
-        self
-    }
+        /// Varies a parameter instead of the excitation frequency, which is then [`omega`](Self::omega).
+        vary(parameter: impl Into<String>) { self.request.vary = Some(parameter.into()) }
 
-    /// The excitation frequency, in radians per unit of time, when a parameter is varied.
-    #[must_use]
-    pub fn omega(mut self, omega: f64) -> Self {
-        self.request.omega = Some(omega);
-        self
-    }
+        /// The excitation frequency, in radians per unit of time, when a parameter is varied.
+        omega(omega: f64) { self.request.omega = Some(omega) }
 
-    /// Period of the orbit in periods of the declaration, `2 pi divisor / omega`: those of the excitation, unless the declaration
-    /// has fractions of `omega`. Default: that of the orbit [given](Self::near_orbit), or 1.
-    #[must_use]
-    pub fn period(mut self, period: usize) -> Self {
-        self.request.period = Some(period);
-        self
-    }
+        /// Period of the orbit in periods of the declaration, `2 pi divisor / omega`: those of the excitation, unless the declaration
+        /// has fractions of `omega`. Default: that of the orbit [given](Self::near_orbit), or 1.
+        period(period: usize) { self.request.period = Some(period) }
 
-    /// Relative accuracy asked of peak-to-peak. Default: 1e-6. The balance chooses harmonics at every point such that its estimated
-    /// error, [`Point::error`], is below the tolerance, at most 150 for each period of the excitation. By shooting the
-    /// [tolerance of the flow](Shooting::tolerance) follows from it, and a closed form has none; what came of it is in [`Point::error`].
-    #[must_use]
-    pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.request.tolerance = tolerance;
-        self
-    }
+        /// Relative accuracy asked of peak-to-peak. Default: 1e-6. The balance chooses harmonics at every point such that its estimated
+        /// error, [`Point::error`], is below the tolerance, at most 150 for each period of the excitation. By shooting the
+        /// [tolerance of the flow](Shooting::tolerance) follows from it, and a closed form has none; what came of it is in [`Point::error`].
+        tolerance(tolerance: f64) { self.request.tolerance = tolerance }
 
-    /// Whether Floquet multipliers are computed. Default: yes; without them every verdict is
-    /// [`Verdict::Undecided`](crate::orbit::stability::Verdict::Undecided), a branch takes a fraction of the time, and shooting finds
-    /// no events but folds.
-    #[must_use]
-    pub fn stability(mut self, wanted: bool) -> Self {
-        self.request.stability = wanted;
-        self
-    }
+        /// Whether Floquet multipliers are computed. Default: yes; without them every verdict is
+        /// [`Verdict::Undecided`](crate::orbit::stability::Verdict::Undecided), a branch takes a fraction of the time, and shooting finds
+        /// no events but folds.
+        stability(wanted: bool) { self.request.stability = wanted }
 
-    /// Largest step along the branch, where one is as much as the size of the orbit, or the whole range. Default: 0.1; the
-    /// part of the range in one step is about 0.15 of it at most. Steps are shorter where the branch bends.
-    #[must_use]
-    pub fn largest_step(mut self, step: f64) -> Self {
-        self.request.largest_step = step;
-        self
-    }
+        /// Largest step along the branch, where one is as much as the size of the orbit, or the whole range. Default: 0.1; the
+        /// part of the range in one step is about 0.15 of it at most. Steps are shorter where the branch bends.
+        largest_step(step: f64) { self.request.largest_step = step }
 
-    /// The first orbit is near this one, found by whatever method, and has its period.
-    #[must_use]
-    pub fn near_orbit(mut self, orbit: &Orbit) -> Self {
-        self.request.near = Some(Guess::Orbit(orbit.clone()));
-        self
-    }
+        /// The first orbit is near this one, found by whatever method, and has its period.
+        near_orbit(orbit: &Orbit) { self.request.near = Some(Guess::Orbit(orbit.clone())) }
 
-    /// The first orbit is near this state `(q, dq/dt)` at phase zero: all positions, then all velocities. It takes the place of an orbit
-    /// given by [`near_orbit`](Self::near_orbit), and the other way round.
-    #[must_use]
-    pub fn near_state(mut self, state: &[f64]) -> Self {
-        self.request.near = Some(Guess::State(state.to_vec()));
-        self
-    }
+        /// The first orbit is near this state `(q, dq/dt)` at phase zero: all positions, then all velocities. It takes the place of an orbit
+        /// given by [`near_orbit`](Self::near_orbit), and the other way round.
+        near_state(state: &[f64]) { self.request.near = Some(Guess::State(state.to_vec())) }
 
-    /// What is computed ends when this token is cancelled, the search for a first orbit too.
-    #[must_use]
-    pub fn cancel(mut self, cancel: &Cancel) -> Self {
-        self.request.cancel = cancel.clone();
-        self
-    }
+        /// What is computed ends when this token is cancelled, the search for a first orbit too.
+        cancel(cancel: &Cancel) { self.request.cancel = cancel.clone() }
 
-    /// Stop after this many points. Default: 20000.
-    #[must_use]
-    pub fn max_points(mut self, points: usize) -> Self {
-        self.request.max_points = points;
-        self
+        /// Stop after this many points. Default: 20000.
+        max_points(points: usize) { self.request.max_points = points }
     }
 
     /// The one orbit at a value of what is varied; the ends of a range are not needed.
@@ -284,7 +214,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     /// If a parameter or an option is not usable, or no orbit is found; by shooting
     /// [`OrbitError::Beyond`](crate::OrbitError::Beyond) if the branch that comes near turns back before the value.
     pub fn orbit(&self, value: f64) -> Result<Point, Error> {
-        let found = self.method.orbit(&self.request, value);
+        let found = self.method.orbit(&self.request.unkept(), value);
         self.request.unless_cancelled(value, found)
     }
 
@@ -307,11 +237,11 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     ) -> Result<Branch, Error> {
         let found = self.method.run(&self.request, &mut visit);
         let from = self.request.from.unwrap_or(f64::NAN);
-        self.request.unless_cancelled(from, found)
+        self.request.unless_lost(from, found)
     }
 
-    /// The branch that begins at an event of another one, as [`run`](Self::run) would follow it: of twice the period at a doubling
-    /// ([`doublings`](Self::doublings)), of orbits without the symmetry where an odd symmetry breaks, and the other one where two cross
+    /// The branch that begins at an event of another one, as [`run`](Self::run) would follow it: of orbits that come back after twice the
+    /// time at a doubling ([`doublings`](Self::doublings)), of orbits without the symmetry where an odd symmetry breaks, and the other one where two cross
     /// ([`bifurcations`](Self::bifurcations)). Where a symmetry breaks the two sides are mirror images; at a doubling both are one
     /// branch.
     ///
@@ -356,7 +286,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
         let found = self.method.switch(&self.request, event, side, &mut visit);
-        self.request.unless_cancelled(event.point.value, found)
+        self.request.unless_lost(event.point.value, found)
     }
 
     /// The branch through the orbit at a value inside the range, both ways as far as it goes; [`Branch::stopped`] is that of the
@@ -379,6 +309,14 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         value: f64,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
+        if self.request.keep.is_some() {
+            return Err(RequestError::Option {
+                name: "through",
+                value,
+                must: "a branch that is followed both ways is not kept in a file on the way: write it when it is there",
+            }
+            .into());
+        }
         let found = self.method.through(&self.request, value, &mut visit);
         self.request.unless_cancelled(value, found)
     }

@@ -41,9 +41,7 @@ fn between(problem: &ShootingProblem, [a, b]: [&Point; 2], value: f64) -> Result
         equations,
         size: a.size(),
     };
-    if !a.orbit.symmetric {
-        first.settle(problem).map_err(motion)?;
-    }
+    first.settle(problem).map_err(motion)?;
     let First { equations, u, .. } = &mut first;
     let last = equations.unknowns_of(&b.orbit.states, b.value);
     let mut newton = Newton::new(equations);

@@ -10,6 +10,7 @@ use super::grazing_condition::GrazingCondition;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
 use super::start;
+use super::switch::is_crossing;
 use crate::branches::error::OrbitError;
 use crate::branches::point::Event;
 use crate::branches::progress::{Progress, See, Stage};
@@ -22,7 +23,6 @@ use crate::event::EventKind;
 use crate::model::request::RequestError;
 use crate::numeric::decimal::Decimal;
 use crate::system::{System, Variable};
-use crate::time::FlowError;
 
 /// A curve of bifurcations in the plane of two parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ pub struct BifurcationCurve {
     /// Its special points, in the order of the curve.
     pub special: Vec<Special>,
     /// Why it ended on both sides.
-    pub ends: [BifurcationCurveEnd; 2],
+    pub ends: [Stop; 2],
 }
 
 /// One bifurcation of a curve.
@@ -106,36 +106,6 @@ pub enum SpecialKind {
     Degenerate,
 }
 
-/// Why a curve ended on one side.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[non_exhaustive]
-pub enum BifurcationCurveEnd {
-    /// A parameter left its range.
-    Left,
-    /// The curve closed upon itself.
-    Closed,
-    /// A curve of folds met the curve of doublings at which its orbits begin, at the degenerate point that is the special one there.
-    Joined,
-    /// The motion at the next point, or its derivatives, cannot be computed: beside a touch, a power below one half has none.
-    Motion(FlowError),
-    /// Following it ended otherwise.
-    Stopped(Stop),
-}
-
-impl std::fmt::Display for BifurcationCurveEnd {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Left => f.write_str("left the range"),
-            Self::Closed => f.write_str("closed"),
-            Self::Joined => f.write_str("met the doublings at which its orbits begin"),
-            Self::Motion(reason) => write!(f, "no further motion computed: {reason}"),
-            Self::Stopped(stop) => stop.fmt(f),
-        }
-    }
-}
-
 impl std::fmt::Display for SpecialKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -165,7 +135,7 @@ const SHORTEST: f64 = 1e-5;
 struct Half {
     points: Vec<BifurcationCurvePoint>,
     special: Vec<Special>,
-    end: BifurcationCurveEnd,
+    end: Stop,
 }
 
 impl Half {
@@ -173,7 +143,7 @@ impl Half {
         Self {
             points: Vec::new(),
             special: Vec::new(),
-            end: BifurcationCurveEnd::Stopped(Stop::Interrupted),
+            end: Stop::Interrupted,
         }
     }
 
@@ -216,17 +186,13 @@ pub(crate) fn track(
         special,
         ends,
     };
-    if back.end == BifurcationCurveEnd::Closed {
+    if back.end == Stop::Closed {
         // The other way leads through the same points.
         let first = back.points.first().cloned();
         back.points.extend(first);
-        return Ok(track(
-            back.points,
-            back.special,
-            [BifurcationCurveEnd::Closed; 2],
-        ));
+        return Ok(track(back.points, back.special, [Stop::Closed; 2]));
     }
-    let interrupted = matches!(back.end, BifurcationCurveEnd::Stopped(Stop::Interrupted));
+    let interrupted = back.end == Stop::Interrupted;
     // Without the other half there is the event, where both begin.
     let forth = if interrupted {
         Half::interrupted()
@@ -279,8 +245,7 @@ fn half(
         },
         newton: newton_options,
     };
-    let symmetric = event.point.orbit.symmetric;
-    let mut monitor = EventMonitor::new(problem, plane, newton_options, &curve, symmetric);
+    let mut monitor = EventMonitor::new(problem, plane, newton_options, &curve);
     let mut interrupted = false;
     let outcome = follow(
         &mut curve,
@@ -301,7 +266,7 @@ fn half(
         },
     );
     let end = if interrupted {
-        BifurcationCurveEnd::Stopped(Stop::Interrupted)
+        Stop::Interrupted
     } else {
         monitor.end_of(&curve, outcome, value)?
     };
@@ -353,6 +318,7 @@ fn curve<'a>(
     };
     let condition = match event.kind {
         EventKind::Fold => Condition::Multiplier(-1.0),
+        EventKind::SymmetryBreaking if is_crossing(problem, event)? => return Err(nothing.into()),
         EventKind::PeriodDoubling | EventKind::SymmetryBreaking => Condition::Multiplier(1.0),
         EventKind::Grazing { .. } => {
             let grazing =

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::options::Shooting;
 use super::problem::{ShootingProblem, Source};
-use crate::balance::symmetry::Over;
+use crate::balance::symmetry::{Over, Permutations};
 use crate::branches::point::Point;
 use crate::branches::request::{Guess, Request};
 use crate::continuation::step;
@@ -16,10 +16,8 @@ use crate::model::rigid::{self, Place};
 use crate::model::validate;
 use crate::system::Variable;
 use crate::time;
-use crate::time::MotionError;
 use crate::time::Options;
 use crate::time::affine::Affine;
-use crate::time::stroboscope::Stroboscope;
 
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
@@ -31,7 +29,11 @@ pub(crate) struct Asked<'r> {
     pub(crate) shooting: &'r Shooting,
 }
 
-impl Asked<'_> {
+impl<'r> Asked<'r> {
+    pub(crate) fn of(request: &'r Request, shooting: &'r Shooting) -> Self {
+        Self { request, shooting }
+    }
+
     /// An orbit that is given is one of this system, and its value is that of what is varied here.
     pub(crate) fn belongs(&self, point: &Point) -> Result<(), Error> {
         let facts = self.request.system.facts();
@@ -119,15 +121,10 @@ impl Asked<'_> {
             variable,
         };
         rigid::none(place, range)?;
-        let over = Over {
-            system: self.request.system.as_ref(),
-            layout: &layout,
-            parameters: &parameters,
-            omega,
-            variable,
-            range,
-        };
-        let odd = over.is_odd();
+        let over = Over { place, range };
+        let Permutations { at_once, later } = over.permutations();
+        let mut symmetries = vec![over.cyclic()];
+        symmetries.extend(later);
         Ok(ShootingProblem {
             system: Arc::clone(&self.request.system),
             source: self.source(&parameters, omega),
@@ -138,11 +135,13 @@ impl Asked<'_> {
             divisor: facts.divisor,
             period: self.request.period(),
             segments: self.shooting.segments.unwrap_or(self.request.period()),
-            odd: odd && !self.request.period().is_multiple_of(2),
+            symmetries,
+            at_once,
             stability: self.request.stability,
             points: step::max_points(self.request.max_points)?,
             steps: step::largest_step(self.request.largest_step)?,
             cancel: self.request.cancel.clone(),
+            keep: self.request.keep.clone(),
         })
     }
 
@@ -217,32 +216,5 @@ impl Asked<'_> {
             exact,
             tolerance: self.tolerance(),
         }
-    }
-}
-
-impl Request {
-    /// The states of an orbit at the beginnings of its periods of the declaration, the first of which it is given by.
-    pub(crate) fn returns(
-        &self,
-        shooting: Shooting,
-        point: &Point,
-    ) -> Result<Vec<Vec<f64>>, Error> {
-        let tolerance = shooting.flow_tolerance(self.tolerance);
-        let flow = time::at(
-            &self.system,
-            &point.parameters,
-            point.orbit.omega,
-            Options::default().tolerance(tolerance).cancel(&self.cancel),
-        )?;
-        let mut map = Stroboscope::new(flow);
-        let mut state = point.orbit.state();
-        let mut states = vec![state.clone()];
-        for _ in 1..point.orbit.period {
-            let value = point.value;
-            map.map(&mut state)
-                .map_err(|reason| MotionError { value, reason })?;
-            states.push(state.clone());
-        }
-        Ok(states)
     }
 }

@@ -3,9 +3,14 @@
 //! Positions are sampled along the motion itself and transformed, so coefficients err by aliasing only: those of displacements
 //! fall at least as `k^-3`, and there are hundreds of samples for each harmonic that is kept.
 
+use std::f64::consts::TAU;
+
 use super::problem::ShootingProblem;
+use super::reading::{Found, Reader};
+use super::start;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};
+use crate::branches::observed::Observed;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::error::Error;
@@ -15,6 +20,7 @@ use crate::orbit::observe::Observer;
 use crate::time::MotionError;
 use crate::time::history;
 use crate::time::history::Span;
+use crate::time::signals::Asked;
 use crate::time::stroboscope::Stroboscope;
 
 /// Samples for each period of the declaration, and harmonics that are kept, for each unit of the divisor.
@@ -66,6 +72,7 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
     }
     u.truncate(n);
     observed.switches = point.observed.switches;
+    read_motion(problem, point, &mut observed)?;
     Ok(Point {
         orbit: Orbit {
             series: u,
@@ -74,6 +81,48 @@ pub(crate) fn complete(problem: &ShootingProblem, point: &Point) -> Result<Point
         observed,
         ..point.clone()
     })
+}
+
+/// Outputs and contacts from the motion itself: forces take more harmonics than positions.
+fn read_motion(
+    problem: &ShootingProblem,
+    point: &Point,
+    observed: &mut Observed,
+) -> Result<(), Error> {
+    observed.outputs = read(problem, point, Asked::Outputs, 0)?.motions();
+    let contacts = read(problem, point, Asked::Contacts, 0)?;
+    let period = TAU / point.orbit.base;
+    (observed.contacts, observed.on_pieces) = contacts.contacts(period);
+    Ok(())
+}
+
+/// Signals of an orbit of shooting, with the harmonics that [`complete`] keeps.
+///
+/// # Errors
+/// If the motion cannot be computed.
+pub(crate) fn reading(
+    problem: &ShootingProblem,
+    point: &Point,
+    asked: Asked,
+) -> Result<Vec<Found>, Error> {
+    let harmonics = HARMONICS * problem.divisor as usize * point.orbit.period;
+    Ok(read(problem, point, asked, harmonics)?.found())
+}
+
+/// What is asked for, along the motion from the states of an orbit.
+fn read<'p>(
+    problem: &'p ShootingProblem,
+    point: &Point,
+    asked: Asked,
+    harmonics: usize,
+) -> Result<Reader<'p>, Error> {
+    let (mut equations, u) = start::of_point(problem, point)?;
+    let recurrence = equations.span.recurrence.clone();
+    let mut reader = problem.reader(point.value, asked, &recurrence, harmonics);
+    let value = point.value;
+    let traced = equations.trace(&u, &mut |stretch| reader.include(stretch));
+    traced.map_err(|reason| MotionError { value, reason })?;
+    Ok(reader)
 }
 
 /// Positions at equal distances over the period, so many in each period of the declaration, coordinate by coordinate.

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::error_reference::ErrorReference;
 use super::problem::ShootingProblem;
+use super::rest::Rest;
 use super::run::Run;
 use super::start::{First, first};
 use super::switch::{self, Begun};
@@ -13,8 +14,15 @@ use crate::branches::progress::See;
 use crate::branches::request::Guess;
 use crate::continuation::follow::{Start, Stop};
 use crate::error::Error;
+use crate::model::request::RequestError;
 use crate::system::Variable;
 use crate::time::MotionError;
+
+/// A branch, and what it goes on from, where it was interrupted.
+pub(crate) struct Followed {
+    pub(crate) branch: Branch,
+    pub(crate) rest: Option<Box<Rest>>,
+}
 
 /// The orbit near a guess where what is varied has a value.
 ///
@@ -30,7 +38,7 @@ pub(crate) fn orbit(problem: &ShootingProblem, guess: &Guess, value: f64) -> Res
 /// # Errors
 /// If its motion cannot be computed.
 pub(super) fn read(problem: &ShootingProblem, found: First, value: f64) -> Result<Point, Error> {
-    let (mut run, mut found) = run(problem, found, value, value)?;
+    let (mut run, mut found) = run(problem, found)?;
     let read = run.read(&mut found.equations, &found.u);
     let (point, _) = read.map_err(|reason| MotionError { value, reason })?;
     Ok(point)
@@ -45,7 +53,7 @@ pub(crate) fn branch(
     guess: &Guess,
     [from, to]: [f64; 2],
     visit: See<'_>,
-) -> Result<Branch, Error> {
+) -> Result<Followed, Error> {
     let started = Instant::now();
     let found = first(problem, guess, from, omega_between(problem, [from, to]))?;
     let near = |u: Vec<f64>| Start::Near(u);
@@ -62,7 +70,7 @@ pub(crate) fn branch_at(
     side: f64,
     [from, to]: [f64; 2],
     visit: See<'_>,
-) -> Result<Branch, Error> {
+) -> Result<Followed, Error> {
     let started = Instant::now();
     let Begun { first, point } = switch::switch_branch(problem, event, side, (to - from).abs())?;
     let along = |_| Start::Along(Box::new(point));
@@ -87,7 +95,8 @@ pub(crate) fn branch_through(
         let found = first(problem, guess, value, problem.omega_at(value))?;
         let Begun { first, point } = switch::resume(problem, found, side, (to - from).abs())?;
         let along = |_| Start::Along(Box::new(point));
-        followed(problem, first, along, [from, to], &mut *visit, started)
+        let followed = followed(problem, first, along, [from, to], &mut *visit, started)?;
+        Ok(followed.branch)
     };
     let forth = part([from, to])?;
     // Once around, or interrupted: there is no other side.
@@ -96,6 +105,28 @@ pub(crate) fn branch_through(
     }
     let back = part([to, from]);
     Branch::with_back(forth, Some(back), &problem.cancel)
+}
+
+/// Goes on with a branch that was interrupted.
+///
+/// # Errors
+/// If what it goes on from does not belong to it.
+pub(crate) fn resume(
+    problem: &ShootingProblem,
+    branch: &Branch,
+    rest: &Rest,
+    [from, to]: [f64; 2],
+    visit: See<'_>,
+) -> Result<Followed, Error> {
+    let started = Instant::now();
+    let first = rest.first(problem, branch)?.ok_or(RequestError::Rest)?;
+    let (mut run, First { equations, .. }) = run(problem, first)?;
+    if !run.take_up(rest, branch) {
+        return Err(RequestError::Rest.into());
+    }
+    let options = problem.follow(from, to, equations.frame.ratio);
+    let stopped = run.resume(equations, rest, options, visit)?;
+    Ok(as_branch(problem, run, stopped, started))
 }
 
 /// A frequency that velocities count by.
@@ -114,19 +145,25 @@ fn followed(
     [from, to]: [f64; 2],
     visit: See<'_>,
     started: Instant,
-) -> Result<Branch, Error> {
-    let (mut run, First { equations, u, .. }) = run(problem, found, from, to)?;
+) -> Result<Followed, Error> {
+    let (mut run, First { equations, u, .. }) = run(problem, found)?;
     let options = problem.follow(from, to, equations.frame.ratio);
     let stopped = run.follow(equations, start(u), options, visit)?;
+    Ok(as_branch(problem, run, stopped, started))
+}
+
+/// The branch that a run has gathered.
+fn as_branch(problem: &ShootingProblem, run: Run<'_>, stopped: Stop, started: Instant) -> Followed {
     let Run {
         points,
         events,
         turns,
         statistics,
         work,
+        rest,
         ..
     } = run;
-    Ok(Branch {
+    let branch = Branch {
         model: Model::of(problem.system.as_ref()),
         varied: problem.varied.clone(),
         points,
@@ -138,21 +175,17 @@ fn followed(
         work,
         elapsed: started.elapsed(),
         further: Further::default(),
-    })
+    };
+    let rest = rest.filter(|_| stopped.can_be_resumed());
+    Followed { branch, rest }
 }
 
 /// A run that begins at a solution.
-fn run(
-    problem: &ShootingProblem,
-    found: First,
-    from: f64,
-    to: f64,
-) -> Result<(Run<'_>, First), Error> {
+fn run(problem: &ShootingProblem, found: First) -> Result<(Run<'_>, First), Error> {
     let First {
         equations, size, ..
     } = &found;
     let frame = equations.frame.clone();
-    let reference = ErrorReference::new(problem, equations.span, frame, *size)?;
-    let options = problem.follow(from, to, equations.frame.ratio).newton;
-    Ok((Run::new(problem, options, reference, *size), found))
+    let reference = ErrorReference::new(problem, equations.span.clone(), frame, *size)?;
+    Ok((Run::new(problem, reference, *size), found))
 }

@@ -87,12 +87,9 @@ fn same(problem: &ShootingProblem, event: &Event) -> Result<First, Error> {
         equations,
         size: point.size(),
     };
-    // Half of an orbit with odd symmetry has no middle of its own.
-    if !point.orbit.symmetric {
-        let value = point.value;
-        let motion = |reason| MotionError { value, reason };
-        first.settle(problem).map_err(motion)?;
-    }
+    let value = point.value;
+    let motion = |reason| MotionError { value, reason };
+    first.settle(problem).map_err(motion)?;
     Ok(first)
 }
 

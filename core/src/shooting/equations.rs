@@ -6,12 +6,13 @@
 //! ```text
 //! phi_i(s_i; lambda) - s_(i+1) = 0,    i < m - 1,                                                             (1)
 //! phi_(m-1)(s_(m-1); lambda) - S s_0 = 0                                                                      (2)
-//! M = S phi'_(m-1) ... phi'_1 phi'_0                                                                          (3)
+//! M = S^-1 phi'_(m-1) ... phi'_1 phi'_0                                                                       (3)
 //! ```
 //!
-//! `S` is one. Of an orbit with odd symmetry, `q(tau + pi n) = -q(tau)`, half a period is enough, with `S = -1`; the multipliers
-//! of the whole period are then the squares of the eigenvalues of `M`. Phases begin within the first period of the system, so
-//! that equal states at equal phases move alike to the last bit.
+//! `S` is one. Of an orbit that comes back after a part of its period, with coordinates in each other's place
+//! ([`recurrence`](crate::branches::recurrence)), that part is enough: of one with odd symmetry, `q(tau + pi n) = -q(tau)`, half a
+//! period with `S = -1`. The multipliers of the whole period are then the powers of the eigenvalues of `M` by the number of parts.
+//! Phases begin within the first period of the system, so that equal states at equal phases move alike to the last bit.
 //!
 //! The unknowns are positions less those of a reference, and velocities, so that a load does not hide the oscillation.
 //!
@@ -22,6 +23,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DMatrixView};
 
 use super::problem::ShootingProblem;
+use crate::branches::recurrence::Recurrence;
 use crate::cancel::Cancel;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::problem::Problem;
@@ -30,33 +32,44 @@ use crate::system::Variable;
 use crate::time::{Flow, FlowError, See, Stretch, Tangent};
 
 /// What one orbit extends over, and how it is divided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Span {
-    /// Period in periods of the system, `2 pi` each.
-    pub(super) period: usize,
-    /// The orbit has odd symmetry, and only half of its period is followed. The period is odd then.
-    pub(super) half: bool,
+    /// How it comes back: after a part of its period, and only that part is followed.
+    pub(super) recurrence: Recurrence,
     /// `m`
     pub(super) segments: usize,
 }
 
 impl Span {
-    /// `S`
-    fn sign(self) -> f64 {
-        if self.half { -1.0 } else { 1.0 }
+    /// Of orbits that come back so, in as many segments of a part as all of them has parts.
+    pub(super) fn of(recurrence: Recurrence, segments: usize) -> Self {
+        Self {
+            segments: segments.div_ceil(recurrence.parts),
+            recurrence,
+        }
+    }
+
+    /// Of twice the time.
+    pub(super) fn doubled(&self) -> Self {
+        Self {
+            recurrence: self.recurrence.doubled(),
+            segments: 2 * self.segments,
+        }
     }
 
     /// First and last phase of a segment. The first is within the first period.
-    pub(super) fn phases(self, segment: usize) -> (f64, f64) {
-        // In halves of a period, in units of `1 / m`.
-        let halves = self.period * if self.half { 1 } else { 2 };
-        let begin = segment * halves % (2 * self.segments);
-        let phase = |numerator: usize| 0.5 * TAU * (numerator as f64 / self.segments as f64);
-        (phase(begin), phase(begin + halves))
+    pub(super) fn phases(&self, segment: usize) -> (f64, f64) {
+        let Recurrence { period, parts, .. } = self.recurrence;
+        // A period of the system has so many units, a segment as many as the orbit has periods.
+        let units = self.segments * parts;
+        let begin = segment * period % units;
+        let phase = |numerator: usize| TAU * (numerator as f64 / units as f64);
+        (phase(begin), phase(begin + period))
     }
 
     /// Phase of the beginning of a segment, from the beginning of the first.
-    pub(super) fn begins(self, segment: usize) -> f64 {
+    pub(super) fn begins(&self, segment: usize) -> f64 {
         let (from, to) = self.phases(0);
         segment as f64 * (to - from)
     }
@@ -64,14 +77,19 @@ impl Span {
 
 /// What does not change along a curve of orbits.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Frame {
     /// What is varied.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) variable: Variable,
     /// Positions that the unknowns are counted from.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) reference: Vec<f64>,
     /// A frequency: velocities count by it.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) omega: f64,
     /// The largest state in units of the oscillation's size: rounding and the error of a flow are relative to it.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) ratio: f64,
 }
 
@@ -139,7 +157,8 @@ impl Equations {
 
     /// The same equations, with a flow of their own.
     pub(super) fn again(&self, problem: &ShootingProblem) -> Result<Self, Error> {
-        let equations = Self::new(problem, self.tolerance, self.span, self.frame.clone())?;
+        let (span, frame) = (self.span.clone(), self.frame.clone());
+        let equations = Self::new(problem, self.tolerance, span, frame)?;
         Ok(Self {
             disturbance: self.disturbance,
             ..equations
@@ -176,8 +195,8 @@ impl Equations {
 
     /// Goes over to another division; the unknowns are then others.
     pub(super) fn divide(&mut self, span: Span) {
-        self.span = span;
         self.column.resize(self.order() * span.segments, 0.0);
+        self.span = span;
     }
 
     /// The states at the beginnings of all segments, on the way from a state at phase zero.
@@ -196,7 +215,7 @@ impl Equations {
         Ok(states)
     }
 
-    /// Moves a state at phase zero by so many halves of a period of the system.
+    /// Moves a state from one of so many parts of a period of the system to another.
     ///
     /// # Errors
     /// If the motion cannot be continued.
@@ -204,11 +223,14 @@ impl Equations {
         &mut self,
         state: &mut [f64],
         value: f64,
-        halves: usize,
+        [from, to]: [usize; 2],
+        parts: usize,
     ) -> Result<(), FlowError> {
         self.flow.set(self.frame.variable, value)?;
-        let to = 0.5 * TAU * halves as f64;
-        self.flow.advance(0.0, to, state, None, None)
+        let begin = from % parts;
+        let phase = |numerator: usize| TAU * (numerator as f64 / parts as f64);
+        let (from, to) = (phase(begin), phase(begin + to - from));
+        self.flow.advance(from, to, state, None, None)
     }
 
     /// The largest difference between the states of two orbits, of velocities in units of the frequency.
@@ -244,15 +266,40 @@ impl Equations {
         self.flow.advance(from, to, &mut self.state, tangent, see)
     }
 
+    /// The entry of a state that `S` takes into another one, and the sign.
+    fn image(&self, entry: usize) -> (usize, f64) {
+        let image = &self.span.recurrence.image;
+        image.state_entry(entry, self.order() / 2)
+    }
+
+    /// The state at a phase within a segment, and its derivatives by where that begins and by the parameter.
+    ///
+    /// # Errors
+    /// If the motion cannot be continued.
+    pub(super) fn tangent_at(
+        &mut self,
+        u: &[f64],
+        segment: usize,
+        phase: f64,
+    ) -> Result<(Vec<f64>, Tangent), FlowError> {
+        self.flow.set(self.frame.variable, u[u.len() - 1])?;
+        self.begin(u, segment);
+        let (from, _) = self.span.phases(segment);
+        let tangent = Some(&mut self.tangent);
+        self.flow
+            .advance(from, phase, &mut self.state, tangent, None)?;
+        Ok((self.state.clone(), self.tangent.clone()))
+    }
+
     /// The residuals of one segment, once `state` is at its end.
     fn close(&self, u: &[f64], segment: usize, residual: &mut [f64]) {
         let order = self.order();
         let last = segment + 1 == self.span.segments;
         let next = if last { 0 } else { segment + 1 };
-        let sign = if last { self.span.sign() } else { 1.0 };
         for i in 0..order {
-            let reference = self.frame.reference.get(i).copied().unwrap_or(0.0);
-            let target = sign * (u[next * order + i] + reference);
+            let (place, sign) = if last { self.image(i) } else { (i, 1.0) };
+            let reference = self.frame.reference.get(place).copied().unwrap_or(0.0);
+            let target = sign * (u[next * order + place] + reference);
             let unit = self.unit(i);
             let alternating = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             residual[segment * order + i] =
@@ -265,14 +312,14 @@ impl Equations {
         let order = self.order();
         let last = segment + 1 == self.span.segments;
         let next = if last { 0 } else { segment + 1 };
-        let sign = if last { self.span.sign() } else { 1.0 };
         let (first, next) = (segment * order, next * order);
         for i in 0..order {
+            let (place, sign) = if last { self.image(i) } else { (i, 1.0) };
             let row = jacobian.core_mut().row_mut(first + i);
             for j in 0..order {
                 row[first + j] += self.tangent.columns[j * order + i];
             }
-            row[next + i] -= sign;
+            row[next + place] -= sign;
             self.column[first + i] = self.tangent.columns[order * order + i];
         }
     }
@@ -334,16 +381,24 @@ impl Equations {
     fn multiply(&mut self, segment: usize) {
         let order = self.order();
         let last = segment + 1 == self.span.segments;
-        let sign = if last { self.span.sign() } else { 1.0 };
         let columns = &self.tangent.columns[..order * order];
         let tangent = DMatrixView::from_slice(columns, order, order);
         if segment == 0 {
             self.room.copy_from(&tangent);
-            self.room *= sign;
         } else {
-            self.room.gemm(sign, &tangent, &self.product, 0.0);
+            self.room.gemm(1.0, &tangent, &self.product, 0.0);
         }
-        std::mem::swap(&mut self.product, &mut self.room);
+        if !last || self.span.recurrence.image.is_identity() {
+            std::mem::swap(&mut self.product, &mut self.room);
+            return;
+        }
+        // S takes row p_i to row i, and its inverse back.
+        for i in 0..order {
+            let (place, sign) = self.image(i);
+            for j in 0..order {
+                self.product[(place, j)] = sign * self.room[(i, j)];
+            }
+        }
     }
 
     /// Shows the orbit `u` to `see`, stretch by stretch.

@@ -41,8 +41,9 @@ pub(super) struct ErrorReference {
     pub(super) part: f64,
     /// These equations are finer: what is reported are their orbits.
     pub(super) finer: bool,
-    /// Errors that the flow leaves, in units of the oscillation.
+    /// Errors that the flow leaves, in units of the oscillation, and what rounding has in them.
     pub(super) noise: f64,
+    pub(super) rounding: f64,
 }
 
 /// An orbit of the reference's equations.
@@ -82,6 +83,7 @@ impl ErrorReference {
             part,
             finer,
             noise,
+            rounding,
         })
     }
 
@@ -96,7 +98,7 @@ impl ErrorReference {
         crate::branches::solve::at_value(equations, newton, &mut corrected, options).ok()?;
         Some(Corrected {
             u: corrected,
-            multipliers: multipliers(&equations.product, equations.span.half),
+            multipliers: multipliers(&equations.product, equations.span.recurrence.parts),
         })
     }
 
@@ -108,20 +110,21 @@ impl ErrorReference {
         let map = self.equations.map(&corrected.u, &mut |_| {});
         map.map_or_else(
             |_| Vec::new(),
-            |map| multipliers(&map, self.equations.span.half),
+            |map| multipliers(&map, self.equations.span.recurrence.parts),
         )
     }
 
     /// Errors that the flow leaves in the multipliers of a map, and in the states relative to the size of their oscillation.
     pub(super) fn errors(&self, map: &DMatrix<f64>, multipliers: &[Complex<f64>]) -> (f64, f64) {
-        let half = self.equations.span.half;
+        let parts = self.equations.span.recurrence.parts;
         let size = map.norm().max(1.0);
-        let nearest = multipliers.iter().map(|m| (m - 1.0).norm());
+        // The equations are those of the part that is followed.
+        let nearest = eigenvalues(map).into_iter().map(|m| (m - 1.0).norm());
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         // Where a multiplier is one, an error moves the orbit by its root only: the branch bends away.
         let states = self.noise * size / nearest.max(self.noise.sqrt());
         let delta = (self.noise + states) * size;
-        (moved(map, multipliers, half, delta), states)
+        (moved(map, multipliers, parts, delta), states)
     }
 
     pub(super) fn work(&self) -> Work {
@@ -129,25 +132,31 @@ impl ErrorReference {
     }
 }
 
-/// Multipliers over the whole period, largest first.
-pub(super) fn multipliers(map: &DMatrix<f64>, half: bool) -> Vec<Complex<f64>> {
+/// Multipliers over the whole period, of a map over one of its parts; largest first.
+pub(super) fn multipliers(map: &DMatrix<f64>, parts: usize) -> Vec<Complex<f64>> {
     let mut values = eigenvalues(map);
-    if half {
-        for value in &mut values {
-            *value *= *value;
+    for value in &mut values {
+        let of_part = *value;
+        for _ in 1..parts {
+            *value *= of_part;
         }
     }
     values
 }
 
 /// How far multipliers move when the entries of their map do.
-pub(super) fn moved(map: &DMatrix<f64>, multipliers: &[Complex<f64>], half: bool, by: f64) -> f64 {
+pub(super) fn moved(
+    map: &DMatrix<f64>,
+    multipliers: &[Complex<f64>],
+    parts: usize,
+    by: f64,
+) -> f64 {
     let disturbed = |sign: f64| {
         let entries = DMatrix::from_fn(map.nrows(), map.ncols(), |i, j| {
             let alternating = if (i + j).is_multiple_of(2) { 1.0 } else { sign };
             map[(i, j)] + by * alternating
         });
-        distance(multipliers, &self::multipliers(&entries, half))
+        distance(multipliers, &self::multipliers(&entries, parts))
     };
     disturbed(1.0).max(disturbed(-1.0))
 }

@@ -12,10 +12,9 @@
 //!
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, chapter 9 (bifurcations of codimension two of fixed points).
 
-use super::bifurcation_curve::{
-    BifurcationCurveEnd, BifurcationCurvePoint, Plane, Special, SpecialKind,
-};
+use super::bifurcation_curve::{BifurcationCurvePoint, Plane, Special, SpecialKind};
 use super::codimension_one::{Condition, Curve};
+use super::error_reference::multipliers;
 use super::generalised_flip::HalfPeriodDifference;
 use super::normal_form::CubicCoefficient;
 use super::problem::ShootingProblem;
@@ -27,7 +26,6 @@ use super::special_search::{
 use crate::continuation::follow::{Continue, CurvePoint, Halt, Outcome, Step, Stop, Visit};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;
-use crate::numeric::spectrum::eigenvalues;
 use crate::time::FlowError;
 
 /// A slope of the second parameter counts as none below this, and that of the first, where the second has none, below the other.
@@ -45,7 +43,6 @@ pub(super) struct EventMonitor<'p, 'a> {
     problem: &'p ShootingProblem,
     plane: &'p Plane<'a>,
     options: NewtonOptions,
-    symmetric: bool,
     pub(super) functions: TestFunctions<'p>,
     /// The last two points.
     seen: [Option<Tests>; 2],
@@ -77,19 +74,17 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
         plane: &'p Plane<'a>,
         options: NewtonOptions,
         curve: &Curve<'a>,
-        symmetric: bool,
     ) -> Self {
         let shift = match curve.condition {
             Condition::Multiplier(shift) => Some(shift),
             Condition::Grazing(..) => None,
         };
-        let coefficient = (shift == Some(1.0))
-            .then(|| CubicCoefficient::new(problem, curve, symmetric, false).ok());
+        let coefficient =
+            (shift == Some(1.0)).then(|| CubicCoefficient::new(problem, curve, false).ok());
         Self {
             problem,
             plane,
             options,
-            symmetric,
             functions: TestFunctions {
                 problem,
                 shift,
@@ -114,7 +109,7 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
         seen: &Visit<'_>,
     ) -> Continue {
         match *seen {
-            Visit::Again(_) => {}
+            Visit::Again(_) | Visit::Failed(..) | Visit::Onward(_) => {}
             Visit::Point(at) => return self.read(curve, at),
             Visit::Between(before, next) if self.joined => {
                 self.end(curve, Step { before, next });
@@ -151,7 +146,7 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
             self.joined = true;
             return Continue::Continue(());
         }
-        let point = self.point(curve, &at.u, &counted);
+        let point = Self::point(curve, &at.u, &counted);
         self.points.push(point);
         let tests = self.functions.at(curve, at, &counted);
         self.seen = [self.seen[1], tests];
@@ -159,20 +154,15 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
     }
 
     /// A point with what is read off it.
-    fn point(&self, curve: &Curve<'_>, u: &[f64], counted: &Counted) -> BifurcationCurvePoint {
-        let mut multipliers = eigenvalues(&counted.map);
-        if self.symmetric {
-            for m in &mut multipliers {
-                *m *= *m;
-            }
-        }
+    fn point(curve: &Curve<'_>, u: &[f64], counted: &Counted) -> BifurcationCurvePoint {
+        let parts = curve.equations.span.recurrence.parts;
         let last = u.len() - 1;
         let states = curve.equations.states_of(&u[..last]);
         BifurcationCurvePoint {
             values: [u[last - 1], u[last]],
             state: states[..curve.equations.order()].to_vec(),
-            multipliers,
-            switches: counted.switches * if self.symmetric { 2 } else { 1 },
+            multipliers: multipliers(&counted.map, parts),
+            switches: counted.switches * parts,
         }
     }
 
@@ -269,9 +259,8 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
         }
         let moved = self.reference(search.curve).and_then(|mut reference| {
             // What is left of the next order at a distance is not proportional to the error of the flow.
-            let coefficient = degenerate.then(|| {
-                CubicCoefficient::new(self.problem, &reference.curve, self.symmetric, true).ok()
-            });
+            let coefficient = degenerate
+                .then(|| CubicCoefficient::new(self.problem, &reference.curve, true).ok());
             let mut functions = TestFunctions {
                 coefficient: coefficient.flatten(),
                 ..self.functions
@@ -339,29 +328,25 @@ impl<'p, 'a> EventMonitor<'p, 'a> {
         curve: &Curve<'a>,
         outcome: Result<Outcome, NewtonError>,
         value: f64,
-    ) -> Result<BifurcationCurveEnd, Error> {
+    ) -> Result<Stop, Error> {
         let stuck = matches!(outcome, Ok(Outcome::Stopped(Stop::StepTooShort { .. })));
         if stuck && self.is_at_half_the_period(curve) {
             self.joined = true;
         }
         let failure = self.failure.or(curve.equations.failure);
         Ok(match (outcome, failure) {
-            (Ok(_), Some(FlowError::Cancelled { .. })) => {
-                BifurcationCurveEnd::Stopped(Stop::Interrupted)
-            }
-            _ if self.left => BifurcationCurveEnd::Left,
-            _ if self.joined => BifurcationCurveEnd::Joined,
+            (Ok(_), Some(FlowError::Cancelled { .. })) => Stop::Interrupted,
+            _ if self.left => Stop::ReachedEnd,
+            _ if self.joined => Stop::JoinedDoublings,
             (Err(reason), failure) => return Err(no_orbit(value, reason, failure)),
             (Ok(Outcome::Stopped(Stop::StepTooShort { .. } | Stop::Interrupted)), Some(reason)) => {
-                BifurcationCurveEnd::Motion(reason)
+                let value = self.points.last().map_or(value, |last| last.values[0]);
+                Stop::Motion { value, reason }
             }
-            (Ok(Outcome::Stopped(Stop::ReachedEnd | Stop::LeftAtStart)), _) => {
-                BifurcationCurveEnd::Left
-            }
-            (Ok(Outcome::Stopped(Stop::Closed)), _) => BifurcationCurveEnd::Closed,
-            (Ok(Outcome::Stopped(stop)), _) => BifurcationCurveEnd::Stopped(stop),
+            (Ok(Outcome::Stopped(Stop::LeftAtStart)), _) => Stop::ReachedEnd,
+            (Ok(Outcome::Stopped(stop)), _) => stop,
             // A curve is never resized.
-            (Ok(Outcome::Halted(_)), _) => BifurcationCurveEnd::Stopped(Stop::Interrupted),
+            (Ok(Outcome::Halted(_)), _) => Stop::Interrupted,
         })
     }
 }

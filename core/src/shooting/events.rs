@@ -11,14 +11,16 @@ use super::run::{Run, observe, relative};
 use super::tested::{Test, Tests};
 use crate::branches::engine::{self, Aim};
 use crate::branches::point::{Event, Point};
-use crate::branches::problem::{Change, Root, Zero};
+use crate::branches::problem::{Change, Root, Touch, Zero};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{AsProblem, Problem};
-use crate::event::EventKind;
+use crate::event::{EventKind, Turn};
 use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::orbit::stability::Stability;
 
+/// What rounding leaves in the value of a touch, where the distance from a level has a root to be told apart from.
+const TOUCHED: f64 = 2e-12;
 /// What rounding leaves in the value of an event.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -63,6 +65,36 @@ pub(super) fn others(equations: &mut Equations, u: &[f64], critical: f64) -> f64
 }
 
 impl Run<'_> {
+    /// Keeps a touch of a level, or what is known where its orbit cannot be read.
+    pub(super) fn touch(&mut self, equations: &mut Equations, step: Step<'_>, touch: &Touch) {
+        let kind = EventKind::Grazing { turns: touch.turns };
+        let (at, after) = (&touch.located.point, touch.after);
+        let Ok((point, _)) = observe(self.problem, equations, &at.u) else {
+            self.turns.push(Turn {
+                kind,
+                value: at.parameter(),
+                test: f64::NAN,
+                after,
+            });
+            return;
+        };
+        // The orbits have the error of the flow: it is taken from states to the parameter by what both change in the step, and from the
+        // extreme by how it rises at the touch. Where it just reaches the level, it hardly does.
+        let [a, b] = step.parameters();
+        let of_states = (b - a).abs() / equations.apart(&step.before.u, &step.next.u);
+        let rate = of_states.max(touch.rate / touch.extreme.size);
+        let error = touch.error + self.state_error * rate + TOUCHED * point.value.abs();
+        self.events.push(Event {
+            kind,
+            point,
+            error,
+            test: touch.located.test,
+            after,
+            contacts: touch.contacts,
+            tangent: at.tangent.clone(),
+        });
+    }
+
     /// Where a test function of these equations vanishes.
     fn root(
         &mut self,
@@ -98,9 +130,10 @@ impl Run<'_> {
         equations: &mut Equations,
         step: Step<'_>,
         zero: &Zero,
+        kind: EventKind,
     ) -> Option<Event> {
         let change = zero.change;
-        let (span, frame) = (equations.span, equations.frame.clone());
+        let (span, frame) = (equations.span.clone(), equations.frame.clone());
         let size = step.before.scale.oscillation;
         let ErrorReference {
             equations: mut others,
@@ -109,6 +142,7 @@ impl Run<'_> {
             part,
             finer,
             noise,
+            rounding,
         } = ErrorReference::new(self.problem, span, frame, size).ok()?;
         let moved = self.root(&mut others, &mut newton, step, options, change);
         self.statistics += newton.statistics;
@@ -128,13 +162,19 @@ impl Run<'_> {
                 let (best, other) = if finer { (there, here) } else { (here, there) };
                 let root = best.root;
                 let errors = Errors { part, noise };
-                let (read, error) = compared(self.problem, change.kind, best, other, errors)?;
+                let (read, error) = compared(self.problem, kind, best, other, errors)?;
                 (read, error, root)
             }
         };
         self.work += others.flow.work();
+        // A modulus is not driven to zero by more than its rounding.
+        let rounding = match Test::of(change.test) {
+            Test::Modulus(_) => (rounding + root.located.test.abs()) / zero.steepness,
+            _ => 0.0,
+        };
+        let error = error + rounding;
         Some(Event {
-            kind: change.kind,
+            kind,
             point: read,
             error,
             test: root.located.test,
@@ -159,19 +199,19 @@ fn compared(
         root: moved,
     } = other;
     let there = &moved.located.point.u;
-    let half = equations.span.half;
+    let parts = equations.span.recurrence.parts;
     let u = &root.located.point.u;
     let (mut read, map) = observe(problem, equations, u).ok()?;
     let by = (moved.located.point.parameter() - read.value).abs();
     let error = part * by + root.error + moved.error + ROUNDING * read.value.abs();
     read.error = Some(relative(part * equations.apart(u, there), &read));
     if let Some(map) = map {
-        let found = multipliers(&map, half);
+        let found = multipliers(&map, parts);
         let there = others.map(there, &mut |_| {}).ok()?;
-        let there = multipliers(&there, half);
+        let there = multipliers(&there, parts);
         // One of them is known.
         let critical = match kind {
-            EventKind::PeriodDoubling => -1.0,
+            EventKind::PeriodDoubling if !parts.is_multiple_of(2) => -1.0,
             _ => 1.0,
         };
         let nearest = found.iter().map(|m| match kind {
@@ -180,7 +220,7 @@ fn compared(
         });
         let spread = part * distance(&found, &there)
             + nearest.fold(f64::INFINITY, f64::min)
-            + error_reference::moved(&map, &found, half, noise * map.norm().max(1.0));
+            + error_reference::moved(&map, &found, parts, noise * map.norm().max(1.0));
         read.stability = Stability::of(found, spread);
     }
     Some((read, error))

@@ -4,6 +4,7 @@
 //! middle; then the velocity vanishes at most once in a half.
 
 use crate::branches::observed::Motion;
+use crate::branches::recurrence::SignedPermutation;
 use crate::numeric::roots::{self, Place};
 use crate::time::Stretch;
 
@@ -28,11 +29,26 @@ fn sample(stretch: &dyn Stretch, phase: f64, order: usize) -> Sample {
 }
 
 /// Includes a stretch of a motion whose phase moves by `rate` per unit of time.
-pub(super) fn include(stretch: &dyn Stretch, rate: f64, extremes: &mut [Motion]) {
+pub(crate) fn include(stretch: &dyn Stretch, rate: f64, extremes: &mut [Motion]) {
     let order = 2 * extremes.len();
     let (from, to) = stretch.phases();
     let ends = [from, to].map(|phase| sample(stretch, phase, order));
     part(stretch, rate, &ends, DEEPEST, extremes);
+}
+
+/// Of all of an orbit, from those of a part of it after which it comes back with this image of its coordinates.
+pub(crate) fn over_images(extremes: &mut [Motion], image: &SignedPermutation) {
+    // Where p_i is i the sign alone tells; else as many times as there are powers.
+    for _ in 1..image.order() {
+        let known = extremes.to_vec();
+        for (i, own) in extremes.iter_mut().enumerate() {
+            let (place, sign) = image.entry(i);
+            let other = known[place];
+            let ends = [sign * other.minimum, sign * other.maximum];
+            own.minimum = own.minimum.min(ends[0]).min(ends[1]);
+            own.maximum = own.maximum.max(ends[0]).max(ends[1]);
+        }
+    }
 }
 
 fn part(

@@ -38,10 +38,12 @@ impl HalfPeriodDifference {
     }
 
     fn between(equations: &Equations, states: &[f64]) -> Option<Self> {
-        let span = equations.span;
         let order = equations.order();
         let segments = states.len() / order;
-        if span.half || !span.period.is_multiple_of(2) || !segments.is_multiple_of(2) {
+        // The period of a declaration alone has no half that orbits may come back after without a sign.
+        let recurrence = &equations.span.recurrence;
+        let halves = recurrence.parts > 1 || recurrence.period.is_multiple_of(2);
+        if !recurrence.image.is_identity() || !halves || !segments.is_multiple_of(2) {
             return None;
         }
         let later = &states[segments / 2 * order..][..order];

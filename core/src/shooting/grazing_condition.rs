@@ -11,110 +11,12 @@
 //!
 //! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing).
 
-use std::f64::consts::TAU;
-
 use super::equations::Equations;
+use super::gap_scan::{self, Extreme, Room};
 use super::problem::ShootingProblem;
 use crate::model::layout::Layout;
-use crate::numeric::roots::{self, Place};
 use crate::system::{System, Variable};
-use crate::time::Stretch;
 use crate::time::gap::Gap;
-
-/// Samples of the rate in one period of the system.
-const SAMPLES: f64 = 64.0;
-/// Accuracy of the phase of an extreme, in parts of the distance of two samples.
-const LOCATED: f64 = 1e-9;
-
-/// An extreme of a gap.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Extreme {
-    /// Phase since the beginning of the orbit.
-    passed: f64,
-    /// The gap there.
-    gap: f64,
-    largest: bool,
-}
-
-/// Reads the extremes of a gap off an orbit, from stretch to stretch.
-struct Scan<'s> {
-    gap: &'s Gap,
-    state: &'s mut [f64],
-    see: &'s mut dyn FnMut(Extreme),
-    /// The phase since the beginning.
-    passed: f64,
-    /// The rate where the last stretch ended. It is carried to the next one: where a step ends at an extreme, rounding could change its
-    /// sign.
-    last: Option<f64>,
-    /// Gap and rate where the orbit begins.
-    first: Option<(f64, f64)>,
-    /// The gap where it ends.
-    end: f64,
-}
-
-impl Scan<'_> {
-    fn stretch(&mut self, stretch: &dyn Stretch) {
-        let (from, to) = stretch.phases();
-        let (gap, state) = (self.gap, &mut *self.state);
-        let mut at = |phase: f64| {
-            stretch.state(phase, state);
-            gap.at(phase, state)
-        };
-        let parts = (SAMPLES * (to - from) / TAU).ceil().max(2.0);
-        let mut before = Place {
-            x: from,
-            value: self.last.unwrap_or_else(|| at(from).1),
-        };
-        let mut part = 1.0;
-        while part <= parts {
-            let x = from + (to - from) * (part / parts);
-            let value = at(x).1;
-            let next = Place { x, value };
-            let turns = before.value * value < 0.0;
-            let within = LOCATED * (next.x - before.x);
-            let zero = turns.then(|| roots::root(before, next, within, |phase| at(phase).1));
-            if let Some(phase) = zero.flatten() {
-                (self.see)(Extreme {
-                    passed: self.passed + phase - from,
-                    gap: at(phase).0,
-                    largest: before.value > 0.0,
-                });
-            }
-            // Between two switches at one phase there is no rate.
-            if value.abs() > 0.0 {
-                before = next;
-            }
-            part += 1.0;
-        }
-        if self.first.is_none() && self.last.is_none() {
-            self.first = Some(at(from));
-        }
-        self.last = Some(before.value);
-        self.end = at(to).0;
-        self.passed += to - from;
-    }
-
-    /// The extreme where the orbit ends and begins again. Of `half` of an orbit with odd symmetry, all rates turn their signs there.
-    fn close(&mut self, half: bool) -> Option<()> {
-        let (rate, (gap, first)) = (self.last?, self.first?);
-        let turned = if half { -first } else { first };
-        if rate * turned < 0.0 || turned == 0.0 && rate != 0.0 {
-            (self.see)(Extreme {
-                passed: self.passed,
-                gap: self.end,
-                largest: rate > 0.0,
-            });
-            if half {
-                (self.see)(Extreme {
-                    passed: 0.0,
-                    gap,
-                    largest: first < 0.0,
-                });
-            }
-        }
-        Some(())
-    }
-}
 
 /// One gap and one of its levels.
 #[derive(Clone)]
@@ -132,6 +34,7 @@ pub(super) struct GrazingCondition<'a> {
     arguments: Vec<f64>,
     levels: Vec<f64>,
     state: Vec<f64>,
+    ends: [Vec<f64>; 2],
 }
 
 impl<'a> GrazingCondition<'a> {
@@ -163,6 +66,7 @@ impl<'a> GrazingCondition<'a> {
                     arguments: vec![0.0; layout.contacts[contact].argument_count],
                     levels: vec![0.0; law.facts().levels.len()],
                     state: vec![0.0; equations.order()],
+                    ends: [vec![0.0; equations.order()], vec![0.0; equations.order()]],
                     layout: layout.clone(),
                 };
                 let value = u[u.len() - 1];
@@ -253,27 +157,19 @@ impl<'a> GrazingCondition<'a> {
         found
     }
 
-    /// Shows all extremes of the gap along an orbit. As long as the orbit does not close, the rate has two values where it ends and
-    /// begins again, with an extreme between them if their signs differ.
+    /// Shows all extremes of the gap along an orbit.
     fn extremes(
         &mut self,
         equations: &mut Equations,
         u: &[f64],
         see: &mut dyn FnMut(Extreme),
     ) -> Option<()> {
-        let mut scan = Scan {
-            gap: &self.gap,
+        let [first, end] = &mut self.ends;
+        let room = Room {
             state: &mut self.state,
-            see,
-            passed: 0.0,
-            last: None,
-            first: None,
-            end: 0.0,
+            first,
+            end,
         };
-        if let Err(failure) = equations.trace(u, &mut |stretch| scan.stretch(stretch)) {
-            equations.failure = Some(failure);
-            return None;
-        }
-        scan.close(equations.span.half)
+        gap_scan::extremes(&self.gap, equations, u, room, see)
     }
 }

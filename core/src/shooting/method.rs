@@ -2,15 +2,21 @@
 
 use super::equations::Equations;
 use super::events;
-use super::minimal_period::{MinimalPeriod, step_on_other_branch};
+use super::gap_extremes::GapExtremes;
+use super::minimal_period::{earlier, may_be_earlier, step_on_other_branch};
 use super::run::Run;
 use super::tested::{self, Tests};
-use crate::branches::engine::Search;
+use crate::branches::engine::{Search, Walk};
+use crate::branches::extreme::{self, Extreme};
+use crate::branches::keep::keep;
+use crate::branches::moduli;
+use crate::branches::point;
 use crate::branches::problem::{
-    BranchProblem, Change, Read, Test, TestValue, Watched, Zero, ZeroOutcome,
+    BranchProblem, Change, Kept, Read, Test, TestValue, Touch, Watched, Zero, ZeroOutcome,
 };
 use crate::branches::progress::{Progress, See};
-use crate::continuation::follow::{CurvePoint, Step, Stop};
+use crate::branches::recurrence::Recurrence;
+use crate::continuation::follow::{Continue, CurvePoint, Step, Stop};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
@@ -19,8 +25,8 @@ use crate::time::FlowError;
 
 /// Brackets of an event are narrowed until rounding stops it, or this is reached.
 pub(super) const VANISHED: f64 = 1e-14;
-/// Test functions are noise below so many times of what must vanish.
-const NOISE: f64 = 10.0;
+/// Multipliers that may be wrong by more are not compared with one.
+const COARSE: f64 = 1e-3;
 
 /// A branch by shooting.
 pub(super) struct ShootingBranch<'b, 'r> {
@@ -28,6 +34,8 @@ pub(super) struct ShootingBranch<'b, 'r> {
     pub(super) equations: Equations,
     /// The same equations for test functions, if they were needed.
     other: Option<Equations>,
+    /// Made when it is asked for.
+    gaps: Option<GapExtremes<'r>>,
     watched: Vec<Watched>,
     /// The test functions computed last, and where.
     tested: Option<(Vec<f64>, Tests)>,
@@ -37,7 +45,7 @@ pub(super) struct ShootingBranch<'b, 'r> {
 impl<'b, 'r> ShootingBranch<'b, 'r> {
     pub(super) fn new(run: &'b mut Run<'r>, equations: Equations, visit: See<'b>) -> Self {
         let watched = if run.problem.stability {
-            tested::watched(equations.span.half).to_vec()
+            tested::watched(equations.span.recurrence.doubling(), equations.order())
         } else {
             Vec::new()
         };
@@ -45,6 +53,7 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
             run,
             equations,
             other: None,
+            gaps: None,
             watched,
             tested: None,
             visit,
@@ -57,15 +66,28 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
         if let Some(other) = &self.other {
             self.run.work += other.flow.work();
         }
+        if let Some(gaps) = &self.gaps {
+            self.run.work += gaps.equations.flow.work();
+        }
+    }
+
+    fn gaps(&mut self) -> Option<&mut GapExtremes<'r>> {
+        if self.gaps.is_none() {
+            let problem = self.run.problem;
+            let equations = self.equations.again(problem).ok()?;
+            self.gaps = Some(GapExtremes::new(problem, equations));
+        }
+        self.gaps.as_mut()
     }
 
     /// Test functions at a point.
-    fn tests(&mut self, at: &CurvePoint) -> Tests {
-        if let Some((u, tests)) = &self.tested
-            && *u == at.u
-        {
-            return *tests;
-        }
+    fn tests(&mut self, at: &CurvePoint) -> &Tests {
+        let known = self.tested.take().filter(|(u, _)| *u == at.u);
+        let found = known.unwrap_or_else(|| (at.u.clone(), self.tests_of(at)));
+        &self.tested.insert(found).1
+    }
+
+    fn tests_of(&mut self, at: &CurvePoint) -> Tests {
         if self.other.is_none() {
             self.other = self.equations.again(self.run.problem).ok();
         }
@@ -74,20 +96,36 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
             .as_mut()
             .map(|other| other.map(&at.u, &mut |_| {}));
         let map = map.and_then(Result::ok);
-        let tests = Tests::of(map.as_ref(), at.parameter_slope());
-        self.tested = Some((at.u.clone(), tests));
-        tests
+        Tests::of(map.as_ref(), at.parameter_slope())
     }
 
-    fn recurrence(&mut self, at: &CurvePoint) -> Result<Option<MinimalPeriod>, FlowError> {
-        let (span, odd) = (self.equations.span, self.run.problem.odd);
-        if self.run.points.is_empty() || (span.period == 1 && !odd) {
+    /// How well multipliers are known along the last step.
+    fn error_of_multipliers(&self) -> f64 {
+        self.last_error().min(COARSE)
+    }
+
+    /// The same, however coarse.
+    fn last_error(&self) -> f64 {
+        let last = self.run.points.iter().rev().take(2);
+        let errors = last.map(|point| point.stability.error);
+        errors.fold(self.vanishing(), f64::max)
+    }
+
+    fn recurrence(&mut self, at: &CurvePoint) -> Result<Option<Recurrence>, FlowError> {
+        let symmetries = &self.run.problem.symmetries;
+        if self.run.points.is_empty() {
             return Ok(None);
         }
         let same = self.run.same_state(&self.equations);
-        let found = MinimalPeriod::of(&mut self.equations, &at.u, same, odd)?;
-        let is_regular = found.period < span.period || found.odd != span.half;
-        Ok(is_regular.then_some(found))
+        if may_be_earlier(&self.equations, symmetries)
+            && let Some(found) = earlier(&mut self.equations, &at.u, same, symmetries)?
+        {
+            return Ok(Some(found));
+        }
+        let states = self.equations.states_of(&at.u);
+        let state = &states[..self.equations.order()];
+        let gains = self.run.gains_symmetry(&self.equations, state, same);
+        Ok(gains.then(|| self.equations.span.recurrence.clone()))
     }
 }
 
@@ -100,18 +138,25 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         &self.watched
     }
 
-    fn test(&mut self, index: usize, at: &CurvePoint, _: bool) -> TestValue {
+    fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue {
         TestValue::plain(self.tests(at).value(tested::Test::watched(index)))
+    }
+
+    fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
+        if self.watched.is_empty() {
+            return None;
+        }
+        Some(moduli::complex_outside(&self.tests(at).multipliers))
     }
 
     fn vanishing(&self) -> f64 {
         self.run.problem.vanishing(self.equations.frame.ratio)
     }
 
-    /// Without damping the product of pairs is rounding all along.
+    /// Without damping all moduli are one, but for what is not known of them.
     fn noise(&self, index: usize) -> f64 {
         match tested::Test::watched(index) {
-            tested::Test::Pairs => NOISE * self.vanishing(),
+            tested::Test::Modulus(_) => self.error_of_multipliers(),
             _ => 0.0,
         }
     }
@@ -129,9 +174,9 @@ impl BranchProblem for ShootingBranch<'_, '_> {
                 events::others(equations, &point.u, 1.0) / point.parameter_slope().abs()
             }
             tested::Test::Plus => events::others(equations, &point.u, -1.0),
-            // What is nothing special need not vanish to be passed over.
-            tested::Test::Pairs if !self.tests(point).complex => return true,
-            tested::Test::Pairs => 1.0,
+            tested::Test::Modulus(_) => {
+                return located.test.abs() <= self.error_of_multipliers();
+            }
         };
         located.test.abs() <= self.vanishing() * unit
     }
@@ -144,7 +189,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         match self.recurrence(at) {
             Ok(found) => {
                 self.run.joined = found;
-                found.is_some()
+                self.run.joined.is_some()
             }
             Err(failure) => {
                 self.run.failure = Some(failure);
@@ -165,12 +210,13 @@ impl BranchProblem for ShootingBranch<'_, '_> {
                 before: step.next,
                 next: &other,
             };
-            let ends = [beyond.before, beyond.next].map(|at| self.test(0, at, true));
+            let ends = [beyond.before, beyond.next].map(|at| self.test(0, at));
             let search = Search {
                 step: beyond,
                 change,
                 ends,
                 after: self.run.points.len(),
+                told: true,
                 options,
             };
             search.record(self, newton);
@@ -202,13 +248,37 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     }
 
     fn keep(&mut self, _: &mut Newton, step: Step<'_>, zero: &Zero) -> ZeroOutcome {
-        let test = tested::Test::of(zero.change.test);
-        if test == tested::Test::Pairs && !self.tests(&zero.root.located.point).complex {
-            return ZeroOutcome::Nothing;
+        let mut kind = zero.change.kind;
+        let of_modulus = kind == EventKind::NeimarkSacker;
+        if let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) {
+            let tells = zero.told || zero.least <= self.last_error();
+            let multipliers = &self.tests(&zero.root.located.point).multipliers;
+            let Some(seen) = moduli::seen_by_moduli(multipliers, place, tells) else {
+                return ZeroOutcome::Nothing;
+            };
+            kind = seen;
+            if kind == EventKind::PeriodDoubling {
+                kind = self.watched[1].kind;
+            }
         }
-        let Some(event) = self.run.event_at(&mut self.equations, step, zero) else {
+        let found = self.run.event_at(&mut self.equations, step, zero, kind);
+        let Some(mut event) = found else {
             return ZeroOutcome::Unread;
         };
+        let at = &zero.root.located.point.u;
+        if event.kind == EventKind::BranchPoint && self.run.breaks_symmetry(&mut self.equations, at)
+        {
+            event.kind = EventKind::SymmetryBreaking;
+        }
+        if of_modulus {
+            if zero.least <= self.last_error() {
+                // It is as good as zero from that end on.
+                event.error += self.error_of_multipliers() / zero.steepness;
+            }
+            if moduli::is_recorded(&self.run.events, &event) {
+                return ZeroOutcome::Nothing;
+            }
+        }
         let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();
         self.run.events.push(event);
         if meets && self.run.meets(&mut self.equations) {
@@ -221,13 +291,64 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         self.run.turns.push(turn);
     }
 
-    fn graze(&mut self, newton: &mut Newton, step: Step<'_>, _: Option<Turn>) {
-        if self.run.problem.stability
-            && let [.., a, b] = &self.run.points[..]
-            && a.observed.switches != b.observed.switches
-        {
-            self.run.grazings(&mut self.equations, newton, step);
+    fn kept(&self) -> Kept<'_> {
+        Kept {
+            points: &self.run.points,
+            events: &self.run.events,
+            turns: &self.run.turns,
         }
+    }
+
+    fn drop_turn(&mut self, turn: &Turn) {
+        self.run.turns.retain(|other| other != turn);
+    }
+
+    fn events(&self) -> usize {
+        self.run.events.len()
+    }
+
+    fn drop_beside(&mut self, first: usize, touch: f64, errors: f64) {
+        point::drop_beside(&mut self.run.events, first, touch, errors);
+    }
+
+    fn seeks_touches(&self) -> bool {
+        self.run.problem.stability
+    }
+
+    fn force_jumps(&self) -> bool {
+        extreme::force_jumps(self.run.problem.system.as_ref())
+    }
+
+    fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        let gaps = self.gaps();
+        gaps.is_some_and(|gaps| gaps.read(u, extremes).is_some())
+    }
+
+    fn extreme_form(&mut self, u: &[f64], extreme: &Extreme, range: f64, form: &mut [f64]) -> bool {
+        let gaps = self.gaps();
+        gaps.is_some_and(|gaps| gaps.form(u, extreme, range, form).is_some())
+    }
+
+    fn add_beginnings(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) {
+        if let Some(gaps) = self.gaps() {
+            gaps.add_beginnings(u, extremes);
+        }
+    }
+
+    fn slowest(&mut self, u: &[f64]) -> f64 {
+        let slowest = self.gaps().and_then(|gaps| gaps.slowest(u));
+        slowest.unwrap_or(f64::INFINITY)
+    }
+
+    fn keep_touch(&mut self, _: &mut Newton, step: Step<'_>, touch: &Touch) {
+        self.run.touch(&mut self.equations, step, touch);
+    }
+
+    fn onward(&mut self, walk: Walk) -> Continue {
+        let rest = self.rest(walk);
+        let answer = keep(self.run.problem.keep.as_ref(), self.kept(), &rest);
+        self.run.rest = Some(Box::new(rest));
+        answer
     }
 
     fn count(&mut self, newton: &Newton) {

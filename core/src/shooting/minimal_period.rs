@@ -1,10 +1,12 @@
-//! Whether an orbit is more regular than asked for: it returns before its period is over, or turns its sign after half of it.
+//! Whether an orbit is more regular than asked for: it returns before its period is over, or comes back after a part of it with
+//! coordinates or contacts in each other's place.
 //!
 //! A branch of orbits that are not ends where it meets one of orbits that are, at a period doubling or where a symmetry breaks.
 //! Steps along it pass over that point and onto the other branch. There the point is located, by the test function of branch
 //! points.
 
 use super::equations::Equations;
+use crate::branches::recurrence::{CyclicSymmetry, Recurrence};
 use crate::branches::solve;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -22,69 +24,64 @@ pub(super) struct SameState {
     pub(super) part: f64,
 }
 
-/// How an orbit repeats itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct MinimalPeriod {
-    /// Its shortest period, in periods of the system.
-    pub(super) period: usize,
-    /// Half of the period asked for turns the sign of every coordinate.
-    pub(super) odd: bool,
+impl SameState {
+    /// At a branch point.
+    pub(super) fn at_point(self) -> Self {
+        Self {
+            part: self.part.max(SAME_AT_POINT),
+            ..self
+        }
+    }
 }
 
-impl MinimalPeriod {
-    /// The same at a branch point.
-    pub(super) fn at_point(
-        equations: &mut Equations,
-        u: &[f64],
-        same: SameState,
-        odd: bool,
-    ) -> Result<Self, FlowError> {
-        let part = same.part.max(SAME_AT_POINT);
-        Self::of(equations, u, SameState { part, ..same }, odd)
-    }
-
-    /// Of the orbit `u`; whether it has odd symmetry only where that is possible.
-    pub(super) fn of(
-        equations: &mut Equations,
-        u: &[f64],
-        same: SameState,
-        odd: bool,
-    ) -> Result<Self, FlowError> {
-        let most = same.part * same.size;
-        let span = equations.span;
-        let value = u[u.len() - 1];
-        let first = equations.states_of(u)[..equations.order()].to_vec();
-        let mut recurrence = Self {
-            period: span.period,
-            odd: span.half,
-        };
-        if span.half {
-            return Ok(recurrence);
-        }
+/// How the orbit `u` comes back in less time than it is followed for, the least that there is; `None` if it does not.
+///
+/// # Errors
+/// If its motion cannot be computed.
+pub(super) fn earlier(
+    equations: &mut Equations,
+    u: &[f64],
+    same: SameState,
+    symmetries: &[CyclicSymmetry],
+) -> Result<Option<Recurrence>, FlowError> {
+    let most = same.part * same.size;
+    let value = u[u.len() - 1];
+    let coordinates = equations.order() / 2;
+    let first = equations.states_of(u)[..equations.order()].to_vec();
+    let mut least: Option<Recurrence> = None;
+    for symmetry in symmetries {
         let mut state = first.clone();
-        for passed in 1..=span.period / 2 {
-            equations.pass(&mut state, value, 2)?;
-            if span.period.is_multiple_of(passed) && returns(equations, &state, &first, most) {
-                recurrence.period = passed;
+        let mut passed = 0;
+        for (steps, recurrence) in symmetry.within(&equations.span.recurrence) {
+            let shorter = |least: &Recurrence| {
+                recurrence.period * least.parts < least.period * recurrence.parts
+            };
+            if !least.as_ref().is_none_or(shorter) {
+                break;
+            }
+            equations.pass(&mut state, value, [passed, steps], symmetry.parts)?;
+            passed = steps;
+            let image = recurrence.image.of_states(&first, coordinates);
+            if are_near(equations, &state, &image, most) {
+                least = Some(recurrence);
                 break;
             }
         }
-        if odd && span.period % 2 == 1 {
-            let mut state = first.clone();
-            equations.pass(&mut state, value, span.period)?;
-            for x in &mut state {
-                *x = -*x;
-            }
-            recurrence.odd = returns(equations, &state, &first, most);
-        }
-        Ok(recurrence)
     }
+    Ok(least)
 }
 
-/// Whether a state is that at the beginning, but for this.
-fn returns(equations: &Equations, state: &[f64], first: &[f64], most: f64) -> bool {
+/// Whether there may be orbits that come back in less time than is followed.
+pub(super) fn may_be_earlier(equations: &Equations, symmetries: &[CyclicSymmetry]) -> bool {
+    let given = &equations.span.recurrence;
+    let mut symmetries = symmetries.iter();
+    symmetries.any(|symmetry| symmetry.within(given).next().is_some())
+}
+
+/// Whether a state is another one, but for this.
+pub(super) fn are_near(equations: &Equations, state: &[f64], other: &[f64], most: f64) -> bool {
     let n = state.len() / 2;
-    let mut pairs = state.iter().zip(first).enumerate();
+    let mut pairs = state.iter().zip(other).enumerate();
     pairs.all(|(i, (x, y))| {
         let unit = if i < n { 1.0 } else { equations.frame.omega };
         (x - y).abs() <= most * unit

@@ -6,6 +6,7 @@
 
 pub(crate) mod at;
 pub(crate) mod bifurcation_curve;
+mod broken_symmetry;
 pub(crate) mod checked;
 mod codimension_one;
 pub(crate) mod complete;
@@ -15,9 +16,10 @@ mod equations;
 mod error_reference;
 mod event_monitor;
 mod events;
-mod extremes;
+pub(crate) mod extremes;
+mod gap_extremes;
+mod gap_scan;
 mod generalised_flip;
-mod grazing;
 mod grazing_condition;
 mod method;
 mod minimal_period;
@@ -25,19 +27,20 @@ mod normal_form;
 mod options;
 mod past_fold;
 pub(crate) mod problem;
+pub(crate) mod reading;
+mod rest;
 mod run;
 mod sampled_states;
 mod special_search;
 mod start;
 mod switch;
-mod tested;
+pub(crate) mod tested;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use bifurcation_curve::Plane;
-pub use bifurcation_curve::{
-    BifurcationCurve, BifurcationCurveEnd, BifurcationCurvePoint, Special, SpecialKind,
-};
+pub use bifurcation_curve::{BifurcationCurve, BifurcationCurvePoint, Special, SpecialKind};
 pub(crate) use checked::Asked;
 pub use options::Shooting;
+pub(crate) use rest::Rest;
 pub(crate) use sampled_states::with_states;

@@ -1,4 +1,4 @@
-//! Which way the branch bends that begins at a period doubling, or where an odd symmetry breaks.
+//! Which way the branch bends that begins at a period doubling, or where a symmetry breaks.
 //!
 //! At a distance `e` along the critical direction, the orbit of the new branch is at
 //!
@@ -14,9 +14,10 @@
 //! Source: Kuznetsov (2004), Elements of Applied Bifurcation Theory, sections 4.5 and 9.3 (the generalised flip).
 
 use super::codimension_one::Curve;
-use super::equations::{Equations, Span};
+use super::equations::Equations;
 use super::problem::ShootingProblem;
 use super::switch::direction;
+use crate::branches::recurrence::SignedPermutation;
 use crate::continuation::newton::{Border, Newton};
 use crate::continuation::problem::Scale;
 use crate::error::Error;
@@ -36,7 +37,8 @@ pub(super) struct CubicCoefficient {
     equations: Equations,
     newton: Newton,
     second: Variable,
-    symmetric: bool,
+    /// Of coordinates on the orbits of the curve.
+    image: SignedPermutation,
     scale: Scale,
     /// `e`
     distance: f64,
@@ -50,7 +52,6 @@ impl CubicCoefficient {
     pub(super) fn new(
         problem: &ShootingProblem,
         curve: &Curve<'_>,
-        symmetric: bool,
         farther: bool,
     ) -> Result<Self, Error> {
         let distance = if problem.source.exact {
@@ -58,21 +59,14 @@ impl CubicCoefficient {
         } else {
             DISTANCE
         };
-        let Span {
-            period, segments, ..
-        } = curve.equations.span;
-        let span = Span {
-            period: if symmetric { period } else { 2 * period },
-            half: false,
-            segments: 2 * segments,
-        };
+        let span = curve.equations.span.doubled();
         let frame = curve.equations.frame.clone();
         let equations = Equations::new(problem, curve.equations.tolerance, span, frame)?;
         Ok(Self {
             newton: Newton::new(&equations),
             equations,
             second: curve.second,
-            symmetric,
+            image: curve.equations.span.recurrence.image.clone(),
             distance: if farther {
                 FARTHER * distance
             } else {
@@ -95,13 +89,11 @@ impl CubicCoefficient {
     ) -> Option<f64> {
         let last = u.len() - 1;
         self.equations.flow.set(self.second, u[last]).ok()?;
-        let mut states = curve.equations.states_of(&u[..last]);
-        let sign = if self.symmetric { -1.0 } else { 1.0 };
-        for i in 0..states.len() {
-            states.push(sign * states[i]);
-        }
+        let states = curve.equations.states_of(&u[..last]);
+        let again = self.image.of_states(&states, curve.equations.order() / 2);
+        let states = [states, again].concat();
         let u = self.equations.unknowns_of(&states, u[last - 1]);
-        let direction = direction(&mut self.equations, &u, self.symmetric)?;
+        let direction = direction(&mut self.equations, &u, &self.image)?;
         let crossed = self.crossings(&u)?;
         PARTS.into_iter().find_map(|part| {
             let e = part * self.distance;

@@ -27,8 +27,10 @@
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Shooting {
     pub(crate) segments: Option<usize>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) tolerance: Option<f64>,
 }
 
@@ -43,20 +45,14 @@ impl Shooting {
         Self::default()
     }
 
-    /// Segments that the orbit is divided into: multiple shooting. Default: one for each period of the declaration. More of them help
-    /// where neighbouring motions part fast. What goes on from an orbit that is known, as from an event, keeps the division of that orbit.
-    #[must_use]
-    pub fn segments(mut self, segments: usize) -> Self {
-        self.segments = Some(segments);
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// Segments that the orbit is divided into: multiple shooting. Default: one for each period of the declaration. More of them help
+        /// where neighbouring motions part fast. What goes on from an orbit that is known, as from an event, keeps the division of that orbit.
+        segments(segments: usize) { self.segments = Some(segments) }
 
-    /// Tolerance of the flow, relative to the size of the motion. Default: 1e-4 times the
-    /// [tolerance](crate::FrequencyResponse::tolerance) of the output, so 1e-10, and from 1e-13 to 1e-6. A flow in closed form has none.
-    #[must_use]
-    pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = Some(tolerance);
-        self
+        /// Tolerance of the flow, relative to the size of the motion. Default: 1e-4 times the
+        /// [tolerance](crate::FrequencyResponse::tolerance) of the output, so 1e-10, and from 1e-13 to 1e-6. A flow in closed form has none.
+        tolerance(tolerance: f64) { self.tolerance = Some(tolerance) }
     }
 
     /// The tolerance of the flow where this is asked of the output.

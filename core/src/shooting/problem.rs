@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::branches::keep::Keep;
+use crate::branches::recurrence::{CyclicSymmetry, SignedPermutation};
 use crate::cancel::Cancel;
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
@@ -13,36 +15,40 @@ use crate::time::Flow;
 type Make = dyn Fn(f64) -> Result<Box<dyn Flow>, Error>;
 
 /// Where flows of one system come from.
-pub(super) struct Source {
+pub(crate) struct Source {
     /// Makes a flow of this tolerance.
-    pub(super) make: Box<Make>,
+    pub(crate) make: Box<Make>,
     /// The flow is in closed form and has no tolerance.
-    pub(super) exact: bool,
+    pub(crate) exact: bool,
     /// The tolerance asked for.
-    pub(super) tolerance: f64,
+    pub(crate) tolerance: f64,
 }
 
 /// The system, what is varied, and how.
 pub(crate) struct ShootingProblem {
-    pub(super) system: Arc<dyn System>,
-    pub(super) source: Source,
+    pub(crate) system: Arc<dyn System>,
+    pub(crate) source: Source,
     /// Name of what is varied.
     pub(crate) varied: String,
     /// Parameters; what is varied has any value.
-    pub(super) parameters: Vec<f64>,
+    pub(crate) parameters: Vec<f64>,
     /// Frequency, unless it is varied.
-    pub(super) omega: f64,
+    pub(crate) omega: f64,
     pub(crate) variable: Variable,
-    pub(super) divisor: u32,
+    pub(crate) divisor: u32,
     /// Period of the orbits in periods of the system.
-    pub(super) period: usize,
-    pub(super) segments: usize,
-    /// Where the orbit has odd symmetry, half of it is followed.
-    pub(super) odd: bool,
-    pub(super) stability: bool,
-    pub(super) points: usize,
-    pub(super) steps: StepControl,
-    pub(super) cancel: Cancel,
+    pub(crate) period: usize,
+    pub(crate) segments: usize,
+    /// Symmetries that orbits may have: of one that has them, no more is followed than the time after which it comes back.
+    pub(crate) symmetries: Vec<CyclicSymmetry>,
+    /// Coordinates that may be in each other's place at every time.
+    pub(crate) at_once: Vec<SignedPermutation>,
+    pub(crate) stability: bool,
+    pub(crate) points: usize,
+    pub(crate) steps: StepControl,
+    pub(crate) cancel: Cancel,
+    /// Keeps what was found.
+    pub(crate) keep: Option<Arc<dyn Keep>>,
 }
 
 /// Updates of Newton's method at most.
@@ -52,7 +58,7 @@ const ITERATIONS_AT_START: usize = 40;
 
 impl ShootingProblem {
     /// A flow of this tolerance at the parameters of the problem.
-    pub(super) fn flow(&self, tolerance: f64) -> Result<Box<dyn Flow>, Error> {
+    pub(crate) fn flow(&self, tolerance: f64) -> Result<Box<dyn Flow>, Error> {
         (self.source.make)(tolerance)
     }
 
@@ -64,7 +70,7 @@ impl ShootingProblem {
     }
 
     /// Options of Newton's method on equations with a flow of this tolerance: an update as small as the noise means nothing.
-    pub(super) fn newton(&self, tolerance: f64, ratio: f64) -> NewtonOptions {
+    pub(crate) fn newton(&self, tolerance: f64, ratio: f64) -> NewtonOptions {
         NewtonOptions {
             tolerance: (100.0 * self.noise(tolerance, ratio)).clamp(1e-10, 1e-3),
             iterations: ITERATIONS,
@@ -73,7 +79,7 @@ impl ShootingProblem {
     }
 
     /// The same from a guess, when nothing is known of the oscillation.
-    pub(super) fn newton_at_start(&self) -> NewtonOptions {
+    pub(crate) fn newton_at_start(&self) -> NewtonOptions {
         NewtonOptions {
             iterations: ITERATIONS_AT_START,
             damped: true,
@@ -83,19 +89,19 @@ impl ShootingProblem {
 
     /// By what part of the size of an orbit two states differ that are one: half of an orbit, or one of its periods, is not integrated
     /// in the same steps as all of it.
-    pub(super) fn same(&self, ratio: f64) -> f64 {
+    pub(crate) fn same(&self, ratio: f64) -> f64 {
         let noise = self.noise(self.source.tolerance, ratio);
         (1e3 * noise).clamp(1e-7, 1e-2)
     }
 
     /// How exactly a test function must vanish.
-    pub(super) fn vanishing(&self, ratio: f64) -> f64 {
+    pub(crate) fn vanishing(&self, ratio: f64) -> f64 {
         let noise = self.noise(self.source.tolerance, ratio);
         (1e3 * noise).clamp(1e-10, 1e-3)
     }
 
     /// Options to follow a branch. Updates are relative to the range too, and the noise to the value.
-    pub(super) fn follow(&self, from: f64, to: f64, ratio: f64) -> FollowOptions {
+    pub(crate) fn follow(&self, from: f64, to: f64, ratio: f64) -> FollowOptions {
         let range = (to - from).abs();
         let narrow = if range > 0.0 {
             from.abs().max(to.abs()) / range
@@ -112,7 +118,7 @@ impl ShootingProblem {
     }
 
     /// The frequency where what is varied has a value.
-    pub(super) fn omega_at(&self, value: f64) -> f64 {
+    pub(crate) fn omega_at(&self, value: f64) -> f64 {
         match self.variable {
             Variable::Omega => value,
             Variable::Parameter(_) => self.omega,
@@ -120,7 +126,7 @@ impl ShootingProblem {
     }
 
     /// The parameters there.
-    pub(super) fn parameters_at(&self, value: f64) -> Vec<f64> {
+    pub(crate) fn parameters_at(&self, value: f64) -> Vec<f64> {
         let mut parameters = self.parameters.clone();
         if let Variable::Parameter(index) = self.variable {
             parameters[index] = value;
@@ -129,7 +135,7 @@ impl ShootingProblem {
     }
 
     /// How fast the phase moves there.
-    pub(super) fn rate_at(&self, value: f64) -> f64 {
+    pub(crate) fn rate_at(&self, value: f64) -> f64 {
         self.omega_at(value) / f64::from(self.divisor)
     }
 }

@@ -6,19 +6,24 @@ use super::equations::Equations;
 use super::error_reference::{ErrorReference, multipliers};
 use super::extremes;
 use super::method::ShootingBranch;
-use super::minimal_period::{MinimalPeriod, SameState};
+use super::minimal_period::{SameState, earlier, may_be_earlier};
 use super::problem::ShootingProblem;
+use super::reading::Reader;
+use super::rest::Rest;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::{Motion, Observed};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
+use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
+use crate::branches::recurrence::Recurrence;
 use crate::continuation::follow::{FollowOptions, Start, Stop};
-use crate::continuation::newton::{NewtonError, NewtonOptions};
+use crate::continuation::newton::NewtonError;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::Turn;
+use crate::model::request::RequestError;
 use crate::numeric::spectrum::distance;
 use crate::orbit::stability::Stability;
 use crate::time::MotionError;
@@ -30,11 +35,10 @@ const STILL: f64 = 10.0;
 /// What a run has gathered.
 pub(super) struct Run<'r> {
     pub(super) problem: &'r ShootingProblem,
-    pub(super) options: NewtonOptions,
-    reference: ErrorReference,
-    size: f64,
+    pub(super) reference: ErrorReference,
+    pub(super) size: f64,
     /// What the branch has met.
-    pub(super) joined: Option<MinimalPeriod>,
+    pub(super) joined: Option<Recurrence>,
     /// Error of the states of the orbit read last; not a number where it is not known.
     pub(super) state_error: f64,
     pub(super) points: Vec<Point>,
@@ -45,18 +49,14 @@ pub(super) struct Run<'r> {
     pub(super) statistics: Statistics,
     /// Work of flows that are no more.
     pub(super) work: Work,
+    /// Where it was before the last step.
+    pub(super) rest: Option<Box<Rest>>,
 }
 
 impl<'r> Run<'r> {
-    pub(super) fn new(
-        problem: &'r ShootingProblem,
-        options: NewtonOptions,
-        reference: ErrorReference,
-        size: f64,
-    ) -> Self {
+    pub(super) fn new(problem: &'r ShootingProblem, reference: ErrorReference, size: f64) -> Self {
         Self {
             problem,
-            options,
             reference,
             size,
             joined: None,
@@ -67,6 +67,7 @@ impl<'r> Run<'r> {
             failure: None,
             statistics: Statistics::default(),
             work: Work::default(),
+            rest: None,
         }
     }
 
@@ -85,15 +86,49 @@ impl<'r> Run<'r> {
         let outcome = engine::run(&mut branch, start, options);
         branch.count_flows();
         let failed = branch.equations.failure;
+        self.stopped(outcome, failed, options)
+    }
+
+    /// Goes on from where it was interrupted.
+    ///
+    /// # Errors
+    /// None, but for a rest of another run.
+    pub(super) fn resume(
+        &mut self,
+        equations: Equations,
+        rest: &Rest,
+        options: FollowOptions,
+        visit: See<'_>,
+    ) -> Result<Stop, Error> {
+        let mut branch = ShootingBranch::new(self, equations, visit);
+        if !rest.walk.tests(branch.watched().len()) {
+            return Err(RequestError::Rest.into());
+        }
+        let outcome = engine::resume(&mut branch, rest.walk.clone(), options);
+        branch.count_flows();
+        let failed = branch.equations.failure;
+        self.stopped(outcome, failed, options)
+    }
+
+    /// Why the branch ended, as the engine has.
+    ///
+    /// # Errors
+    /// If there is no first orbit.
+    fn stopped(
+        &mut self,
+        outcome: Result<Stop, NewtonError>,
+        failed: Option<FlowError>,
+        options: FollowOptions,
+    ) -> Result<Stop, Error> {
         let failure = self.failure.or(failed);
         self.statistics += self.reference.newton.statistics;
         self.work += self.reference.work();
         let value = self.points.last().map_or(options.from, |point| point.value);
-        if let Some(MinimalPeriod { period, odd }) = self.joined {
+        if let Some(Recurrence { period, image, .. }) = &self.joined {
             let joint = self.events.last().map_or(value, |event| event.point.value);
             return Ok(Stop::Joined {
-                period,
-                symmetric: odd,
+                period: *period,
+                symmetric: image.is_minus(),
                 value: joint,
             });
         }
@@ -123,28 +158,28 @@ impl<'r> Run<'r> {
     /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
     /// same orbits again, looked at from elsewhere.
     pub(super) fn meets(&mut self, equations: &mut Equations) -> bool {
-        let odd = self.problem.odd;
+        let symmetries = &self.problem.symmetries;
         let Some(event) = self.events.last() else {
             return false;
         };
-        if equations.span.period == 1 && !odd {
+        if !may_be_earlier(equations, symmetries) && self.problem.at_once.is_empty() {
             return false;
         }
         let after = event.after;
         let u = equations.unknowns_of(&event.point.orbit.states, event.point.value);
-        let Ok(recurrence) =
-            MinimalPeriod::at_point(equations, &u, self.same_state(equations), odd)
-        else {
-            return false;
+        let same = self.same_state(equations).at_point();
+        let state = event.point.orbit.state();
+        let recurrence = match earlier(equations, &u, same, symmetries) {
+            Ok(Some(recurrence)) => recurrence,
+            Ok(None) if self.gains_symmetry(equations, &state, same) => {
+                equations.span.recurrence.clone()
+            }
+            _ => return false,
         };
-        let regular =
-            recurrence.period < equations.span.period || recurrence.odd != equations.span.half;
-        if regular {
-            // The orbits behind the point are those before it.
-            self.points.truncate(after);
-            self.joined = Some(recurrence);
-        }
-        regular
+        // The orbits behind the point are those before it.
+        self.points.truncate(after);
+        self.joined = Some(recurrence);
+        true
     }
 
     /// An orbit with everything that is read off it, and its map if the stability is wanted. With a flow that has a tolerance, it
@@ -171,7 +206,7 @@ impl<'r> Run<'r> {
         let Some(map) = map else {
             return Ok((point, None));
         };
-        let found = multipliers(&map, reference.equations.span.half);
+        let found = multipliers(&map, reference.equations.span.recurrence.parts);
         let (mut spread, in_states) = reference.errors(&map, &found);
         let mut error = in_states * self.size;
         if let Some(corrected) = &corrected {
@@ -202,7 +237,14 @@ pub(super) fn observe(
     let value = u[u.len() - 1];
     let rate = problem.rate_at(value);
     let mut extremes = vec![Motion::NONE; equations.order() / 2];
-    let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
+    let recurrence = equations.span.recurrence.clone();
+    let mut outputs = problem.output_reader(value, &recurrence);
+    let see = &mut |stretch: &dyn Stretch| {
+        extremes::include(stretch, rate, &mut extremes);
+        if let Some(outputs) = &mut outputs {
+            outputs.include(stretch);
+        }
+    };
     let before = equations.flow.work().switches;
     let map = if problem.stability {
         Some(equations.map(u, see)?)
@@ -211,12 +253,8 @@ pub(super) fn observe(
         None
     };
     let switches = equations.flow.work().switches - before;
-    let half = equations.span.half;
-    if half {
-        for extremes in &mut extremes {
-            *extremes = extremes.mirrored();
-        }
-    }
+    let Recurrence { period, parts, .. } = recurrence;
+    extremes::over_images(&mut extremes, &recurrence.image);
     let point = Point {
         value,
         parameters: problem.parameters_at(value),
@@ -225,12 +263,17 @@ pub(super) fn observe(
             states: equations.states_of(u),
             coordinates: extremes.len(),
             omega: problem.omega_at(value),
-            base: rate / equations.span.period as f64,
-            period: equations.span.period,
-            symmetric: half,
+            base: rate / period as f64,
+            period,
+            parts,
+            symmetric: recurrence.image.is_minus(),
+            image: recurrence.image,
         },
         stability: Stability::unknown(),
-        observed: Observed::extremes(extremes, switches * if half { 2 } else { 1 }),
+        observed: Observed {
+            outputs: outputs.map_or_else(Vec::new, Reader::motions),
+            ..Observed::extremes(extremes, switches * parts)
+        },
         error: None,
     };
     Ok((point, map))

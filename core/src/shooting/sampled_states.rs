@@ -4,7 +4,6 @@ use super::equations::Span;
 use super::problem::ShootingProblem;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
-use crate::event::EventKind;
 use crate::numeric::fourier::series;
 use crate::system::Variable;
 
@@ -14,16 +13,7 @@ pub(crate) fn with_states(problem: &ShootingProblem, event: &Event) -> Event {
     if !orbit.has_series() || !orbit.states.is_empty() {
         return event.clone();
     }
-    let half = event.kind == EventKind::SymmetryBreaking;
-    let span = Span {
-        period: orbit.period,
-        half,
-        segments: if half {
-            orbit.period.div_ceil(2)
-        } else {
-            orbit.period
-        },
-    };
+    let span = Span::of(orbit.recurrence(), orbit.period);
     let times =
         || (0..span.segments).map(|s| span.begins(s) * f64::from(problem.divisor) / orbit.omega);
     let states = times().flat_map(|time| state(orbit, &orbit.series, [orbit.base, 0.0], time));
@@ -44,7 +34,6 @@ pub(crate) fn with_states(problem: &ShootingProblem, event: &Event) -> Event {
         point: Point {
             orbit: Orbit {
                 states: states.collect(),
-                symmetric: half,
                 ..orbit.clone()
             },
             ..event.point.clone()

@@ -220,7 +220,7 @@ pub(super) struct ReferenceCurve<'a> {
 
 impl<'a> ReferenceCurve<'a> {
     pub(super) fn of(problem: &ShootingProblem, curve: &Curve<'a>) -> Option<Self> {
-        let (span, frame) = (curve.equations.span, curve.equations.frame.clone());
+        let (span, frame) = (curve.equations.span.clone(), curve.equations.frame.clone());
         let reference = ErrorReference::new(problem, span, frame, curve.units[0]).ok()?;
         let (options, part) = (reference.options, reference.part);
         let curve = curve.with(reference.equations);

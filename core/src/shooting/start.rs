@@ -2,7 +2,7 @@
 
 use super::equations::{Equations, Frame, Span};
 use super::extremes;
-use super::minimal_period::{MinimalPeriod, SameState};
+use super::minimal_period::{SameState, earlier};
 use super::past_fold;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
@@ -10,10 +10,11 @@ use crate::branches::error::Attempts;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::Motion;
 use crate::branches::point::Point;
+use crate::branches::recurrence::Recurrence;
 use crate::branches::request::Guess;
 use crate::branches::solve;
 use crate::continuation::newton::Newton;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::time::MotionError;
 use crate::time::{FlowError, Stretch};
 
@@ -25,18 +26,49 @@ pub(super) struct First {
     pub(super) size: f64,
 }
 
-/// The orbit at a value, from a guess; frequencies count by `omega`.
+/// Segments, in units of those asked for, where fewer lead to no orbit: motions part from an unstable one by its multiplier, and over a
+/// part of the period by a root of it.
+const MORE_SEGMENTS: [usize; 2] = [4, 16];
+
+/// The orbit at a value, from a guess; frequencies count by `omega`. From a series in more segments too, if need be.
+///
+/// # Errors
+/// If none is found.
 pub(super) fn first(
     problem: &ShootingProblem,
     guess: &Guess,
     value: f64,
     omega: f64,
 ) -> Result<First, Error> {
-    let span = Span {
-        period: problem.period,
-        half: false,
-        segments: problem.segments,
-    };
+    let found = first_in(problem, guess, value, omega, problem.segments);
+    if !matches!(guess, Guess::Orbit(orbit) if orbit.has_series()) {
+        return found;
+    }
+    let more = MORE_SEGMENTS.map(|times| times * problem.segments);
+    more.into_iter().fold(found, |found, segments| match found {
+        Err(reason) if is_lost(&reason) => {
+            let found = first_in(problem, guess, value, omega, segments);
+            found.map_err(|other| if is_lost(&other) { reason } else { other })
+        }
+        found => found,
+    })
+}
+
+/// Whether no orbit was found at all.
+fn is_lost(reason: &Error) -> bool {
+    let of_shorter = matches!(reason.downcast_ref(), Some(OrbitError::NoSuchPeriod { .. }));
+    matches!(reason.kind(), ErrorKind::NoOrbit | ErrorKind::Motion) && !of_shorter
+}
+
+/// The same in so many segments.
+fn first_in(
+    problem: &ShootingProblem,
+    guess: &Guess,
+    value: f64,
+    omega: f64,
+    segments: usize,
+) -> Result<First, Error> {
+    let span = Span::of(Recurrence::whole(problem.period), segments);
     let coordinates = problem.flow(problem.source.tolerance)?.coordinates();
     let frame = Frame::plain(problem.variable, coordinates, omega);
     let mut equations = Equations::new(problem, problem.source.tolerance, span, frame)?;
@@ -57,8 +89,10 @@ pub(super) fn first(
     };
     first.settle(problem).map_err(motion)?;
     let same = first.same_state(problem);
-    let recurrence = MinimalPeriod::of(&mut first.equations, &first.u, same, problem.odd);
-    let recurrence = recurrence.map_err(motion)?;
+    let found = earlier(&mut first.equations, &first.u, same, &problem.symmetries);
+    let Some(recurrence) = found.map_err(motion)? else {
+        return Ok(first);
+    };
     if recurrence.period < problem.period {
         return Err(OrbitError::NoSuchPeriod {
             period: problem.period,
@@ -72,9 +106,7 @@ pub(super) fn first(
         }
         .into());
     }
-    if recurrence.odd {
-        first.halve(problem)?;
-    }
+    first.follow_part(problem, recurrence)?;
     Ok(first)
 }
 
@@ -89,27 +121,24 @@ pub(super) fn of_point(
     through(
         problem,
         point,
-        point.orbit.period,
-        point.orbit.symmetric,
+        point.orbit.recurrence(),
         &point.orbit.states,
     )
 }
 
-/// The same with other states at the beginnings of the segments, over another period, or half of it.
+/// The same with other states at the beginnings of the segments, over another time.
 ///
 /// # Errors
 /// If there is no flow.
 pub(super) fn through(
     problem: &ShootingProblem,
     point: &Point,
-    period: usize,
-    half: bool,
+    recurrence: Recurrence,
     states: &[f64],
 ) -> Result<(Equations, Vec<f64>), Error> {
     let coordinates = point.orbit.coordinates;
     let span = Span {
-        period,
-        half,
+        recurrence,
         segments: states.len() / (2 * coordinates),
     };
     let frame = Frame::plain(problem.variable, coordinates, point.orbit.omega);
@@ -125,7 +154,7 @@ fn states(
     guess: &Guess,
     value: f64,
 ) -> Result<Vec<f64>, FlowError> {
-    let span = equations.span;
+    let span = equations.span.clone();
     match guess {
         Guess::Orbit(orbit) if orbit.has_series() => {
             let n = orbit.coordinates();
@@ -138,6 +167,10 @@ fn states(
                 states.extend(velocities);
             }
             Ok(states)
+        }
+        // Where motions part fast, its own states are nearer than what comes of the first.
+        Guess::Orbit(orbit) if orbit.parts == 1 && orbit.states().count() == span.segments => {
+            Ok(orbit.states.clone())
         }
         Guess::Orbit(orbit) => equations.states_from(&orbit.state(), value),
         Guess::State(state) => equations.states_from(state, value),
@@ -161,6 +194,7 @@ impl First {
         let mut extremes = vec![Motion::NONE; n];
         let see = &mut |stretch: &dyn Stretch| extremes::include(stretch, rate, &mut extremes);
         self.equations.trace(&self.u, see)?;
+        extremes::over_images(&mut extremes, &self.equations.span.recurrence.image);
         let states = self.equations.states_of(&self.u);
         self.equations.frame.reference = extremes.iter().map(Motion::middle).collect();
         self.u = self.equations.unknowns_of(&states, value);
@@ -173,26 +207,25 @@ impl First {
         Ok(())
     }
 
-    /// Goes over to the equations of half a period.
-    fn halve(&mut self, problem: &ShootingProblem) -> Result<(), Error> {
+    /// Goes over to the equations of the time after which the orbit comes back.
+    fn follow_part(
+        &mut self,
+        problem: &ShootingProblem,
+        recurrence: Recurrence,
+    ) -> Result<(), Error> {
         let value = self.u[self.u.len() - 1];
         let motion = |reason| MotionError { value, reason };
         let mut state = self.equations.states_of(&self.u);
         state.truncate(self.equations.order());
-        self.equations.frame.reference.fill(0.0);
-        self.equations.frame.ratio = 1.0;
-        let span = Span {
-            half: true,
-            segments: self.equations.span.segments.div_ceil(2),
-            ..self.equations.span
-        };
-        self.equations.divide(span);
+        let segments = self.equations.span.segments;
+        self.equations.divide(Span::of(recurrence, segments));
         let states = self.equations.states_from(&state, value).map_err(motion)?;
         self.u = self.equations.unknowns_of(&states, value);
         let mut newton = Newton::new(&self.equations);
-        let options = problem.newton(problem.source.tolerance, 1.0);
+        let options = problem.newton(problem.source.tolerance, self.equations.frame.ratio);
         solve::at_value(&mut self.equations, &mut newton, &mut self.u, options)
             .map_err(|reason| no_orbit(value, reason, self.equations.failure))?;
+        self.settle(problem).map_err(motion)?;
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 //! [`crossed`](super::crossed).
 //!
 //! Let `P` be the derivative of the flow over the part of the orbit that is followed, and `S` as in
-//! [`equations`](super::equations). At a period doubling, and where an odd symmetry breaks, `M = S P` has the eigenvalue minus
+//! [`equations`](super::equations). At a period doubling, and where a symmetry breaks, `M = S^-1 P` has the eigenvalue minus
 //! one, so
 //!
 //! ```text
@@ -20,11 +20,12 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
-use super::minimal_period::MinimalPeriod;
+use super::minimal_period::earlier;
 use super::problem::ShootingProblem;
 use super::start::{self, First};
 use crate::branches::error::OrbitError;
 use crate::branches::point::{Event, Point};
+use crate::branches::recurrence::SignedPermutation;
 use crate::branches::solve::{Toward, along};
 use crate::branches::switch::BranchSwitch;
 use crate::continuation::follow::CurvePoint;
@@ -32,6 +33,7 @@ use crate::continuation::newton::Newton;
 use crate::continuation::problem::Scale;
 use crate::error::Error;
 use crate::event::EventKind;
+use crate::numeric::spectrum::eigenvalues;
 use crate::time::MotionError;
 
 /// Components of the first orbit in the direction of the new branch, in units of the orbit's size: the first that leads to an
@@ -59,7 +61,7 @@ pub(super) fn switch_branch(
         kind: event.kind,
         value: event.point.value,
     };
-    if event.kind == EventKind::BranchPoint {
+    if event.kind == EventKind::BranchPoint || is_crossing(problem, event)? {
         return super::crossed::switch_branch(problem, event, side, range);
     }
     if !matches!(
@@ -69,7 +71,7 @@ pub(super) fn switch_branch(
         return Err(nothing.into());
     }
     let (mut equations, u) = twice(problem, &event.point)?;
-    let Some(direction) = direction(&mut equations, &u, event.point.orbit.symmetric) else {
+    let Some(direction) = direction(&mut equations, &u, &event.point.orbit.image) else {
         return Err(nothing.into());
     };
     let mut first = First {
@@ -86,15 +88,30 @@ pub(super) fn switch_branch(
         let step = side * part;
         if let Some(point) = first_orbit(problem, &mut first, &direction, step, range) {
             let same = first.same_state(problem);
-            let recurrence = MinimalPeriod::of(&mut first.equations, &point.u, same, problem.odd);
-            let is_new = |found: MinimalPeriod| found.period == problem.period && !found.odd;
-            if recurrence.is_ok_and(is_new) {
+            let found = earlier(&mut first.equations, &point.u, same, &problem.symmetries);
+            if found.is_ok_and(|found| found.is_none()) {
                 first.u.clone_from(&point.u);
                 return Ok(Begun { first, point });
             }
         }
     }
     Err(nothing.into())
+}
+
+/// Whether a symmetry breaks by a multiplier of one: coordinates cease to be in each other's place at every time.
+pub(super) fn is_crossing(problem: &ShootingProblem, event: &Event) -> Result<bool, Error> {
+    if event.kind != EventKind::SymmetryBreaking {
+        return Ok(false);
+    }
+    let value = event.point.value;
+    let (mut equations, u) = start::of_point(problem, &event.point)?;
+    let map = equations.map(&u, &mut |_| {});
+    let map = map.map_err(|reason| MotionError { value, reason })?;
+    let nearest = |critical: f64| {
+        let distances = eigenvalues(&map).into_iter().map(|m| (m - critical).norm());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    Ok(nearest(1.0) < nearest(-1.0))
 }
 
 /// An orbit that is known, with the direction of its branch: to larger values of the parameter for a positive side.
@@ -125,21 +142,30 @@ pub(super) fn resume(
 
 /// The equations of the new branch, and the orbit as a solution of them.
 fn twice(problem: &ShootingProblem, point: &Point) -> Result<(Equations, Vec<f64>), Error> {
-    let sign = if point.orbit.symmetric { -1.0 } else { 1.0 };
-    let mut states = point.orbit.states.clone();
-    states.extend(point.orbit.states.iter().map(|x| sign * x));
-    start::through(problem, point, problem.period, false, &states)
+    let orbit = &point.orbit;
+    let again = orbit.image.of_states(&orbit.states, orbit.coordinates);
+    let states = [&orbit.states[..], &again].concat();
+    start::through(problem, point, orbit.recurrence().doubled(), &states)
 }
 
-/// The direction of the new branch in extended unknowns, from (1); its entry for the parameter is zero.
-pub(super) fn direction(equations: &mut Equations, u: &[f64], symmetric: bool) -> Option<Vec<f64>> {
+/// The direction of the new branch in extended unknowns, from (1) with the image `S` of coordinates on the known one; its entry for the
+/// parameter is zero.
+pub(super) fn direction(
+    equations: &mut Equations,
+    u: &[f64],
+    image: &SignedPermutation,
+) -> Option<Vec<f64>> {
     let order = equations.order();
     let maps = equations.segment_maps(u).ok()?;
     let part = &maps[..maps.len() / 2];
     let identity = DMatrix::<f64>::identity(order, order);
-    let whole = part.iter().fold(identity.clone(), |p, map| map * p);
-    let sign = if symmetric { -1.0 } else { 1.0 };
-    let svd = (whole + sign * identity).svd(false, true);
+    let whole = part.iter().fold(identity, |p, map| map * p);
+    let mut sum = whole;
+    for i in 0..order {
+        let (place, sign) = image.state_entry(i, order / 2);
+        sum[(i, place)] += sign;
+    }
+    let svd = sum.svd(false, true);
     let smallest = svd.singular_values.imin();
     let mut v = svd.v_t?.row(smallest).transpose();
     let mut direction = Vec::with_capacity(u.len());

@@ -6,9 +6,9 @@
 //! |---|---|
 //! | fold | `l'` |
 //! | branch point | `b = det(M - I) / l'`, the determinant of the bordered matrix of Newton's method but for a factor |
-//! | period doubling | `det(M + I)`; with odd symmetry the symmetry breaks there |
-//! | Neimark-Sacker | the product of `mu_i mu_j - 1` over all pairs of multipliers, if the pair that vanishes is complex |
-//! | grazing | none: the number of times that a gap crosses a level changes |
+//! | period doubling | `det(M + I)`; where coordinates have to be in each other's place twice to be in their own, that symmetry breaks there |
+//! | Neimark-Sacker | the [moduli](crate::branches::moduli) of multipliers, where a complex pair passes one |
+//! | grazing | an extreme of a gap less its level ([`touch`](crate::branches::engine)) |
 //!
 //! At a fold `b` stays away from zero. Where both `l'` and `b` change their sign, a branch ends on another one, as of twice the
 //! period at a period doubling; or there is a fold, and a crossing beside it.
@@ -16,61 +16,63 @@
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions);
 //! Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems, for the determinant.
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
+use crate::branches::moduli;
 use crate::branches::problem::{self as engine, Watched};
 use crate::event::EventKind;
 use crate::numeric::spectrum::eigenvalues;
-use crate::orbit::stability::product_of_pairs;
+
+/// Beside the largest multiplier, one that is near the unit circle is known to its rounding. Where that is so large, determinants have
+/// signs by chance.
+const UNRESOLVED: f64 = 1e-2;
 
 /// The test functions at one orbit.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Tests {
+#[derive(Debug, Clone)]
+pub(crate) struct Tests {
     slope: f64,
     /// `det(M - I)`
     minus: f64,
     /// `det(M + I)`
     plus: f64,
-    /// The product of `mu_i mu_j - 1`, and whether the pair that is nearest to one is complex.
-    pairs: f64,
-    pub(super) complex: bool,
+    /// Of `M`, largest modulus first; none where nothing is known.
+    pub(crate) multipliers: Vec<Complex<f64>>,
 }
 
 /// Which of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Test {
+pub(crate) enum Test {
     Slope,
     /// `b`
     Bordered,
     Plus,
-    Pairs,
+    /// Of the multiplier at a place in the order of moduli.
+    Modulus(usize),
 }
 
-/// Those that are watched, in the order of [`Test::watched`].
-pub(super) fn watched(half: bool) -> [Watched; 3] {
-    let plus = if half {
-        EventKind::SymmetryBreaking
-    } else {
-        EventKind::PeriodDoubling
-    };
+/// Those that are watched of a system of so many states, in the order of [`Test::watched`].
+/// What begins where the multiplier over the part that is followed is minus one is told.
+pub(crate) fn watched(doubling: EventKind, states: usize) -> Vec<Watched> {
     let of = |kind| Watched {
         kind,
         bordered: kind == EventKind::BranchPoint,
     };
-    [EventKind::BranchPoint, plus, EventKind::NeimarkSacker].map(of)
+    let moduli = std::iter::repeat_n(EventKind::NeimarkSacker, states);
+    let kinds = [EventKind::BranchPoint, doubling].into_iter().chain(moduli);
+    kinds.map(of).collect()
 }
 
 impl Test {
     /// By its place among those that are watched.
-    pub(super) fn watched(index: usize) -> Self {
+    pub(crate) fn watched(index: usize) -> Self {
         match index {
             0 => Self::Bordered,
             1 => Self::Plus,
-            _ => Self::Pairs,
+            _ => Self::Modulus(index - 2),
         }
     }
 
-    pub(super) fn of(test: engine::Test) -> Self {
+    pub(crate) fn of(test: engine::Test) -> Self {
         match test {
             engine::Test::Slope => Self::Slope,
             engine::Test::Watched(index) => Self::watched(index),
@@ -79,30 +81,55 @@ impl Test {
 }
 
 impl Tests {
-    pub(super) fn of(map: Option<&DMatrix<f64>>, slope: f64) -> Self {
+    pub(crate) fn of(map: Option<&DMatrix<f64>>, slope: f64) -> Self {
+        let multipliers = map.map_or_else(Vec::new, eigenvalues);
+        let largest = multipliers.first().map_or(0.0, |m| m.norm());
+        let resolved = map.filter(|_| f64::EPSILON * largest < UNRESOLVED);
         let determinant = |shift: f64| {
-            map.map_or(f64::NAN, |map| {
+            resolved.map_or(f64::NAN, |map| {
                 let shifted = map + DMatrix::identity(map.nrows(), map.ncols()) * shift;
                 shifted.determinant()
             })
         };
-        let (pairs, complex) =
-            map.map_or((f64::NAN, false), |map| product_of_pairs(&eigenvalues(map)));
         Self {
             slope,
             minus: determinant(-1.0),
             plus: determinant(1.0),
-            pairs,
-            complex,
+            multipliers,
         }
     }
 
-    pub(super) fn value(&self, test: Test) -> f64 {
+    pub(crate) fn value(&self, test: Test) -> f64 {
         match test {
             Test::Slope => self.slope,
             Test::Bordered => self.minus / self.slope,
             Test::Plus => self.plus,
-            Test::Pairs => self.pairs,
+            Test::Modulus(place) => moduli::logarithm(&self.multipliers, place),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Determinants of a map whose product of multipliers is `1/4`, in states that mix them.
+    #[test]
+    fn determinants_by_chance_are_unknown() {
+        for (largest, known) in [(1e2, true), (1e8, true), (1e15, false), (1e20, false)] {
+            let multipliers = DMatrix::from_row_slice(2, 2, &[largest, 0.0, 0.0, 0.25 / largest]);
+            let states = DMatrix::from_row_slice(2, 2, &[0.8, -0.6, 0.6, 0.8]);
+            let map = &states * multipliers * states.transpose();
+            let tests = Tests::of(Some(&map), 0.5);
+            for (test, exact) in [
+                (Test::Plus, largest + 1.25 + 0.25 / largest),
+                (Test::Bordered, 2.0 * (1.25 - largest - 0.25 / largest)),
+            ] {
+                let found = tests.value(test);
+                assert_eq!(known, !found.is_nan(), "{largest:e}: {found}");
+                let off = (found / exact - 1.0).abs();
+                assert!(!known || off < 1e-15 * largest, "{largest:e}: {off:e}");
+            }
         }
     }
 }

@@ -5,6 +5,8 @@ pub(crate) mod allocations;
 #[cfg(test)]
 pub(crate) mod by_hand;
 #[cfg(test)]
+pub(crate) mod one_sided;
+#[cfg(test)]
 #[allow(
     dead_code,
     unreachable_pub,

@@ -72,6 +72,7 @@ impl std::ops::Div<f64> for Integral {
 }
 
 /// The divergence of a system at given values.
+#[derive(Debug)]
 pub struct Divergence {
     system: Arc<dyn System>,
     contacts: Vec<(ContactLayout, Gap)>,
@@ -88,14 +89,6 @@ pub struct Divergence {
     grading: Grading,
     /// Panels that wait: where they begin, and how often they have been halved.
     panels: Vec<(f64, i32)>,
-}
-
-impl std::fmt::Debug for Divergence {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Divergence")
-            .field("system", &self.system.facts().name)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Divergence {

@@ -35,6 +35,9 @@ pub enum FlowError {
         #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
         phase: f64,
     },
+    /// The motion grew beyond the bound that was set for it.
+    #[error("the motion grew beyond the bound")]
+    Escaped,
     /// A mean was to be taken over no period at all.
     #[error("there is no mean over no periods: take one or more")]
     NoPeriods,
@@ -114,11 +117,12 @@ pub enum FlowError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    FlowError:
+crate::error::room_error! {
+    FlowError, FlowError::kind;
     StepTooShort { phase, step }
     NotFinite { phase }
     Section { phase }
+    Escaped {}
     NoPeriods {}
     TooManySwitches { phase, switches }
     TooManySteps { phase, steps }
@@ -157,7 +161,7 @@ impl std::fmt::Debug for MotionError {
 }
 
 impl FlowError {
-    fn kind(self) -> ErrorKind {
+    fn kind(&self) -> ErrorKind {
         match self {
             Self::Value { .. } | Self::Entries { .. } | Self::NoPeriods => ErrorKind::Request,
             Self::SingularMass { .. } | Self::Levels { .. } => ErrorKind::Model,
@@ -178,6 +182,7 @@ impl FlowError {
             | Self::Grazes { phase }
             | Self::Cancelled { phase } => *phase = to(*phase),
             Self::SingularMass { .. }
+            | Self::Escaped
             | Self::NoPeriods
             | Self::Value { .. }
             | Self::Levels { .. }
@@ -245,12 +250,6 @@ fn refused(variable: Variable, value: f64) -> String {
             "parameter {} cannot be {value}: it is outside its range, or there is no such parameter",
             index + 1
         ),
-    }
-}
-
-impl From<FlowError> for Error {
-    fn from(error: FlowError) -> Self {
-        Self::new(error.kind(), error)
     }
 }
 

@@ -3,6 +3,7 @@
 //! Time is measured by the phase `tau = omega t / divisor` of the system's own waves, so that `2 pi` is its period whatever
 //! the frequency. A state is `(q, dq/dt)`: coordinates, then their derivatives by *time*.
 
+#[doc(hidden)]
 pub mod affine;
 pub mod divergence;
 pub mod estimate;
@@ -14,14 +15,17 @@ mod error;
 mod field;
 pub(crate) mod gap;
 mod integrated;
+pub(crate) mod signals;
 #[cfg(test)]
 mod tests;
 
 pub use error::{FlowError, MotionError};
+#[doc(hidden)]
 pub use integrated::Integrated;
 
 use crate::cancel::Cancel;
 use crate::error::Error;
+use crate::model;
 use crate::system::{System, Variable};
 
 /// What is shown every smooth stretch of a motion.
@@ -86,25 +90,19 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The error allowed in a state; see [`Options::tolerance`](#structfield.tolerance).
-    ///
-    /// ```
-    /// use hertzian::time::Options;
-    ///
-    /// let options = Options::default().tolerance(1e-7);
-    /// assert_eq!(options.tolerance, 1e-7);
-    /// ```
-    #[must_use]
-    pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// The error allowed in a state; see [`Options::tolerance`](#structfield.tolerance).
+        ///
+        /// ```
+        /// use hertzian::time::Options;
+        ///
+        /// let options = Options::default().tolerance(1e-7);
+        /// assert_eq!(options.tolerance, 1e-7);
+        /// ```
+        tolerance(tolerance: f64) { self.tolerance = tolerance }
 
-    /// A motion ends when this token is cancelled, with [`FlowError::Cancelled`].
-    #[must_use]
-    pub fn cancel(mut self, cancel: &Cancel) -> Self {
-        self.cancel = cancel.clone();
-        self
+        /// A motion ends when this token is cancelled, with [`FlowError::Cancelled`].
+        cancel(cancel: &Cancel) { self.cancel = cancel.clone() }
     }
 }
 
@@ -145,9 +143,7 @@ impl Options {
 /// If a parameter, the frequency or the tolerance is outside its range, the levels of a law are out of order, the mass matrix is
 /// singular, or the system has no coordinates.
 pub fn of(system: &dyn System, omega: f64, options: Options) -> Result<Box<dyn Flow>, Error> {
-    let mut values = vec![0.0; system.facts().parameters.len()];
-    system.values(&mut values);
-    at(system, &values, omega, options)
+    at(system, &model::values(system), omega, options)
 }
 
 /// As [`of`], at given values of the parameters.
@@ -215,6 +211,7 @@ pub struct Work {
     pub switches: usize,
 }
 
+// Counts of a continuation (`Statistics`) and of multipliers (`Cost`) are summed alike: other counts, of rooms that know no other.
 impl std::ops::AddAssign for Work {
     fn add_assign(&mut self, other: Self) {
         self.steps += other.steps;

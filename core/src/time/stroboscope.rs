@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Flow, FlowError, Options, See, Tangent};
+use super::{Flow, FlowError, Options, See, Tangent, Work};
 use crate::error::Error;
 use crate::system::{System, Variable};
 use crate::time;
@@ -67,18 +67,12 @@ impl Stroboscope {
         }
     }
 
-    /// Looks at the states at another phase.
-    #[must_use]
-    pub fn phase(mut self, phase: f64) -> Self {
-        self.phase = phase;
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// Looks at the states at another phase.
+        phase(phase: f64) { self.phase = phase }
 
-    /// Looks every so many periods.
-    #[must_use]
-    pub fn every(mut self, periods: usize) -> Self {
-        self.every = periods.max(1);
-        self
+        /// Looks every so many periods.
+        every(periods: usize) { self.every = periods.max(1) }
     }
 
     /// Periods of one application.
@@ -106,6 +100,11 @@ impl Stroboscope {
     /// The phase at which states are looked at.
     pub fn start(&self) -> f64 {
         self.phase
+    }
+
+    /// The work that its flow has done.
+    pub(crate) fn work(&self) -> Work {
+        self.flow.work()
     }
 
     /// How many periods have been computed.
@@ -161,29 +160,12 @@ impl Stroboscope {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::one_sided::one_sided;
     use crate::time::affine::Affine;
-
-    crate::oscillator! {
-        /// Wang et al. (2021), Eq. (1), one-sided, exponent one.
-        OneSided(x) {
-            param zeta in 0.0..;
-            param load;
-            param drive;
-            law contact(gap) {
-                gap > 0 => 2*zeta*dot(gap) + gap,
-                else    => 0,
-            }
-            ddot(x) + contact(x) = drive*cos(omega*t) + load;
-        }
-    }
 
     #[test]
     fn several_periods_at_once_are_the_same() {
-        let model = OneSided {
-            zeta: 0.032,
-            load: 1.0,
-            drive: 1.0,
-        };
+        let model = one_sided(1.0);
         let map = || {
             let flow = Affine::new(&model, &[0.032, 1.0, 1.0], 1.0).expect("affine");
             Stroboscope::new(Box::new(flow)).phase(0.5)

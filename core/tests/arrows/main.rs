@@ -15,7 +15,15 @@ use reader::{Reader, arrows};
 const CONTRACT: &[&str] = &["law", "system"];
 
 /// The modules of the package of the contract.
-const IN_CONTRACT: &[&str] = &["data", "law", "system", "declared", "constants"];
+const IN_CONTRACT: &[&str] = &[
+    "setters",
+    "data",
+    "law",
+    "output",
+    "system",
+    "declared",
+    "constants",
+];
 
 /// Single files that stand before all rooms, at most four.
 const SHARED: &[&str] = &["serialise", "event", "cancel"];
@@ -60,6 +68,7 @@ const ROOMS: &[&str] = &[
     "orbit",
     "balance_branch",
     "shooting",
+    "contact_equation",
     "response",
     "attractors",
     "bifurcation",

@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use hertzian::attractors::basin::{Axis, Basin, Basins, Grid};
+use hertzian::attractors::sweep::{Sweep, Swept};
 use hertzian::{
-    Branch, Error, EventKind, FileError, FrequencyResponse, RequestError, Shooting, Side,
+    Branch, Error, EventKind, FileError, FrequencyResponse, RequestError, Shooting, Side, Verdict,
 };
 
 hertzian::oscillator! {
@@ -42,12 +44,12 @@ impl Scratch {
 
     fn read(&self, text: &str) -> Error {
         std::fs::write(&self.0, text).expect("written");
-        Branch::read_json(&self.0).expect_err("it is none")
+        Branch::read(&self.0).expect_err("it is none")
     }
 
     fn exchanged(&self, branch: &Branch) -> Branch {
-        branch.write_json(&self.0).expect("written");
-        Branch::read_json(&self.0).expect("read")
+        branch.write(&self.0).expect("written");
+        Branch::read(&self.0).expect("read")
     }
 }
 
@@ -194,24 +196,27 @@ fn another_model_is_refused() {
 fn what_is_no_file_of_branches_is_refused() {
     let scratch = Scratch::new("refused");
     let path = &scratch.0;
-    let missing = Branch::read_json(path).expect_err("there is none");
+    let missing = Branch::read(path).expect_err("there is none");
     assert!(matches!(
         missing.downcast_ref(),
         Some(FileError::Read { .. })
     ));
     let branch = by_balance();
-    branch.write_json(path).expect("written");
+    branch.write(path).expect("written");
     let text = std::fs::read_to_string(path).expect("read");
     for part in [0, 1, 20, text.len() / 2, text.len() - 2] {
         let error = scratch.read(&text[..part]);
         let path = path.clone();
         assert_eq!(error.downcast_ref(), Some(&FileError::Truncated { path }));
     }
-    let error = scratch.read(&text.replacen("\"version\":1", "\"version\":2", 1));
+    let error = scratch.read(&text.replacen("\"version\":2", "\"version\":1", 1));
     let expected = format!(
-        "{} is of version 2, and files of version 1 are read",
+        "{} is of version 1, and files of version 2 are read",
         path.display()
     );
+    assert_eq!(error.to_string(), expected);
+    // Before there were versions, none was written.
+    let error = scratch.read("{\"points\": []}");
     assert_eq!(error.to_string(), expected);
     let first = &branch.points[0];
     for (from, to) in [
@@ -222,6 +227,8 @@ fn what_is_no_file_of_branches_is_refused() {
             format!("\"parameters\":{:?},", first.parameters),
             "\"parameters\":[1.0],",
         ),
+        ("\"parts\":1,".to_owned(), "\"parts\":0,"),
+        ("\"entries\":[]".to_owned(), "\"entries\":[[5,1]]"),
         ("\"kind\":\"fold\"".to_owned(), "\"kind\":\"sold\""),
     ] {
         let from = from.replace(' ', "");
@@ -235,8 +242,7 @@ fn what_is_no_file_of_branches_is_refused() {
     for text in [
         "omega,max\n0.5,1\n",
         "[1, 2]",
-        "{}",
-        "{\"version\":1,\"branches\":[]}",
+        "{\"version\":2,\"branches\":[]}",
     ] {
         let error = scratch.read(text);
         let Some(FileError::Format { .. }) = error.downcast_ref() else {
@@ -244,4 +250,99 @@ fn what_is_no_file_of_branches_is_refused() {
         };
         assert_eq!(error.to_string().lines().count(), 1);
     }
+}
+
+#[test]
+fn what_motions_settle_to_is_read_back() {
+    let model = OneSided {
+        zeta: 0.032,
+        drive: 1.0,
+    };
+    let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(6);
+    let grid = Grid::new(vec![0.0; 2], axis(0, -60.0, 10.0), axis(1, -12.0, 12.0));
+    let basins = Basin::of(&model).omega(1.0).grid(grid).run();
+    let basins = basins.expect("basins");
+    assert!(!basins.attractors.is_empty());
+    let text = serde_json::to_string(&basins).expect("text");
+    assert_eq!(
+        serde_json::from_str::<Basins>(&text).expect("basins"),
+        basins
+    );
+    let sweep = Sweep::of(&model).vary("drive").omega(1.0);
+    let swept = sweep.from(0.2).to(1.4).values(3).run().expect("rows");
+    assert_eq!(swept.rows.len(), 3);
+    let text = serde_json::to_string(&swept).expect("text");
+    assert_eq!(serde_json::from_str::<Swept>(&text).expect("rows"), swept);
+}
+
+/// The response of the one-sided contact bends over: between its folds there are three orbits, of which the middle one is not stable.
+#[test]
+fn all_solutions_are_counted() {
+    let request = FrequencyResponse::of(&MODEL).from(0.6).to(1.2);
+    let branch = request.run().expect("a branch");
+    let folds: Vec<f64> = branch.folds().map(|fold| fold.point.value).collect();
+    let [upper, lower] = folds[..] else {
+        panic!("{folds:?}");
+    };
+    assert!(lower < 0.9 && upper > 0.9, "{folds:?}");
+    let solutions = request.solutions(&[0.9, 1.19]).expect("solutions");
+    let [between, outside] = &solutions.at[..] else {
+        panic!("{solutions}");
+    };
+    assert_eq!(between.orbits.len(), 3);
+    let of = |verdict| between.count(verdict);
+    assert_eq!([of(Verdict::Stable), of(Verdict::Unstable)], [2, 1]);
+    let largest = between
+        .orbits
+        .iter()
+        .map(|found| found.point.peak_to_peak());
+    let largest = largest.fold(0.0, f64::max);
+    assert_eq!(between.largest(), Some(largest));
+    assert_eq!(
+        (outside.orbits.len(), outside.count(Verdict::Stable)),
+        (1, 1)
+    );
+    let said = solutions.to_string();
+    assert!(
+        said.starts_with("omega = 0.9: 3 orbits, 2 stable, 1 unstable\n"),
+        "{said}"
+    );
+    assert!(said.contains("motions at 2 values of omega"), "{said}");
+    assert!(request.solutions(&[2.0]).is_err());
+}
+
+mod softer {
+    hertzian::oscillator! {
+        pub OneSided(x) {
+            param zeta in 0.0..;
+            param drive;
+            law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap/2, else => 0 }
+            ddot(x) + contact(x) = drive*cos(omega*t) + 1;
+        }
+    }
+}
+
+/// The equations are the same to the letter, and the law is another one.
+#[test]
+fn a_model_with_another_law_is_another_model() {
+    let scratch = Scratch::new("law");
+    let mut read = scratch.exchanged(&by_balance());
+    let equation = &read.model.equation;
+    assert!(
+        equation.contains("law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }"),
+        "{equation}"
+    );
+    let other = softer::OneSided {
+        zeta: 0.032,
+        drive: 0.1,
+    };
+    let refused = read.attach(&other).expect_err("another law");
+    assert!(
+        matches!(
+            refused.downcast_ref(),
+            Some(RequestError::OtherModel { .. })
+        ),
+        "{refused}"
+    );
+    read.attach(&MODEL).expect("its own");
 }

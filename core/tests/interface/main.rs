@@ -4,8 +4,12 @@ mod cancelled;
 mod either;
 #[cfg(feature = "serde")]
 mod json;
+mod maps;
 mod messages;
+mod outputs;
 mod owned;
+#[cfg(feature = "serde")]
+mod resumed;
 mod structure;
 #[cfg(feature = "text")]
 mod text;

@@ -57,6 +57,8 @@ pub struct Declaration {
     pub lets: Vec<Let>,
     /// Equations of motion, and loops of them.
     pub equations: Vec<Statement>,
+    /// `output` items.
+    pub outputs: Vec<Output>,
 }
 
 /// `name`, or `name[count]`
@@ -90,6 +92,7 @@ impl Declaration {
             laws: Vec::new(),
             lets: Vec::new(),
             equations: Vec::new(),
+            outputs: Vec::new(),
         }
     }
 
@@ -210,6 +213,19 @@ pub struct Let {
     pub value: Expr,
 }
 
+/// `output name: unit = value;`
+#[derive(Debug, Clone)]
+pub struct Output {
+    /// Text of the doc comments.
+    pub documentation: String,
+    /// Its name.
+    pub name: Ident,
+    /// Its unit.
+    pub unit: Option<(Unit, Extent)>,
+    /// What it is equal to.
+    pub value: Expr,
+}
+
 /// `left = right;`
 #[derive(Debug, Clone)]
 pub struct Equation {
@@ -263,6 +279,8 @@ pub enum Kind {
     Name(Ident),
     /// `name(arguments)`
     Call(Ident, Vec<Expr>),
+    /// `force(law)`, in an output
+    Force(Ident),
     /// `name[index]`
     Element(Ident, Box<Expr>),
     /// `for index in range { term }`: the sum of the terms.
@@ -281,7 +299,7 @@ impl Expr {
     /// The operands.
     pub fn operands(&self) -> Vec<&Expr> {
         match &self.kind {
-            Kind::Number(..) | Kind::Name(_) => Vec::new(),
+            Kind::Number(..) | Kind::Name(_) | Kind::Force(_) => Vec::new(),
             Kind::Call(_, arguments) => arguments.iter().collect(),
             Kind::Element(_, index) => vec![index],
             Kind::Sigma(repeated) => repeated
@@ -427,6 +445,7 @@ impl fmt::Display for Expr {
                 let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
                 write!(formatter, "{name}({})", arguments.join(", "))
             }
+            Kind::Force(law) => write!(formatter, "force({law})"),
             Kind::Element(name, index) => write!(formatter, "{name}[{index}]"),
             Kind::Sigma(repeated) => {
                 repeated.write_head(formatter)?;
@@ -461,6 +480,53 @@ impl fmt::Display for Expr {
                 exponent.write(formatter, 2)
             }
             Kind::Absolute(operand) => write!(formatter, "|{operand}|"),
+        }
+    }
+}
+
+impl fmt::Display for Let {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "let {} = {}", self.name, self.value)
+    }
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "law {}({}", self.name, self.gap)?;
+        for argument in &self.arguments {
+            write!(formatter, ", {argument}")?;
+        }
+        formatter.write_str(") { ")?;
+        for (index, piece) in self.pieces.iter().enumerate() {
+            let comma = if index == 0 { "" } else { ", " };
+            formatter.write_str(comma)?;
+            match &piece.condition {
+                Condition::Always => {}
+                Condition::Else(_) => formatter.write_str("else => ")?,
+                Condition::All(comparisons, _) => {
+                    let all = comparisons
+                        .iter()
+                        .map(|comparison| comparison.of(&self.gap));
+                    let all: Vec<String> = all.collect();
+                    write!(formatter, "{} => ", all.join(" && "))?;
+                }
+            }
+            write!(formatter, "{}", piece.force)?;
+        }
+        formatter.write_str(" }")
+    }
+}
+
+impl Comparison {
+    /// As one writes it: the gap first where it is compared.
+    fn of(&self, gap: &Ident) -> String {
+        let equal = if self.or_equal { "=" } else { "" };
+        let Self {
+            smaller, larger, ..
+        } = self;
+        match &larger.kind {
+            Kind::Name(name) if name == gap => format!("{larger} >{equal} {smaller}"),
+            _ => format!("{smaller} <{equal} {larger}"),
         }
     }
 }

@@ -49,9 +49,10 @@ fn structure(model: &Model) -> TokenStream {
         |Parameter {
              name,
              documentation,
+             unit,
              ..
          }| {
-            let documentation = document::of_field(name, documentation);
+            let documentation = document::of_field(name, documentation, unit);
             quote!(#[doc = #documentation] pub #name: ::core::primitive::f64)
         },
     );

@@ -2,7 +2,9 @@
 //!
 //! Every scalar is an expression in one shared graph, and everything but the laws is a coefficient with a place of the contract.
 
-use hertzian_contract::system::{Bound, ContactFacts, ParameterFacts, Place, SystemFacts};
+use hertzian_contract::system::{
+    Bound, ContactFacts, OutputFacts, ParameterFacts, Place, SystemFacts,
+};
 
 use crate::dag::{Dag, Id};
 
@@ -17,10 +19,12 @@ pub struct Model {
     pub name: syn::Ident,
     /// Documentation of the type.
     pub documentation: String,
-    /// The equations as written, in one line each.
+    /// The equations as written, and the constants and laws that are in them, in one line each.
     pub equation: String,
     /// Names of the coordinates; those of an array are `x[0]`, `x[1]`, and so on.
     pub coordinates: Vec<String>,
+    /// Their units, empty for plain numbers; none at all where the declaration has no units.
+    pub units: Vec<String>,
     /// Parameters in order of declaration.
     pub parameters: Vec<Parameter>,
     /// Base frequency is `omega / divisor`.
@@ -31,6 +35,21 @@ pub struct Model {
     pub contacts: Vec<ContactFacts>,
     /// Coefficients: functions of parameters and omega, with their places.
     pub coefficients: Vec<(Place, Id)>,
+    /// What is read.
+    pub outputs: Vec<Output>,
+}
+
+/// A declared output; its coefficients are among those of the model.
+#[derive(Debug, Clone)]
+pub struct Output {
+    /// Its name.
+    pub name: String,
+    /// Its documentation.
+    pub documentation: String,
+    /// Its unit; empty where there is none, and for plain numbers.
+    pub unit: String,
+    /// What it is equal to, as written.
+    pub written: String,
 }
 
 /// A declared parameter.
@@ -40,6 +59,8 @@ pub struct Parameter {
     pub name: syn::Ident,
     /// Its documentation.
     pub documentation: String,
+    /// Its unit; empty where there is none, and for plain numbers.
+    pub unit: String,
     /// Range.
     pub minimum: Bound,
     /// Range.
@@ -54,15 +75,23 @@ impl Model {
         let parameters = self.parameters.iter().map(|parameter| {
             ParameterFacts::new(parameter.name.to_string())
                 .documentation(parameter.documentation.clone())
+                .unit(parameter.unit.clone())
                 .range(parameter.minimum, parameter.maximum)
+        });
+        let outputs = self.outputs.iter().map(|output| {
+            OutputFacts::new(output.name.clone())
+                .documentation(output.documentation.clone())
+                .unit(output.unit.clone())
         });
         SystemFacts::new(self.name.to_string())
             .equation(self.equation.clone())
             .coordinates(self.coordinates.iter().cloned())
+            .units(self.units.iter().cloned())
             .parameters(parameters)
             .divisor(self.divisor)
             .contacts(self.laws.len(), self.contacts.iter().copied())
             .places(self.coefficients.iter().map(|&(place, _)| place))
+            .outputs(outputs)
     }
 }
 

@@ -25,11 +25,11 @@ fn model(tokens: TokenStream, form: Form, diagnostics: &mut Diagnostics) -> Opti
     if !diagnostics.is_clean() {
         return None;
     }
-    check::check(&declaration, diagnostics);
+    let units = check::check(&declaration, diagnostics);
     if !diagnostics.is_clean() {
         return None;
     }
-    let model = lower::lower(&declaration, diagnostics)?;
+    let model = lower::lower(&declaration, units, diagnostics)?;
     if !interpret::derivatives_fit(&model, lower::BUDGET) {
         diagnostics.only(lower::too_long(&declaration));
         return None;

@@ -143,7 +143,8 @@ fn levels_are_touched_where_the_linear_motion_reaches_them() {
 }
 
 /// A spring with a stop meets it where its linear motion has an amplitude of one, `1 = A / | 1 - w^2 + 0.1 i w |`. Above the resonance the
-/// jump of the force drives the motion on, and the branch turns back there, whichever way it is followed; below it goes on.
+/// jump of the force drives the motion on, and the branch turns back there, whichever way it is followed; below it goes on, and the
+/// period doubles close by, where the motion in closed form from switch to switch has a multiplier of minus one.
 #[test]
 fn a_preloaded_stop_is_left_where_the_linear_motion_leaves_it() {
     let (preload, drive) = (0.05_f64, 0.15_f64);
@@ -157,7 +158,12 @@ fn a_preloaded_stop_is_left_where_the_linear_motion_leaves_it() {
         assert_eq!(branch.stopped, Stop::ReachedEnd);
         assert!(branch.turns.is_empty(), "{:?}", branch.turns);
         assert_eq!(branch.folds().count(), 1);
-        assert_eq!(branch.events.len(), 3);
+        assert_eq!(branch.events.len(), 4, "{:?}", branch.events);
+        let [doubling] = of_kind(&branch, EventKind::PeriodDoubling)[..] else {
+            panic!("{:?}", branch.events);
+        };
+        let error = (doubling.point.value - 0.939_885_292_226_7).abs();
+        assert!(error <= doubling.error, "{doubling} {error:.1e}");
         for (omega, turns) in [(low, false), (high, true)] {
             let [event] = of_kind(&branch, EventKind::Grazing { turns })[..] else {
                 panic!("{:?}", branch.events);
@@ -270,4 +276,31 @@ fn contacts_that_are_copies_of_each_other_touch_at_once() {
     assert_eq!(event.contacts, 2);
     assert!(event.to_string().ends_with("2 contacts at once"), "{event}");
     assert!(branch.turns.is_empty(), "{:?}", branch.turns);
+}
+
+hertzian::oscillator! {
+    /// A force that is there on a way of 1.5e-4 only, which the harmonics of an orbit of size one do not show.
+    Pulse(x) {
+        param damping > 0;
+        param width > 0;
+        law pulse(gap) { 0.6583816224547495*(gap/width)*exp(-((gap/width)^2)) }
+        2.0999359774410786*ddot(x) + damping*dot(x) + 0.7078247253465377*x - pulse(-x - 0.48557887774729314) = 1.0354062375339494*cos(omega*t);
+    }
+}
+
+/// The few harmonics have doublings where multipliers, of orbits closed by integration, are far from minus one. By shooting there are none.
+#[test]
+fn events_that_multipliers_contradict_have_no_error() {
+    let model = Pulse {
+        damping: 0.020_069_002_514_133_95,
+        width: 1.499_313_264_010_605_4e-4,
+    };
+    let response = FrequencyResponse::of(&model).from(0.97).to(0.91);
+    let shooting = response.clone().by(Shooting::new()).run().unwrap();
+    assert_eq!(shooting.stopped, Stop::ReachedEnd);
+    assert!(shooting.events.is_empty(), "{:?}", shooting.events);
+    let balance = response.bifurcations(true).run().unwrap();
+    for event in &balance.events {
+        assert!(event.error.is_infinite(), "{event}");
+    }
 }

@@ -140,7 +140,7 @@ fn what_is_known_is_not_followed_again() {
     let known = diagram.omitted.iter().find(|omitted| omitted.branch == 1);
     let known = known.unwrap();
     assert_eq!(Some(known.event), at_a6);
-    assert_eq!(known.reason, Reason::Known { branch: 2 });
+    assert_eq!(known.reason, Reason::BranchEnds { branch: 2 });
     let deep = diagram.omitted.iter().filter(|o| o.reason == Reason::Depth);
     // Four on the first branch of period four, and one on that which begins beyond the lower fold.
     assert_eq!(deep.count(), 5);

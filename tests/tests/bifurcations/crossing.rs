@@ -31,11 +31,8 @@ fn diagram(system: &dyn System) -> Diagram {
 }
 
 /// Both directions of the other branch, from a crossing whose place is known.
-fn of_crossing(diagram: &Diagram) -> [&DiagramBranch; 2] {
-    let crossings: Vec<_> = diagram.branches[0]
-        .branch
-        .events(EventKind::BranchPoint)
-        .collect();
+fn of_crossing(diagram: &Diagram, kind: EventKind) -> [&DiagramBranch; 2] {
+    let crossings: Vec<_> = diagram.branches[0].branch.events(kind).collect();
     let [crossing] = crossings[..] else {
         panic!(
             "{:?} {:?}",
@@ -58,7 +55,9 @@ fn of_crossing(diagram: &Diagram) -> [&DiagramBranch; 2] {
             panic!("{:?}", branch.origin);
         };
         assert_eq!(side, expected);
-        assert!(!branch.mirrored);
+        // Those without a symmetry are images of each other.
+        let image = kind == EventKind::SymmetryBreaking && side == Side::Other;
+        assert_eq!(branch.mirrored, image);
     }
     [one, other]
 }
@@ -77,7 +76,7 @@ fn assert_near(cycle: &Point, expected: f64) {
 #[test]
 fn both_directions_of_a_pitchfork() {
     let diagram = diagram(&Pitchfork { at: AT });
-    let branches = of_crossing(&diagram);
+    let branches = of_crossing(&diagram, EventKind::SymmetryBreaking);
     let signs = branches.map(|branch| branch.branch.points[0].observed.motions[1].maximum.signum());
     assert_eq!(signs[0], -signs[1]);
     for (branch, sign) in branches.into_iter().zip(signs) {
@@ -92,7 +91,7 @@ fn both_directions_of_a_pitchfork() {
 #[test]
 fn both_directions_of_a_transcritical_crossing() {
     let diagram = diagram(&Transcritical { at: AT });
-    let branches = of_crossing(&diagram);
+    let branches = of_crossing(&diagram, EventKind::BranchPoint);
     let ends = branches.map(|branch| branch.branch.points.last().unwrap().value);
     assert!((ends[0] - ends[1]).abs() > 0.6, "{ends:?}");
     for branch in branches {

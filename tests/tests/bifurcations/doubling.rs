@@ -165,11 +165,11 @@ fn the_balance_switches_where_the_symmetric_branch_is_crossed() {
 }
 
 /// Both directions of the branch that crosses another one at [`AT`], whose orbits are known.
-fn assert_crossed(system: &dyn System, expected: impl Fn(f64, f64) -> f64) {
+fn assert_crossed(system: &dyn System, kind: EventKind, expected: impl Fn(f64, f64) -> f64) {
     let request = FrequencyResponse::of(system).bifurcations(true);
     let request = request.from(2.0).to(2.6);
     let branch = request.run().unwrap();
-    let crossing = branch.events(EventKind::BranchPoint).next().unwrap();
+    let crossing = branch.events(kind).next().unwrap();
     let error = (crossing.point.value - AT).abs();
     assert!(
         error < 1e-9 && error <= crossing.error,
@@ -195,10 +195,16 @@ fn assert_crossed(system: &dyn System, expected: impl Fn(f64, f64) -> f64) {
 
 #[test]
 fn the_balance_switches_where_branches_cross() {
-    assert_crossed(&Pitchfork { at: AT }, |omega, side| {
-        side * (omega - AT).sqrt()
-    });
-    assert_crossed(&Transcritical { at: AT }, |omega, _| AT - omega);
+    assert_crossed(
+        &Pitchfork { at: AT },
+        EventKind::SymmetryBreaking,
+        |omega, side| side * (omega - AT).sqrt(),
+    );
+    assert_crossed(
+        &Transcritical { at: AT },
+        EventKind::BranchPoint,
+        |omega, _| AT - omega,
+    );
 }
 
 /// At a fold no other branch begins.

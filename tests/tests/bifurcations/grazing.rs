@@ -1,7 +1,7 @@
 //! Where a gap touches a level.
 
-use hertzian::shooting::{BifurcationCurve, BifurcationCurveEnd};
-use hertzian::{Event, EventKind, FrequencyResponse, Shooting, System};
+use hertzian::shooting::BifurcationCurve;
+use hertzian::{Event, EventKind, FrequencyResponse, Shooting, Stop, System};
 
 use crate::cascade::MODEL;
 use crate::curves::Hertz;
@@ -115,7 +115,7 @@ fn a_hertzian_contact_is_lost_on_one_curve() {
     let curves = curves(&model, [0.6, 1.6], "drive", [0.03, 0.5]);
     assert_eq!(curves.len(), 2);
     for track in &curves {
-        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
+        assert_eq!(track.ends, [Stop::ReachedEnd; 2]);
         assert_touches(track, |drive| Box::new(Hertz { zeta, load, drive }));
     }
     // Both events are on one curve, which leaves the range at the same two places.
@@ -140,7 +140,7 @@ fn a_curve_of_grazing_reaches_the_end_of_its_range() {
         drive,
     };
     for track in curves(&model, [0.6, 1.6], "zeta", [0.0, 0.2]) {
-        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
+        assert_eq!(track.ends, [Stop::ReachedEnd; 2]);
         assert_touches(&track, |zeta| Box::new(Hertz { zeta, load, drive }));
     }
 }
@@ -152,11 +152,11 @@ fn a_stop_is_touched_on_a_curve() {
     let tracks = curves(&model, [0.3, 0.8], "drive", [0.1, 1.0]);
     assert!(!tracks.is_empty());
     for track in &tracks {
-        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
+        assert_eq!(track.ends, [Stop::ReachedEnd; 2]);
         assert_touches(track, |drive| Box::new(Stopped { drive, clearance }));
     }
     for track in curves(&model, [0.3, 0.8], "clearance", [0.1, 1.0]) {
-        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
+        assert_eq!(track.ends, [Stop::ReachedEnd; 2]);
         assert_touches(&track, |clearance| Box::new(Stopped { drive, clearance }));
     }
 }
@@ -171,7 +171,7 @@ fn an_exponent_below_one_is_tracked_too() {
     let curves = curves(&model, [0.5, 2.0], "drive", [0.03, 0.5]);
     assert_eq!(curves.len(), 2);
     for track in &curves {
-        assert_eq!(track.ends, [BifurcationCurveEnd::Left; 2]);
+        assert_eq!(track.ends, [Stop::ReachedEnd; 2]);
         assert_touches(track, |drive| Box::new(Softening { zeta: 0.032, drive }));
     }
 }

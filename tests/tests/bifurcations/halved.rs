@@ -1,7 +1,7 @@
 //! Where curves of folds of twice the period end, and closed ones, which are followed once.
 
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::shooting::{BifurcationCurveEnd, Special, SpecialKind};
+use hertzian::shooting::{Special, SpecialKind};
 use hertzian::{EventKind, FrequencyResponse, Shooting, Side, Stop};
 
 use crate::codimension::Bending;
@@ -40,7 +40,7 @@ fn folds_of_twice_the_period_end_at_a_degenerate_doubling() {
     let (edge, fold) = found.unwrap();
     let track = shooting.track(&fold, "bend", [-1.0, 1.0]).unwrap();
     assert!(
-        track.ends.contains(&BifurcationCurveEnd::Joined),
+        track.ends.contains(&Stop::JoinedDoublings),
         "{:?}",
         track.ends
     );
@@ -69,14 +69,14 @@ fn a_closed_curve_is_followed_once_and_folds_end_on_it() {
     let branch = shooting.run().unwrap();
     let doubling = branch.events(EventKind::PeriodDoubling).next().unwrap();
     let doublings = shooting.track(doubling, "drive", [0.5, 2.0]).unwrap();
-    assert_eq!(doublings.ends, [BifurcationCurveEnd::Closed; 2]);
+    assert_eq!(doublings.ends, [Stop::Closed; 2]);
     let degenerate = |special: &&Special| special.kind == SpecialKind::Degenerate;
     let begins: Vec<_> = doublings.special.iter().filter(degenerate).collect();
     assert_eq!(begins.len(), 2, "{:?}", doublings.special);
     let longer = shooting.switch(doubling, Side::One).unwrap();
     let fold = longer.folds().next().unwrap();
     let folds = shooting.track(fold, "drive", [0.5, 2.0]).unwrap();
-    assert_eq!(folds.ends, [BifurcationCurveEnd::Joined; 2]);
+    assert_eq!(folds.ends, [Stop::JoinedDoublings; 2]);
     let cusps = folds.special.iter();
     let cusps = cusps.filter(|special| special.kind == SpecialKind::Cusp);
     assert_eq!(cusps.count(), 1, "{:?}", folds.special);
@@ -105,7 +105,7 @@ fn a_closed_branch_is_followed_once() {
     let loops = loops.filter(|branch| closed(branch.branch.stopped));
     assert_eq!(loops.count(), 1);
     let known = diagram.omitted.iter();
-    let mut known = known.filter(|omitted| matches!(omitted.reason, Reason::Known { .. }));
+    let mut known = known.filter(|omitted| matches!(omitted.reason, Reason::BranchEnds { .. }));
     assert!(known.next().is_some(), "{:?}", diagram.omitted);
 }
 

@@ -1,7 +1,7 @@
 //! Bifurcations that the signs of test functions at the ends of a step do not show, or show as something else.
 
 use hertzian::bifurcation::{Bifurcations, Reason};
-use hertzian::{Branch, Event, EventKind, FrequencyResponse, Shooting, Stop};
+use hertzian::{Branch, Event, EventKind, FrequencyResponse, Shooting, Stop, System};
 
 use crate::cascade::A1;
 
@@ -92,7 +92,7 @@ fn a_fold_beside_crossings() {
             .from(1.2)
             .to(0.5);
         let branch = shooting.run().unwrap();
-        let crossings: Vec<&Event> = branch.events(EventKind::BranchPoint).collect();
+        let crossings: Vec<&Event> = branch.events(EventKind::SymmetryBreaking).collect();
         let near = |event: &&Event| (event.point.value - fold).abs() < 1e-9;
         assert_eq!(
             branch.folds().filter(near).count(),
@@ -200,7 +200,7 @@ fn no_branch_is_followed_twice() {
             panic!("{step}: {end}");
         };
         let reasons: Vec<_> = diagram.omitted.iter().map(|o| &o.reason).collect();
-        assert_eq!(reasons, [&Reason::Known { branch: 1 }], "{step}");
+        assert_eq!(reasons, [&Reason::BranchEnds { branch: 1 }], "{step}");
         let joint = second.branch.events.last().unwrap();
         let doubling = first
             .branch
@@ -250,4 +250,74 @@ fn two_folds_within_a_step_are_two() {
     // Rising, the load is passed below the fall first.
     assert!((first - load(-z)).abs() < 1e-9, "{first} {}", load(-z));
     assert!((second - load(z)).abs() < 1e-9, "{second} {}", load(z));
+}
+
+hertzian::oscillator! {
+    /// A linear oscillator that comes to a stop at its resonance only.
+    Just(x) {
+        param clearance;
+        law stop(gap) { gap > 0 => gap^2, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x - clearance) = 0.1*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// Two linear oscillators with a stop each: while the amplitude of the one grows, that of the other falls.
+    Exchanging(x, y) {
+        param first;
+        param second;
+        law stop(gap) { gap > 0 => gap^2, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x - first) = 0.1*cos(omega*t);
+        ddot(y) + 0.1*dot(y) + 0.64*y + stop(y - second) = 0.1*cos(omega*t);
+    }
+}
+
+/// What touches along a branch by either method, in either direction, in the order of frequencies, is what is known.
+fn assert_touches<M: System>(model: &M, range: [f64; 2], known: [f64; 2]) {
+    let [from, to] = range;
+    for [from, to] in [[from, to], [to, from]] {
+        let response = FrequencyResponse::of(model).from(from).to(to);
+        let balance = response.clone().bifurcations(true).run().unwrap();
+        let shooting = response.by(Shooting::new()).run().unwrap();
+        for branch in [balance, shooting] {
+            let grazing = EventKind::Grazing { turns: false };
+            let mut touches: Vec<_> = branch.events(grazing).collect();
+            touches.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
+            assert_eq!(touches.len(), 2, "{touches:?} {:?}", branch.turns);
+            for (touch, known) in touches.iter().zip(known) {
+                let error = (touch.point.value - known).abs();
+                assert!(
+                    error < 1e-6 && error <= touch.error,
+                    "{touch} {known} {error:.1e}"
+                );
+            }
+        }
+    }
+}
+
+/// Until it touches, the amplitude is `F / ((1 - w)^2 + c^2 w)^(1/2)` with `w = omega^2`: at most `F / (c^2 - c^4/4)^(1/2)`. The stop is
+/// touched where the amplitude is the clearance, at two frequencies much less than a step apart.
+#[test]
+fn a_level_that_is_just_reached() {
+    let (force, damping) = (0.1, 0.1_f64);
+    let bend = 1.0 - 0.5 * damping * damping;
+    let clearance = (1.0 - 1e-4) * force / (1.0 - bend * bend).sqrt();
+    let root = (bend * bend - 1.0 + (force / clearance).powi(2)).sqrt();
+    let known = [bend - root, bend + root].map(f64::sqrt);
+    assert!(known[1] - known[0] < 2e-3);
+    assert_touches(&Just { clearance }, [0.7, 1.3], known);
+}
+
+/// Levels are crossed as often behind both touches as before.
+#[test]
+fn one_stop_is_reached_and_another_one_left_within_a_step() {
+    let known: [f64; 2] = [0.9, 0.9003];
+    let amplitude =
+        |stiffness: f64, omega: f64| 0.1 / (stiffness - omega * omega).hypot(0.1 * omega);
+    let model = Exchanging {
+        first: amplitude(1.0, known[0]),
+        second: amplitude(0.64, known[1]),
+    };
+    // Each on one side of its resonance.
+    assert_touches(&model, [0.85, 0.95], known);
 }

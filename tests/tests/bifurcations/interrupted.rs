@@ -5,7 +5,6 @@ use std::ops::ControlFlow;
 use hertzian::attractors::basin::{Axis, Basin, Grid};
 use hertzian::bifurcation::{Bifurcations, Reason};
 use hertzian::error::ErrorKind;
-use hertzian::shooting::BifurcationCurveEnd;
 use hertzian::{Cancel, FrequencyResponse, Progress, Shooting, Stop};
 
 use crate::cascade::MODEL;
@@ -72,8 +71,7 @@ fn a_curve_in_two_parameters() {
     let track = track.unwrap();
     assert_eq!(seen, 5);
     assert_eq!(track.points.len(), 5);
-    let interrupted = BifurcationCurveEnd::Stopped(Stop::Interrupted);
-    assert_eq!(track.ends, [interrupted, interrupted]);
+    assert_eq!(track.ends, [Stop::Interrupted; 2]);
     // The points that it has are those of the whole curve.
     let whole = shooting.track(fold, "drive", [0.03, 0.5]).unwrap();
     let first = whole

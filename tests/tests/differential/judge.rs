@@ -8,12 +8,14 @@ use std::time::{Duration, Instant};
 use hertzian::error::chain;
 use hertzian::generic::Declaration;
 use hertzian::time::{FlowError, MotionError};
-use hertzian::{Error, FrequencyResponse, ModelError, OrbitError, Shooting};
+use hertzian::{
+    Branch, ContactEquation, Error, FrequencyResponse, ModelError, OrbitError, Shooting,
+};
 use hertzian_tests::random::Random;
 
 use crate::draw;
 use crate::model::Model;
-use crate::passage::{Passage, matched};
+use crate::passage::{Passage, Walked, as_far, matched};
 use crate::report::{Kind, Report};
 use crate::truth::{Question, settles};
 
@@ -66,6 +68,18 @@ const METHODS: Whole = Whole {
         events: "events, balance and shooting",
         alone: Kind::OneMethod,
         other: "by shooting",
+    },
+};
+
+/// By shooting, and by the contact equation.
+const CONTACT: Whole = Whole {
+    early: "pairs with the contact equation with a branch that ends early",
+    apart: "pairs with the contact equation on two branches",
+    pair: Pair {
+        pairs: "pairs of shooting and the contact equation",
+        events: "events, shooting and the contact equation",
+        alone: Kind::OneEquation,
+        other: "by the contact equation",
     },
 };
 
@@ -152,7 +166,12 @@ impl Case {
     /// The declaration and the range.
     pub fn text(&self) -> String {
         let [from, to] = self.model.range;
-        format!("{}from {from:?} to {to:?}\n", self.model.text())
+        let given = self.model.parameters.iter().map(|p| (&p.name, p.value));
+        format!(
+            "{}{:?}\nfrom {from:?} to {to:?}\n",
+            self.model.text(),
+            given.collect::<Vec<_>>()
+        )
     }
 
     pub fn find(&mut self, kind: Kind, text: String) {
@@ -161,23 +180,56 @@ impl Case {
 
     fn compare(&mut self, system: &Declaration) {
         let [from, to] = self.model.range;
-        let Some(forth) = self.balance("balance", system, [from, to], true) else {
+        let Some((forth, branch)) = self.balance("balance", system, [from, to], true) else {
             return;
         };
         let back = self.balance("balance, backwards", system, [to, from], false);
-        if let Some(back) = &back {
+        if let Some((back, _)) = &back {
             self.whole(&DIRECTIONS, &forth, back);
         }
         let shot = self.shooting("shooting", system, [from, to], true);
         if let Some(shot) = &shot {
             self.whole(&METHODS, &forth, shot);
         }
-        self.other_units(&forth);
+        self.other_units(&forth, &branch);
         if let Some(shot) = &shot
             && let Some(back) = self.shooting("shooting, backwards", system, [to, from], false)
         {
             self.whole(&DIRECTIONS, shot, &back);
         }
+        if let Some(shot) = &shot
+            && let Some(other) = self.contact_equation(system, [from, to])
+        {
+            self.whole(&CONTACT, shot, &other);
+        }
+    }
+
+    /// A branch by the contact equation, where the model has one.
+    fn contact_equation(&mut self, system: &Declaration, [from, to]: [f64; 2]) -> Option<Passage> {
+        if self.clock.flow().is_break() {
+            return None;
+        }
+        let name = "contact equation";
+        let request = FrequencyResponse::of(system).by(ContactEquation::new());
+        let request = request.from(from).to(to).max_points(POINTS[0]);
+        let branch = match request.run_with(|_| self.clock.flow()) {
+            Ok(branch) => branch,
+            Err(error) => {
+                let refused = matches!(
+                    error.downcast_ref(),
+                    Some(ModelError::NoContactEquation { .. })
+                );
+                self.report.count(if refused {
+                    "models without a contact equation"
+                } else {
+                    "branches by the contact equation that did not begin"
+                });
+                return None;
+            }
+        };
+        self.report.count("branches by the contact equation");
+        let passage = Passage::of(name, &branch);
+        self.passed(&passage).then_some(passage)
     }
 
     /// A branch by the balance, its orbits judged.
@@ -187,7 +239,7 @@ impl Case {
         system: &Declaration,
         [from, to]: [f64; 2],
         judge: bool,
-    ) -> Option<Passage> {
+    ) -> Option<(Passage, Branch)> {
         if self.clock.flow().is_break() {
             return None;
         }
@@ -208,7 +260,7 @@ impl Case {
         if judge {
             self.orbits(&branch);
         }
-        self.passed(&passage).then_some(passage)
+        self.passed(&passage).then_some((passage, branch))
     }
 
     fn shooting(
@@ -325,7 +377,8 @@ impl Case {
         for (alone, missing) in matched.alone.iter().zip([other, one]) {
             for event in alone {
                 let text = format!("{event} is missing by {}", missing.name);
-                self.find(pair.alone, text);
+                let placed = event.error.is_finite();
+                self.find(if placed { pair.alone } else { Kind::Unplaced }, text);
             }
         }
         for (ratio, event, seen) in matched.both {
@@ -342,15 +395,15 @@ impl Case {
     }
 
     /// The same model in other units.
-    fn other_units(&mut self, passage: &Passage) {
+    fn other_units(&mut self, passage: &Passage, branch: &Branch) {
         let model = draw::model(self.index, UNITS);
         let [from, to] = model.range;
         let system = match model.declared() {
             Ok(system) => system,
             Err(error) => return self.find(Kind::Refused, format!("in other units: {error}")),
         };
-        let Some(mut other) = self.balance("balance in other units", &system, [from, to], false)
-        else {
+        let other = self.balance("balance in other units", &system, [from, to], false);
+        let Some((mut other, other_branch)) = other else {
             return;
         };
         // Back to the units of the passage.
@@ -366,6 +419,16 @@ impl Case {
         if passage.whole != other.whole || !passage.shares_ends(&other) {
             if self.clock.out.get() {
                 return;
+            }
+            let walked = |passage: &Passage, branch, units| Walked {
+                passage: passage.clone(),
+                branch,
+                units,
+            };
+            let one = walked(passage, branch, [1.0; 2]);
+            let two = walked(&other, &other_branch, [UNITS[0], UNITS[1].recip()]);
+            if let Some([one, two]) = as_far(&one, &two) {
+                return self.events(&IN_UNITS, &one, &two);
             }
             let text = format!(
                 "{} points, then {}; in other units {} points, then {}",

@@ -10,12 +10,14 @@
 //! errors that are exceeded three times too often. A change of verdict without an event, and an event that was found going one way or
 //! by one method only, are counted and printed.
 
+mod cover;
 mod draw;
 mod expression;
 mod integrate;
 mod judge;
 mod laws;
 mod model;
+mod multiple_shooting;
 mod orbits;
 mod passage;
 mod report;

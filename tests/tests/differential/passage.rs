@@ -2,7 +2,14 @@
 
 use std::fmt::Write as _;
 
-use hertzian::{Branch, EventKind, Stability, Stop, Turn, Verdict};
+use hertzian::{Branch, EventKind, Point, Stop, Turn, Verdict};
+
+/// Ends of branches whose peak-to-peak differ by this part are one.
+const ALIKE: f64 = 1e-4;
+/// Orbits at one value whose peak-to-peak differ by this part are one.
+const SAME: f64 = 1e-9;
+/// The stated error of an event that may be beyond an end of the range is taken for this part of the range at most.
+const AT_END: f64 = 0.02;
 
 /// An event of a branch.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,17 +27,21 @@ pub struct Seen {
 pub struct Place {
     pub value: f64,
     pub peak_to_peak: f64,
+    /// Of peak-to-peak, as it is stated.
+    pub error: f64,
     pub verdict: Verdict,
     /// Largest modulus of a multiplier and its error.
     pub modulus: [f64; 2],
 }
 
 impl Place {
-    fn of(value: f64, peak_to_peak: f64, stability: &Stability) -> Self {
+    fn of(point: &Point) -> Self {
+        let stability = &point.stability;
         let largest = stability.multipliers.first();
         Self {
-            value,
-            peak_to_peak,
+            value: point.value,
+            peak_to_peak: point.peak_to_peak(),
+            error: point.error.unwrap_or(0.0),
             verdict: stability.verdict,
             modulus: [largest.map_or(f64::NAN, |m| m.norm()), stability.error],
         }
@@ -46,14 +57,15 @@ pub struct Passage {
     pub turns: Vec<Turn>,
     /// Whether it came to the other end.
     pub whole: bool,
+    /// Whether it ended for having as many points as it may.
+    pub cut: bool,
     /// Why it ended.
     pub ended: String,
 }
 
 impl Passage {
     pub fn of(name: &'static str, branch: &Branch) -> Self {
-        let points = branch.points.iter();
-        let places = points.map(|p| Place::of(p.value, p.peak_to_peak(), &p.stability));
+        let places = branch.points.iter().map(Place::of);
         let events = branch.events.iter().map(|event| Seen {
             kind: event.kind,
             value: event.point.value,
@@ -67,6 +79,7 @@ impl Passage {
             events: events.collect(),
             turns: branch.turns.clone(),
             whole: branch.stopped == Stop::ReachedEnd,
+            cut: matches!(branch.stopped, Stop::PointLimit { .. }),
             ended: branch.stopped.to_string(),
         }
     }
@@ -111,9 +124,80 @@ impl Passage {
         };
         let alike = |(a, b): (&Place, &Place)| {
             let size = a.peak_to_peak.max(b.peak_to_peak);
-            (a.peak_to_peak - b.peak_to_peak).abs() < 1e-4 * size
+            (a.peak_to_peak - b.peak_to_peak).abs() < ALIKE * size
         };
         ends(self).iter().zip(&ends(other)).all(alike)
+    }
+}
+
+/// Two branches that both were cut at so many points, up to where the shorter one ends, which is an orbit of the longer one.
+///
+/// Rounding changes what an iteration leaves, the step control makes more of that from point to point, and after as many steps two
+/// walks along one curve are not equally far. What is compared is the curve: its orbits at a value, and its events as far as both go.
+/// `None` if neither ends on the other one.
+pub fn as_far(one: &Walked<'_>, other: &Walked<'_>) -> Option<[Passage; 2]> {
+    if !(one.passage.cut && other.passage.cut) {
+        return None;
+    }
+    if let Some(shorter) = one.up_to(&other.passage) {
+        return Some([shorter, other.passage.clone()]);
+    }
+    let shorter = other.up_to(&one.passage)?;
+    Some([one.passage.clone(), shorter])
+}
+
+/// A passage with its branch, values of which are so many times as large in the units of the passage, and positions.
+pub struct Walked<'b> {
+    pub passage: Passage,
+    pub branch: &'b Branch,
+    pub units: [f64; 2],
+}
+
+impl Walked<'_> {
+    /// It as far as another one goes, if that ends on it.
+    fn up_to(&self, other: &Passage) -> Option<Passage> {
+        let end = other.places.last()?;
+        let places = &self.passage.places;
+        let size = |a: f64, b: f64| (a - b).abs() / a.abs().max(b.abs());
+        // Where it is on the way, as far as straight lines tell.
+        let off = |index: usize| {
+            let [a, b] = [places[index], places[index + 1]];
+            let part = (end.value - a.value) / (b.value - a.value);
+            let straight = a.peak_to_peak + part * (b.peak_to_peak - a.peak_to_peak);
+            size(straight, end.peak_to_peak)
+        };
+        let passes = |index: &usize| {
+            let ends = [places[*index].value, places[index + 1].value];
+            (ends[0] <= end.value) != (ends[1] <= end.value)
+        };
+        let segments = (0..places.len().saturating_sub(1)).filter(passes);
+        let last = segments.min_by(|a, b| off(*a).total_cmp(&off(*b)))?;
+        // What is compared is most of both.
+        if 2 * (last + 1) < places.len() {
+            return None;
+        }
+        let orbits = || {
+            self.branch
+                .at(end.value / self.units[0])
+                .unwrap_or_default()
+        };
+        let is_end = |orbit: &Point| {
+            let known = orbit.error.unwrap_or(0.0) + end.error;
+            let apart = size(orbit.peak_to_peak() * self.units[1], end.peak_to_peak);
+            apart <= SAME.max(if known.is_finite() { known } else { 0.0 })
+        };
+        if !orbits().iter().any(is_end) {
+            return None;
+        }
+        let mut shorter = self.passage.clone();
+        shorter.places.truncate(last + 1);
+        let from = places[last].value;
+        let before = |event: &Seen| {
+            event.after <= last
+                || event.after == last + 1 && (event.value - from).abs() < (end.value - from).abs()
+        };
+        shorter.events.retain(before);
+        Some(shorter)
     }
 }
 
@@ -160,6 +244,16 @@ pub fn matched(a: &Passage, b: &Passage, range: [f64; 2]) -> Matched {
         }
     }
     matched.alone[1] = free;
+    // What may as well be beyond an end of the range, as far as is stated, the other one need not have.
+    let is_in = |seen: &Seen| {
+        let ends = range.iter();
+        ends.fold(f64::INFINITY, |least: f64, end| {
+            least.min((seen.value - end).abs())
+        }) > seen.error.min(AT_END * (range[1] - range[0]).abs())
+    };
+    for alone in &mut matched.alone {
+        alone.retain(is_in);
+    }
     matched
 }
 

@@ -30,8 +30,12 @@ pub enum Kind {
     OneDirection,
     /// Found by the balance or by shooting only.
     OneMethod,
+    /// Found by shooting or by the contact equation only.
+    OneEquation,
     /// Found in other units, or not.
     OtherUnits,
+    /// Found once, and stated to have no known place: an event of the discrete equations that multipliers contradict.
+    Unplaced,
     /// The error of the multipliers is more than three times the one stated; the verdict is right.
     Multipliers,
 }
@@ -66,7 +70,9 @@ impl Display for Kind {
             Self::ChangeWithoutEvent => "change of verdict without an event",
             Self::OneDirection => "event in one direction only",
             Self::OneMethod => "event by one method only",
+            Self::OneEquation => "event by shooting or the contact equation only",
             Self::OtherUnits => "another branch in other units",
+            Self::Unplaced => "event without a known place, found once",
             Self::Multipliers => "error of multipliers beyond three times the stated one",
         })
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use hertzian::{EventKind, FrequencyResponse, Point};
+use hertzian::{EventKind, FrequencyResponse, Point, Shooting};
 
 hertzian::oscillator! {
     /// Two springs on opposite sides of a shaft, both always pressed: `k (x cos + 9) cos` twice is `k (1 + cos 2 omega t) x`.
@@ -80,16 +80,24 @@ fn others(point: &Point, stride: usize) -> f64 {
 fn two_copies_have_even_harmonics_and_double_where_the_mathieu_equation_does() {
     let model = Pressed {};
     let request = FrequencyResponse::of(&model).from(1.4).to(1.0);
-    let branch = request.bifurcations(true).run().unwrap();
-    assert!(branch.points.iter().all(|point| others(point, 2) == 0.0));
-    let found: Vec<f64> = branch
-        .events(EventKind::BranchPoint)
-        .map(|event| event.point.value)
-        .collect();
+    let by_balance = request.clone().bifurcations(true).run().unwrap();
+    let mut all = by_balance.points.iter();
+    assert!(all.all(|point| others(point, 2) == 0.0));
+    let by_shooting = request.by(Shooting::new()).run().unwrap();
     let known = [doubling(1.4, 1.18), doubling(1.18, 1.0)];
-    assert_eq!(found.len(), 2, "{:?}", branch.turns);
-    for (found, known) in found.iter().zip(known) {
-        assert!((found - known).abs() < 1e-9, "{found} {known}");
+    for branch in [by_balance, by_shooting] {
+        let kinds = [EventKind::PeriodDoubling, EventKind::BranchPoint];
+        let doubles = branch.events.iter();
+        let found: Vec<_> = doubles
+            .filter(|event| kinds.contains(&event.kind))
+            .collect();
+        assert_eq!(found.len(), 2, "{:?} {:?}", branch.events, branch.turns);
+        for (found, known) in found.iter().zip(known) {
+            assert_eq!(found.kind, EventKind::PeriodDoubling);
+            assert_eq!((found.point.orbit.period, found.point.orbit.parts), (1, 2));
+            let error = (found.point.value - known).abs();
+            assert!(error < 1e-9, "{found} {known}");
+        }
     }
 }
 

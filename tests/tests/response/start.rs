@@ -114,7 +114,7 @@ fn a_start_that_is_not_found_says_why() {
     for (system, from) in [(&resonant as &dyn System, 1.0), (&pulled, 0.5)] {
         let met = reason(system, from);
         assert!(
-            matches!(met, NewtonError::Singular { at, .. } if at.pivot == 0.0),
+            matches!(met, NewtonError::Singular { pivot, .. } if pivot == 0.0),
             "{met}"
         );
     }

@@ -7,7 +7,7 @@ use crate::attractors::log::{Reader, Writer};
 
 /// A stable periodic orbit.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Attractor {
     /// Its shortest period, in periods of the declaration.
@@ -19,13 +19,12 @@ pub struct Attractor {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub multipliers: Vec<Complex<f64>>,
     /// Where motions are known to end on it.
-    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) balls: Vec<Ball>,
 }
 
 /// What becomes of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Fate {

@@ -41,11 +41,15 @@ const GROWTHS: usize = 400;
 
 /// An ellipsoid.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Ball {
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     centre: Vec<f64>,
     /// `H / R^2`, row by row.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     form: Vec<f64>,
     /// How far it reaches from the centre, entry by entry.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     reach: Vec<f64>,
 }
 
@@ -53,6 +57,10 @@ impl Ball {
     /// Whether a state is inside.
     pub(super) fn contains(&self, state: &[f64]) -> bool {
         let order = self.centre.len();
+        // It may have been read from a file.
+        if [state.len(), self.reach.len()] != [order; 2] {
+            return false;
+        }
         let off = |i: usize| state[i] - self.centre[i];
         if (0..order).any(|i| off(i).abs() > self.reach[i]) {
             return false;

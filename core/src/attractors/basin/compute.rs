@@ -138,7 +138,7 @@ impl Shared<'_> {
 
     /// Whether no further cell is to be looked at.
     fn is_ended(&self) -> bool {
-        self.ended.load(Ordering::Relaxed) || self.basin.cancel.is_cancelled()
+        self.ended.load(Ordering::Relaxed) || self.basin.request.cancel.is_cancelled()
     }
 
     /// One block, by its round and index; `None` if the computation has been ended.
@@ -161,7 +161,7 @@ impl Shared<'_> {
             self.grid.state(cell, &mut start);
             let fate = recogniser.fate(self.basin, &start, known, &mut own);
             // A motion that was cut short has no fate.
-            if self.basin.cancel.is_cancelled() {
+            if self.basin.request.cancel.is_cancelled() {
                 return None;
             }
             fates.push(fate);

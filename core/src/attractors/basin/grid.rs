@@ -1,6 +1,6 @@
 //! The states that motions start from, and the order in which they are looked at.
 
-/// Initial states: two entries of the state vary, the others stay.
+/// Initial states: two entries of the state vary, the others stay; or [any states](Grid::of_states).
 ///
 /// ```
 /// use hertzian::attractors::basin::{Axis, Grid};
@@ -20,6 +20,8 @@ pub struct Grid {
     pub columns: Axis,
     /// The entry that varies from row to row.
     pub rows: Axis,
+    /// The states of the cells, where they are given one by one.
+    pub(super) states: Vec<Vec<f64>>,
 }
 
 /// One direction of a grid. Its cells divide the range evenly; motions start from their middles.
@@ -52,25 +54,15 @@ impl Axis {
         }
     }
 
-    /// Where the first cell begins.
-    #[must_use]
-    pub fn from(mut self, value: f64) -> Self {
-        self.from = value;
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// Where the first cell begins.
+        from(value: f64) { self.from = value }
 
-    /// Where the last cell ends.
-    #[must_use]
-    pub fn to(mut self, value: f64) -> Self {
-        self.to = value;
-        self
-    }
+        /// Where the last cell ends.
+        to(value: f64) { self.to = value }
 
-    /// Number of cells.
-    #[must_use]
-    pub fn cells(mut self, count: usize) -> Self {
-        self.count = count;
-        self
+        /// Number of cells.
+        cells(count: usize) { self.count = count }
     }
 
     /// The middle of a cell.
@@ -87,6 +79,35 @@ impl Grid {
             start,
             columns,
             rows,
+            states: Vec::new(),
+        }
+    }
+
+    /// Any states, as random ones: a row of as many cells.
+    ///
+    /// ```
+    /// use hertzian::attractors::basin::{Basin, Grid};
+    ///
+    /// hertzian::oscillator! {
+    ///     TwoWells(x) {
+    ///         param drive;
+    ///         ddot(x) + 0.5*dot(x) - x + x^3 = drive*cos(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let starts = vec![vec![0.9, 0.0], vec![-1.1, 0.0], vec![1.2, 0.1]];
+    /// let basin = Basin::of(&TwoWells { drive: 0.05 }).omega(1.0).longest(2);
+    /// let basins = basin.grid(Grid::of_states(starts)).run()?;
+    /// assert_eq!(basins.attractors.len(), 2);
+    /// assert_eq!(basins.fates[0], basins.fates[2]);
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    pub fn of_states(states: Vec<Vec<f64>>) -> Self {
+        Self {
+            start: states.first().cloned().unwrap_or_default(),
+            columns: Axis::of(0).cells(states.len()),
+            rows: Axis::of(1).cells(1),
+            states,
         }
     }
 
@@ -97,6 +118,10 @@ impl Grid {
 
     /// Writes the state that the motion of a cell starts from. Cells are counted row by row.
     pub fn state(&self, cell: usize, state: &mut [f64]) {
+        if let Some(given) = self.states.get(cell) {
+            state.copy_from_slice(given);
+            return;
+        }
         state.copy_from_slice(&self.start);
         state[self.columns.entry] = self.columns.middle(cell % self.columns.count);
         state[self.rows.entry] = self.rows.middle(cell / self.columns.count);
@@ -151,6 +176,21 @@ mod tests {
             cells.sort_unstable();
             assert!(cells.into_iter().eq(0..columns * rows), "{columns} {rows}");
         }
+    }
+
+    #[test]
+    fn motions_start_from_states_that_are_given() {
+        let states: Vec<Vec<f64>> = (0..20).map(|i| vec![f64::from(i), 0.5]).collect();
+        let grid = Grid::of_states(states.clone());
+        let mut cells: Vec<usize> = grid.rounds().concat();
+        cells.sort_unstable();
+        assert!(cells.into_iter().eq(0..20));
+        let mut state = [0.0; 2];
+        for (cell, expected) in states.iter().enumerate() {
+            grid.state(cell, &mut state);
+            assert_eq!(state, expected[..]);
+        }
+        assert_eq!(Grid::of_states(Vec::new()).cells(), 0);
     }
 
     #[test]

@@ -23,19 +23,19 @@ mod threads;
 
 pub use attractor::{Attractor, Fate};
 pub use grid::{Axis, Grid};
+pub(crate) use orbit::Finder;
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use super::log::{Log, LogError};
+use super::request::Request;
 use crate::branches::progress::Progress;
 use crate::cancel::Cancel;
 use crate::error::{Error, ErrorKind};
 use crate::model::request::RequestError;
-use crate::model::validate;
+use crate::model::{self, validate};
 use crate::system::{System, Variable};
-use crate::time;
-use crate::time::{Flow, FlowError, Options};
+use crate::time::{Flow, FlowError};
 
 /// Which basins to compute: set up step by step, then [run](Basin::run).
 ///
@@ -62,40 +62,33 @@ use crate::time::{Flow, FlowError, Options};
 /// ```
 #[derive(Clone)]
 pub struct Basin {
-    system: Arc<dyn System>,
-    omega: Option<f64>,
+    request: Request,
     /// Values of parameters that are not the system's.
     parameters: Vec<(String, f64)>,
     grid: Option<Grid>,
     phase: f64,
     longest: usize,
     patience: usize,
-    escape: f64,
-    tolerance: f64,
     threads: usize,
-    cancel: Cancel,
 }
 
 /// Everything that the basins depend on.
 impl std::fmt::Debug for Basin {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Basin")
-            .field("system", &self.system.facts().name)
-            .field("omega", &self.omega)
+            .field("request", &self.request)
             .field("parameters", &self.parameters)
             .field("grid", &self.grid)
             .field("phase", &self.phase)
             .field("longest", &self.longest)
             .field("patience", &self.patience)
-            .field("escape", &self.escape)
-            .field("tolerance", &self.tolerance)
             .finish_non_exhaustive()
     }
 }
 
 /// Basins of attraction.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Basins {
     /// What becomes of the motion of every cell, row by row; see [`Grid::state`].
@@ -138,8 +131,8 @@ pub enum BasinError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    BasinError:
+crate::error::room_error! {
+    BasinError, BasinError::kind;
     Request { name, must }
     Threads { count }
     Motion { reason }
@@ -151,88 +144,46 @@ impl Basin {
     /// Of this system, at the values that its parameters have now.
     pub fn of(system: &dyn System) -> Self {
         Self {
-            system: system.shared(),
-            omega: None,
+            request: Request::of(system),
             parameters: Vec::new(),
             grid: None,
             phase: 0.0,
             longest: 64,
             patience: 20_000,
-            escape: 1e6,
-            tolerance: 1e-10,
             threads: 1,
-            cancel: Cancel::new(),
         }
     }
 
-    /// The excitation frequency, in radians per unit of time.
-    #[must_use]
-    pub fn omega(mut self, omega: f64) -> Self {
-        self.omega = Some(omega);
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// The excitation frequency, in radians per unit of time.
+        omega(omega: f64) { self.request.omega = Some(omega) }
 
-    /// A parameter has this value, whatever the system has.
-    #[must_use]
-    pub fn parameter(mut self, name: impl Into<String>, value: f64) -> Self {
-        self.parameters.push((name.into(), value));
-        self
-    }
+        /// A parameter has this value, whatever the system has.
+        parameter(name: impl Into<String>, value: f64) { self.parameters.push((name.into(), value)) }
 
-    /// The initial states.
-    #[must_use]
-    pub fn grid(mut self, grid: Grid) -> Self {
-        self.grid = Some(grid);
-        self
-    }
+        /// The initial states.
+        grid(grid: Grid) { self.grid = Some(grid) }
 
-    /// The phase at which motions start and are looked at. Default: 0.
-    #[must_use]
-    pub fn phase(mut self, phase: f64) -> Self {
-        self.phase = phase;
-        self
-    }
+        /// The phase at which motions start and are looked at. Default: 0.
+        phase(phase: f64) { self.phase = phase }
 
-    /// The longest period that is looked for, in periods of the declaration. Default: 64.
-    #[must_use]
-    pub fn longest(mut self, period: usize) -> Self {
-        self.longest = period;
-        self
-    }
+        /// The longest period that is looked for, in periods of the declaration. Default: 64.
+        longest(period: usize) { self.longest = period }
 
-    /// Periods after which a motion that was not recognised is judged by its Lyapunov exponent. Default: 20000.
-    #[must_use]
-    pub fn patience(mut self, periods: usize) -> Self {
-        self.patience = periods;
-        self
-    }
+        /// Periods after which a motion that was not recognised is judged by its Lyapunov exponent. Default: 20000.
+        patience(periods: usize) { self.patience = periods }
 
-    /// A state with an entry beyond this has escaped. Default: a million.
-    #[must_use]
-    pub fn escape(mut self, bound: f64) -> Self {
-        self.escape = bound;
-        self
-    }
+        /// A state with an entry beyond this has escaped. Default: a million.
+        escape(bound: f64) { self.request.escape = bound }
 
-    /// Tolerance of the flow, where it is not in closed form. Default: 1e-10.
-    #[must_use]
-    pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
+        /// Tolerance of the flow, where it is not in closed form. Default: 1e-10.
+        tolerance(tolerance: f64) { self.request.tolerance = tolerance }
 
-    /// So many threads, which do not change the result. Default: 1, and without the feature `parallel` there is no more.
-    #[must_use]
-    pub fn threads(mut self, count: usize) -> Self {
-        self.threads = count;
-        self
-    }
+        /// So many threads, which do not change the result. Default: 1, and without the feature `parallel` there is no more.
+        threads(count: usize) { self.threads = count }
 
-    /// The computation ends when this token is cancelled; cells that are missing then are [`Fate::Unknown`].
-    #[must_use]
-    pub fn cancel(mut self, cancel: &Cancel) -> Self {
-        self.cancel = cancel.clone();
-        self
+        /// The computation ends when this token is cancelled; cells that are missing then are [`Fate::Unknown`].
+        cancel(cancel: &Cancel) { self.request.cancel = cancel.clone() }
     }
 
     /// Computes the basins.
@@ -269,26 +220,24 @@ impl Basin {
 
     /// A flow for each thread.
     fn flows(&self) -> Result<Vec<Box<dyn Flow>>, Error> {
-        let omega = self.omega.ok_or(RequestError::no_omega())?;
+        let omega = self.request.omega.ok_or(RequestError::no_omega())?;
         self.check()?;
-        let mut values = vec![0.0; self.system.facts().parameters.len()];
-        self.system.values(&mut values);
+        let mut values = model::values(&self.request.system);
         for (name, value) in &self.parameters {
-            if let Variable::Parameter(index) = validate::variable(self.system.facts(), Some(name))?
+            if let Variable::Parameter(index) =
+                validate::variable(self.request.system.facts(), Some(name))?
             {
                 values[index] = *value;
             }
         }
-        let flow = || {
-            let options = Options::default().tolerance(self.tolerance);
-            time::at(&self.system, &values, omega, options.cancel(&self.cancel))
-        };
-        (0..self.threads).map(|_| flow()).collect()
+        (0..self.threads)
+            .map(|_| self.request.flow(&values, omega))
+            .collect()
     }
 
     /// Whether the request is of a system with the same declaration, whatever its parameters are.
     pub(crate) fn is_of(&self, system: &dyn System) -> Result<(), BasinError> {
-        if self.system.facts() == system.facts() {
+        if self.request.system.facts() == system.facts() {
             return Ok(());
         }
         let (name, must) = ("basin", "must be of the system that is followed");
@@ -320,14 +269,17 @@ impl Basin {
             start,
             columns,
             rows,
+            states,
         } = grid;
         let ranges = [columns, rows].map(|axis| [axis.from, axis.to]);
         let entries = [columns.entry, rows.entry];
         if !(1..=MOST_THREADS).contains(&self.threads) {
             return fault("threads", "must be from 1 to 1024");
         }
-        let order = 2 * self.system.facts().coordinates.len();
-        if order != start.len() || entries.iter().any(|&entry| entry >= start.len()) {
+        let order = 2 * self.request.system.facts().coordinates.len();
+        let mut given = std::iter::once(start).chain(states);
+        let fits = given.all(|state| state.len() == order);
+        if grid.cells() > 0 && (!fits || entries.iter().any(|&entry| entry >= order)) {
             return fault("grid", "must have the entries of a state");
         }
         if entries[0] == entries[1] {
@@ -337,6 +289,7 @@ impl Basin {
             .as_flattened()
             .iter()
             .chain(start)
+            .chain(states.iter().flatten())
             .all(|x| x.is_finite())
             || !self.phase.is_finite()
         {
@@ -348,7 +301,7 @@ impl Basin {
         if self.longest == 0 || self.patience == 0 {
             return fault("longest and patience", "must be at least one");
         }
-        if self.escape.is_nan() || self.escape <= 0.0 {
+        if self.request.escape.is_nan() || self.request.escape <= 0.0 {
             return fault("escape", "must be positive");
         }
         Ok(grid)
@@ -378,11 +331,5 @@ impl BasinError {
             Self::Threads { .. } => ErrorKind::System,
             Self::Motion { .. } => ErrorKind::Motion,
         }
-    }
-}
-
-impl From<BasinError> for Error {
-    fn from(error: BasinError) -> Self {
-        Self::new(error.kind(), error)
     }
 }

@@ -1,6 +1,6 @@
 //! From a state that nearly returns to a stable periodic orbit, or to the knowledge that there is none.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::attractor::Attractor;
 use super::ball::Ball;
@@ -13,8 +13,10 @@ use crate::time::{FlowError, Tangent};
 const UPDATES: usize = 14;
 /// An update that moves a state by less, relative to its size, is the last one.
 const SMALL: f64 = 1e-13;
-/// A state that returns to within this, relative to its size, returns.
+/// A state that returns to within this, relative to its size, returns, unless motions are known less well.
 const RETURNS: f64 = 1e-9;
+/// An orbit that is near is no farther than this, relative to the size of a state.
+const NEAR: f64 = 0.5;
 /// Points of an orbit that get a neighbourhood. More would be met sooner, and take longer to verify.
 const BALLS: usize = 4;
 /// Multipliers nearer to the unit circle are not told from it.
@@ -31,15 +33,44 @@ pub(super) enum Refined {
 }
 
 /// Looks for periodic orbits of a map.
-pub(super) struct Finder {
+pub(crate) struct Finder {
     tangent: Tangent,
+    /// A state that returns to within this, relative to its size, returns.
+    returns: f64,
+    /// An update that is longer than this, relative to the size of a state, is the end of a search.
+    longest: f64,
 }
 
 impl Finder {
-    pub(super) fn new(order: usize) -> Self {
+    pub(crate) fn new(order: usize) -> Self {
         Self {
             tangent: Tangent::of_state(order / 2, None),
+            returns: RETURNS,
+            longest: f64::INFINITY,
         }
+    }
+
+    /// The same for motions that are known less well, so that states return to within this, relative to their size; and for orbits
+    /// that are near.
+    pub(crate) fn near(self, returns: f64) -> Self {
+        let longest = NEAR;
+        Self {
+            returns,
+            longest,
+            ..self
+        }
+    }
+
+    /// The state near a guess that returns after some periods, if it is on a stable orbit.
+    pub(crate) fn stable(
+        &mut self,
+        map: &mut Stroboscope,
+        guess: &[f64],
+        period: usize,
+    ) -> Option<Vec<f64>> {
+        let state = self.newton(map, guess, period).ok()??;
+        let jacobian = self.jacobian(map, &state, period).ok()?.1;
+        is_stable(&eigenvalues(&jacobian)).then_some(state)
     }
 
     /// Refines a state that nearly returns after some periods.
@@ -90,8 +121,7 @@ impl Finder {
         let points = self::points(map, &first, period)?;
         let jacobian = self.jacobian(map, &first, period)?.1;
         let multipliers = eigenvalues(&jacobian);
-        let stable = multipliers.first().is_some_and(|m| m.norm() < 1.0 - MARGIN);
-        if !stable {
+        if !is_stable(&multipliers) {
             return Ok(None);
         }
         let step = period.div_ceil(BALLS);
@@ -134,16 +164,16 @@ impl Finder {
             for (x, d) in point.iter_mut().zip(step.iter()) {
                 *x += d;
             }
-            if !point.iter().all(|x| x.is_finite()) {
+            if length > self.longest || !point.iter().all(|x| x.is_finite()) {
                 return Ok(None);
             }
             // At the end rounding keeps the updates from becoming smaller.
-            if length <= SMALL || (length < RETURNS && length >= 0.5 * last) {
+            if length <= SMALL || (length < self.returns && length >= 0.5 * last) {
                 return Ok(Some(point));
             }
             last = length;
         }
-        Ok((last < RETURNS).then_some(point))
+        Ok((last < self.returns).then_some(point))
     }
 
     /// The image of a state after some periods, and its derivatives.
@@ -165,6 +195,13 @@ impl Finder {
         let jacobian = DMatrix::from_column_slice(order, order, &self.tangent.columns);
         Ok((image, jacobian))
     }
+}
+
+/// Whether the largest multiplier is inside the unit circle.
+fn is_stable(multipliers: &[Complex<f64>]) -> bool {
+    multipliers
+        .first()
+        .is_some_and(|largest| largest.norm() < 1.0 - MARGIN)
 }
 
 /// The states of some periods from a first one.

@@ -71,7 +71,7 @@ impl Recogniser {
                 Err(FlowError::NotFinite { .. }) => return Fate::Escaped,
                 Err(_) => return Fate::Failed,
             }
-            if !self.state.iter().all(|x| x.abs() <= basin.escape) {
+            if !self.state.iter().all(|x| x.abs() <= basin.request.escape) {
                 return Fate::Escaped;
             }
         }

@@ -5,28 +5,11 @@ use std::path::PathBuf;
 use super::*;
 use crate::error::chain;
 use crate::system::Variable;
+use crate::testing::one_sided::{OneSided, one_sided};
 use crate::time::stroboscope::Stroboscope;
 use crate::time::{See, Tangent, Work};
 
-crate::oscillator! {
-    /// Wang et al. (2021), Eq. (1), one-sided, exponent one.
-    OneSided(x) {
-        param zeta in 0.0..;
-        param load;
-        param drive;
-        law contact(gap) {
-            gap > 0 => 2*zeta*dot(gap) + gap,
-            else    => 0,
-        }
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
-
-const MODEL: OneSided = OneSided {
-    zeta: 0.032,
-    load: 1.0,
-    drive: 1.0,
-};
+const MODEL: OneSided = one_sided(1.0);
 
 fn grid(count: usize) -> Grid {
     let axis = |entry, from, to| Axis::of(entry).from(from).to(to).cells(count);
@@ -269,6 +252,21 @@ fn chaos_and_escape_are_classes_of_their_own() {
     assert_eq!(long.count(Fate::Long), 9);
 }
 
+/// The same states, one by one.
+#[test]
+fn motions_from_states_settle_as_those_of_a_grid() {
+    let plane = grid(4);
+    let states = (0..plane.cells()).map(|cell| {
+        let mut state = vec![0.0; 2];
+        plane.state(cell, &mut state);
+        state
+    });
+    let given = basin(4).grid(Grid::of_states(states.collect())).run();
+    let (given, expected) = (given.expect("basins"), basin(4).run().expect("basins"));
+    assert_eq!(given.fates, expected.fates);
+    assert_eq!(given.attractors.len(), expected.attractors.len());
+}
+
 #[test]
 fn a_request_that_cannot_be_used_is_refused() {
     let on = |change: &dyn Fn(&mut Grid)| {
@@ -288,6 +286,15 @@ fn a_request_that_cannot_be_used_is_refused() {
         (basin(4).threads(0), "threads"),
         (Basin::of(&MODEL).omega(1.0), "grid is missing"),
         (Basin::of(&MODEL).grid(grid(4)), "omega"),
+        (basin(4).grid(Grid::of_states(Vec::new())), "cell"),
+        (
+            basin(4).grid(Grid::of_states(vec![vec![0.0; 2], vec![0.0; 3]])),
+            "entries",
+        ),
+        (
+            basin(4).grid(Grid::of_states(vec![vec![0.0, f64::NAN]])),
+            "finite",
+        ),
     ] {
         let error = request.run().expect_err("a refusal");
         assert_eq!(error.kind(), ErrorKind::Request);

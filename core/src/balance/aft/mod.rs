@@ -14,6 +14,8 @@ use switched::SwitchedAft;
 
 /// How the harmonics of a contact force are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Aft {
     /// Integrated from switch to switch: exact, whatever the number of harmonics.

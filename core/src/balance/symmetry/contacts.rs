@@ -17,6 +17,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use super::ROUNDING;
+use crate::branches::recurrence::SignedPermutation;
 use crate::law::{Derivatives, On};
 use crate::model::layout::{ContactLayout, Layout, Term};
 use crate::system::{Part, System};
@@ -34,8 +35,8 @@ const RATES: [f64; 6] = [0.0, 0.013, -0.37, 1.7, -7.1, 230.0];
 /// The signs `s` and `t`.
 const SIGNS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, 1.0]];
 
-/// Place of a wave in a direction or an offset, and its value.
-type Wave = ((usize, u32, Part), f64);
+/// Place of a wave in a direction, an offset or another list, and its value.
+pub(super) type Wave<P = usize> = ((P, u32, Part), f64);
 
 /// A contact at one value of the variable.
 struct Contact {
@@ -97,6 +98,34 @@ pub(super) fn shifted(
     Some(moved)
 }
 
+/// Whether all contacts are taken into each other where coordinates take each other's place, a part of the period later, one of so many.
+pub(super) fn are_permuted(
+    system: &dyn System,
+    layout: &Layout,
+    values: &[f64],
+    image: &SignedPermutation,
+    parts: usize,
+) -> bool {
+    let contacts = layout.contacts.iter();
+    let all: Vec<Contact> = contacts
+        .map(|contact| Contact::of(contact, values))
+        .filter(|contact| !contact.force.is_empty())
+        .collect();
+    let mut unpaired: Vec<&Contact> = all.iter().collect();
+    all.iter().all(|contact| {
+        let moved = contact.moved(image).turned(parts);
+        let is_image = |other: &&Contact| {
+            let mut signs = SIGNS.into_iter();
+            signs.any(|signs| moved.is_like(system, other, signs))
+        };
+        let found = unpaired.iter().position(is_image);
+        found.is_some_and(|found| {
+            unpaired.swap_remove(found);
+            true
+        })
+    })
+}
+
 /// Harmonics of the waves of all contacts, each once.
 pub(super) fn harmonics(layout: &Layout) -> BTreeSet<usize> {
     let contacts = layout.contacts.iter();
@@ -115,6 +144,24 @@ impl Contact {
             gap: turned(&self.gap),
             offset: turned(&self.offset),
             force: turned(&self.force),
+        }
+    }
+
+    /// With coordinates, and their equations, in each other's place.
+    fn moved(&self, image: &SignedPermutation) -> Self {
+        let moved = |waves: &Vec<Wave>| {
+            let waves = waves.iter().map(|((index, harmonic, part), value)| {
+                let (place, sign) = image.entry(*index);
+                ((place, *harmonic, *part), sign * value)
+            });
+            waves.collect()
+        };
+        Self {
+            law: self.law,
+            arguments: self.arguments.clone(),
+            gap: moved(&self.gap),
+            offset: self.offset.clone(),
+            force: moved(&self.force),
         }
     }
 
@@ -225,7 +272,7 @@ fn gaps(levels: &[f64], piece: usize, unit: f64) -> Vec<f64> {
 }
 
 /// The terms of a direction or an offset, those at one place added; without those that are zero.
-fn gathered(terms: &[Term], values: &[f64]) -> Vec<Wave> {
+pub(super) fn gathered(terms: &[Term], values: &[f64]) -> Vec<Wave> {
     let mut gathered: Vec<Wave> = Vec::new();
     for term in terms {
         let place = (term.index, term.wave.harmonic, term.wave.part);
@@ -258,9 +305,9 @@ fn are_times(waves: &[Wave], factor: f64, others: &[Wave]) -> bool {
 }
 
 /// The waves a part of the period later, one of so many.
-fn turned(waves: &[Wave], parts: usize) -> Vec<Wave> {
-    let mut turned: Vec<Wave> = Vec::new();
-    let mut add = |place: (usize, u32, Part), value: f64| match turned
+pub(super) fn turned<P: Copy + PartialEq>(waves: &[Wave<P>], parts: usize) -> Vec<Wave<P>> {
+    let mut turned: Vec<Wave<P>> = Vec::new();
+    let mut add = |place: (P, u32, Part), value: f64| match turned
         .iter_mut()
         .find(|(other, _)| *other == place)
     {

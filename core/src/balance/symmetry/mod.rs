@@ -11,12 +11,14 @@
 //! Stewart and Schaeffer (1988), Singularities and Groups in Bifurcation Theory II, chapter XIII (block structure).
 
 mod contacts;
+mod permutations;
 mod stride;
 
 use crate::balance::subharmonics::Addition;
 use crate::branches::orbit::Orbit;
-use crate::model::layout::{Entry, Layout};
-use crate::system::{System, Variable};
+use crate::branches::recurrence::{CyclicSymmetry, SignedPermutation};
+use crate::model::layout::Entry;
+use crate::model::rigid::Place;
 
 /// Values of the variable, as parts of its range, at which coefficients are looked at: the symmetry that a system has at all of
 /// them it is taken to have throughout.
@@ -24,6 +26,7 @@ const LOOKED_AT: [f64; 6] = [0.0, 0.137, 0.36, 0.618, 0.83, 1.0];
 /// Sum of terms that cancel, in parts of their sizes.
 const ROUNDING: f64 = 1e-14;
 
+pub(crate) use permutations::Permutations;
 pub(crate) use stride::has_stride;
 
 /// What an orbit has beyond the odd symmetry, beside that of another one.
@@ -57,38 +60,43 @@ pub(crate) fn broken_share(u: &[f64], length: usize) -> f64 {
 /// A system over a range of its variable.
 #[derive(Clone, Copy)]
 pub(crate) struct Over<'s> {
-    pub(crate) system: &'s dyn System,
-    pub(crate) layout: &'s Layout,
-    pub(crate) parameters: &'s [f64],
-    pub(crate) omega: f64,
-    pub(crate) variable: Variable,
+    pub(crate) place: Place<'s>,
     pub(crate) range: [f64; 2],
 }
 
 impl Over<'_> {
     /// Whether solutions with odd harmonics only exist.
     pub(crate) fn is_odd(&self) -> bool {
+        let layout = self.place.layout;
         self.coefficients().all(|values| {
-            vanish(&self.layout.load, &values, 0)
-                && vanish(&self.layout.stiffness, &values, 1)
-                && contacts::are_symmetric(self.system, self.layout, &values)
+            vanish(&layout.load, &values, 0)
+                && vanish(&layout.stiffness, &values, 1)
+                && contacts::are_symmetric(self.place.system, layout, &values)
         })
+    }
+
+    /// The symmetry of which those that are looked for are powers: the odd one, and that of contacts that take each other's place.
+    pub(crate) fn cyclic(&self) -> CyclicSymmetry {
+        let (odd, stride) = (self.is_odd(), self.stride());
+        if !odd {
+            return CyclicSymmetry {
+                parts: stride,
+                image: SignedPermutation::identity(),
+            };
+        }
+        // Only rest comes back after half of a period both with and without a sign.
+        let stride = stride >> stride.trailing_zeros();
+        CyclicSymmetry {
+            parts: 2 * stride,
+            image: SignedPermutation::minus(self.place.layout.coordinates),
+        }
     }
 
     /// Coefficients at the values that are looked at.
     fn coefficients(&self) -> impl Iterator<Item = Vec<f64>> {
         let [from, to] = self.range;
-        LOOKED_AT.iter().map(move |part| {
-            let value = from + part * (to - from);
-            let (mut parameters, mut omega) = (self.parameters.to_vec(), self.omega);
-            match self.variable {
-                Variable::Omega => omega = value,
-                Variable::Parameter(index) => parameters[index] = value,
-            }
-            let mut values = vec![0.0; self.layout.coefficients];
-            self.system.coefficients(&parameters, omega, &mut values);
-            values
-        })
+        let values = LOOKED_AT.iter().map(move |part| from + part * (to - from));
+        values.map(|value| self.place.coefficients(value))
     }
 }
 

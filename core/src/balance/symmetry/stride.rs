@@ -27,15 +27,15 @@ impl Over<'_> {
             .iter()
             .flat_map(|values| {
                 [
-                    (&self.layout.load, values),
-                    (&self.layout.stiffness, values),
+                    (&self.place.layout.load, values),
+                    (&self.place.layout.stiffness, values),
                 ]
             })
             .fold(0, |common, (entries, values)| {
                 divisor(common, entries, values)
             });
-        let harmonics = contacts::harmonics(self.layout);
-        let count = self.layout.contacts.len();
+        let harmonics = contacts::harmonics(self.place.layout);
+        let count = self.place.layout.contacts.len();
         let highest = harmonics.last().copied().unwrap_or(0);
         // Every wave is itself again after as many parts as there are contacts, or fewer.
         let again = |harmonic: usize, parts: usize| {
@@ -54,7 +54,7 @@ impl Over<'_> {
     fn moves(&self, parts: usize, coefficients: &[Vec<f64>]) -> bool {
         let mut moved = false;
         let alike = coefficients.iter().all(|values| {
-            let shifted = contacts::shifted(self.system, self.layout, values, parts);
+            let shifted = contacts::shifted(self.place.system, self.place.layout, values, parts);
             moved |= shifted == Some(true);
             shifted.is_some()
         });

@@ -27,12 +27,12 @@
 //!
 //! A contact that is stiffer than the inertia of the tail, and a Jacobian that changes with the orbit, as beside a resonance that is
 //! not resolved, make (1) a first step only. Where it is not small, or harmonics are few, more such steps are made with the residual of the finer balance,
-//! and what they do not settle is bounded by how fast they fall ([`again`]).
+//! and what they do not settle is bounded by how fast they fall ([`chord`]).
 //!
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
 
-mod again;
+mod chord;
 mod modes;
 
 use nalgebra::{DMatrix, DVector};

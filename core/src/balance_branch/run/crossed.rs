@@ -1,13 +1,14 @@
 //! Where another branch crosses, which no zero of a test function can be driven to: see [`continuation::crossing`](crate::continuation::crossing).
 
 use super::Run;
-use super::event_monitor::{ROUNDING, Test, or_infinite, three_quarters};
+use super::event_monitor::{ROUNDING, Test, or_infinite, three_quarters, unless_contradicted};
 use crate::balance::Balance;
 use crate::balance::truncation::BEYOND;
 use crate::branches::point::Event;
 use crate::branches::problem::Zero;
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton};
+use crate::event::EventKind;
 
 /// Derivatives along the branch are differences over this part of the step: close by, the matrix of a step is singular.
 const BESIDE: f64 = 0.1;
@@ -28,15 +29,33 @@ impl<'a> Run<'a> {
         let shift = self.crossing_shift(balance, newton, step, at, test);
         let error = BEYOND * shift + zero.root.error + ROUNDING * at.parameter().abs();
         let point = self.evaluator.read(balance, newton, &at.u);
+        let kind = if self.breaks_symmetry(at, test) {
+            EventKind::SymmetryBreaking
+        } else {
+            zero.change.kind
+        };
         self.events.push(Event {
-            kind: zero.change.kind,
+            kind,
+            error: unless_contradicted(or_infinite(error), kind, &point),
             point,
-            error: or_infinite(error),
             test: zero.root.located.test,
             after: zero.after,
             contacts: 0,
             tangent: at.tangent.clone(),
         });
+    }
+
+    /// Whether the branch that crosses is one of orbits without a symmetry that the last orbit has.
+    fn breaks_symmetry(&self, at: &CurvePoint, test: &mut Test<'_, 'a>) -> bool {
+        let permutations = &self.context.permutations;
+        let (Test::Block(block, _), Some(last)) = (test, self.points.last()) else {
+            return false;
+        };
+        if permutations.is_empty() {
+            return false;
+        }
+        let (_, v) = block.null_vector(&at.u, &at.tangent);
+        permutations.are_broken(&last.orbit, &v[..v.len() - 1])
     }
 
     /// How far corrected orbits put a branch point from where it is: the zeros of straight lines through the test function

@@ -4,8 +4,8 @@
 //! |---|---|
 //! | symmetry breaking, period doubling | the determinant of the block of harmonics that the orbits do not have ([`critical_block`](crate::balance::critical_block)) |
 //! | branch point ([`crossed`](super::crossed)) | the determinant of the Jacobian with the tangent as its border |
-//! | Neimark-Sacker | the product over pairs of multipliers ([`pairs`](crate::orbit::stability::pairs)), and a pair is complex |
-//! | grazing ([`grazing`](super::grazing)) | an extreme of a gap less the level ([`gap_extremes`](super::gap_extremes)) |
+//! | Neimark-Sacker | the moduli of multipliers ([`moduli`](crate::branches::moduli)), where a complex pair passes one |
+//! | grazing ([`touch`](crate::branches::engine)) | an extreme of a gap less the level ([`gap_extremes`](super::gap_extremes)) |
 //!
 //! All are functions of the discrete orbit, and driven to zero on the branch. The same functions of the orbit that is corrected for
 //! the harmonics left out say where the event would be then: with `s` along the unit tangent `t`, and `du` the correction,
@@ -16,36 +16,38 @@
 //!
 //! What changes its sign and leads to no zero is recorded as a [`Turn`] of its kind.
 
-use std::cell::RefCell;
-
 use super::Run;
-use super::gap_extremes::{Extreme, GapExtremes};
+use super::corrected_moduli::Corrections;
+use super::gap_extremes::GapExtremes;
 use crate::balance::critical_block::{CriticalBlock, Part};
 use crate::balance::resolution::resize;
 use crate::balance::truncation::BEYOND;
 use crate::balance::{Balance, Resolution};
 use crate::balance_branch::context::{BranchContext, EventSelection};
+use crate::branches::extreme::Extreme;
+use crate::branches::moduli;
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{TestValue, Watched};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::Newton;
-use crate::event::{EventKind, Turn};
+use crate::event::EventKind;
 use crate::numeric::fourier::series;
-use crate::orbit::stability::pairs::Pairs;
+use crate::orbit::stability::uncorrected::Uncorrected;
 
 /// Derivatives along the branch are differences over this part of the step.
 const DIFFERENCE: f64 = 1e-4;
+/// A multiplier that is farther from its critical value than this, and its error, is not the one that an event is due to.
+const FAR: f64 = 0.1;
 /// Relative error that rounding leaves in the value of an event.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Multipliers whose product is farther than this from one are not looked at more closely.
-const NEAR_CIRCLE: f64 = 0.5;
 
 /// A function of orbits that vanishes at an event.
 pub(super) enum Test<'t, 'a> {
     /// In units of a size, given as its logarithm: that of the first if it is not given.
     Block(&'t mut CriticalBlock<'a>, Option<f64>),
-    Pairs(&'t mut Pairs<'a>),
+    /// Of the multiplier at a place in the order of moduli.
+    Modulus(&'t mut Uncorrected<'a>, usize),
     /// Of one extreme, wherever it moves.
     Extreme(&'t mut GapExtremes<'a>, Extreme),
 }
@@ -57,7 +59,7 @@ impl Test<'_, '_> {
                 let (sign, size) = block.determinant_along(u, tangent);
                 sign * (size - *largest.get_or_insert(size)).exp()
             }
-            Self::Pairs(pairs) => pairs.product(u).0,
+            Self::Modulus(multipliers, place) => moduli::logarithm(multipliers.at(u), *place),
             Self::Extreme(gaps, extreme) => {
                 let mut extremes = Vec::new();
                 gaps.read(u, &mut extremes);
@@ -81,51 +83,45 @@ pub(super) struct Found<'f> {
 /// What is watched along a branch, at one resolution.
 #[derive(Debug, Default)]
 pub(super) struct EventMonitor<'a> {
-    /// Test functions: of the blocks, then of the pairs.
+    /// Test functions: of the blocks, then of the moduli.
     pub(super) watched: Vec<Watched>,
     pub(super) blocks: Vec<CriticalBlock<'a>>,
-    pub(super) pairs: Option<Pairs<'a>>,
-    pub(super) gaps: Option<GapExtremes<'a>>,
-    /// Extremes at the ends of the step looked at.
-    pub(super) extremes: [Vec<Extreme>; 2],
+    pub(super) multipliers: Option<Uncorrected<'a>>,
+    /// What the correction makes of moduli at the last points.
+    pub(super) corrections: Corrections,
+    gaps: Option<GapExtremes<'a>>,
 }
 
 impl<'a> EventMonitor<'a> {
     pub(super) fn new(context: &'a BranchContext, resolution: Resolution) -> Self {
-        let coordinates = context.system.facts().coordinates.len();
         let all = context.selection == EventSelection::All;
-        // Two multipliers on the unit circle, of one coordinate, are there with no damping only.
-        let pairs = all && context.stability.is_some() && coordinates > 1;
+        let multipliers = all && context.stability.is_some();
         let blocks = context.blocks(resolution);
         let mut watched: Vec<Watched> = blocks.iter().map(|block| watched(block.part)).collect();
-        watched.extend(pairs.then_some(Watched {
-            kind: EventKind::NeimarkSacker,
-            bordered: false,
-        }));
+        if multipliers {
+            let of_modulus = Watched {
+                kind: EventKind::NeimarkSacker,
+                bordered: false,
+            };
+            let states = 2 * context.system.facts().coordinates.len();
+            watched.extend(std::iter::repeat_n(of_modulus, states));
+        }
         Self {
             watched,
             blocks,
-            pairs: pairs.then(|| Pairs::new(context.balance(resolution))),
-            gaps: all.then(|| GapExtremes::new(context.balance(resolution))),
-            extremes: Default::default(),
+            multipliers: multipliers.then(|| Uncorrected::new(context.balance(resolution))),
+            corrections: Corrections::default(),
+            gaps: None,
         }
     }
 
-    /// Value of a test function; pairs are looked at only where some are `near` the unit circle.
-    pub(super) fn value(&mut self, index: usize, at: &CurvePoint, near: bool) -> TestValue {
+    /// Value of the test function of a block.
+    pub(super) fn value(&mut self, index: usize, at: &CurvePoint) -> TestValue {
         if let Some(block) = self.blocks.get_mut(index) {
             let (mantissa, exponent) = block.determinant_along(&at.u, &at.tangent);
             return TestValue { mantissa, exponent };
         }
-        let pairs = self.pairs.as_mut().filter(|_| near);
-        pairs.map_or(TestValue::UNKNOWN, |pairs| {
-            TestValue::plain(pairs.product(&at.u).0)
-        })
-    }
-
-    /// Whether the pair of multipliers whose product is nearest to one is complex.
-    pub(super) fn is_complex(&mut self, u: &[f64]) -> bool {
-        self.pairs.as_mut().is_some_and(|pairs| pairs.product(u).1)
+        TestValue::UNKNOWN
     }
 
     /// Determinants, each a Jacobian and a factorisation, and monodromy matrices that were computed.
@@ -133,65 +129,14 @@ impl<'a> EventMonitor<'a> {
         let determinants = self.blocks.iter().map(|block| block.computed).sum();
         (
             determinants,
-            self.pairs.as_ref().map_or(0, |pairs| pairs.computed),
+            self.multipliers
+                .as_ref()
+                .map_or(0, |multipliers| multipliers.computed),
         )
     }
 }
 
 impl<'a> Run<'a> {
-    /// Whether a pair of complex multipliers is near the unit circle at one of the last two points.
-    pub(super) fn is_near_circle(&self) -> bool {
-        let near = |point: &Point| {
-            let multipliers = &point.stability.multipliers;
-            let complex = multipliers.iter().filter(|m| m.im > 0.0);
-            let mut distances = complex.map(|m| (m.norm_sqr() - 1.0).abs());
-            distances.any(|distance| distance < NEAR_CIRCLE)
-        };
-        self.points[self.points.len().saturating_sub(2)..]
-            .iter()
-            .any(near)
-    }
-
-    /// Records what could not be located.
-    pub(super) fn omit(&mut self, kind: EventKind, step: Step<'_>, test: f64) {
-        let [a, b] = step.parameters();
-        self.turns.push(Turn {
-            kind,
-            value: 0.5 * (a + b),
-            test,
-            after: self.points.len() - 1,
-        });
-    }
-
-    /// Locates the zero of a test function, with core and tail, or else with the whole system.
-    pub(super) fn event(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        step: Step<'_>,
-        kind: EventKind,
-        test: &mut Test<'_, 'a>,
-    ) {
-        let ends = [step.before, step.next].map(|end| test.at(&end.u, &end.tangent));
-        let cell = RefCell::new(test);
-        let value = |point: &CurvePoint| cell.borrow_mut().at(&point.u, &point.tangent);
-        let read = |run: &mut Self, b: &mut Balance<'_>, n: &mut Newton, found: &Located| {
-            let test: &mut Test<'_, 'a> = &mut cell.borrow_mut();
-            let found = Found {
-                kind,
-                located: found,
-                after: run.points.len() - 1,
-            };
-            run.located(b, n, step, test, &found);
-        };
-        if self
-            .locate_zero(balance, newton, step, value, read)
-            .is_err()
-        {
-            self.omit(kind, step, ends[0]);
-        }
-    }
-
     /// Reads the orbit at an event, whose factors Newton's method holds.
     pub(super) fn located(
         &mut self,
@@ -218,11 +163,11 @@ impl<'a> Run<'a> {
         let point = self.evaluator.read(balance, newton, u);
         self.events.push(Event {
             kind,
+            error: unless_contradicted(error, kind, &point),
             point,
-            error,
             test: located.test,
             after,
-            contacts: usize::from(matches!(kind, EventKind::Grazing { .. })),
+            contacts: 0,
             tangent: Vec::new(),
         });
     }
@@ -285,8 +230,8 @@ impl<'a> Run<'a> {
             Test::Extreme(..) => {
                 monitor.gaps = Some(GapExtremes::new(context.balance(resolution)));
             }
-            Test::Pairs(_) => {
-                monitor.pairs = Some(Pairs::new(context.balance(resolution)));
+            Test::Modulus(..) => {
+                monitor.multipliers = Some(Uncorrected::new(context.balance(resolution)));
             }
             Test::Block(block, _) => monitor.blocks.push(context.block(block.part, resolution)),
         }
@@ -316,7 +261,10 @@ impl<'a> EventMonitor<'a> {
                 .blocks
                 .first_mut()
                 .map(|block| Test::Block(block, None)),
-            Test::Pairs(_) => self.pairs.as_mut().map(Test::Pairs),
+            Test::Modulus(_, place) => {
+                let multipliers = self.multipliers.as_mut();
+                multipliers.map(|multipliers| Test::Modulus(multipliers, *place))
+            }
             Test::Extreme(_, extreme) => {
                 let gaps = self.gaps.as_mut();
                 gaps.map(|gaps| Test::Extreme(gaps, *extreme))
@@ -332,6 +280,18 @@ pub(super) fn three_quarters(fine: Resolution) -> Resolution {
         harmonics,
         core: fine.core.min(harmonics),
         ..fine
+    }
+}
+
+/// The error of an event, or infinity where the multipliers of its orbit say that nothing happens there: a series of which a sharp law
+/// leaves little, and its determinants, may have bifurcations that the orbit, closed by integration, has not.
+pub(super) fn unless_contradicted(error: f64, kind: EventKind, point: &Point) -> f64 {
+    let stability = &point.stability;
+    let distance = moduli::from_critical(&stability.multipliers, kind);
+    if distance > FAR + stability.error {
+        f64::INFINITY
+    } else {
+        error
     }
 }
 

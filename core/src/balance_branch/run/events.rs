@@ -1,14 +1,13 @@
-//! What is read off where the [engine](crate::branches::engine) has located a fold, and where a branch of longer orbits ends. Touches are
-//! located here.
+//! What is read off where the [engine](crate::branches::engine) has located a fold, and where a branch of longer orbits ends.
 
 use super::Run;
+use crate::balance::Balance;
 use crate::balance::subharmonics::{is_shifted, passes_shorter_period};
 use crate::balance::symmetry::{broken, broken_share};
-use crate::balance::{Balance, Resolution};
 use crate::branches::point::Event;
 use crate::branches::problem::{Zero, ZeroOutcome};
 use crate::continuation::follow::{CurvePoint, Step, Stop};
-use crate::continuation::locate::{Located, locate};
+use crate::continuation::locate::locate;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Norm;
 
@@ -24,54 +23,6 @@ const BEYOND_NEWTON: f64 = 100.0;
 const LEFT: f64 = 0.05;
 
 impl Run<'_> {
-    /// Locates the zero of a test function between two points, with core and tail, or else with the whole system, and has it read
-    /// while Newton's method holds its factors.
-    ///
-    /// # Errors
-    /// Where it jumps instead, if that was found.
-    pub(super) fn locate_zero(
-        &mut self,
-        balance: &mut Balance<'_>,
-        newton: &mut Newton,
-        step: Step<'_>,
-        test: impl Fn(&CurvePoint) -> f64,
-        mut read: impl FnMut(&mut Self, &mut Balance<'_>, &mut Newton, &Located),
-    ) -> Result<(), Option<Located>> {
-        let options = self.options.newton;
-        let found = locate(balance, newton, step, options, FOLD_TOLERANCE, |_, at| {
-            test(at)
-        });
-        if let Some(zero) = found.as_ref().filter(|located| located.vanishes) {
-            read(self, balance, newton, zero);
-            return Ok(());
-        }
-        let whole = Resolution {
-            core: self.resolution.harmonics,
-            ..self.resolution
-        };
-        if self.resolution.core < whole.core {
-            let mut balance = self.context.balance(whole);
-            let mut newton = Newton::new(&balance);
-            let again = locate(
-                &mut balance,
-                &mut newton,
-                step,
-                options,
-                FOLD_TOLERANCE,
-                |_, at| test(at),
-            );
-            let zero = again.filter(|located| located.vanishes);
-            if let Some(zero) = &zero {
-                read(self, &mut balance, &mut newton, zero);
-            }
-            self.statistics += newton.statistics;
-            if zero.is_some() {
-                return Ok(());
-            }
-        }
-        Err(found)
-    }
-
     /// Reads a fold that was located, or a place where the branch ends on another one. A fold of longer orbits that was passed before,
     /// but for a shift in time, is the sign of a branch that closes after a part of the period.
     pub(super) fn fold(
@@ -96,9 +47,9 @@ impl Run<'_> {
             other.kind == kind && alike && errors.is_finite() && apart <= errors + 1e-9 * range
         };
         let mut passed = self.events.iter().filter(near);
-        if point.orbit.period > 1
-            && passed.any(|other| is_shifted(&other.point.orbit, &point.orbit))
-        {
+        let stride = self.context.stride;
+        let later = point.orbit.period > 1 || stride > point.orbit.recurrence().stride();
+        if later && passed.any(|other| is_shifted(&other.point.orbit, &point.orbit, stride)) {
             return ZeroOutcome::Ends(Stop::Closed);
         }
         self.events.push(Event {
@@ -123,7 +74,7 @@ impl Run<'_> {
             let symmetric = self.context.asymmetric
                 && broken_share(&orbit.series, length) > least * least
                 && broken(orbit, u).vanished();
-            symmetric || passes_shorter_period(orbit, u).is_some()
+            symmetric || passes_shorter_period(orbit, u, self.context.stride).is_some()
         })
     }
 
@@ -139,7 +90,7 @@ impl Run<'_> {
         let Some(last) = self.points.last() else {
             return false;
         };
-        let joined = passes_shorter_period(&last.orbit, &step.next.u);
+        let joined = passes_shorter_period(&last.orbit, &step.next.u, self.context.stride);
         let addition = |point: &CurvePoint| match joined {
             Some(joined) => joined.addition(&last.orbit, &point.u),
             None => broken(&last.orbit, &point.u),

@@ -4,25 +4,30 @@ use super::Run;
 use super::crossed::CROSSED;
 use super::event_monitor::{EventMonitor, Found, Test as OfOrbit};
 use super::events::FOLD_TOLERANCE;
+use super::gap_extremes::GapExtremes;
 use crate::balance::{Balance, Resolution};
-use crate::branches::engine;
+use crate::balance_branch::context::EventSelection;
+use crate::branches::engine::{self, Walk};
+use crate::branches::extreme::{self, Extreme};
+use crate::branches::keep::keep;
+use crate::branches::moduli;
+use crate::branches::point;
 use crate::branches::problem::{
-    BranchProblem, Change, Read, Test, TestValue, Watched, Zero, ZeroOutcome,
+    BranchProblem, Change, Kept, Read, Test, TestValue, Touch, Watched, Zero, ZeroOutcome,
 };
 use crate::branches::progress::{Progress, See};
-use crate::continuation::follow::{CurvePoint, Halted, Step};
+use crate::continuation::follow::{Continue, CurvePoint, Halted, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::event::{EventKind, Turn};
 
-/// Products of pairs of multipliers that are rounding.
-const NOISE: f64 = 1e-20;
-
 /// A branch by the balance at its present resolution.
 pub(super) struct BalanceBranch<'r, 'v> {
     pub(super) run: Run<'r>,
     balance: Balance<'r>,
+    /// Made when it is asked for.
+    gaps: Option<GapExtremes<'r>>,
     visit: See<'v>,
 }
 
@@ -31,11 +36,19 @@ impl<'r, 'v> BalanceBranch<'r, 'v> {
         Self {
             balance: run.context.balance(run.resolution),
             run,
+            gaps: None,
             visit,
         }
     }
 
+    fn gaps(&mut self) -> &mut GapExtremes<'r> {
+        let run = &self.run;
+        let new = || GapExtremes::new(run.context.balance(run.resolution));
+        self.gaps.get_or_insert_with(new)
+    }
+
     fn renew(&mut self) {
+        self.gaps = None;
         self.balance = self.run.context.balance(self.run.resolution);
     }
 }
@@ -49,27 +62,39 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         &self.run.monitor.watched
     }
 
-    fn test(&mut self, index: usize, at: &CurvePoint, needed: bool) -> TestValue {
-        let near = needed || self.run.is_near_circle();
-        self.run.monitor.value(index, at, near)
+    fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue {
+        let run = &mut self.run;
+        let Some(place) = index.checked_sub(run.monitor.blocks.len()) else {
+            return run.monitor.value(index, at);
+        };
+        let mut monitor = std::mem::take(&mut run.monitor);
+        let modulus = run.modulus(&mut monitor, &at.u, place);
+        run.monitor = monitor;
+        TestValue::plain(modulus)
+    }
+
+    fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
+        let mut monitor = std::mem::take(&mut self.run.monitor);
+        let found = self.run.complex_outside(&mut monitor, &at.u);
+        self.run.monitor = monitor;
+        found
     }
 
     fn aim(&self) -> f64 {
         FOLD_TOLERANCE
     }
 
-    /// Without damping the product of two pairs or more is rounding all along, each factor being so to about 1e-12.
+    /// Without damping all moduli are one, but for what is not known of them.
     fn noise(&self, index: usize) -> f64 {
         match self.run.monitor.watched[index].kind {
-            EventKind::NeimarkSacker => NOISE,
+            EventKind::NeimarkSacker => self.run.error_of_multipliers(),
             _ => 0.0,
         }
     }
 
     fn vanishes(&mut self, change: Change, located: &Located) -> bool {
         if change.kind == EventKind::NeimarkSacker {
-            // What is nothing special need not vanish to be passed over.
-            return located.vanishes || !self.run.monitor.is_complex(&located.point.u);
+            return located.vanishes || located.test.abs() <= self.run.error_of_multipliers();
         }
         if engine::is_crossing(self, change) {
             located.test.abs() <= CROSSED
@@ -132,13 +157,60 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         self.run.turns.push(turn);
     }
 
-    fn graze(&mut self, newton: &mut Newton, step: Step<'_>, turned: Option<Turn>) {
-        let (run, balance) = (&mut self.run, &mut self.balance);
-        let mut monitor = std::mem::take(&mut run.monitor);
-        if let Some(gaps) = &mut monitor.gaps {
-            run.grazing(balance, newton, step, gaps, &mut monitor.extremes, turned);
+    fn kept(&self) -> Kept<'_> {
+        Kept {
+            points: &self.run.points,
+            events: &self.run.events,
+            turns: &self.run.turns,
         }
-        run.monitor = monitor;
+    }
+
+    fn drop_turn(&mut self, turn: &Turn) {
+        self.run.turns.retain(|other| other != turn);
+    }
+
+    fn events(&self) -> usize {
+        self.run.events.len()
+    }
+
+    fn drop_beside(&mut self, first: usize, touch: f64, errors: f64) {
+        point::drop_beside(&mut self.run.events, first, touch, errors);
+    }
+
+    fn seeks_touches(&self) -> bool {
+        self.run.context.selection == EventSelection::All
+    }
+
+    fn force_jumps(&self) -> bool {
+        extreme::force_jumps(self.run.context.system.as_ref())
+    }
+
+    fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        self.gaps().read(u, extremes);
+        true
+    }
+
+    fn extreme_form(&mut self, u: &[f64], extreme: &Extreme, range: f64, form: &mut [f64]) -> bool {
+        self.gaps().form(u, extreme, range, form);
+        true
+    }
+
+    fn keep_touch(&mut self, newton: &mut Newton, step: Step<'_>, touch: &Touch) {
+        self.gaps();
+        let Self {
+            run, balance, gaps, ..
+        } = self;
+        let Some(gaps) = gaps else { return };
+        let mut test = OfOrbit::Extreme(gaps, touch.extreme);
+        let found = Found {
+            kind: EventKind::Grazing { turns: touch.turns },
+            located: &touch.located,
+            after: touch.after,
+        };
+        run.located(balance, newton, step, &mut test, &found);
+        if let Some(event) = run.events.last_mut() {
+            event.contacts = touch.contacts;
+        }
     }
 
     fn couple_fully(&mut self) -> bool {
@@ -175,6 +247,14 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         self.renew();
     }
 
+    fn onward(&mut self, walk: Walk) -> Continue {
+        let rest = self.run.rest(walk);
+        let kept = self.kept();
+        let answer = keep(self.run.context.keep.as_ref(), kept, &rest);
+        self.run.rest = Some(Box::new(rest));
+        answer
+    }
+
     fn count(&mut self, newton: &Newton) {
         self.run.statistics += newton.statistics;
     }
@@ -193,15 +273,19 @@ impl<'r> Run<'r> {
     ) -> ZeroOutcome {
         let bordered = monitor.watched[index].bordered;
         let at = &zero.root.located.point.u;
+        let mut kind = zero.change.kind;
         let mut test = if let Some(block) = monitor.blocks.get_mut(index) {
             let slope = zero.change.test == Test::Slope;
             OfOrbit::Block(block, (!slope).then_some(zero.reference))
-        } else if let Some(pairs) = &mut monitor.pairs {
-            if !pairs.product(at).1 {
-                // A pair of real multipliers whose product is one is nothing special.
+        } else if let Some(multipliers) = &mut monitor.multipliers {
+            let place = index - monitor.blocks.len();
+            // What is within the error of multipliers at an end is left to the determinants.
+            let tells = zero.told || zero.least <= self.last_error();
+            let Some(seen) = moduli::seen_by_moduli(multipliers.at(at), place, tells) else {
                 return ZeroOutcome::Nothing;
-            }
-            OfOrbit::Pairs(pairs)
+            };
+            kind = seen;
+            OfOrbit::Modulus(multipliers, place)
         } else {
             return ZeroOutcome::Nothing;
         };
@@ -209,12 +293,28 @@ impl<'r> Run<'r> {
             self.branch_point(balance, newton, step, zero, &mut test);
         } else {
             let found = Found {
-                kind: zero.change.kind,
+                kind,
                 located: &zero.root.located,
                 after: zero.after,
             };
+            let of_modulus = matches!(test, OfOrbit::Modulus(..));
             self.located(balance, newton, step, &mut test, &found);
+            if of_modulus {
+                self.widen(zero);
+            }
         }
         ZeroOutcome::Event
+    }
+
+    /// Adds what errors of multipliers make of the last event, unless it is another one once more.
+    fn widen(&mut self, zero: &Zero) {
+        let spread = self.error_of_multipliers() / zero.steepness;
+        let Some(mut event) = self.events.pop() else {
+            return;
+        };
+        event.error += spread;
+        if !moduli::is_recorded(&self.events, &event) {
+            self.events.push(event);
+        }
     }
 }

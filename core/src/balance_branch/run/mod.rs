@@ -1,12 +1,13 @@
 //! What a run does with the curve it follows: orbits with their stability, events, and another number of harmonics where the
 //! tolerance asks for it.
 
+mod corrected_moduli;
 mod crossed;
 mod event_monitor;
 mod events;
 mod gap_extremes;
-mod grazing;
 mod method;
+mod rest;
 
 use crate::balance::resolution::{Chooser, resize};
 use crate::balance::{Balance, Resolution};
@@ -25,6 +26,7 @@ use crate::event::Turn;
 use crate::numeric::fourier::series;
 use event_monitor::EventMonitor;
 use method::BalanceBranch;
+pub(crate) use rest::Rest;
 
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;
@@ -41,6 +43,8 @@ pub(crate) struct Followed {
     pub(crate) events: Vec<Event>,
     pub(crate) turns: Vec<Turn>,
     pub(crate) statistics: Statistics,
+    /// What it goes on from, where it was interrupted.
+    pub(crate) rest: Option<Box<Rest>>,
 }
 
 /// What a run has gathered.
@@ -62,6 +66,8 @@ pub(crate) struct Run<'a> {
     slow: usize,
     /// What the branch ended on.
     ended: Option<Stop>,
+    /// Where it was before the last step.
+    rest: Option<Box<Rest>>,
     pub(crate) points: Vec<Point>,
     pub(crate) events: Vec<Event>,
     pub(crate) turns: Vec<Turn>,
@@ -85,6 +91,7 @@ impl<'a> Run<'a> {
             former: None,
             slow: 0,
             ended: None,
+            rest: None,
             points: Vec::new(),
             events: Vec::new(),
             turns: Vec::new(),
@@ -105,7 +112,23 @@ impl<'a> Run<'a> {
         let options = self.options;
         let mut branch = BalanceBranch::new(self, visit);
         let stopped = engine::run(&mut branch, start, options);
-        let mut run = branch.run;
+        branch.run.followed(stopped)
+    }
+
+    /// Goes on from where it was interrupted.
+    ///
+    /// # Errors
+    /// None, but for a rest of another run.
+    pub(crate) fn resume(self, rest: &Rest, visit: See<'_>) -> Result<Followed, Error> {
+        let options = self.options;
+        let mut branch = BalanceBranch::new(self, visit);
+        let stopped = engine::resume(&mut branch, rest.walk.clone(), options);
+        branch.run.followed(stopped)
+    }
+
+    /// The branch that was followed, as the engine has ended.
+    fn followed(self, stopped: Result<Stop, NewtonError>) -> Result<Followed, Error> {
+        let mut run = self;
         run.count_others();
         let stopped = match stopped {
             Ok(stop) => run.ended.unwrap_or(stop),
@@ -117,6 +140,7 @@ impl<'a> Run<'a> {
             events: run.events,
             turns: run.turns,
             statistics: run.statistics,
+            rest: run.rest.filter(|_| stopped.can_be_resumed()),
         })
     }
 

@@ -60,7 +60,7 @@ const POINTS: usize = 5000;
 /// assert!((last.omega - 0.95469356972851 * 2_f64.powf(0.25)).abs() < 1e-9);
 /// # Ok::<(), hertzian::Error>(())
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct FreeOscillation {
     system: Arc<dyn System>,
     from: Option<f64>,
@@ -70,16 +70,6 @@ pub struct FreeOscillation {
     max_points: usize,
     largest_step: f64,
     cancel: Cancel,
-}
-
-impl std::fmt::Debug for FreeOscillation {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("FreeOscillation")
-            .field("system", &self.system.facts().name)
-            .field("from", &self.from)
-            .field("to", &self.to)
-            .finish_non_exhaustive()
-    }
 }
 
 /// One free oscillation.
@@ -117,54 +107,28 @@ impl FreeOscillation {
         }
     }
 
-    /// Position of the first coordinate at rest where the curve begins.
-    #[must_use]
-    pub fn from(mut self, position: f64) -> Self {
-        self.from = Some(position);
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// Position of the first coordinate at rest where the curve begins.
+        from(position: f64) { self.from = Some(position) }
 
-    /// The same where it ends.
-    #[must_use]
-    pub fn to(mut self, position: f64) -> Self {
-        self.to = Some(position);
-        self
-    }
+        /// The same where it ends.
+        to(position: f64) { self.to = Some(position) }
 
-    /// The first oscillation is near these positions at rest and this frequency: needed where there are several coordinates.
-    #[must_use]
-    pub fn near_rest(mut self, positions: &[f64], omega: f64) -> Self {
-        self.near = Some((positions.to_vec(), omega));
-        self
-    }
+        /// The first oscillation is near these positions at rest and this frequency: needed where there are several coordinates.
+        near_rest(positions: &[f64], omega: f64) { self.near = Some((positions.to_vec(), omega)) }
 
-    /// Tolerance of the flow, where it is not in closed form. Default: 1e-12.
-    #[must_use]
-    pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
+        /// Tolerance of the flow, where it is not in closed form. Default: 1e-12.
+        tolerance(tolerance: f64) { self.tolerance = tolerance }
 
-    /// Largest step along the curve, as [`FrequencyResponse::largest_step`](crate::response::FrequencyResponse::largest_step) measures
-    /// it. Default: 0.1.
-    #[must_use]
-    pub fn largest_step(mut self, step: f64) -> Self {
-        self.largest_step = step;
-        self
-    }
+        /// Largest step along the curve, as [`FrequencyResponse::largest_step`](crate::response::FrequencyResponse::largest_step) measures
+        /// it. Default: 0.1.
+        largest_step(step: f64) { self.largest_step = step }
 
-    /// What is computed ends when this token is cancelled, the search for the first oscillation too.
-    #[must_use]
-    pub fn cancel(mut self, cancel: &Cancel) -> Self {
-        self.cancel = cancel.clone();
-        self
-    }
+        /// What is computed ends when this token is cancelled, the search for the first oscillation too.
+        cancel(cancel: &Cancel) { self.cancel = cancel.clone() }
 
-    /// Stop after this many points. Default: 5000.
-    #[must_use]
-    pub fn max_points(mut self, points: usize) -> Self {
-        self.max_points = points;
-        self
+        /// Stop after this many points. Default: 5000.
+        max_points(points: usize) { self.max_points = points }
     }
 
     /// Follows the curve from one position to the other.
@@ -271,16 +235,9 @@ impl FreeOscillation {
         if facts.coordinates.is_empty() {
             return Err(ModelError::NoCoordinates.into());
         }
-        let mut parameters = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut parameters);
-        let tolerance = self.tolerance;
-        let flow = time::at(
-            &self.system,
-            &parameters,
-            1.0,
-            Options::default().tolerance(tolerance).cancel(&self.cancel),
-        )?;
         let cancel = self.cancel.clone();
+        let options = Options::default().tolerance(self.tolerance).cancel(&cancel);
+        let flow = time::of(&self.system, 1.0, options)?;
         Ok(Equations::new(flow, f64::from(facts.divisor), cancel))
     }
 

@@ -1,14 +1,21 @@
 //! What lies between two points that the signs of test functions at both do not show.
 //!
-//! A function that has one sign at both ends of a step may have passed zero twice: two folds, or two bifurcations of a kind. The parabola
-//! through its values at three successive points tells where it comes nearest to zero. If that is much nearer than at the ends of a step,
-//! the orbit there is computed, and the parabola taken again through the lowest of them, until one has the other sign or none comes
-//! lower. It may be in the step before the last one, since a point beside the second zero says nothing until the next one is known.
+//! A function that has one sign at both ends of a step may have passed zero twice: two folds, or two bifurcations of a kind. With a second
+//! difference `c` that is at most so large between two points, `l` apart with heights `p` and `q` above zero, it stays above
+//!
+//! ```text
+//! p + (q - p) s / l - c s (l - s)                                                                            (1)
+//! ```
+//!
+//! The second difference of three successive points is trusted to a factor. Where (1) comes down to zero with it, the orbit there is
+//! computed, and both parts are looked at with the differences that are known then, until one has the other sign or all stay above. It may
+//! be in the step before the last one, since a point beside the second zero says nothing until the next one is known.
 //!
 //! Where a branch turns and the bordered determinant changes its sign as well, that is one place, where it ends on another branch, or
 //! two, a fold and a crossing: orbits on both sides of the turn tell.
 //!
-//! Source: successive parabolic interpolation, as in Brent (1973), Algorithms for Minimization without Derivatives, chapter 5.
+//! Source: (1) is the error bound of linear interpolation, as Piyavskii (1972), An algorithm for finding the absolute extremum of a
+//! function, uses it with a bound on the first derivative.
 
 use super::{Engine, Seen, changes};
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
@@ -17,11 +24,13 @@ use crate::continuation::locate::{inside, locate};
 use crate::continuation::newton::Newton;
 use crate::event::EventKind;
 
-/// A function that comes nearer to zero than this part of what it is at both ends is looked at.
-const NEAR: f64 = 0.5;
+/// A second difference may be so many times as large between the points that it was taken of.
+const TRUSTED: f64 = 3.0;
 /// So many orbits, and until they come this near to each other, as a part of the step.
-const LOOKS: usize = 6;
-const CLOSE: f64 = 1e-3;
+pub(super) const LOOKS: usize = 6;
+pub(super) const CLOSE: f64 = 1e-3;
+/// The nearest that an orbit is looked for to another one, as a part of what lies between two.
+const ASIDE: f64 = 0.15;
 /// Half of the widths about a turn that are looked at, as parts of the step.
 const BESIDE: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// A zero is in the middle of a width if the values at both ends differ by less than this part.
@@ -42,19 +51,17 @@ impl Engine {
         if let Some(earlier) = earlier {
             let watched = (0..problem.watched().len()).map(Test::Watched);
             for test in [Test::Slope].into_iter().chain(watched) {
-                let ends = [parts[0].clone(), parts[parts.len() - 1].clone()];
-                match self.dip(problem, newton, [earlier, &ends[0], &ends[1]], test) {
+                if is_hidden(&parts, test) || is_conjugate(problem, [earlier, &parts[0]], test) {
+                    continue;
+                }
+                let points = [earlier, &parts[0], &parts[parts.len() - 1]];
+                match self.dip(problem, newton, points, test) {
                     Some(Dip::Last(found)) => insert(newton, &mut parts, found),
                     // Found as the last step, when it was that.
                     Some(Dip::Before(_)) if self.divided.contains(&(after - 1, test)) => {}
                     Some(Dip::Before(found)) => {
-                        self.record_pair(
-                            problem,
-                            newton,
-                            [earlier, &found, &ends[0]],
-                            test,
-                            after - 1,
-                        );
+                        let parts = [earlier.clone(), found, parts[0].clone()];
+                        self.record_pair(problem, newton, &parts, after - 1);
                     }
                     None => {}
                 }
@@ -81,36 +88,31 @@ impl Engine {
     fn note_divided(&mut self, problem: &dyn BranchProblem, parts: &[Seen], after: usize) {
         let watched = (0..problem.watched().len()).map(Test::Watched);
         for test in [Test::Slope].into_iter().chain(watched) {
-            let negative = |seen: &Seen| seen.value(test).is_negative();
-            let [first, inner @ .., last] = parts else {
-                return;
-            };
-            let hidden = negative(first) == negative(last)
-                && inner.iter().any(|seen| negative(seen) != negative(first));
-            if hidden && !self.divided.contains(&(after, test)) {
+            if is_hidden(parts, test) && !self.divided.contains(&(after, test)) {
                 self.divided.push((after, test));
             }
         }
     }
 
-    /// Records the two zeros of one test function on both sides of an orbit.
+    /// Records what an orbit shows inside of a step and its ends do not.
     fn record_pair(
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
-        [a, inner, b]: [&Seen; 3],
-        test: Test,
+        parts: &[Seen; 3],
         after: usize,
     ) {
-        for pair in [[a, inner], [inner, b]] {
-            let found = changes(problem, pair[0], pair[1]);
-            for change in found.into_iter().filter(|change| change.test == test) {
-                self.record(problem, newton, pair, change, after);
-                if self.ended.is_some() {
-                    return;
-                }
+        let known = self.divided.clone();
+        let wanted = |change: &Change| {
+            is_hidden(parts, change.test) && !known.contains(&(after, change.test))
+        };
+        for pair in parts.windows(2) {
+            self.record_all(problem, newton, [&pair[0], &pair[1]], after, wanted);
+            if self.ended.is_some() {
+                return;
             }
         }
+        self.note_divided(problem, parts, after);
     }
 
     /// An orbit inside one of two steps where a test function has the other sign than at all their ends.
@@ -131,64 +133,61 @@ impl Engine {
         let reference = reference.fold(f64::NEG_INFINITY, f64::max);
         let heights = values.map(|value| sign * value.relative_to(reference));
         let lengths = [0, 1].map(|i| distance(newton, &points[i].point, &points[i + 1].point));
-        let known = [
-            (-lengths[0], heights[0]),
-            (0.0, heights[1]),
-            (lengths[1], heights[2]),
-        ];
-        let (place, _) = vertex(known)?;
-        let last = place > 0.0;
-        let (between, known, whole) = if last {
-            ([points[1], points[2]], known, lengths[1])
-        } else {
-            let shifted = known.map(|(s, height)| (s + lengths[0], height));
-            ([points[0], points[1]], shifted, lengths[0])
-        };
-        let least = between.map(|seen| sign * seen.value(test).relative_to(reference));
-        let least = least[0].min(least[1]);
+        let places = [0.0, lengths[0], lengths[0] + lengths[1]];
+        let known = [0, 1, 2].map(|i| Height {
+            place: places[i],
+            height: heights[i],
+        });
         let noise = match test {
             Test::Slope => 0.0,
             Test::Watched(index) => problem.noise(index),
         };
-        if least <= problem.vanishing().max(noise) {
-            return None;
+        let noise = noise.max(problem.vanishing());
+        for first in [1, 0] {
+            let descent = Descent {
+                between: [points[first], points[first + 1]],
+                from: places[first],
+                whole: lengths[first],
+                test,
+                sign,
+                reference,
+            };
+            if heights[first].min(heights[first + 1]) <= noise {
+                continue;
+            }
+            if let Some(found) = self.lowest(problem, newton, &descent, &known) {
+                return Some(if first == 1 {
+                    Dip::Last(found)
+                } else {
+                    Dip::Before(found)
+                });
+            }
         }
-        let descent = Descent {
-            between,
-            whole,
-            least,
-            test,
-            sign,
-            reference,
-        };
-        let found = self.lowest(problem, newton, &descent, known)?;
-        Some(if last {
-            Dip::Last(found)
-        } else {
-            Dip::Before(found)
-        })
+        None
     }
 
+    /// An orbit of the other sign in a step, if (1) does not exclude it.
     fn lowest(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         descent: &Descent<'_>,
-        mut known: [(f64, f64); 3],
+        known: &[Height; 3],
     ) -> Option<Seen> {
-        let Descent { between, whole, .. } = *descent;
+        let Descent {
+            between,
+            from,
+            whole,
+            ..
+        } = *descent;
         let ends = step_between(between);
-        let close = CLOSE * whole;
-        let mut lowest = f64::NAN;
+        let mut known = known.to_vec();
         for _ in 0..LOOKS {
-            let (place, foretold) = vertex(known)?;
-            let is_within = place > close && place < whole - close;
-            if !is_within || foretold > NEAR * descent.least || (place - lowest).abs() < close {
-                return None;
-            }
+            let place = in_doubt(&known, [from, from + whole], CLOSE * whole)?;
             let options = self.options.newton;
-            let point = inside(problem.equations(), newton, ends, place / whole, options)?;
-            let seen = Seen::at(problem, &point, true);
+            let part = (place - from) / whole;
+            let point = inside(problem.equations(), newton, ends, part, options)?;
+            let seen = Seen::at(problem, &point);
             let mut pairs = seen.values.iter().zip(&between[0].values);
             if pairs.any(|(here, there)| there.is_known() && !here.is_known()) {
                 // A part without a value would hide what changes its sign there.
@@ -198,11 +197,8 @@ impl Engine {
             if height < 0.0 {
                 return Some(seen);
             }
-            let mut all = [&known[..], &[(place, height)]].concat();
-            all.sort_by(|x, y| x.0.total_cmp(&y.0));
-            let at = (1..all.len() - 1).min_by(|i, j| all[*i].1.total_cmp(&all[*j].1))?;
-            known = [all[at - 1], all[at], all[at + 1]];
-            lowest = place;
+            let next = known.iter().position(|other| other.place > place)?;
+            known.insert(next, Height { place, height });
         }
         None
     }
@@ -234,7 +230,7 @@ impl Engine {
         let place = distance(newton, step.before, &turn.point) / length;
         let mut beside = |part: f64| {
             let point = inside(problem.equations(), newton, step, part, options)?;
-            Some(Seen::at(problem, &point, true))
+            Some(Seen::at(problem, &point))
         };
         for width in BESIDE {
             let width = width.min(0.5 * place).min(0.5 * (1.0 - place));
@@ -258,6 +254,36 @@ impl Engine {
     }
 }
 
+/// Whether a test function has one sign at both ends of a step and the other one inside.
+fn is_hidden(parts: &[Seen], test: Test) -> bool {
+    let sign = |seen: &Seen| {
+        let value = seen.value(test);
+        value.is_known().then(|| value.is_negative())
+    };
+    let [first, inner @ .., last] = parts else {
+        return false;
+    };
+    let Some(outside) = sign(first).filter(|outside| sign(last) == Some(*outside)) else {
+        return false;
+    };
+    inner.iter().any(|seen| sign(seen) == Some(!outside))
+}
+
+/// Whether it is the modulus of the second of a pair, which tells what that of the first does.
+fn is_conjugate(problem: &dyn BranchProblem, points: [&Seen; 2], test: Test) -> bool {
+    let Test::Watched(index) = test else {
+        return false;
+    };
+    let watched = problem.watched();
+    let of_modulus = |index: usize| watched[index].kind == EventKind::NeimarkSacker;
+    index > 0
+        && of_modulus(index)
+        && of_modulus(index - 1)
+        && points
+            .iter()
+            .all(|seen| seen.values[index] == seen.values[index - 1])
+}
+
 /// Where an orbit of the other sign was found.
 enum Dip {
     /// In the last step.
@@ -266,13 +292,19 @@ enum Dip {
     Before(Seen),
 }
 
+/// How far a test function is above zero at a place along the branch.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Height {
+    pub(super) place: f64,
+    pub(super) height: f64,
+}
+
 /// A step in which a test function may come down to zero.
 struct Descent<'s> {
     between: [&'s Seen; 2],
-    /// Its length.
+    /// Where it begins, and its length.
+    from: f64,
     whole: f64,
-    /// The lower one of the values at its ends.
-    least: f64,
     test: Test,
     sign: f64,
     reference: f64,
@@ -295,19 +327,57 @@ fn insert(newton: &Newton, parts: &mut Vec<Seen>, found: Seen) {
 }
 
 /// How far a point is behind another one, along the tangent there.
-fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
+pub(super) fn distance(newton: &Newton, a: &CurvePoint, b: &CurvePoint) -> f64 {
     let step = Step { before: a, next: b };
     newton
         .norm()
         .product(a.scale, &a.tangent, &step.difference())
 }
 
-/// Place and value of the lowest point of the parabola through three points; `None` if it has none.
-fn vertex([(x, p), (y, q), (z, r)]: [(f64, f64); 3]) -> Option<(f64, f64)> {
-    let (left, right) = ((q - p) / (y - x), (r - q) / (z - y));
-    let bend = (right - left) / (z - x);
-    // q + s (u - y) + bend (u - y)^2
-    let s = left + bend * (y - x);
-    let lowest = y - 0.5 * s / bend;
-    (bend > 0.0 && lowest.is_finite()).then_some((lowest, q - 0.25 * s * s / bend))
+/// Where (1) comes down lowest in an interval, below zero, between known heights that are not too close.
+pub(super) fn in_doubt(known: &[Height], [from, to]: [f64; 2], close: f64) -> Option<f64> {
+    let differences: Vec<f64> = known.windows(3).map(second_difference).collect();
+    let mut deepest: Option<Height> = None;
+    for (i, pair) in known.windows(2).enumerate() {
+        let (a, b) = (pair[0], pair[1]);
+        if a.place < from || b.place > to || b.place - a.place < 2.0 * close {
+            continue;
+        }
+        let beside = [i.checked_sub(1), Some(i)];
+        let beside = beside.into_iter().flatten();
+        let differences = beside.filter_map(|index| differences.get(index));
+        let largest = differences.fold(0.0, |largest: f64, c| largest.max(c.abs()));
+        let lowest = lowest_between(a, b, TRUSTED * largest);
+        let lower = |other: &Height| lowest.height < other.height;
+        if lowest.height < 0.0 && deepest.as_ref().is_none_or(lower) {
+            let aside = ASIDE * (b.place - a.place);
+            let place = lowest.place.clamp(a.place + aside, b.place - aside);
+            deepest = Some(Height { place, ..lowest });
+        }
+    }
+    deepest.map(|deepest| deepest.place)
+}
+
+/// Second divided difference of three heights.
+fn second_difference(known: &[Height]) -> f64 {
+    let slope = |a: &Height, b: &Height| (b.height - a.height) / (b.place - a.place);
+    let (first, second) = (slope(&known[0], &known[1]), slope(&known[1], &known[2]));
+    (second - first) / (known[2].place - known[0].place)
+}
+
+/// The lowest place of (1) inside an interval; one of its ends if it falls or rises all along.
+fn lowest_between(a: Height, b: Height, c: f64) -> Height {
+    let l = b.place - a.place;
+    let (p, q) = (a.height, b.height);
+    let s = 0.5 * l - 0.5 * (q - p) / (c * l);
+    if s > 0.0 && s < l {
+        Height {
+            place: a.place + s,
+            height: p + (q - p) * s / l - c * s * (l - s),
+        }
+    } else if p < q {
+        a
+    } else {
+        b
+    }
 }

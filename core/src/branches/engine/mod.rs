@@ -7,23 +7,38 @@
 //! |---|---|
 //! | fold | the slope of the parameter, and the bordered determinant does not |
 //! | branch point | the determinant of the equations with the tangent as their border; where the slope changes its sign too, a branch ends on another one |
+//! | Neimark-Sacker | the [moduli](crate::branches::moduli) of multipliers, where more of them pass one than the others explain |
 //! | others | what the method gives: [`BranchProblem::watched`] |
 //!
 //! 1. A step is [divided](inside) where a function passes zero twice in it, as far as three points tell.
 //! 2. What changes its sign in a part is [located](zero) and read.
-//! 3. Touches of levels are the method's ([`BranchProblem::graze`]): what is smooth there depends on the unknowns.
+//! 3. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
+//! 4. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions); Keller
 //! (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (the bordered determinant).
 
+mod approach;
+mod corner;
+mod corner_search;
 mod inside;
+mod inside_touch;
 #[cfg(test)]
 mod tests;
+mod touch;
+mod walk;
 mod zero;
 
+use touch::Gaps;
+use walk::Looked;
+pub(crate) use walk::{Places, Walk};
+use zero::Recorded;
 pub(crate) use zero::{Aim, Search, is_crossing, root};
 
-use super::problem::{BranchProblem, Change, Read, Test, TestValue};
+use super::moduli;
+use super::point::Point;
+use super::problem::{BranchProblem, Change, Kept, Read, Test, TestValue};
+use super::stability::Verdict;
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Step, Stop, Visit, Walked,
     follow_until_stuck,
@@ -35,17 +50,21 @@ use crate::event::{EventKind, Turn};
 const POINTS: usize = 3;
 
 /// A point of the branch with its test functions.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Seen {
     point: CurvePoint,
     values: Vec<TestValue>,
+    /// Complex multipliers outside of the unit circle.
+    complex: Option<usize>,
 }
 
 impl Seen {
-    fn at(problem: &mut dyn BranchProblem, point: &CurvePoint, needed: bool) -> Self {
-        let values = (0..problem.watched().len()).map(|index| problem.test(index, point, needed));
+    fn at(problem: &mut dyn BranchProblem, point: &CurvePoint) -> Self {
+        let values = (0..problem.watched().len()).map(|index| problem.test(index, point));
         Self {
             values: values.collect(),
+            complex: problem.complex_outside(point),
             point: point.clone(),
         }
     }
@@ -67,10 +86,22 @@ struct Engine {
     divided: Vec<(usize, Test)>,
     /// The last point was refused.
     refused: bool,
+    /// The unknowns are to change once the step to the last point has been looked at.
+    resizes: bool,
     /// The last point is beyond the end.
     beyond: bool,
     /// Why it ended from here.
     ended: Option<Stop>,
+    /// Number of points up to the last one with a verdict.
+    decided: Option<usize>,
+    /// Where a corner was looked for last, and how far ahead.
+    looked: Option<Looked>,
+    /// A point behind a corner, to go on from.
+    passed: Option<CurvePoint>,
+    /// The last points with the extremes of their gaps.
+    gaps: Vec<Gaps>,
+    /// Where levels are touched in the last step.
+    touched: Vec<f64>,
 }
 
 /// Follows the branch from its start to its end.
@@ -79,15 +110,44 @@ struct Engine {
 /// If there is no first point.
 pub(crate) fn run(
     problem: &mut dyn BranchProblem,
-    mut start: Start,
+    start: Start,
     options: FollowOptions,
 ) -> Result<Stop, NewtonError> {
-    let mut engine = Engine::new(options);
+    go_on(problem, Engine::new(options), start, 0.0)
+}
+
+/// Goes on with a walk from where it was about to make a step, as if it had not been interrupted. The problem has the unknowns that it had.
+///
+/// # Errors
+/// As [`run`]; there is none but by the caller's fault.
+pub(crate) fn resume(
+    problem: &mut dyn BranchProblem,
+    walk: Walk,
+    options: FollowOptions,
+) -> Result<Stop, NewtonError> {
+    let (engine, halted, contraction) = Engine::resumed(walk, options);
+    go_on(
+        problem,
+        engine,
+        Start::Onward(Box::new(halted)),
+        contraction,
+    )
+}
+
+/// The same for an engine, with what the last correction left behind.
+fn go_on(
+    problem: &mut dyn BranchProblem,
+    mut engine: Engine,
+    mut start: Start,
+    mut contraction: f64,
+) -> Result<Stop, NewtonError> {
+    let options = engine.options;
     // Where the walk was halted last, in case that other unknowns fail there.
     let mut last: Option<Box<Halted>> = None;
     loop {
         let begun = start.clone();
         let mut newton = Newton::new(problem.equations());
+        newton.remember_contraction(std::mem::take(&mut contraction));
         let length = newton.norm().unknowns() + 1;
         engine.seen.retain(|seen| seen.point.u.len() == length);
         let outcome = follow_until_stuck(
@@ -104,7 +164,7 @@ pub(crate) fn run(
                 stuck,
             }) => {
                 let Some(halted) = stuck.filter(|_| problem.couple_fully()) else {
-                    return Ok(engine.ended.unwrap_or(stop));
+                    return Ok(engine.ended.unwrap_or_else(|| engine.named(problem, stop)));
                 };
                 Start::At(halted)
             }
@@ -112,6 +172,10 @@ pub(crate) fn run(
                 outcome: Outcome::Halted(halted),
                 ..
             }) => {
+                if let Some(passed) = engine.passed.take() {
+                    start = Start::At(Box::new(halted.moved_to(passed, options.steps.initial)));
+                    continue;
+                }
                 let mut resized = halted.clone();
                 problem.remap(&mut resized);
                 last = Some(halted);
@@ -140,8 +204,14 @@ impl Engine {
             seen: Vec::new(),
             divided: Vec::new(),
             refused: false,
+            resizes: false,
             beyond: false,
             ended: None,
+            decided: None,
+            looked: None,
+            passed: None,
+            gaps: Vec::new(),
+            touched: Vec::new(),
         }
     }
 
@@ -153,6 +223,7 @@ impl Engine {
     ) -> Continue {
         match seen {
             Visit::Again(_) if !self.refused => Continue::Continue(()),
+            Visit::Point(at) if self.corner_before(problem, at) => Continue::Break(Halt::Resize),
             Visit::Point(at) | Visit::Again(at) => {
                 self.beyond = matches!(seen, Visit::Point(_)) && problem.is_beyond(at);
                 if self.beyond {
@@ -163,6 +234,16 @@ impl Engine {
                 self.kept(problem, at, read)
             }
             Visit::Between(before, next) => self.step(problem, newton, Step { before, next }),
+            Visit::Failed(at, step) => {
+                if self.corner_ahead(problem, at, *step) {
+                    return Continue::Break(Halt::Resize);
+                }
+                Continue::Continue(())
+            }
+            Visit::Onward(position) => {
+                let walk = self.here(position.here(), newton.contraction(), problem.kept());
+                problem.onward(walk)
+            }
         }
     }
 
@@ -171,10 +252,15 @@ impl Engine {
         self.refused = read == Read::Refused;
         match read {
             Read::Refused | Read::Resize => return Continue::Break(Halt::Resize),
-            Read::Stop => return Continue::Break(Halt::Stop),
+            Read::Stop => {
+                // What happened in the step to it is not looked for any more, but it is said that something did.
+                self.explain_verdict(problem);
+                return Continue::Break(Halt::Stop);
+            }
+            Read::ResizeBehind => self.resizes = true,
             Read::Kept => {}
         }
-        self.see(Seen::at(problem, at, false));
+        self.see(Seen::at(problem, at));
         Continue::Continue(())
     }
 
@@ -204,13 +290,73 @@ impl Engine {
         }
         let turned = self.events(problem, newton, step);
         if self.ended.is_none() {
-            problem.graze(newton, step, turned);
+            self.touches(problem, newton, step, turned);
+            self.explain_verdict(problem);
         }
         if self.ended.is_some() {
             Continue::Break(Halt::Stop)
+        } else if std::mem::take(&mut self.resizes) {
+            Continue::Break(Halt::Resize)
         } else {
             Continue::Continue(())
         }
+    }
+
+    /// Says where a verdict changes that nothing recorded explains, if all events are looked for.
+    fn explain_verdict(&mut self, problem: &mut dyn BranchProblem) {
+        let mut watched = problem.watched().iter();
+        if !watched.any(|watched| watched.kind == EventKind::NeimarkSacker) {
+            return;
+        }
+        let jumps = problem.force_jumps();
+        let Kept {
+            points,
+            events,
+            turns,
+        } = problem.kept();
+        let decided = |point: &&Point| point.stability.verdict != Verdict::Undecided;
+        let Some(last) = points.last().filter(decided) else {
+            return;
+        };
+        // At first whatever is before it.
+        let first = || {
+            points[..points.len() - 1]
+                .iter()
+                .rposition(|point| decided(&point))
+        };
+        let before = self.decided.replace(points.len());
+        let Some(before) = before.or_else(|| first().map(|place| place + 1)) else {
+            return;
+        };
+        if before >= points.len() {
+            return;
+        }
+        let other = &points[before - 1];
+        // Multipliers jump at a touch where the force does, and nowhere else.
+        let explains = |kind: EventKind, after: usize| {
+            let touches = matches!(kind, EventKind::Grazing { .. });
+            after >= before && (jumps || !touches)
+        };
+        if other.stability.verdict == last.stability.verdict
+            || events.iter().any(|event| explains(event.kind, event.after))
+            || turns.iter().any(|turn| explains(turn.kind, turn.after))
+        {
+            return;
+        }
+        let multipliers = [other, last].map(|point| &point.stability.multipliers);
+        let [a, b] = multipliers.map(|multipliers| moduli::nearest(multipliers));
+        let kind = if a.1 < b.1 {
+            moduli::crossing(multipliers[0], a.0)
+        } else {
+            moduli::crossing(multipliers[1], b.0)
+        };
+        let turn = Turn {
+            kind,
+            value: 0.5 * (other.value + last.value),
+            test: f64::NAN,
+            after: points.len() - 1,
+        };
+        problem.keep_turn(turn);
     }
 
     /// Locates what happened in a step, and in the one before where that shows only now. Says where the branch turned without a fold.
@@ -230,44 +376,78 @@ impl Engine {
         }
         let mut turned = None;
         for pair in parts.windows(2) {
-            for change in changes(problem, &pair[0], &pair[1]) {
-                let turn = self.record(problem, newton, [&pair[0], &pair[1]], change, after);
-                turned = turned.or(turn.filter(|_| change.test == Test::Slope));
-                if self.ended.is_some() {
-                    return turned;
-                }
+            let wanted = |_: &Change| true;
+            let turn = self.record_all(problem, newton, [&pair[0], &pair[1]], after, wanted);
+            turned = turned.or(turn);
+            if self.ended.is_some() {
+                break;
             }
         }
         turned
     }
 
-    /// Sees to it that the last two points are the ends of a step, and that what is known at one end is known at the other. Returns the
-    /// point before them.
+    /// Records what changes its sign between two points and is wanted. Says where the branch turned without a fold.
+    fn record_all(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        pair: [&Seen; 2],
+        after: usize,
+        wanted: impl Fn(&Change) -> bool,
+    ) -> Option<Turn> {
+        let mut turned = None;
+        // The other modulus of a pair that was found.
+        let mut other = None;
+        let changes = changes(problem, pair[0], pair[1]);
+        let told = changes.iter().any(|change| !is_modulus(change));
+        for change in changes {
+            if !wanted(&change) || other == Some(change.test) {
+                continue;
+            }
+            let recorded = self.record(problem, newton, pair, change, told, after);
+            match recorded {
+                Recorded::Turn(turn) if change.test == Test::Slope => turned = Some(turn),
+                Recorded::Ends(_) => break,
+                _ => {}
+            }
+            other = match change.test {
+                Test::Watched(index) if is_modulus(&change) && recorded != Recorded::Nothing => {
+                    Some(Test::Watched(index + 1))
+                }
+                _ => None,
+            };
+        }
+        turned
+    }
+
+    /// Sees to it that the last two points are the ends of a step. Returns the point before them.
     fn complete(
         &mut self,
         problem: &mut dyn BranchProblem,
         Step { before, next }: Step<'_>,
     ) -> Option<Seen> {
+        if let [.., a, b] = &self.seen[..]
+            && (&a.point, &b.point) == (before, next)
+        {
+            return self.seen.iter().rev().nth(2).cloned();
+        }
         let find = |seen: &[Seen], at: &CurvePoint| seen.iter().rposition(|seen| seen.point == *at);
         let place = find(&self.seen, before);
         let earlier = place.and_then(|place| place.checked_sub(1));
         let earlier = earlier.map(|place| self.seen[place].clone());
-        let mut ends = [before, next].map(|at| {
+        let ends = [before, next].map(|at| {
             let known = find(&self.seen, at).map(|place| self.seen[place].clone());
-            known.unwrap_or_else(|| Seen::at(problem, at, false))
+            known.unwrap_or_else(|| Seen::at(problem, at))
         });
-        let [a, b] = &mut ends;
-        for index in 0..a.values.len() {
-            match [a.values[index].is_known(), b.values[index].is_known()] {
-                [true, false] => b.values[index] = problem.test(index, next, true),
-                [false, true] => a.values[index] = problem.test(index, before, true),
-                _ => {}
-            }
-        }
         self.seen.clear();
         self.seen.extend(earlier.clone().into_iter().chain(ends));
         earlier
     }
+}
+
+/// Whether it is the modulus of a multiplier that changes its sign.
+fn is_modulus(change: &Change) -> bool {
+    change.kind == EventKind::NeimarkSacker
 }
 
 /// What changes its sign from one point to the next, and what that means. Without the bordered determinant every turn counts as a
@@ -293,14 +473,26 @@ fn changes(problem: &dyn BranchProblem, a: &Seen, b: &Seen) -> Vec<Change> {
         }),
         (false, None) => {}
     }
+    let mut moduli = Vec::new();
     for (index, watched) in watched.iter().enumerate() {
         let test = Test::Watched(index);
         let largest = [a, b].map(|seen| seen.value(test).mantissa.abs());
         let noise = problem.noise(index);
         if !watched.bordered && differs(test) && largest[0].max(largest[1]) > noise {
             let kind = watched.kind;
-            changes.push(Change { test, kind });
+            let change = Change { test, kind };
+            let found = if is_modulus(&change) {
+                &mut moduli
+            } else {
+                &mut changes
+            };
+            found.push(change);
         }
+    }
+    // Every other change of sign takes one multiplier across the unit circle, and none that is complex.
+    let explained = moduli.len() <= changes.len() && (changes.len() - moduli.len()) % 2 == 0;
+    if !explained || a.complex != b.complex {
+        changes.append(&mut moduli);
     }
     changes
 }

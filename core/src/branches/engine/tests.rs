@@ -90,7 +90,7 @@ impl BranchProblem for Algebraic {
         &WATCHED
     }
 
-    fn test(&mut self, index: usize, at: &CurvePoint, _: bool) -> TestValue {
+    fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue {
         let (x, y) = (at.u[0], at.u[1]);
         TestValue::plain(match index {
             // z = x^2 has one on its diagonal, and adds to the border what x has.
@@ -139,6 +139,16 @@ impl BranchProblem for Algebraic {
         let at = &zero.root.located.point;
         self.events.push((zero.change.kind, at.u[0]));
         ZeroOutcome::Event
+    }
+
+    fn events(&self) -> usize {
+        self.events.len()
+    }
+
+    fn drop_beside(&mut self, _: usize, _: f64, _: f64) {}
+
+    fn drop_turn(&mut self, turn: &Turn) {
+        self.turns.retain(|other| other != turn);
     }
 
     fn keep_turn(&mut self, turn: Turn) {

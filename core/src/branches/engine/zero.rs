@@ -12,8 +12,10 @@ use crate::event::{EventKind, Turn};
 /// What came of a change of sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Recorded {
-    /// An event, or nothing.
+    /// An event.
     Found,
+    /// What changed its sign is nothing special.
+    Nothing,
     /// The branch ends there.
     Ends(Stop),
     /// A place that is none.
@@ -28,19 +30,22 @@ pub(crate) struct Search<'s> {
     /// Values of the test function at both ends.
     pub(crate) ends: [TestValue; 2],
     pub(crate) after: usize,
+    /// Another test function, which is no modulus, changes its sign in the step too.
+    pub(crate) told: bool,
     pub(crate) options: NewtonOptions,
 }
 
 impl Engine {
-    /// Locates an event and keeps it, or the place where the test function jumps, which is returned.
+    /// Locates an event and keeps it, or the place where the test function jumps.
     pub(super) fn record(
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         [a, b]: [&Seen; 2],
         change: Change,
+        told: bool,
         after: usize,
-    ) -> Option<Turn> {
+    ) -> Recorded {
         let search = Search {
             step: Step {
                 before: &a.point,
@@ -49,16 +54,14 @@ impl Engine {
             change,
             ends: [a, b].map(|seen| seen.value(change.test)),
             after,
+            told,
             options: self.options.newton,
         };
-        match search.record(problem, newton) {
-            Recorded::Found => None,
-            Recorded::Ends(stop) => {
-                self.ended = Some(stop);
-                None
-            }
-            Recorded::Turn(turn) => Some(turn),
+        let recorded = search.record(problem, newton);
+        if let Recorded::Ends(stop) = recorded {
+            self.ended = Some(stop);
         }
+        recorded
     }
 }
 
@@ -75,7 +78,8 @@ impl Search<'_> {
             problem.couple_fully_once(false);
         }
         match kept {
-            ZeroOutcome::Event | ZeroOutcome::Nothing => return Recorded::Found,
+            ZeroOutcome::Event => return Recorded::Found,
+            ZeroOutcome::Nothing => return Recorded::Nothing,
             ZeroOutcome::Ends(stop) => return Recorded::Ends(stop),
             // It may well be an event.
             ZeroOutcome::Unread if problem.equations().is_cancelled() => {
@@ -104,6 +108,19 @@ impl Search<'_> {
         self.ends[0].exponent.max(self.ends[1].exponent)
     }
 
+    /// Of the test function at both ends.
+    fn sizes(&self) -> [f64; 2] {
+        let reference = self.reference();
+        self.ends.map(|end| end.relative_to(reference).abs())
+    }
+
+    /// How steep the chords from a zero to both ends are, at least.
+    fn steepness(&self, zero: f64) -> f64 {
+        let places = self.step.parameters().into_iter().zip(self.sizes());
+        let slopes = places.map(|(end, size)| size / (end - zero).abs());
+        slopes.fold(f64::INFINITY, f64::min)
+    }
+
     /// What became of the zero, and where the function jumps instead.
     fn search(
         &self,
@@ -116,10 +133,14 @@ impl Search<'_> {
         if !problem.vanishes(self.change, &root.located) {
             return (ZeroOutcome::Unread, Some(root.located));
         }
+        let value = root.located.point.parameter();
         let zero = Zero {
             change: self.change,
             root,
             reference: self.reference(),
+            steepness: self.steepness(value),
+            least: self.sizes().into_iter().fold(f64::INFINITY, f64::min),
+            told: self.told,
             after: self.after,
         };
         let kept = problem.keep(newton, self.step, &zero);
@@ -136,7 +157,7 @@ impl Search<'_> {
         };
         let value = |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| match test {
             Test::Slope => at.parameter_slope(),
-            Test::Watched(index) => problem.test(index, at, true).relative_to(reference),
+            Test::Watched(index) => problem.test(index, at).relative_to(reference),
         };
         root(problem, newton, self.step, self.options, aim, value)
     }

@@ -1,7 +1,5 @@
 //! Why there is no solution.
 
-use crate::numeric::linear::Singular;
-
 /// Why an iteration ended without a solution.
 #[derive(Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,15 +22,16 @@ pub enum NewtonError {
     },
     /// The bordered matrix is singular.
     #[error(
-        "the Jacobian is singular after {iterations} iterations: pivot {:.1e} in column {}",
-        .at.pivot,
-        .at.column
+        "the Jacobian is singular after {iterations} iterations: pivot {pivot:.1e} in column {column}"
     )]
     Singular {
         /// After this many updates.
         iterations: usize,
-        /// Where elimination stopped.
-        at: Singular,
+        /// Column without a usable pivot, where elimination stopped.
+        column: usize,
+        /// The largest candidate there, relative to the row it stands in.
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+        pivot: f64,
     },
     /// The residual is not a number.
     #[error("the residual is not finite after {iterations} iterations")]
@@ -48,10 +47,10 @@ pub enum NewtonError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    NewtonError:
+crate::error::room_error! {
+    NewtonError;
     NotConverged { iterations, update, residual }
-    Singular { iterations, at }
+    Singular { iterations, column, pivot }
     NotFinite { iterations }
     Cancelled { iterations }
     ;
@@ -60,7 +59,11 @@ crate::error::sentence_as_debug! {
 impl NewtonError {
     pub(super) fn after(self, iterations: usize) -> Self {
         match self {
-            Self::Singular { at, .. } => Self::Singular { iterations, at },
+            Self::Singular { column, pivot, .. } => Self::Singular {
+                iterations,
+                column,
+                pivot,
+            },
             Self::NotFinite { .. } => Self::NotFinite { iterations },
             other @ (Self::NotConverged { .. } | Self::Cancelled { .. }) => other,
         }

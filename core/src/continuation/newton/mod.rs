@@ -168,6 +168,7 @@ impl Newton {
         self.norm.write_units(scale, &mut self.units);
         self.memory.clear();
         self.rounding = 0.0;
+        problem.prepare(u);
         let mut updates = Updates::after(std::mem::take(&mut self.contraction));
         let mut size = f64::INFINITY;
         let mut renew = true;
@@ -182,6 +183,7 @@ impl Newton {
             updates.first.get_or_insert(size);
             if self.ends(problem, u, size, &updates, options.tolerance) {
                 updates.count += 1;
+                problem.found(u);
                 return Ok(updates.converged(size));
             }
             if options.damped {
@@ -200,6 +202,7 @@ impl Newton {
         if size <= options.tolerance {
             // They shrink slowly, but what was asked for is reached.
             self.left = left(size, updates.before);
+            problem.found(u);
             return Ok(updates.converged(size));
         }
         Err(NewtonError::NotConverged {
@@ -309,6 +312,11 @@ impl Newton {
         self.contraction
     }
 
+    /// As after a correction with this ratio: nothing else of one correction is used by the next.
+    pub fn remember_contraction(&mut self, contraction: f64) {
+        self.contraction = contraction;
+    }
+
     /// How far from the solution the last correction ended, estimated, in the units of what oscillates: a mean over coordinates and time.
     pub fn left_in_oscillation(&self) -> f64 {
         self.left * self.scale.oscillation
@@ -357,7 +365,11 @@ impl Newton {
         self.memory.clear();
         self.jacobian
             .factorise()
-            .map_err(|at| NewtonError::Singular { iterations: 0, at })
+            .map_err(|at| NewtonError::Singular {
+                iterations: 0,
+                column: at.column,
+                pivot: at.pivot,
+            })
     }
 
     /// Evaluates the residual at `u` alone.

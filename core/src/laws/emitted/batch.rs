@@ -230,15 +230,8 @@ where
 {
     #[inline(always)]
     fn run<T: Target>(self) {
-        let Call {
-            samples,
-            mut outputs,
-        } = self.call;
-        let Samples {
-            arguments,
-            gap,
-            rate,
-        } = samples;
+        let (of, mut outputs) = (self.call.samples, self.call.outputs);
+        let (arguments, gap, rate) = (of.arguments, of.gap, of.rate);
         let count = gap.len();
         let rate = &rate[..count];
         outputs.write(
@@ -274,15 +267,8 @@ where
 {
     #[inline(always)]
     fn run<T: Target>(self) {
-        let Call {
-            samples,
-            mut outputs,
-        } = self.call;
-        let Samples {
-            arguments,
-            gap,
-            rate,
-        } = samples;
+        let (of, mut outputs) = (self.call.samples, self.call.outputs);
+        let (arguments, gap, rate) = (of.arguments, of.gap, of.rate);
         let set = Available::in_use();
         let (needs, exponents) = (O::needs(&K::USES), K::exponents(arguments));
         let at_zero = exponents.map(super::at_zero);

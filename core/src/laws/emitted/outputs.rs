@@ -41,15 +41,11 @@ impl<const V: usize> Outputs<V> for Slopes<'_> {
 
     #[inline(always)]
     fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]) {
-        let Derivatives {
-            force,
-            by_gap,
-            by_rate,
-        } = &mut self.0;
+        let out = &mut self.0;
         write_3(
-            &mut force[start..][..count],
-            &mut by_gap[start..][..count],
-            &mut by_rate[start..][..count],
+            &mut out.force[start..][..count],
+            &mut out.by_gap[start..][..count],
+            &mut out.by_rate[start..][..count],
             values,
         );
     }
@@ -69,15 +65,11 @@ impl<const V: usize, const AT: usize> Outputs<V> for SlopesAndBy<'_, AT> {
 
     #[inline(always)]
     fn write(&mut self, start: usize, count: usize, values: impl Fn(usize) -> [f64; V]) {
-        let Derivatives {
-            force,
-            by_gap,
-            by_rate,
-        } = &mut self.out;
+        let out = &mut self.out;
         write_4::<AT, V>(
-            &mut force[start..][..count],
-            &mut by_gap[start..][..count],
-            &mut by_rate[start..][..count],
+            &mut out.force[start..][..count],
+            &mut out.by_gap[start..][..count],
+            &mut out.by_rate[start..][..count],
             &mut self.by_argument[start..][..count],
             values,
         );

@@ -2,7 +2,7 @@
 
 use super::program::varying;
 use super::{LawData, Node};
-use crate::error::{Error, ErrorKind};
+use crate::error::ErrorKind;
 use crate::law::LawFacts;
 
 /// Why facts and data do not describe one law.
@@ -67,8 +67,8 @@ pub enum DataError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    DataError:
+crate::error::room_error! {
+    DataError, |_| ErrorKind::Model;
     Levels { facts, data }
     Pieces { levels, pieces }
     Derivatives { derivatives, arguments }
@@ -77,12 +77,6 @@ crate::error::sentence_as_debug! {
     NoNode { node, nodes }
     LevelVaries { level }
     ;
-}
-
-impl From<DataError> for Error {
-    fn from(error: DataError) -> Self {
-        Self::new(ErrorKind::Model, error)
-    }
 }
 
 /// Whether facts and data describe one law, so that programs can be made of the data.

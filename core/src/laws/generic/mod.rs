@@ -17,8 +17,11 @@ use std::sync::Arc;
 use crate::law::Law;
 use crate::system::{System, SystemFacts, Variable};
 
+#[doc(hidden)]
 pub use consistent::DataError;
+#[doc(hidden)]
 pub use hertzian_contract::data::{LawData, LevelData, Node, PieceData};
+#[doc(hidden)]
 pub use law::InterpretedLaw;
 #[cfg(feature = "text")]
 pub use text::{Declaration, DeclarationError, Fault};
@@ -27,19 +30,11 @@ pub use text::{Declaration, DeclarationError, Fault};
 /// [data](Law::data), or data that do not describe it.
 ///
 /// It computes what the system computes, from the same declaration, without the generated kernels.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Interpreted {
     system: Arc<dyn System>,
     /// In the order of the system's; `None` where it has no data.
     laws: Vec<Option<InterpretedLaw>>,
-}
-
-impl std::fmt::Debug for Interpreted {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Interpreted")
-            .field("system", &self.system.facts().name)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Interpreted {

@@ -69,7 +69,8 @@ pub(crate) struct Place<'a> {
 }
 
 impl Place<'_> {
-    fn coefficients(&self, value: f64) -> Vec<f64> {
+    /// The coefficients at a value of the variable.
+    pub(crate) fn coefficients(&self, value: f64) -> Vec<f64> {
         let (mut parameters, mut omega) = (self.parameters.to_vec(), self.omega);
         match self.variable {
             Variable::Omega => omega = value,

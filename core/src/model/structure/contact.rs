@@ -29,31 +29,19 @@ impl Contact {
         }
     }
 
-    /// The arguments of the law, in its order. Where the law declares a range of one, the structure checks it.
-    #[must_use]
-    pub fn arguments(mut self, arguments: impl IntoIterator<Item = impl Into<Value>>) -> Self {
-        self.arguments = arguments.into_iter().map(Into::into).collect();
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// The arguments of the law, in its order. Where the law declares a range of one, the structure checks it.
+        arguments(arguments: impl IntoIterator<Item = impl Into<Value>>) {
+            self.arguments = arguments.into_iter().map(Into::into).collect();
+        }
 
-    /// The direction of gap and force, one entry per coordinate.
-    #[must_use]
-    pub fn direction(mut self, direction: impl Into<Vec<f64>>) -> Self {
-        self.gap = direction.into();
-        self
-    }
+        /// The direction of gap and force, one entry per coordinate.
+        direction(direction: impl Into<Vec<f64>>) { self.gap = direction.into() }
 
-    /// A direction of the force that differs from that of the gap.
-    #[must_use]
-    pub fn force_direction(mut self, direction: impl Into<Vec<f64>>) -> Self {
-        self.force = Some(direction.into());
-        self
-    }
+        /// A direction of the force that differs from that of the gap.
+        force_direction(direction: impl Into<Vec<f64>>) { self.force = Some(direction.into()) }
 
-    /// What is subtracted from `direction . q`.
-    #[must_use]
-    pub fn offset(mut self, offset: impl Into<Value>) -> Self {
-        self.offset = offset.into();
-        self
+        /// What is subtracted from `direction . q`.
+        offset(offset: impl Into<Value>) { self.offset = offset.into() }
     }
 }

@@ -1,6 +1,6 @@
 //! What can be wrong with a structure.
 
-use crate::error::{Error, ErrorKind};
+use crate::error::ErrorKind;
 use crate::numeric::decimal::Decimal;
 
 /// What is wrong with a structure.
@@ -88,6 +88,36 @@ pub enum StructureError {
         /// The name.
         parameter: String,
     },
+    /// An output has no name, or that of something else.
+    #[error(
+        "an output cannot be called `{output}`: it needs a name that no coordinate, parameter or other output has"
+    )]
+    OutputName {
+        /// The name.
+        output: String,
+    },
+    /// An output has not as many factors as there are coordinates.
+    #[error("output `{output}` has {entries} factors; there are {coordinates} coordinates")]
+    OutputSize {
+        /// Its name.
+        output: String,
+        /// How many factors.
+        entries: usize,
+        /// How many there must be.
+        coordinates: usize,
+    },
+    /// An output is the force of a contact that is not there.
+    #[error(
+        "output `{output}` is the force of contact {contact}, counted from zero; there are {contacts}"
+    )]
+    NoContact {
+        /// Its name.
+        output: String,
+        /// The contact asked for, from zero.
+        contact: usize,
+        /// How many there are.
+        contacts: usize,
+    },
     /// One name was used with two values.
     #[error("parameter `{parameter}` is {first} in one place and {second} in another")]
     TwoValues {
@@ -100,8 +130,8 @@ pub enum StructureError {
     },
 }
 
-crate::error::sentence_as_debug! {
-    StructureError:
+crate::error::room_error! {
+    StructureError, |_| ErrorKind::Model;
     MatrixSize { matrix, rows, columns, coordinates }
     DirectionSize { contact, entries, coordinates }
     NotFinite { place, value }
@@ -110,12 +140,9 @@ crate::error::sentence_as_debug! {
     Arguments { law, expected, given }
     Range { law, argument, value, range }
     Name { parameter }
+    OutputName { output }
+    OutputSize { output, entries, coordinates }
+    NoContact { output, contact, contacts }
     TwoValues { parameter, first, second }
     ;
-}
-
-impl From<StructureError> for Error {
-    fn from(error: StructureError) -> Self {
-        Self::new(ErrorKind::Model, error)
-    }
 }

@@ -7,6 +7,7 @@ mod error;
 
 use std::sync::Arc;
 
+#[doc(no_inline)]
 pub use nalgebra::DMatrix;
 
 pub use self::builder::Builder;
@@ -40,21 +41,12 @@ use crate::system::{System, SystemFacts, Variable};
 /// assert!(branch.points.len() > 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Structure {
     facts: SystemFacts,
     values: Vec<f64>,
     coefficients: Vec<Coefficient>,
     laws: Vec<Arc<dyn Law>>,
-}
-
-impl std::fmt::Debug for Structure {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Structure")
-            .field("name", &self.facts.name)
-            .field("values", &self.values)
-            .finish_non_exhaustive()
-    }
 }
 
 /// A number, or a named parameter that a continuation may vary.
@@ -91,7 +83,7 @@ impl Value {
 }
 
 /// A coefficient of (1) or (2): a number, or a number times a parameter.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 struct Coefficient {
     factor: f64,
     parameter: Option<usize>,
@@ -105,6 +97,7 @@ impl Structure {
             matrices: [mass.clone(), damping.clone(), stiffness.clone()],
             loads: Vec::new(),
             contacts: Vec::new(),
+            outputs: Vec::new(),
         }
     }
 

@@ -47,18 +47,21 @@ pub(crate) fn range(
     from: f64,
     to: f64,
 ) -> Result<(), Error> {
-    for value in [from, to] {
-        match variable {
-            Variable::Omega => {
-                omega(value)?;
-            }
-            Variable::Parameter(index) => parameter(&facts.parameters[index], value)?,
-        }
+    for end in [from, to] {
+        value(facts, variable, end)?;
     }
     if from == to {
         return Err(RequestError::EmptyRange { value: from }.into());
     }
     Ok(())
+}
+
+/// What is varied may have a value.
+pub(crate) fn value(facts: &SystemFacts, variable: Variable, value: f64) -> Result<(), Error> {
+    match variable {
+        Variable::Omega => omega(value).map(|_| ()),
+        Variable::Parameter(index) => parameter(&facts.parameters[index], value),
+    }
 }
 
 /// A frequency is positive and finite.

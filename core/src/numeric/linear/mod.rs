@@ -35,13 +35,10 @@ pub struct Matrix {
 
 /// The matrix could not be factorised.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
 pub struct Singular {
     /// Column without a usable pivot.
     pub column: usize,
     /// The largest candidate there, relative to the row it stands in.
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub pivot: f64,
 }
 

@@ -1,20 +1,40 @@
 //! What a user reads off an orbit.
 
 mod contact;
+mod instant;
+mod measure;
 mod peak;
+mod reading;
 mod sampler;
+mod sum;
+mod waveform;
+
+use std::f64::consts::TAU;
 
 use crate::balance::{Balance, gap_series, rate_series};
 pub use crate::branches::observed::{ContactMotion, Motion, Observed};
 use crate::numeric::fourier::series;
 use contact::ContactObserver;
+pub use instant::outputs_at;
+pub use measure::{Measure, Wanted};
+pub use reading::{Reading, SpectrumLine};
+pub(crate) use reading::{of_coordinate, of_series, over_period, series_over_period, stored};
 use sampler::Sampler;
+use sum::Motions;
+use waveform::Waveform;
 
 impl Motion {
     /// Reads the motion off a series; rest off an empty one.
     pub fn of(series: &[f64]) -> Self {
         let series = if series.is_empty() { &[0.0] } else { series };
         Self::read(&mut Sampler::default(), series)
+    }
+
+    /// Largest value by size over the root of the mean square; `None` at rest in zero, and where only the extremes were read off.
+    pub fn crest_factor(&self) -> Option<f64> {
+        let largest = self.maximum.abs().max(self.minimum.abs());
+        let rms = self.rms.filter(|&rms| rms > 0.0)?;
+        Some(largest / rms)
     }
 
     fn read(sampler: &mut Sampler, series: &[f64]) -> Self {
@@ -59,6 +79,7 @@ pub(crate) struct Observer {
     forces: Vec<f64>,
     force: Vec<f64>,
     velocity: Vec<f64>,
+    impulses: Vec<f64>,
     phases: Vec<[f64; 2]>,
 }
 
@@ -72,6 +93,7 @@ impl Observer {
     pub(crate) fn observe(&mut self, balance: &mut Balance<'_>, u: &[f64]) -> Observed {
         let length = balance.length();
         let u = &u[..balance.layout().coordinates * length];
+        self.impulses.clear();
         let (input_power, dissipated_power) = self.powers(balance, u);
         // Contacts first: a coordinate that moves as a gap does is not searched again.
         let count = balance.layout().contacts.len();
@@ -84,7 +106,11 @@ impl Observer {
         let contacts = on_pieces
             .iter_mut()
             .enumerate()
-            .map(|(contact, on_pieces)| self.contact_motion(balance, contact, u, on_pieces))
+            .map(|(contact, on_pieces)| {
+                let motion = self.contact_motion(balance, contact, u, on_pieces);
+                let impulse = self.impulses.get(contact).copied();
+                ContactMotion { impulse, ..motion }
+            })
             .collect();
         self.phases.clear();
         let motions = u
@@ -95,8 +121,10 @@ impl Observer {
                 motion
             })
             .collect();
+        let outputs = self.outputs(balance, u);
         Observed {
             motions,
+            outputs,
             contacts,
             on_pieces,
             input_power: Some(input_power),
@@ -105,7 +133,22 @@ impl Observer {
         }
     }
 
-    /// `<f . q'>` and `<(C q' + K q + sum e phi) . q'>`.
+    /// What is read off the outputs of the system.
+    fn outputs(&mut self, balance: &Balance<'_>, u: &[f64]) -> Vec<Motion> {
+        let count = balance.system().facts().outputs.len();
+        if count == 0 {
+            return Vec::new();
+        }
+        let motions = Motions::of_balance(balance, u);
+        (0..count)
+            .map(|output| {
+                let waveform = Waveform::new(&motions, motions.output(output));
+                waveform.motion(&mut self.sampler)
+            })
+            .collect()
+    }
+
+    /// `<f . q'>` and `<(C q' + K q + sum e phi) . q'>`; the impulses of the contacts besides.
     fn powers(&mut self, balance: &mut Balance<'_>, u: &[f64]) -> (f64, f64) {
         let length = balance.length();
         for sum in [&mut self.load, &mut self.forces] {
@@ -119,9 +162,11 @@ impl Observer {
         self.force.resize(workspace, 0.0);
         for contact in 0..balance.layout().contacts.len() {
             if contact::is_idle(balance, contact) {
+                self.impulses.push(0.0);
                 continue;
             }
             balance.contact_force(u, contact, &mut self.force);
+            self.impulses.push(self.force[0] * TAU / balance.base());
             balance.add_in_direction(contact, &self.force, &mut self.forces);
         }
         self.velocity.resize(length, 0.0);
@@ -165,8 +210,6 @@ impl Observer {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
     use super::*;
     use crate::balance::Resolution;
     use crate::balance::aft::Aft;

@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::magnus::Magnus;
 use super::product::eigenvalues_of_product;
-use super::two::{self, Square};
+use super::square::{self, Square};
 use crate::model::rigid::Rigid;
 use crate::numeric::spectrum::eigenvalues;
 use crate::numeric::spectrum::{eigenvalues_of_two, spread};
@@ -85,7 +85,7 @@ impl FundamentalOfTwo {
     pub(super) fn new() -> Self {
         Self {
             scaled: [[0.0; 4]; 3],
-            product: two::IDENTITY,
+            product: square::IDENTITY,
             lack: [0.0; 4],
             sums: Sums::default(),
         }
@@ -98,19 +98,19 @@ impl Fundamental for FundamentalOfTwo {
     }
 
     fn constant(&mut self) {
-        let propagator = two::exponential(self.scaled[0]);
+        let propagator = square::exponential(self.scaled[0]);
         self.sums
             .add(self.scaled[0][0] + self.scaled[0][3], [0.0; 2]);
-        self.product = two::product(&propagator, &self.product);
-        self.lack = two::product(&propagator, &self.lack);
+        self.product = square::product(&propagator, &self.product);
+        self.lack = square::product(&propagator, &self.lack);
     }
 
     fn step(&mut self) {
-        let step = two::step(&self.scaled);
+        let step = square::step(&self.scaled);
         self.sums.add(step.trace, step.sizes);
-        self.product = two::product(&step.propagator, &self.product);
-        self.lack = two::product(&step.propagator, &self.lack);
-        let lacking = two::product(&step.lack, &self.product);
+        self.product = square::product(&step.propagator, &self.product);
+        self.lack = square::product(&step.propagator, &self.lack);
+        let lacking = square::product(&step.lack, &self.product);
         for (to, from) in self.lack.iter_mut().zip(lacking) {
             *to += from;
         }

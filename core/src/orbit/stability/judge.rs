@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 use super::method::{Floquet, Found};
 use super::orbit::Orbit;
 use super::refined::{self, Refined};
-use super::rest::Rest;
+use super::resting_gap::Rest;
 use super::{Answer, Method, Stability};
 use crate::balance::Balance;
 use crate::balance::truncation::{BEYOND, NOTHING, RefinedBalance};
@@ -84,6 +84,18 @@ pub(crate) struct Judge {
     pub(crate) computed: usize,
 }
 
+/// What a judge takes over from one orbit to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Memory {
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    aim: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pace: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    sentinel: Option<f64>,
+}
+
 impl Judge {
     pub(crate) fn new(method: Method) -> Self {
         let tolerance = if method == Method::Default {
@@ -100,6 +112,28 @@ impl Judge {
             rest: Rest::default(),
             refined: None,
             computed: 0,
+        }
+    }
+
+    /// What it takes over from one orbit to the next.
+    pub(crate) fn memory(&self) -> Memory {
+        Memory {
+            aim: self.aim,
+            pace: self.engine.pace(),
+            sentinel: self.sentinel.as_ref().map(|sentinel| sentinel.pace()),
+        }
+    }
+
+    /// As after an orbit that left this.
+    pub(crate) fn remember(&mut self, memory: Memory) {
+        if memory.aim > 0.0 {
+            self.aim = memory.aim;
+        }
+        self.engine.keep_pace(memory.pace);
+        if let Some(pace) = memory.sentinel {
+            let mut sentinel = Method::Default.engine();
+            sentinel.keep_pace(pace);
+            self.sentinel = Some(sentinel);
         }
     }
 

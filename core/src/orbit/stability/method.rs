@@ -152,6 +152,16 @@ pub(crate) trait Floquet: std::fmt::Debug {
         false
     }
 
+    /// What it takes over from one orbit to the next, as a number.
+    fn pace(&self) -> f64 {
+        0.0
+    }
+
+    /// As after an orbit that left this. What cannot be is left out.
+    fn keep_pace(&mut self, pace: f64) {
+        let _ = pace;
+    }
+
     /// The work done so far.
     fn cost(&self) -> Cost;
 }

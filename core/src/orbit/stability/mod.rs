@@ -30,17 +30,16 @@ mod magnus;
 mod method;
 mod monodromy;
 mod orbit;
-pub(crate) mod pairs;
 mod path;
 mod product;
 mod refined;
-mod rest;
-mod two;
+mod resting_gap;
+mod square;
+pub(crate) mod uncorrected;
 
 pub use crate::branches::stability::{Stability, Verdict};
 pub use answer::Answer;
 pub use method::{Cost, Method, Projection, Sorting};
-pub(crate) use pairs::product_of_pairs;
 
 #[cfg(test)]
 mod method_tests;

@@ -302,6 +302,16 @@ impl Floquet for Monodromy {
         self.overlooks
     }
 
+    fn pace(&self) -> f64 {
+        self.density
+    }
+
+    fn keep_pace(&mut self, pace: f64) {
+        if (FIRST_DENSITY..=LARGEST_DENSITY).contains(&pace) {
+            self.density = pace;
+        }
+    }
+
     fn cost(&self) -> Cost {
         self.cost
     }

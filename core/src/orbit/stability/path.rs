@@ -27,6 +27,9 @@ pub(super) enum Event {
 /// Phase between cuts up to which they switch together.
 const TOGETHER: f64 = 1e-3;
 
+/// Numbers of harmonics that are prepared for at once: those of an orbit, and of the corrected one.
+const FINDERS: usize = 4;
+
 /// A phase at which the orbit is cut.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cut {
@@ -48,7 +51,8 @@ pub(super) struct Contact {
     pub(super) rate: Vec<f64>,
     /// The piece it is on, as the cuts are passed.
     pub(super) piece: usize,
-    finder: Option<CrossingFinder>,
+    /// One for each number of harmonics, so that phases do not depend on the orbits that came before.
+    finders: Vec<(usize, CrossingFinder)>,
     /// Powers of the grading at the lower and the upper end of every piece, for the arguments at hand.
     powers: Vec<[u32; 2]>,
 }
@@ -87,9 +91,7 @@ impl Path {
     /// Finds the cuts of one contact.
     fn cut(&mut self, index: usize, facts: &LawFacts) {
         let contact = &mut self.contacts[index];
-        let finder = contact
-            .finder
-            .get_or_insert_with(|| CrossingFinder::new(series::harmonics(&contact.gap)));
+        let finder = finder(&mut contact.finders, series::harmonics(&contact.gap));
         finder.sample(&contact.gap);
         let cut = |tau, level, event| Cut {
             tau,
@@ -183,6 +185,19 @@ impl Path {
             1
         }
     }
+}
+
+/// The one that is prepared for so many harmonics.
+fn finder(finders: &mut Vec<(usize, CrossingFinder)>, harmonics: usize) -> &mut CrossingFinder {
+    let known = finders.iter().position(|(of, _)| *of == harmonics);
+    let place = known.unwrap_or_else(|| {
+        if finders.len() == FINDERS {
+            finders.clear();
+        }
+        finders.push((harmonics, CrossingFinder::new(harmonics)));
+        finders.len() - 1
+    });
+    &mut finders[place].1
 }
 
 /// Levels that coincide are crossed in their order when the gap rises, and in the opposite one when it falls.

@@ -11,13 +11,15 @@ use crate::branches::branch::Branch;
 use crate::branches::point::{Event, Point};
 use crate::error::Error;
 use crate::report::error::FileError;
+use crate::report::keep;
 
 /// The version of what is written: files of another one are not read.
-pub const JSON_VERSION: u32 = 1;
+pub const JSON_VERSION: u32 = 2;
 
 #[derive(Deserialize)]
 struct Head {
-    version: u32,
+    /// The first version wrote none.
+    version: Option<u32>,
 }
 
 #[derive(Serialize)]
@@ -31,6 +33,66 @@ struct Read {
     branches: Vec<Branch>,
 }
 
+/// What is in a file.
+///
+/// # Errors
+/// If it cannot be read.
+pub(crate) fn contents(path: &Path) -> Result<Vec<u8>, FileError> {
+    std::fs::read(path).map_err(|source| FileError::Read {
+        path: path.to_path_buf(),
+        kind: source.kind(),
+    })
+}
+
+/// Why a text is none of what is read.
+pub(crate) fn refused(path: &Path, text: &[u8], source: &serde_json::Error) -> FileError {
+    let path = path.to_path_buf();
+    // Where it ends within a number, the number is at fault.
+    let begins = text.trim_ascii_start().starts_with(b"{");
+    let ends = text.trim_ascii_end().ends_with(b"}");
+    if source.is_eof() || (begins && !ends) {
+        return FileError::Truncated { path };
+    }
+    let reason = source.to_string();
+    FileError::Format { path, reason }
+}
+
+/// A text is of the version that is read.
+///
+/// # Errors
+/// If it is of another one, or none at all.
+pub(crate) fn check_version(path: &Path, text: &[u8]) -> Result<(), FileError> {
+    let head = serde_json::from_slice(text).map_err(|source| refused(path, text, &source));
+    let Head { version } = head?;
+    is_read(path, version.unwrap_or(1))
+}
+
+/// Files of this version alone are read.
+fn is_read(path: &Path, version: u32) -> Result<(), FileError> {
+    if version == JSON_VERSION {
+        return Ok(());
+    }
+    Err(FileError::Version {
+        path: path.to_path_buf(),
+        version,
+        expected: JSON_VERSION,
+    })
+}
+
+/// Writes what a file has as JSON.
+///
+/// # Errors
+/// If the file cannot be written.
+pub(crate) fn write(path: &Path, written: &impl Serialize) -> Result<(), FileError> {
+    let failed = |source: std::io::Error| FileError::Write {
+        path: path.to_path_buf(),
+        kind: source.kind(),
+    };
+    let mut text = serde_json::to_vec(written).map_err(|source| failed(source.into()))?;
+    text.push(b'\n');
+    hertzian_file::write(path, text).map_err(failed)
+}
+
 impl Branch {
     /// Writes it as JSON: an object with a `version` and a list `branches`, of this one. Fields have the names that they have here.
     /// Numbers read back to the same bits; of those that JSON does not have, `"inf"`, `"-inf"` and `"NaN"` are written, and `null`
@@ -38,62 +100,74 @@ impl Branch {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn write_json(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        let path = path.as_ref();
-        let failed = |source: std::io::Error| FileError::Write {
-            path: path.to_path_buf(),
-            kind: source.kind(),
-        };
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let written = Written {
             version: JSON_VERSION,
             branches: [self],
         };
-        let mut text = serde_json::to_vec(&written).map_err(|source| failed(source.into()))?;
-        text.push(b'\n');
-        Ok(hertzian_file::write(path, text).map_err(failed)?)
+        Ok(write(path.as_ref(), &written)?)
     }
 
-    /// The first branch of a file that [`write_json`](Self::write_json) or `hertzian response --json` has written. It is equal to what was
-    /// written and has no model: [`attach`](Self::attach) gives it one.
+    /// The first branch of a file that [`write`](Self::write) or `hertzian response --json` has written, or in which one
+    /// was [kept](crate::FrequencyResponse::keep). It is equal to what was written and has no model: [`attach`](Self::attach) gives it one.
     ///
     /// # Errors
     /// If the file cannot be read, is none of these, ends early, is of another version, or holds numbers that do not belong together.
-    pub fn read_json(path: impl AsRef<Path>) -> Result<Self, Error> {
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let text = std::fs::read(path).map_err(|source| FileError::Read {
+        let none = || FileError::Format {
             path: path.to_path_buf(),
-            kind: source.kind(),
-        })?;
-        // Where it ends within a number, the number is at fault.
-        let begins = text.trim_ascii_start().starts_with(b"{");
-        let ends = text.trim_ascii_end().ends_with(b"}");
-        let refused = |source: serde_json::Error| {
-            let path = path.to_path_buf();
-            if source.is_eof() || (begins && !ends) {
-                return FileError::Truncated { path };
-            }
-            let reason = source.to_string();
-            FileError::Format { path, reason }
+            reason: "there is no branch in it".to_owned(),
         };
-        let Head { version } = serde_json::from_slice(&text).map_err(refused)?;
-        if version != JSON_VERSION {
-            let (path, expected) = (path.to_path_buf(), JSON_VERSION);
-            return Err(FileError::Version {
-                path,
-                version,
-                expected,
-            }
-            .into());
+        let first = Self::read_all(path)?.into_iter().next();
+        Ok(first.ok_or_else(none)?)
+    }
+
+    /// All branches of such a file, in their order there.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_all(path: impl AsRef<Path>) -> Result<Vec<Self>, Error> {
+        let path = path.as_ref();
+        let text = contents(path)?;
+        let refused = |source: serde_json::Error| refused(path, &text, &source);
+        if let Some(kept) = keep::read(&text) {
+            is_read(path, kept.version)?;
+            let branch = kept.branch().and_then(Self::checked).map_err(refused)?;
+            return Ok(vec![branch]);
         }
+        check_version(path, &text)?;
         let Read { branches } = serde_json::from_slice(&text).map_err(refused)?;
-        let Some(branch) = branches.into_iter().next() else {
-            return Err(refused(serde_json::Error::custom("there is no branch in it")).into());
-        };
-        if let Some(at) = branch.disagrees() {
-            let reason = format!("the numbers of the orbit at {at} disagree");
-            return Err(refused(serde_json::Error::custom(reason)).into());
+        let branches = branches.into_iter().map(Self::checked);
+        let branches: serde_json::Result<Vec<Self>> = branches.collect();
+        Ok(branches.map_err(refused)?)
+    }
+
+    /// Itself, if its numbers belong together.
+    fn checked(self) -> serde_json::Result<Self> {
+        if !self.belongs_together() {
+            let reason = "what it says of its model and of its events does not belong together";
+            return Err(serde_json::Error::custom(reason));
         }
-        Ok(branch)
+        match self.disagrees() {
+            None => Ok(self),
+            Some(at) => {
+                let reason = format!("the numbers of the orbit at {at} disagree");
+                Err(serde_json::Error::custom(reason))
+            }
+        }
+    }
+
+    /// Whether names, units and contacts of the model are as many as there must be, and events lie on the branch.
+    fn belongs_together(&self) -> bool {
+        let (model, points) = (&self.model, self.points.len());
+        let parameter = |name: &str| model.parameters.iter().any(|own| own.name == name);
+        let events = self.events.iter().map(|event| event.after);
+        let mut after = events.chain(self.turns.iter().map(|turn| turn.after));
+        [0, model.coordinates.len()].contains(&model.units.len())
+            && [0, model.pieces.len()].contains(&model.contacts.len())
+            && (self.varied == "omega" || parameter(&self.varied))
+            && after.all(|after| after <= points)
     }
 
     /// Where an orbit, one of events too, has not as many numbers as those of the model.
@@ -127,16 +201,14 @@ impl Branch {
         let (model, orbit, observed) = (&self.model, &point.orbit, &point.observed);
         let coordinates = model.coordinates.len();
         let contacts = observed.contacts.len();
-        coordinates > 0
-            && orbit.coordinates == coordinates
-            && orbit.period > 0
-            && (orbit.series.is_empty() || self.has_series(&orbit.series))
-            && orbit.states.len().is_multiple_of(2 * coordinates)
-            && !(orbit.series.is_empty() && orbit.states.is_empty())
+        let mut pieces = observed.on_pieces.iter().zip(&model.pieces);
+        orbit.is_of(coordinates)
             && observed.motions.len() == coordinates
             && point.parameters.len() == model.parameters.len()
+            && [0, model.outputs.len()].contains(&observed.outputs.len())
             && [0, model.pieces.len()].contains(&contacts)
             && observed.on_pieces.len() == contacts
+            && pieces.all(|(parts, pieces)| parts.len() == *pieces)
     }
 
     /// Whether these are a mean and pairs of cosine and sine for each coordinate.

@@ -1,9 +1,9 @@
 //! Results as files that other programs read.
 
 #[cfg(feature = "serde")]
-mod json;
+pub(crate) mod json;
 mod npy;
-mod table;
+pub(crate) mod table;
 
 pub use crate::numeric::decimal::Decimal;
 pub use hertzian_file::{can_write, write};

@@ -3,7 +3,10 @@
 use std::fmt::Write;
 
 use crate::branches::branch::Model;
+use crate::branches::observed::Motion;
 use crate::branches::point::Point;
+use crate::orbit::observe::Measure;
+use crate::report::unit::in_unit;
 
 /// Names of the columns that every table begins with; after them come the parameters of the system, by name, and then for each
 /// contact, counted from one, `contact_1_min_force` and `contact_1_max_force`, the extremes of its law with their signs, and
@@ -24,6 +27,12 @@ use crate::branches::point::Point;
 /// | `branch` | number of the branch; 0 is the one that was asked for |
 /// | `period` | periods of the declaration in the period of the orbit |
 /// | `value` | of what varies along the branch |
+///
+/// Where a model has outputs or several coordinates, there follow for each output and each coordinate, by its name, as of one called `tip`,
+/// `tip_p2p`, `tip_max`, `tip_min`, `tip_mean`, `tip_rms` and `tip_crest`, the [measures](Measure) of these names; then for each contact
+/// `contact_1_impulse` and `contact_1_impacts`, over the period of the orbit.
+///
+/// In a model with units what has one says so: `omega [rad/s]`, `tip_rms [um]`.
 ///
 /// What is not known, or is not there, is empty, as much is of an orbit by shooting until it is
 /// [completed](crate::Branch::complete); a number that is not finite is `inf` or `NaN`.
@@ -77,7 +86,19 @@ pub struct Table {
     parameters: usize,
     /// Pieces of the law of each contact.
     pieces: Vec<usize>,
+    /// How many outputs and coordinates have columns of their names.
+    named: [usize; 2],
 }
+
+/// What there is a column for of each named signal.
+const MEASURES: [Measure; 6] = [
+    Measure::PeakToPeak,
+    Measure::Maximum,
+    Measure::Minimum,
+    Measure::Mean,
+    Measure::Rms,
+    Measure::CrestFactor,
+];
 
 impl Table {
     /// A table without rows. A parameter whose name is taken gets an underscore after it.
@@ -86,7 +107,7 @@ impl Table {
     }
 
     /// The same where the system itself is not at hand.
-    pub(crate) fn of_model(model: &Model) -> Self {
+    pub fn of_model(model: &Model) -> Self {
         let pieces = model.pieces.clone();
         let mut names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
         let of_contacts = of_contacts(&pieces);
@@ -98,10 +119,20 @@ impl Table {
             names.push(name);
         }
         names.extend(of_contacts);
+        let named = named(model);
+        if named != [0; 2] {
+            names.extend(of_signals(model));
+            let contacts = 1..=pieces.len();
+            names.extend(contacts.flat_map(|contact| {
+                ["impulse", "impacts"].map(|what| format!("contact_{contact}_{what}"))
+            }));
+        }
+        with_units(model, &mut names);
         let mut table = Self {
             text: String::new(),
             parameters: model.parameters.len(),
             pieces,
+            named,
         };
         table.line(names.iter().map(String::as_str));
         table
@@ -129,8 +160,34 @@ impl Table {
                     .take(2 + pieces),
             );
         }
+        let of_signals = self.signals(point);
         let all = cells.iter().chain(&parameters).chain(&of_contacts);
+        let all = all.chain(&of_signals);
         self.line(all.map(String::as_str));
+    }
+
+    /// The columns of named signals, and what follows them.
+    fn signals(&self, point: &Point) -> Vec<String> {
+        let observed = &point.observed;
+        let [outputs, coordinates] = self.named;
+        let motion = |motions: &[Motion], index: usize| motions.get(index).copied();
+        let outputs = (0..outputs).map(|index| motion(&observed.outputs, index));
+        let coordinates = (0..coordinates).map(|index| motion(&observed.motions, index));
+        let mut cells: Vec<String> = outputs
+            .chain(coordinates)
+            .flat_map(|motion| {
+                MEASURES.map(|measure| maybe(motion.and_then(|motion| measure.of(&motion))))
+            })
+            .collect();
+        if self.named != [0; 2] {
+            for index in 0..self.pieces.len() {
+                let contact = observed.contacts.get(index);
+                cells.push(maybe(contact.and_then(|contact| contact.impulse)));
+                let impacts = contact.map(|contact| contact.impacts().to_string());
+                cells.push(impacts.unwrap_or_default());
+            }
+        }
+        cells
     }
 
     /// The text of the table, with a line break after every row.
@@ -139,16 +196,66 @@ impl Table {
     }
 
     fn line<'c>(&mut self, cells: impl Iterator<Item = &'c str>) {
-        for (index, cell) in cells.enumerate() {
-            let comma = if index == 0 { "" } else { "," };
-            // Writing to a string does not fail.
-            let _ = if cell.contains([',', '"', '\n', '\r']) {
-                write!(self.text, "{comma}\"{}\"", cell.replace('"', "\"\""))
-            } else {
-                write!(self.text, "{comma}{cell}")
-            };
+        line(&mut self.text, cells);
+    }
+}
+
+/// Adds a line to the text of a table.
+pub(crate) fn line<'c>(text: &mut String, cells: impl Iterator<Item = &'c str>) {
+    for (index, cell) in cells.enumerate() {
+        let comma = if index == 0 { "" } else { "," };
+        // Writing to a string does not fail.
+        let _ = if cell.contains([',', '"', '\n', '\r']) {
+            write!(text, "{comma}\"{}\"", cell.replace('"', "\"\""))
+        } else {
+            write!(text, "{comma}{cell}")
+        };
+    }
+    text.push('\n');
+}
+
+/// How many outputs and coordinates have columns of their names: none where one coordinate is all there is.
+fn named(model: &Model) -> [usize; 2] {
+    match [model.outputs.len(), model.coordinates.len()] {
+        [0, 1] => [0, 0],
+        counts => counts,
+    }
+}
+
+/// Names of the columns of outputs and coordinates.
+fn of_signals(model: &Model) -> impl Iterator<Item = String> {
+    let outputs = model.outputs.iter().map(|output| &output.name);
+    let names = outputs.chain(&model.coordinates);
+    names.flat_map(|name| MEASURES.map(|measure| format!("{name}_{measure}")))
+}
+
+/// Adds units to the names of columns.
+fn with_units(model: &Model, names: &mut [String]) {
+    let Some(first) = model.units.first() else {
+        return;
+    };
+    let own = ["omega"].into_iter().zip(["rad/s"]);
+    let of_first = ["peak_to_peak", "max", "min", "mean", "rms"];
+    let own = own.chain(of_first.into_iter().map(|name| (name, first.as_str())));
+    let mut units: Vec<(usize, String)> = own
+        .filter_map(|(name, unit)| {
+            let place = COLUMNS.iter().position(|column| *column == name)?;
+            Some((place, unit.to_owned()))
+        })
+        .collect();
+    let parameters = model.parameters.iter().enumerate();
+    units.extend(parameters.map(|(index, own)| (COLUMNS.len() + index, own.unit.clone())));
+    let before = COLUMNS.len() + model.parameters.len() + of_contacts(&model.pieces).len();
+    if named(model) != [0; 2] {
+        let outputs = model.outputs.iter().map(|output| &output.unit);
+        let signals = outputs.chain(&model.units);
+        let of_signals = signals.flat_map(|unit| MEASURES.map(|measure| measure.unit(unit)));
+        units.extend(of_signals.enumerate().map(|(at, unit)| (before + at, unit)));
+    }
+    for (place, unit) in units {
+        if let Some(name) = names.get_mut(place) {
+            *name = in_unit(name, &unit);
         }
-        self.text.push('\n');
     }
 }
 
@@ -205,12 +312,12 @@ fn harmonics(point: &Point) -> String {
 }
 
 /// Empty where it is not known.
-fn maybe(value: Option<f64>) -> String {
+pub(crate) fn maybe(value: Option<f64>) -> String {
     value.map_or_else(String::new, number)
 }
 
 /// As short as reads back to the same number.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
@@ -259,6 +366,7 @@ mod tests {
             text: String::new(),
             parameters: 0,
             pieces: Vec::new(),
+            named: [0; 2],
         };
         table.line(["a,b", "\"", "c"].into_iter());
         assert_eq!(table.to_csv(), "\"a,b\",\"\"\"\",c\n");

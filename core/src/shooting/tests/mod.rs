@@ -11,6 +11,7 @@ use super::problem::{ShootingProblem, Source};
 use crate::branches::branch::Branch;
 use crate::branches::error::OrbitError;
 use crate::branches::progress::Progress;
+use crate::branches::recurrence::{CyclicSymmetry, Recurrence, SignedPermutation};
 use crate::branches::request::Guess;
 use crate::continuation::follow::Stop;
 use crate::continuation::jacobian::Jacobian;
@@ -67,11 +68,13 @@ fn problem(parameters: [f64; 4], variable: Variable, omega: f64) -> ShootingProb
         divisor: 1,
         period: 1,
         segments: 1,
-        odd: false,
+        symmetries: vec![CyclicSymmetry::none()],
+        at_once: Vec::new(),
         stability: true,
         points: 2000,
         steps: StepControl::default(),
         cancel: crate::cancel::Cancel::new(),
+        keep: None,
     }
 }
 
@@ -79,7 +82,7 @@ fn problem(parameters: [f64; 4], variable: Variable, omega: f64) -> ShootingProb
 fn followed(problem: &ShootingProblem, state: [f64; 2], from: f64, to: f64) -> Branch {
     let guess = Guess::State(state.to_vec());
     let go = &mut |_: Progress<'_>| ControlFlow::Continue(());
-    branch(problem, &guess, [from, to], go).unwrap()
+    branch(problem, &guess, [from, to], go).unwrap().branch
 }
 
 /// Against central differences, for one and several segments, a whole and half a period, every variable.
@@ -93,9 +96,17 @@ fn jacobian_agrees_with_differences() {
             Variable::Parameter(2),
         ] {
             let problem = problem([0.1, 0.5, 0.3, 0.0], variable, 0.9);
+            let image = if half {
+                SignedPermutation::minus(1)
+            } else {
+                SignedPermutation::identity()
+            };
             let span = Span {
-                period,
-                half,
+                recurrence: Recurrence {
+                    period,
+                    parts: if half { 2 } else { 1 },
+                    image,
+                },
                 segments,
             };
             let frame = Frame {
@@ -104,7 +115,7 @@ fn jacobian_agrees_with_differences() {
                 omega: 0.9,
                 ratio: 1.0,
             };
-            let mut equations = Equations::new(&problem, 1e-6, span, frame).unwrap();
+            let mut equations = Equations::new(&problem, 1e-6, span.clone(), frame).unwrap();
             let n = equations.unknowns();
             let mut u: Vec<f64> = (0..=n).map(|i| (i as f64 + 0.7).sin()).collect();
             u[n] = 0.8;
@@ -226,7 +237,11 @@ fn symmetry_breaks_where_the_balance_says() {
         (true, EventKind::SymmetryBreaking),
         (false, EventKind::BranchPoint),
     ] {
-        problem.odd = odd;
+        let minus = CyclicSymmetry {
+            parts: 2,
+            image: SignedPermutation::minus(1),
+        };
+        problem.symmetries = vec![if odd { minus } else { CyclicSymmetry::none() }];
         let found = followed(&problem, [0.1, 0.0], 0.1, 12.0);
         assert_eq!(found.stopped, Stop::ReachedEnd);
         assert!(found.turns.is_empty(), "{:?}", found.turns);
@@ -321,11 +336,7 @@ fn evaluations_do_not_allocate() {
     use super::equations::{Equations, Frame, Span};
     let variable = Variable::Omega;
     let problem = problem([0.1, 0.5, 0.3, 0.0], variable, 0.9);
-    let span = Span {
-        period: 2,
-        half: false,
-        segments: 3,
-    };
+    let span = Span::of(Recurrence::whole(2), 3);
     let frame = Frame {
         variable,
         reference: vec![0.2],

@@ -65,17 +65,15 @@ pub(super) fn parts<'a>(
             });
         }
     }
+    let mut visit = |part: &'a Expr, loops: &Scope<'a>| {
+        let law = None;
+        visit(part, Where { law, lets, loops });
+    };
     for statement in &declaration.equations {
-        statement.walk_in(&outermost, &mut |part, loops| {
-            visit(
-                part,
-                Where {
-                    law: None,
-                    lets,
-                    loops,
-                },
-            );
-        });
+        statement.walk_in(&outermost, &mut visit);
+    }
+    for output in &declaration.outputs {
+        output.value.walk_in(&outermost, &mut visit);
     }
 }
 

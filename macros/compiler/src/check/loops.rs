@@ -55,6 +55,9 @@ pub(super) fn loops_end_soon<'a>(
     for statement in &declaration.equations {
         diagnostics.keep(unroller.statement(statement));
     }
+    for output in &declaration.outputs {
+        diagnostics.keep(unroller.expression(&output.value));
+    }
     (diagnostics.count() == before).then_some(unroller.equations)
 }
 

@@ -7,24 +7,27 @@ mod calls;
 mod expressions;
 mod loops;
 mod names;
+mod outputs;
 mod units;
 mod used;
 
 pub(crate) use names::{MOST_DECLARED, is_primitive};
+pub(crate) use units::Units;
 
 use crate::ast::{Declaration, Equation, Expr, Kind, Let, Parameter, Statement};
 use crate::errors::{Diagnostics, Extent};
 
-/// Applies the rules on what is written.
-pub fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+/// Applies the rules on what is written. Returns the units of what is measured.
+pub fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Units {
     if !names::names_are_few(declaration, diagnostics) {
-        return;
+        return Units::default();
     }
     names::names_are_free_in_generated_code(declaration, diagnostics);
     names::names_are_not_built_in(declaration, diagnostics);
     names::names_are_distinct(declaration, diagnostics);
     names::names_are_known(declaration, diagnostics);
     calls::calls_are_of_known_functions(declaration, diagnostics);
+    outputs::forces_are_of_laws_in_the_equations(declaration, diagnostics);
     // A misspelt name would be reported a second time, as the right one not being used.
     if diagnostics.is_clean() {
         used::everything_is_used(declaration, diagnostics);
@@ -32,15 +35,16 @@ pub fn check(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     ranges_are_not_empty(declaration, diagnostics);
     defaults_are_in_range(declaration, diagnostics);
     if !loops::coordinates_are_few(declaration, diagnostics) {
-        return;
+        return Units::default();
     }
     if let Some(equations) = loops::loops_end_soon(declaration, diagnostics) {
         there_is_one_equation_per_coordinate(declaration, &equations, diagnostics);
         every_equation_holds_an_acceleration(declaration, &equations, diagnostics);
     }
     if diagnostics.is_clean() {
-        units::units_agree(declaration, diagnostics);
+        return units::units_agree(declaration, diagnostics);
     }
+    Units::default()
 }
 
 /// A range admits at least one value.

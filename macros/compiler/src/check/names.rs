@@ -28,10 +28,13 @@ pub(super) fn declared(declaration: &Declaration) -> Vec<(&'static str, &Ident)>
         .map(|item| (declaration.form.parameter(), &item.name));
     let lets = declaration.lets.iter().map(|item| ("`let`", &item.name));
     let laws = declaration.laws.iter().map(|item| ("law", &item.name));
+    let outputs = declaration.outputs.iter();
+    let outputs = outputs.map(|item| ("output", &item.name));
     coordinates
         .chain(parameters)
         .chain(lets)
         .chain(laws)
+        .chain(outputs)
         .collect()
 }
 
@@ -96,7 +99,8 @@ pub(crate) const MOST_DECLARED: usize = 512;
 pub(super) fn names_are_few(declaration: &Declaration, diagnostics: &mut Diagnostics) -> bool {
     let items = declared(declaration);
     let mut many = Vec::new();
-    for kind in ["coordinate", declaration.form.parameter(), "`let`", "law"] {
+    let parameter = declaration.form.parameter();
+    for kind in ["coordinate", parameter, "`let`", "law", "output"] {
         let names = items.iter().filter(|(what, _)| *what == kind);
         many.push((kind, names.map(|(_, name)| *name).nth(MOST_DECLARED)));
     }
@@ -200,7 +204,7 @@ fn distinct(
 
 fn article(what: &str) -> &'static str {
     match what {
-        "argument" | "index" => "an",
+        "argument" | "index" | "output" => "an",
         _ => "a",
     }
 }
@@ -303,6 +307,9 @@ fn unknown(declaration: &Declaration, name: &str, beside_time: bool, at: Where<'
     }
     if declaration.lets.iter().any(|item| item.name == name) {
         return format!("`{name}` is used before its `let`: move the `let` up");
+    }
+    if declaration.outputs.iter().any(|item| item.name == name) {
+        return format!("`{name}` is an output, which is only read: name what both need by `let`");
     }
     let coordinates = || declaration.coordinates.iter().map(|item| &item.name);
     if let Some(law) = at.law

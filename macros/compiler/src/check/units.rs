@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use proc_macro2::Ident;
 
-use crate::ast::{Condition, Declaration, Equation, Expr, Kind, Law, Loop, Piece, Statement, Unit};
+use crate::ast::{
+    Condition, Declaration, Equation, Expr, Kind, Law, Loop, Output, Piece, Statement, Unit,
+};
 use crate::dag::Rational;
 use crate::errors::{Diagnostics, Extent, nearest, shortened};
 use crate::index::Constants;
@@ -16,8 +18,20 @@ use self::dimension::{Dimension, SYMBOLS};
 /// What an expression is measured in; `None` for zero, which fits everywhere.
 type Measure = Option<Dimension>;
 
-/// Either everything has a unit, or nothing: then the equations are checked.
-pub(super) fn units_agree(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+/// The units of a declaration, as they are shown: empty for plain numbers.
+#[derive(Debug, Clone, Default)]
+pub struct Units {
+    /// One for each name of a coordinate; none where the declaration has no units.
+    pub coordinates: Vec<String>,
+    /// One for each parameter.
+    pub parameters: Vec<String>,
+    /// One for each output, with the power of ten that its expression is multiplied by.
+    pub outputs: Vec<(String, Rational)>,
+}
+
+/// Either everything has a unit, or nothing: then the equations are checked. An output is given the unit of what it is equal to, unless
+/// it has one of its own.
+pub(super) fn units_agree(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Units {
     let mut with = HashMap::new();
     let mut without: Vec<(&str, &Ident)> = Vec::new();
     let coordinates = declaration.coordinates.iter();
@@ -33,8 +47,11 @@ pub(super) fn units_agree(declaration: &Declaration, diagnostics: &mut Diagnosti
             None => without.push((what, name)),
         }
     }
+    if with.is_empty() {
+        outputs_have_no_units_alone(declaration, diagnostics);
+    }
     if with.is_empty() || !diagnostics.is_clean() {
-        return;
+        return Units::default();
     }
     for (what, name) in &without {
         let message = format!(
@@ -42,12 +59,15 @@ pub(super) fn units_agree(declaration: &Declaration, diagnostics: &mut Diagnosti
         );
         diagnostics.report(Extent::at(name.span()), message);
     }
+    let mut units = Units::default();
     if without.is_empty() {
         let mut checker = Checker {
             declaration,
             names: with,
             constants: Constants::of(&declaration.lets),
             known: HashMap::new(),
+            forces: Vec::new(),
+            depth: 0,
         };
         let second = Dimension::of_symbol("s");
         checker.names.insert("t".to_owned(), second);
@@ -55,6 +75,35 @@ pub(super) fn units_agree(declaration: &Declaration, diagnostics: &mut Diagnosti
             .names
             .insert("omega".to_owned(), Dimension::ONE.per_time(1));
         checker.all(diagnostics);
+        let text = |unit: &Option<(Unit, Extent)>| {
+            let text = unit.as_ref().map(|(unit, _)| unit.text.clone());
+            text.filter(|text| text != "1").unwrap_or_default()
+        };
+        for coordinate in &declaration.coordinates {
+            let unit = std::iter::repeat_n(text(&coordinate.unit), coordinate.size());
+            units.coordinates.extend(unit);
+        }
+        units.parameters = (declaration.parameters.iter())
+            .map(|parameter| text(&parameter.unit))
+            .collect();
+        for output in &declaration.outputs {
+            let found = diagnostics.keep(checker.output(output));
+            units.outputs.extend(found);
+        }
+    }
+    units
+}
+
+/// An output has a unit of its own only where everything has one.
+fn outputs_have_no_units_alone(declaration: &Declaration, diagnostics: &mut Diagnostics) {
+    for output in &declaration.outputs {
+        if let Some((_, extent)) = &output.unit {
+            let message = format!(
+                "output `{}` has a unit, while nothing else has one: declare those of all coordinates and parameters, or remove it",
+                output.name
+            );
+            diagnostics.report(*extent, message);
+        }
     }
 }
 
@@ -86,6 +135,10 @@ struct Checker<'a> {
     constants: Constants,
     /// Forces of laws, by name and the measures of gap and arguments.
     known: HashMap<(String, Vec<Measure>), Measure>,
+    /// Those of the contacts, in the order of the equations: a law may be called by another one too, in another unit.
+    forces: Vec<(String, Measure)>,
+    /// How many laws deep.
+    depth: usize,
 }
 
 impl Checker<'_> {
@@ -100,6 +153,56 @@ impl Checker<'_> {
         for statement in &declaration.equations {
             diagnostics.keep(self.statement(statement));
         }
+    }
+
+    /// The unit of an output, and the power of ten that its expression is multiplied by: that is measured in what the unit says, up to
+    /// such a power.
+    fn output(&mut self, output: &Output) -> syn::Result<(String, Rational)> {
+        let Some(own) = self.of(&output.value)? else {
+            return Ok((String::new(), Rational::ZERO));
+        };
+        let Some((unit, extent)) = &output.unit else {
+            let shown = self.angle(output, own).unwrap_or_else(|| own.to_string());
+            let shown = Some(shown).filter(|shown| shown != "1").unwrap_or_default();
+            return Ok((shown, Rational::ZERO));
+        };
+        let power = own.in_units_of(units_are_known(unit, *extent)?);
+        let power = power.ok_or_else(|| {
+            extent.fault(format!(
+                "`{}` is in {own}, which is not measured in {}",
+                shortened(&output.value),
+                unit.text
+            ))
+        })?;
+        let text = if unit.text == "1" { "" } else { &unit.text };
+        Ok((text.to_owned(), power))
+    }
+
+    /// The unit of an angle, or of its rate or acceleration, where an output is one of angles alone.
+    fn angle(&self, output: &Output, own: Dimension) -> Option<String> {
+        let shown = match (0..3).find(|&times| Dimension::ONE.per_time(times) == Some(own))? {
+            0 => "rad",
+            1 => "rad/s",
+            _ => "rad/s^2",
+        };
+        let (mut angles, mut others) = (0, 0);
+        output.value.walk(&mut |part| match &part.kind {
+            Kind::Name(name) | Kind::Element(name, _) => {
+                let mut coordinates = self.declaration.coordinates.iter();
+                let own = coordinates.find(|item| item.name == *name);
+                if let Some((unit, _)) = own.and_then(|item| item.unit.as_ref()) {
+                    let count = if unit.text == "rad" {
+                        &mut angles
+                    } else {
+                        &mut others
+                    };
+                    *count += 1;
+                }
+            }
+            Kind::Force(_) => others += 1,
+            _ => {}
+        });
+        (angles > 0 && others == 0).then(|| shown.to_owned())
     }
 
     fn statement(&mut self, statement: &Statement) -> syn::Result<()> {
@@ -148,6 +251,7 @@ impl Checker<'_> {
             Kind::Product(factors) => self.product(factors, expression.extent),
             Kind::Power(base, exponent) => self.power(base, exponent, expression.extent),
             Kind::Absolute(operand) => self.of(operand),
+            Kind::Force(law) => self.force(law, expression),
             Kind::Call(name, arguments) => {
                 self.call(&name.to_string(), arguments, expression.extent)
             }
@@ -226,7 +330,11 @@ impl Checker<'_> {
         if let Some(law) = declaration.laws.iter().find(|law| law.name == name) {
             let measures = arguments.iter().map(|argument| self.of(argument));
             let measures = measures.collect::<syn::Result<Vec<_>>>()?;
-            return self.law(law, measures);
+            let force = self.law(law, measures)?;
+            if self.depth == 0 {
+                self.forces.push((name.to_owned(), force));
+            }
+            return Ok(force);
         }
         let [argument, ..] = arguments else {
             return Ok(None);
@@ -264,15 +372,32 @@ impl Checker<'_> {
         for (name, &measure) in names.zip(&key.1) {
             self.names.insert(name.to_string(), measure);
         }
+        self.depth += 1;
         let mut force = None;
         for piece in &law.pieces {
             self.condition(piece)?;
             let own = self.of(&piece.force)?;
             force = agree(&force, &own, &piece.force, "the pieces before it")?;
         }
+        self.depth -= 1;
         self.names = outer;
         self.known.insert(key, force);
         Ok(force)
+    }
+
+    /// What a law is measured in where it acts: in one unit, whatever the contact.
+    fn force(&self, law: &Ident, expression: &Expr) -> syn::Result<Measure> {
+        let own = self.forces.iter().filter(|(name, _)| law == name);
+        let mut measures = own.filter_map(|(_, measure)| *measure);
+        let Some(first) = measures.next() else {
+            return Ok(None);
+        };
+        match measures.find(|other| *other != first) {
+            None => Ok(Some(first)),
+            Some(other) => Err(expression.extent.fault(format!(
+                "`{law}` is in {first} where it acts once and in {other} where it acts again: write the force that is meant as in the equation, with its gap"
+            ))),
+        }
     }
 
     fn condition(&mut self, piece: &Piece) -> syn::Result<()> {

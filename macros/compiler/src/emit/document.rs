@@ -18,6 +18,18 @@ pub fn of_model(model: &Model) -> String {
     text.push_str("\n\n# Equation\n\n```text\n");
     text.push_str(model.equation.trim());
     text.push_str("\n```\n");
+    if !model.outputs.is_empty() {
+        text.push_str("\n# Outputs\n\n");
+        for output in &model.outputs {
+            let said = documented(&output.documentation, &output.unit);
+            let said = said.lines().collect::<Vec<_>>().join(" ");
+            text.extend(["- `", &output.name, " = ", &output.written, "`"]);
+            if !said.is_empty() {
+                text.extend([": ", &said]);
+            }
+            text.push('\n');
+        }
+    }
     if !model.laws.is_empty() {
         text.push_str("\n# Laws\n\nForce by piece, as the compiler resolved it, and what follows.\n\n```text\n");
         let mut dag = model.dag.clone();
@@ -47,13 +59,23 @@ pub fn of_law_alone(own: &str, dag: &Dag, law: &Law) -> String {
     text
 }
 
-/// Documentation of a field.
-pub fn of_field(name: &Ident, documentation: &str) -> String {
-    let own = documentation.trim();
+/// Documentation of a field, with its unit.
+pub fn of_field(name: &Ident, documentation: &str, unit: &str) -> String {
+    let own = documented(documentation, unit);
     if own.is_empty() {
         format!("Parameter `{name}`.")
     } else {
-        own.to_owned()
+        own
+    }
+}
+
+/// What is said of something, with its unit.
+fn documented(documentation: &str, unit: &str) -> String {
+    let own = documentation.trim();
+    match (own, unit) {
+        (_, "") => own.to_owned(),
+        ("", _) => format!("[{unit}]"),
+        _ => format!("{own} [{unit}]"),
     }
 }
 

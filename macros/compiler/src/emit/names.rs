@@ -6,7 +6,7 @@ use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
 /// What `hertzian::emitted::constants` has.
-const CONSTANTS: [&str; 72] = [
+const CONSTANTS: [&str; 77] = [
     "Absolute",
     "Add",
     "Argument",
@@ -45,6 +45,7 @@ const CONSTANTS: [&str; 72] = [
     "Quantity",
     "Rate",
     "Sign",
+    "Signal",
     "Sine",
     "Subtract",
     "Tanh",
@@ -68,9 +69,13 @@ const CONSTANTS: [&str; 72] = [
     "level",
     "load",
     "mass",
+    "measured_system",
     "meeting",
     "offset",
+    "output",
+    "output_term",
     "parameter",
+    "parameter_in",
     "piece",
     "ranged",
     "sin",

@@ -1,6 +1,6 @@
 //! The system: an implementation of `hertzian::system::System`.
 
-use hertzian_contract::system::{Part, Place, Wave};
+use hertzian_contract::system::{ParameterFacts, Part, Place, Signal, Wave};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -137,11 +137,7 @@ fn facts(model: &Model) -> TokenStream {
     let facts = model.facts();
     let (name, equation) = (&facts.name, &facts.equation);
     let coordinates = list(facts.coordinates.iter().map(|name| text(name)));
-    let parameters = list(facts.parameters.iter().map(|parameter| {
-        let (name, documentation) = (&parameter.name, &parameter.documentation);
-        let [minimum, maximum] = [parameter.minimum, parameter.maximum].map(bound);
-        quote!(parameter(#name, #documentation, #minimum, #maximum))
-    }));
+    let parameters = list(facts.parameters.iter().map(parameter));
     let divisor = Literal::u32_unsuffixed(facts.divisor);
     let laws = position(facts.laws);
     let contacts = list(facts.contacts.iter().map(|contact| {
@@ -149,8 +145,22 @@ fn facts(model: &Model) -> TokenStream {
         quote!(contact(#law))
     }));
     let places = list(facts.places.iter().copied().map(place));
-    let facts = quote! {
-        system_facts(#name, #equation, #coordinates, PARAMETERS, #divisor, #laws, #contacts, #places)
+    let units = list(facts.units.iter().map(|unit| text(unit)));
+    let outputs = list(facts.outputs.iter().map(|output| {
+        let (name, documentation, unit) = (&output.name, &output.documentation, &output.unit);
+        quote!(output(#name, #documentation, #unit))
+    }));
+    let facts = if facts.units.is_empty() && facts.outputs.is_empty() {
+        quote! {
+            system_facts(#name, #equation, #coordinates, PARAMETERS, #divisor, #laws, #contacts, #places)
+        }
+    } else {
+        quote! {
+            measured_system(
+                #name, #equation, #coordinates, #units, PARAMETERS, #divisor, #laws, #contacts, #places,
+                { const OUTPUTS: &[__system::OutputFacts] = #outputs; OUTPUTS }
+            )
+        }
     };
     let names = imported(&quote!(#parameters #facts));
     quote! {
@@ -162,7 +172,40 @@ fn facts(model: &Model) -> TokenStream {
     }
 }
 
+/// A parameter, and its unit if it has one.
+fn parameter(parameter: &ParameterFacts) -> TokenStream {
+    let ParameterFacts {
+        name,
+        documentation,
+        unit,
+        ..
+    } = parameter;
+    let [minimum, maximum] = [parameter.minimum, parameter.maximum].map(bound);
+    if unit.is_empty() {
+        quote!(parameter(#name, #documentation, #minimum, #maximum))
+    } else {
+        quote!(parameter_in(#name, #documentation, #unit, #minimum, #maximum))
+    }
+}
+
+/// A coefficient of an output.
+fn output_term(output: usize, of: Signal, at: Wave) -> TokenStream {
+    let (name, index) = match of {
+        Signal::Coordinate(index) => ("Coordinate", Some(index)),
+        Signal::Rate(index) => ("Rate", Some(index)),
+        Signal::Acceleration(index) => ("Acceleration", Some(index)),
+        Signal::Force(index) => ("Force", Some(index)),
+        _ => ("Constant", None),
+    };
+    let (name, output, at) = (format_ident!("{name}"), position(output), wave(at));
+    let index = index.map(position).map(|index| quote!((#index)));
+    quote!(output_term(#output, Signal::#name #index, #at))
+}
+
 fn place(place: Place) -> TokenStream {
+    if let Place::Output { output, of, wave } = place {
+        return output_term(output, of, wave);
+    }
     let (name, positions, phase) = match place {
         Place::Mass { row, column } => ("mass", vec![row, column], None),
         Place::Damping { row, column } => ("damping", vec![row, column], None),

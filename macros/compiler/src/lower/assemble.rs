@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use hertzian_contract::system::{self, ContactFacts, Part, Place};
+use hertzian_contract::system::{self, ContactFacts, Part, Place, Signal};
 
 use crate::dag::{Dag, Id, Rational, Variable};
 
@@ -45,6 +45,16 @@ pub struct Assembly {
 
 /// Law, arguments and gap of a contact.
 type ContactKey = (usize, Vec<Id>, Vec<(Motion, Wave, Id)>);
+
+/// What tells contacts apart.
+fn key(law: usize, arguments: &[Id], gap: &[Term]) -> ContactKey {
+    let gap = gap.iter();
+    let mut gap: Vec<(Motion, Wave, Id)> = gap
+        .map(|term| (term.motion, term.wave, term.coefficient))
+        .collect();
+    gap.sort_by_key(|&(_, _, coefficient)| coefficient);
+    (law, arguments.to_vec(), gap)
+}
 
 /// The smallest divisor for which every wave is a whole harmonic of the base frequency.
 ///
@@ -130,13 +140,7 @@ impl Assembly {
 
     /// Adds the force of a law. Equal laws at equal gaps are one contact, which acts in several equations.
     pub fn force(&mut self, dag: &mut Dag, action: &Action) {
-        let mut gap: Vec<(Motion, Wave, Id)> = action
-            .gap
-            .iter()
-            .map(|term| (term.motion, term.wave, term.coefficient))
-            .collect();
-        gap.sort_by_key(|&(_, _, coefficient)| coefficient);
-        let key = (action.law, action.arguments.clone(), gap);
+        let key = key(action.law, &action.arguments, &action.gap);
         let contact = match self.known.get(&key) {
             Some(&contact) => contact,
             None => self.contact(dag, action, key),
@@ -179,6 +183,21 @@ impl Assembly {
             self.add(dag, Place::Argument { contact, index }, value);
         }
         contact
+    }
+
+    /// The contact of a law with these arguments at a gap, if it acts in an equation.
+    pub fn contact_of(&self, law: usize, arguments: &[Id], gap: &[Term]) -> Option<usize> {
+        self.known.get(&key(law, arguments, gap)).copied()
+    }
+
+    /// Adds a term of an output. False where its wave is no whole harmonic of the base frequency.
+    pub fn output(&mut self, dag: &mut Dag, output: usize, of: Signal, term: &Term) -> bool {
+        let whole = harmonic(term.wave.multiple, i128::from(self.divisor)).is_some();
+        if whole {
+            let wave = self.wave(term.wave);
+            self.add(dag, Place::Output { output, of, wave }, term.coefficient);
+        }
+        whole
     }
 
     /// The entries of the mass matrix.

@@ -8,7 +8,7 @@ use crate::errors::Extent;
 use crate::ir;
 
 use super::assemble::{self, Action, Assembly};
-use super::expand::Expander;
+use super::expand::{Call, Expander};
 use super::found::Found;
 use super::law::{self, Lowered};
 use super::rules::forcing;
@@ -23,6 +23,21 @@ pub struct Builder {
     pub laws: Vec<ir::Law>,
     actions: Vec<(Action, Extent)>,
     terms: Vec<(usize, Term)>,
+}
+
+/// What a call of a law comes to.
+pub enum Called {
+    /// A law that is linear everywhere, multiplied out.
+    Linear(Vec<Term>),
+    /// A contact of a law.
+    Law {
+        /// Index among the laws of the model.
+        law: usize,
+        /// All of its arguments.
+        arguments: Vec<Id>,
+        /// Its gap.
+        gap: Vec<Term>,
+    },
 }
 
 impl Builder {
@@ -42,55 +57,85 @@ impl Builder {
             self.linear(row, term);
             return Ok(());
         };
-        let call = self.context.calls[call].clone();
-        let Some(Some(lowered)) = laws.get(call.law) else {
-            return Ok(());
+        match self.called(&term, call, laws)? {
+            None => {}
+            Some(Called::Linear(products)) => {
+                for product in products {
+                    self.linear(row, product);
+                }
+            }
+            Some(Called::Law {
+                law,
+                arguments,
+                gap,
+            }) => {
+                let action = Action {
+                    law,
+                    gap,
+                    arguments,
+                    row,
+                    factor: term.coefficient,
+                    wave: term.wave,
+                };
+                self.actions.push((action, term.extent));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a term with a call of a law comes to; nothing where the law was refused.
+    pub fn called(
+        &mut self,
+        term: &Term,
+        call: usize,
+        laws: &[Option<Lowered>],
+    ) -> syn::Result<Option<Called>> {
+        let Call {
+            law,
+            gap,
+            mut arguments,
+        } = self.context.calls[call].clone();
+        let Some(Some(lowered)) = laws.get(law) else {
+            return Ok(None);
         };
-        let mut arguments = call.arguments;
         let written: HashMap<Variable, Id> = numbered(&arguments);
         for &captured in &lowered.captured {
             arguments.push(self.context.dag.substitute(captured, &written));
         }
         if let Some(parts) = law::linear(&mut self.context.dag, &lowered.law) {
-            return self.linear_law(row, &term, &call.gap, &arguments, parts);
+            let products = self.linear_law(term, &gap, &arguments, parts)?;
+            return Ok(Some(Called::Linear(products)));
         }
         let law = intern(&mut self.laws, lowered.law.clone());
-        let action = Action {
+        Ok(Some(Called::Law {
             law,
-            gap: call.gap,
             arguments,
-            row,
-            factor: term.coefficient,
-            wave: term.wave,
-        };
-        self.actions.push((action, term.extent));
-        Ok(())
+            gap,
+        }))
     }
 
     /// A law that is linear everywhere is multiplied out.
     fn linear_law(
         &mut self,
-        row: usize,
         term: &Term,
         gap: &[Term],
         arguments: &[Id],
         parts: [Id; 3],
-    ) -> syn::Result<()> {
+    ) -> syn::Result<Vec<Term>> {
         let by = numbered(arguments);
         let one = self.context.dag.integer(1);
         let rate = self.context.rate(gap, term.extent)?;
         let unit = vec![Term::constant(one, term.extent)];
+        let mut products = Vec::new();
         for (part, motion) in parts.into_iter().zip([gap.to_vec(), rate, unit]) {
             let factor = self.context.dag.substitute(part, &by);
             let factor = Term {
                 motion: Motion::None,
                 ..term.scaled(&mut self.context.dag, factor)
             };
-            for product in self.context.multiply(&[factor], &motion, term.extent)? {
-                self.linear(row, product);
-            }
+            products.extend(self.context.multiply(&[factor], &motion, term.extent)?);
         }
-        Ok(())
+        Ok(products)
     }
 
     /// Adds a linear term. Damping that varies with time has no matrix to stand in: it is a law, linear in its rate.

@@ -93,6 +93,21 @@ impl Expander {
         }])
     }
 
+    /// The force of a law in an output: its first call. That all of them are one contact is checked where contacts are known.
+    pub(super) fn force(&mut self, law: &str, extent: Extent) -> syn::Result<Vec<Term>> {
+        let index = self.laws.get(law);
+        let mut calls = self.calls.iter();
+        let call = index.and_then(|index| calls.position(|call| call.law == *index));
+        let Some(call) = call else {
+            return Err(extent.fault(format!("law `{law}` acts in no equation")));
+        };
+        let one = self.dag.integer(1);
+        Ok(vec![Term {
+            motion: Motion::Call(call),
+            ..Term::constant(one, extent)
+        }])
+    }
+
     /// The derivative by time: of the wave, and of the motion.
     ///
     /// # Errors

@@ -149,6 +149,7 @@ impl Expander {
                 self.function(Function::Absolute, &terms, operand, extent)?
             }
             Kind::Call(name, arguments) => self.call(&name.to_string(), arguments, extent)?,
+            Kind::Force(law) => self.force(&law.to_string(), extent)?,
             Kind::Element(name, index) => self.element(&name.to_string(), index, extent)?,
             Kind::Sigma(repeated) => self.sigma(repeated)?,
         };

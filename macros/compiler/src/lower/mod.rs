@@ -7,6 +7,7 @@ mod found;
 mod functions;
 mod gaps;
 mod law;
+mod outputs;
 mod polynomial;
 mod repeat;
 mod rules;
@@ -22,6 +23,7 @@ mod written;
 use hertzian_contract::system::Bound;
 
 use crate::ast::{Declaration, Equation, Expr, Kind, Limit, Statement};
+use crate::check::Units;
 use crate::dag::{Dag, Id, Variable};
 use crate::errors::{Diagnostics, Extent};
 use crate::index::Constants;
@@ -42,13 +44,17 @@ const TERMS_PER_COORDINATE: usize = 512;
 /// of the examples takes.
 pub(crate) const BUDGET: u64 = 3_000_000;
 
-/// Lowers a declaration that has passed [`check`](crate::check::check). `None` if something was reported.
-pub fn lower(declaration: &Declaration, diagnostics: &mut Diagnostics) -> Option<Model> {
-    let parameters = parameters(declaration);
+/// Lowers a declaration that has passed [`check`](crate::check::check), which gives its units. `None` if something was reported.
+pub fn lower(
+    declaration: &Declaration,
+    units: Units,
+    diagnostics: &mut Diagnostics,
+) -> Option<Model> {
+    let parameters = parameters(declaration, &units);
     let mut context = context(declaration, &parameters);
     context.dag.set_budget(Some(BUDGET));
     let mut builder = Builder::new(context);
-    let model = lowered(declaration, parameters, &mut builder, diagnostics);
+    let model = lowered(declaration, parameters, units, &mut builder, diagnostics);
     let context = &mut builder.context;
     if context.dag.is_spent() {
         // What was found since then, and what was built, is worth nothing.
@@ -72,6 +78,7 @@ pub(crate) fn too_long(declaration: &Declaration) -> syn::Error {
 fn lowered(
     declaration: &Declaration,
     parameters: Vec<ir::Parameter>,
+    units: Units,
     builder: &mut Builder,
     diagnostics: &mut Diagnostics,
 ) -> Option<Model> {
@@ -98,7 +105,15 @@ fn lowered(
     for law in found {
         builder.found(law);
     }
-    let assembly = diagnostics.keep(builder.assemble(declaration))?;
+    let mut assembly = diagnostics.keep(builder.assemble(declaration))?;
+    let outputs = outputs::outputs(
+        builder,
+        declaration,
+        &units.outputs,
+        &laws,
+        &mut assembly,
+        diagnostics,
+    );
     let masses = assembly.masses();
     let ranges = &builder.context.ranges.parameters;
     let dag = &builder.context.dag;
@@ -106,28 +121,34 @@ fn lowered(
     inertia::ranges_admit_no_singular_mass(declaration, dag, &masses, ranges, diagnostics);
     let (dag, ranges) = (&mut builder.context.dag, &builder.context.ranges);
     inertia::masses_are_positive(declaration, dag, &masses, ranges, diagnostics);
-    let equations: Vec<String> = declaration
-        .equations
-        .iter()
-        .map(ToString::to_string)
-        .collect();
     Some(Model {
         dag: Dag::default(),
         visibility: declaration.visibility.clone(),
         name: declaration.name.clone(),
         documentation: declaration.documentation.clone(),
-        equation: equations.join("\n"),
+        equation: written(declaration),
         coordinates: declaration.elements().map(|(name, _)| name).collect(),
+        units: units.coordinates,
         parameters,
         divisor: assembly.divisor,
         laws: std::mem::take(&mut builder.laws),
         contacts: assembly.contacts,
         coefficients: assembly.coefficients,
+        outputs,
     })
 }
 
+/// The equations as written, and the constants and laws that are in them.
+fn written(declaration: &Declaration) -> String {
+    let equations = declaration.equations.iter().map(ToString::to_string);
+    let lets = declaration.lets.iter().map(ToString::to_string);
+    let laws = declaration.laws.iter().map(ToString::to_string);
+    let lines: Vec<String> = equations.chain(lets).chain(laws).collect();
+    lines.join("\n")
+}
+
 /// The declared parameters.
-pub fn parameters(declaration: &Declaration) -> Vec<ir::Parameter> {
+pub fn parameters(declaration: &Declaration, units: &Units) -> Vec<ir::Parameter> {
     let bound = |limit: Option<Limit>| match limit {
         None => Bound::Unbounded,
         Some(Limit {
@@ -139,25 +160,16 @@ pub fn parameters(declaration: &Declaration) -> Vec<ir::Parameter> {
             included: false,
         }) => Bound::Excluded(value),
     };
-    let lowered = |parameter: &crate::ast::Parameter| ir::Parameter {
+    let lowered = |(index, parameter): (usize, &crate::ast::Parameter)| ir::Parameter {
         name: parameter.name.clone(),
-        documentation: documentation(parameter),
+        documentation: parameter.documentation.trim_end().to_owned(),
+        unit: units.parameters.get(index).cloned().unwrap_or_default(),
         minimum: bound(parameter.minimum),
         maximum: bound(parameter.maximum),
         default: parameter.default.map(|(value, _)| value),
     };
-    declaration.parameters.iter().map(lowered).collect()
-}
-
-/// The text of the doc comments, and the unit.
-fn documentation(parameter: &crate::ast::Parameter) -> String {
-    let own = parameter.documentation.trim_end();
-    match &parameter.unit {
-        Some((unit, _)) if unit.text != "1" => {
-            format!("{own} [{}]", unit.text).trim_start().to_owned()
-        }
-        _ => own.to_owned(),
-    }
+    let parameters = declaration.parameters.iter().enumerate();
+    parameters.map(lowered).collect()
 }
 
 fn context(declaration: &Declaration, parameters: &[ir::Parameter]) -> Expander {

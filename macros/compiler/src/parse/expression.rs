@@ -138,6 +138,12 @@ impl Parser<'_> {
             }
             Token::Name(name) => {
                 self.tokens.next();
+                if let Some(force) = self.force(&name) {
+                    return Ok(Expr {
+                        kind: force,
+                        extent: start.to(self.tokens.before()),
+                    });
+                }
                 match *self.tokens.peek() {
                     Token::Open(Delimiter::Parenthesis, _) => {
                         Kind::Call(name, self.nested(Self::arguments)?)

@@ -6,6 +6,7 @@ mod expression;
 mod law;
 mod method;
 mod number;
+mod output;
 mod repeated;
 mod tokens;
 mod unit;
@@ -27,6 +28,7 @@ pub fn parse(
     let mut parser = Parser {
         tokens,
         depth: 0,
+        in_output: false,
         diagnostics,
     };
     let result = match form {
@@ -39,6 +41,8 @@ pub fn parse(
 struct Parser<'a> {
     tokens: Tokens,
     depth: usize,
+    /// Whether `force(law)` may stand here.
+    in_output: bool,
     diagnostics: &'a mut Diagnostics,
 }
 
@@ -65,6 +69,7 @@ impl Parser<'_> {
         self.tokens.next();
         while self.tokens.position() < close {
             self.depth = 0;
+            self.in_output = false;
             if let Err(fault) = self.item(&mut declaration) {
                 self.diagnostics.add(fault);
                 self.recover(close);
@@ -85,8 +90,8 @@ impl Parser<'_> {
     /// Skips to the end of a faulty item: past its `;`, or to the next item that begins with a keyword.
     fn recover(&mut self, close: usize) {
         while self.tokens.position() < close && !self.tokens.take(";") {
-            if matches!(self.tokens.peek(), Token::Name(name) if name == "param" || name == "law" || name == "let")
-            {
+            let is_item = matches!(self.tokens.peek(), Token::Name(name) if name == "param" || name == "law" || name == "let");
+            if is_item || self.is_output() {
                 break;
             }
             self.tokens.skip();
@@ -105,6 +110,9 @@ impl Parser<'_> {
         } else if self.tokens.take_word("let") {
             let item = self.named()?;
             declaration.lets.push(item);
+        } else if self.is_output() {
+            let output = self.output(documentation)?;
+            declaration.outputs.push(output);
         } else if matches!(self.tokens.peek(), Token::Close(_)) {
             return Err(self.unexpected("an item after the doc comment"));
         } else {

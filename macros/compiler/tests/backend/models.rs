@@ -103,11 +103,13 @@ impl Sketch {
             documentation: String::new(),
             equation: format!("ddot(x) + {}(x) = drive*cos(omega*t) + load", law.name),
             coordinates: vec!["x".to_owned()],
+            units: Vec::new(),
             parameters,
             divisor: 1,
             laws: vec![law],
             contacts: vec![ContactFacts::new(0)],
             coefficients,
+            outputs: Vec::new(),
         }
     }
 }
@@ -116,6 +118,7 @@ fn parameter(name: &str, minimum: Bound, maximum: Bound) -> Parameter {
     Parameter {
         name: quote::format_ident!("{name}"),
         documentation: String::new(),
+        unit: String::new(),
         minimum,
         maximum,
         default: None,

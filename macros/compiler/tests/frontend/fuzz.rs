@@ -17,7 +17,7 @@ const DECLARATIONS: [&str; 8] = [
     "H1 ( x , y , z ) { param k > 0 ; param c >= 0 ; ddot ( x ) + max ( x , min ( 2 * x , 1 ) ) + | k * x + c * dot ( x ) | = 0 ; ddot ( y ) + x * y * z + ( x + y ) ^ 2 * ( z - 1 ) = 0 ; ddot ( z ) + dot ( x ) * dot ( y ) = for i in 1 .. 4 { cos ( i / 3 * omega * t ) } ; }",
 ];
 
-const EXTRAS: [&str; 52] = [
+const EXTRAS: [&str; 54] = [
     "+",
     "-",
     "*",
@@ -56,6 +56,8 @@ const EXTRAS: [&str; 52] = [
     "H",
     "sgn",
     "param",
+    "output",
+    "force",
     "law",
     "let",
     "else",

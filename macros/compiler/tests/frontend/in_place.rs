@@ -95,6 +95,16 @@ fn extrema_of_gap_and_rate_are_those_of_a_law() {
         contact + x.powi(3)
     });
     assert_force("min(k*g, 1 - dot(g))", |x, v| (K * x).min(1.0 - v));
+    // Products of numbers of so many digits are not exact.
+    assert_force(
+        "max(0, 1.3322709549238666e-7*(dot(g) - 1.073478122165745e-5))",
+        |_, v| {
+            f64::max(
+                0.0,
+                1.332_270_954_923_866_6e-7 * (v - 1.073_478_122_165_745e-5),
+            )
+        },
+    );
     assert_force("max(g, dot(g))", f64::max);
     assert_force("g*dot(g)*max(0, 1 - dot(g)^2)", |x, v| {
         x * v * f64::max(0.0, 1.0 - v * v)

@@ -7,6 +7,7 @@ mod loops;
 mod masses;
 mod messages;
 mod models;
+mod outputs;
 mod units;
 
 use std::str::FromStr;
@@ -62,6 +63,11 @@ fn coefficient(place: &Place, value: &str) -> String {
         }
         Place::Offset { contact, wave: w } => format!("delta{contact}{} = {value}", wave(w)),
         Place::Argument { contact, index } => format!("a{contact} {index} = {value}"),
+        Place::Output {
+            output,
+            of,
+            wave: w,
+        } => format!("y{output} {of:?}{} = {value}", wave(w)),
         other => panic!("{other:?}"),
     }
 }

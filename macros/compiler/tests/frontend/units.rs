@@ -22,8 +22,9 @@ const SPRUNG: &str = "Sprung(x: mm) {
 #[test]
 fn units_agree_and_are_kept() {
     let model = model(SPRUNG);
-    let text = |index: usize| model.parameters[index].documentation.as_str();
-    assert_eq!((text(2), text(3)), ("[N/mm^(3/2)]", ""));
+    let text = |index: usize| model.parameters[index].unit.as_str();
+    assert_eq!((text(2), text(3)), ("N/mm^(3/2)", ""));
+    assert_eq!(model.units, ["mm"]);
     let defaults: Vec<Option<f64>> = model.parameters.iter().map(|item| item.default).collect();
     assert_eq!(defaults[..4], [Some(1e-3), None, Some(1e9), Some(0.3)]);
 }

@@ -36,7 +36,8 @@ fn a_law_keeps_its_pieces_and_its_damping() {
     assert_eq!(facts.parameters[0].minimum, Bound::Included(0.0));
     assert_eq!(
         facts.equation,
-        "ddot(x) + contact(x) = drive*cos(omega*t) + load"
+        "ddot(x) + contact(x) = drive*cos(omega*t) + load\n\
+         law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^1.5, else => 0 }"
     );
     assert_eq!(model.law(0).facts().rate, RateDependence::Linear);
     assert_eq!(force(&model, 0, &[0.032], -1.0, 3.0), 0.0);
@@ -240,11 +241,12 @@ fn defaults_make_a_model() {
     let model = Ball::default();
     assert_eq!(model.k, 4e4);
     let facts = model.facts();
-    assert_eq!(
-        facts.parameters[1].documentation,
-        "contact stiffness [N/mm^1.5]"
-    );
-    assert_eq!(facts.parameters[3].documentation, "[N]");
+    let said = |index: usize| {
+        let parameter = &facts.parameters[index];
+        [&parameter.documentation[..], &parameter.unit]
+    };
+    assert_eq!(said(1), ["contact stiffness", "N/mm^1.5"]);
+    assert_eq!(said(3), ["", "N"]);
 }
 
 #[test]

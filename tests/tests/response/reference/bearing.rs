@@ -1,13 +1,13 @@
 //! A rotor on eight balls that move with the cage, in the manner of Sunnersjo (1978).
 //!
-//! The balls are alike, so the orbits come back after the passage of one, a sixteenth of the period of the declaration. There a
-//! doubling of the period of a passage is a multiplier of one: a branch point. The balance knows of the balls that they are alike,
-//! and has the harmonics of a passage only.
+//! The balls are alike, so the orbits come back after the passage of one, a sixteenth of the period of the declaration. Both methods
+//! know of the balls that they are alike: the balance has the harmonics of a passage only, and shooting follows a passage only. What
+//! begins where the time of a passage doubles has an eighth of the declared period, and multipliers of one over all of it.
 
-use hertzian::EventKind::{BranchPoint, Fold};
-use hertzian::{EventKind, FrequencyResponse, Shooting};
+use hertzian::EventKind::{Fold, PeriodDoubling};
+use hertzian::{Branch, EventKind, FrequencyResponse, Shooting, Side, Verdict};
 
-use super::{Found, all_found, of_shooting};
+use super::{all_found, of_shooting};
 
 hertzian::oscillator! {
     /// Balls at angles that are two fifths of those of the rotor, with a clearance.
@@ -29,51 +29,105 @@ hertzian::oscillator! {
 /// DOP853 in extended precision, confirmed by harmonic balance to 13 digits.
 const FOLDS: [(EventKind, f64); 2] = [(Fold, 0.352_318_220_738_17), (Fold, 0.358_054_523_901_42)];
 /// The same, confirmed by Hill's determinant to 11 digits.
-const UPPER: [(EventKind, f64); 1] = [(BranchPoint, 0.734_596_381_464_95)];
-const LOWER: [(EventKind, f64); 1] = [(BranchPoint, 0.664_785_786_802_24)];
+const UPPER: [(EventKind, f64); 1] = [(PeriodDoubling, 0.734_596_381_464_95)];
+const LOWER: [(EventKind, f64); 1] = [(PeriodDoubling, 0.664_785_786_802_24)];
+
+/// Every event of the range, one for each that is known, and none besides.
+fn all_and_no_more(branch: &Branch, known: &[(EventKind, f64)], digits: f64) {
+    all_found(&of_shooting(branch), known, digits);
+    let besides = branch.events.iter().filter(|event| {
+        let kinds = [Fold, PeriodDoubling, EventKind::BranchPoint];
+        kinds.contains(&event.kind)
+    });
+    assert_eq!(besides.count(), known.len(), "{:?}", branch.events);
+    assert!(branch.turns.is_empty(), "{:?}", branch.turns);
+    for point in &branch.points {
+        assert_eq!((point.orbit.period, point.orbit.parts), (1, 16));
+    }
+}
 
 #[test]
 fn both_folds_are_found() {
-    run([0.35, 0.36], &FOLDS, 1e-13);
+    by_shooting([0.35, 0.36], &FOLDS, 1e-13);
+    by_shooting([0.36, 0.35], &FOLDS, 1e-13);
 }
 
 #[test]
 fn the_upper_doubling_of_a_passage_is_found() {
-    run([0.733, 0.736], &UPPER, 1e-11);
-    run([0.736, 0.733], &UPPER, 1e-11);
+    by_shooting([0.7344, 0.7348], &UPPER, 1e-11);
+    by_shooting([0.7348, 0.7344], &UPPER, 1e-11);
 }
 
 #[test]
 fn the_lower_doubling_of_a_passage_is_found() {
-    run([0.664, 0.666], &LOWER, 1e-11);
+    by_shooting([0.6646, 0.665], &LOWER, 1e-11);
+    by_shooting([0.665, 0.6646], &LOWER, 1e-11);
 }
 
 #[test]
-fn the_balance_finds_them_too() {
-    let model = Bearing { load: 1.0 };
-    for (range, known, digits) in [
-        ([0.352, 0.3585], &FOLDS[..], 1e-13),
-        ([0.7352, 0.734], &UPPER[..], 1e-11),
-    ] {
-        let request = FrequencyResponse::of(&model).from(range[0]).to(range[1]);
-        let request = request.stability(false).bifurcations(range[0] > 0.7);
-        let branch = request.run().unwrap();
-        let events = branch.events.iter().map(|event| Found {
-            kind: event.kind,
-            value: event.point.value,
-            error: event.error,
-        });
-        all_found(&events.collect::<Vec<_>>(), known, digits);
+fn the_balance_finds_the_folds() {
+    let ends = [0.352, 0.3585];
+    either_way(ends, |ends| by_balance(ends, &FOLDS, 1e-13, false));
+}
+
+#[test]
+fn the_balance_finds_the_doublings_of_a_passage() {
+    either_way([0.7348, 0.7344], |ends| {
+        by_balance(ends, &UPPER, 1e-11, true);
+    });
+    either_way([0.6646, 0.665], |ends| {
+        by_balance(ends, &LOWER, 1e-11, true);
+    });
+}
+
+/// From one end of a range to the other, which takes half a minute of a core; and back, where the variable `HERTZIAN_BOTH_WAYS` is set.
+fn either_way([from, to]: [f64; 2], follow: impl Fn([f64; 2])) {
+    follow([from, to]);
+    if std::env::var_os("HERTZIAN_BOTH_WAYS").is_some() {
+        follow([to, from]);
     }
 }
 
-fn run([from, to]: [f64; 2], known: &[(EventKind, f64)], digits: f64) {
+fn by_balance(range: [f64; 2], known: &[(EventKind, f64)], digits: f64, bifurcations: bool) {
+    let model = Bearing { load: 1.0 };
+    let request = FrequencyResponse::of(&model).from(range[0]).to(range[1]);
+    let request = request.stability(false).bifurcations(bifurcations);
+    all_and_no_more(&request.run().unwrap(), known, digits);
+}
+
+fn by_shooting([from, to]: [f64; 2], known: &[(EventKind, f64)], digits: f64) {
     let model = Bearing { load: 1.0 };
     let request = FrequencyResponse::of(&model)
         .by(Shooting::new())
         .from(from)
         .to(to)
         .max_points(120);
-    let found = of_shooting(&request.run().unwrap());
-    all_found(&found, known, digits);
+    all_and_no_more(&request.run().unwrap(), known, digits);
+}
+
+/// The orbits that begin at the upper doubling come back after two passages, an eighth of the declared period, by both methods: the same
+/// orbits, that end where the passage doubles again.
+#[test]
+fn what_begins_there_has_twice_the_passage() {
+    let model = Bearing { load: 1.0 };
+    let request = FrequencyResponse::of(&model).from(0.7352).to(0.7340);
+    let of_balance = request.clone().stability(false).bifurcations(true);
+    let branch = of_balance.run().unwrap();
+    let event = branch.events(PeriodDoubling).next().unwrap();
+    let of_balance = branch.switch(event, Side::One).unwrap();
+    let branch = request.by(Shooting::new()).run().unwrap();
+    let event = branch.events(PeriodDoubling).next().unwrap();
+    let of_shooting = branch.switch(event, Side::One).unwrap();
+    for branch in [&of_balance, &of_shooting] {
+        assert_eq!(branch.period(), 1);
+        assert!(branch.points.iter().all(|point| point.orbit.parts == 8));
+    }
+    let value = 0.73445;
+    let [a, b] = [&of_balance, &of_shooting].map(|branch| branch.at(value).unwrap());
+    let [a, b] = [&a[0], &b[0]];
+    assert_eq!(b.stability.verdict, Verdict::Stable);
+    for (a, b) in a.observed.motions.iter().zip(&b.observed.motions) {
+        let error = (a.peak_to_peak() - b.peak_to_peak()).abs() / b.peak_to_peak();
+        assert!(error < 1e-6, "{error:e}");
+    }
 }

@@ -5,6 +5,7 @@
 //! are those that both agree in. One run over the range finds every event, and each is within its stated error.
 
 mod bearing;
+mod chain;
 mod gears;
 mod two_masses;
 

@@ -21,7 +21,7 @@ use hertzian::{Branch, Error, NewtonError, OrbitError, Point, Stop, System};
 use hertzian_tests::random::Random;
 
 /// Cases by default.
-const MODELS: u64 = 300;
+const MODELS: u64 = 120;
 /// No case works longer.
 const LONGEST: Duration = Duration::from_secs(20);
 /// A case that has not ended after this is taken for one that never ends.

@@ -26,6 +26,7 @@ use crate::bifurcation::error::BifurcationError;
 use crate::branches::error::{OrbitError, unless_cancelled};
 use crate::branches::orbit::Orbit;
 use crate::branches::progress::{Progress, Stage};
+use crate::branches::recurrence::SignedPermutation;
 use crate::cancel::Cancel;
 use crate::continuation::follow::{
     Continue, FollowOptions, Halt, Outcome, Start, Stop, Visit, follow,
@@ -37,7 +38,7 @@ use crate::continuation::statistics::Statistics;
 use crate::continuation::step::{self, StepControl};
 use crate::error::Error;
 use crate::model::request::RequestError;
-use crate::model::validate;
+use crate::model::{self, validate};
 use crate::numeric::fourier::series;
 use crate::orbit::observe::Motion;
 use crate::response::FrequencyResponse;
@@ -74,7 +75,7 @@ const STEP: f64 = 1e-6;
 /// }
 /// # Ok::<(), hertzian::Error>(())
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct PhaseResonance {
     system: Arc<dyn System>,
     vary: Option<String>,
@@ -84,16 +85,6 @@ pub struct PhaseResonance {
     max_points: usize,
     largest_step: f64,
     cancel: Cancel,
-}
-
-impl std::fmt::Debug for PhaseResonance {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("PhaseResonance")
-            .field("system", &self.system.facts().name)
-            .field("vary", &self.vary)
-            .field("to", &self.to)
-            .finish_non_exhaustive()
-    }
 }
 
 /// One orbit in phase resonance.
@@ -125,54 +116,28 @@ impl PhaseResonance {
         }
     }
 
-    /// The parameter that varies, usually the amplitude of the load.
-    #[must_use]
-    pub fn vary(mut self, parameter: impl Into<String>) -> Self {
-        self.vary = Some(parameter.into());
-        self
-    }
+    hertzian_contract::setters! { self:
+        /// The parameter that varies, usually the amplitude of the load.
+        vary(parameter: impl Into<String>) { self.vary = Some(parameter.into()) }
 
-    /// What is computed ends when this token is cancelled, the search for the first oscillation too.
-    #[must_use]
-    pub fn cancel(mut self, cancel: &Cancel) -> Self {
-        self.cancel = cancel.clone();
-        self
-    }
+        /// What is computed ends when this token is cancelled, the search for the first oscillation too.
+        cancel(cancel: &Cancel) { self.cancel = cancel.clone() }
 
-    /// Where it ends. It starts at the value that the system has.
-    #[must_use]
-    pub fn to(mut self, value: f64) -> Self {
-        self.to = Some(value);
-        self
-    }
+        /// Where it ends. It starts at the value that the system has.
+        to(value: f64) { self.to = Some(value) }
 
-    /// The first orbit has an excitation frequency between these two: there the frequency response is computed, and searched for
-    /// phase resonance.
-    #[must_use]
-    pub fn between(mut self, low: f64, high: f64) -> Self {
-        self.between = Some([low, high]);
-        self
-    }
+        /// The first orbit has an excitation frequency between these two: there the frequency response is computed, and searched for
+        /// phase resonance.
+        between(low: f64, high: f64) { self.between = Some([low, high]) }
 
-    /// Number of harmonics. Default: 20.
-    #[must_use]
-    pub fn harmonics(mut self, harmonics: usize) -> Self {
-        self.harmonics = harmonics;
-        self
-    }
+        /// Number of harmonics. Default: 20.
+        harmonics(harmonics: usize) { self.harmonics = harmonics }
 
-    /// Largest step along the curve, as [`FrequencyResponse::largest_step`] measures it. Default: 0.1.
-    #[must_use]
-    pub fn largest_step(mut self, step: f64) -> Self {
-        self.largest_step = step;
-        self
-    }
+        /// Largest step along the curve, as [`FrequencyResponse::largest_step`] measures it. Default: 0.1.
+        largest_step(step: f64) { self.largest_step = step }
 
-    /// Stop after this many points. Default: 5000.
-    #[must_use]
-    pub fn max_points(mut self, points: usize) -> Self {
-        self.max_points = points;
-        self
+        /// Stop after this many points. Default: 5000.
+        max_points(points: usize) { self.max_points = points }
     }
 
     /// Follows the curve.
@@ -251,8 +216,7 @@ impl PhaseResonance {
             let must = "must be a parameter: the frequency follows from the resonance";
             return Err(RequestError::Varied { name, must }.into());
         };
-        let mut parameters = vec![0.0; facts.parameters.len()];
-        self.system.values(&mut parameters);
+        let parameters = model::values(&self.system);
         let from = parameters[index];
         let to = self.to.ok_or(RequestError::no_end("to"))?;
         validate::range(facts, Variable::Parameter(index), from, to)?;
@@ -386,6 +350,8 @@ impl<'a> Resonance<'a> {
             period: 1,
             states: Vec::new(),
             symmetric: false,
+            parts: 1,
+            image: SignedPermutation::identity(),
         };
         ResonancePoint {
             value: u[n + 1],

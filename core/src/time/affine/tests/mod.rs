@@ -13,44 +13,15 @@ use std::f64::consts::TAU;
 use nalgebra::DMatrix;
 
 use super::Affine;
+use crate::model;
 use crate::numeric::spectrum::eigenvalues;
-use crate::oscillator;
 use crate::system::{System, Variable};
+use crate::testing::one_sided::{OneSided, one_sided};
 use crate::time::{Flow, Tangent};
-
-oscillator! {
-    /// Wang et al. (2021), Eq. (1), one-sided, exponent one.
-    pub(super) OneSided(x) {
-        /// damping ratio
-        param zeta in 0.0..;
-        /// normal load
-        param load;
-        /// excitation amplitude
-        param drive;
-
-        /// gap > 0 is penetration
-        law contact(gap) {
-            gap > 0 => 2*zeta*dot(gap) + gap,
-            else    => 0,
-        }
-
-        ddot(x) + contact(x) = drive*cos(omega*t) + load;
-    }
-}
 
 /// The flow of a system at the values in it.
 fn flow(system: &dyn System, omega: f64) -> Affine {
-    let mut values = vec![0.0; system.facts().parameters.len()];
-    system.values(&mut values);
-    Affine::new(system, &values, omega).unwrap()
-}
-
-fn one_sided(drive: f64) -> OneSided {
-    OneSided {
-        zeta: 0.032,
-        load: 1.0,
-        drive,
-    }
+    Affine::new(system, &model::values(system), omega).unwrap()
 }
 
 /// Initial states at `A = 1`, `omega = 1`. Computed independently from the closed-form flow in 80-bit arithmetic, confirmed with

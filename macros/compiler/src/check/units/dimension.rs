@@ -8,7 +8,7 @@ use crate::dag::Rational;
 const BASES: [&str; 6] = ["kg", "m", "s", "A", "K", "10"];
 
 /// Known symbols, as exponents of the base units and of ten.
-pub(super) const SYMBOLS: [(&str, [i128; 6]); 30] = [
+pub(super) const SYMBOLS: [(&str, [i128; 6]); 32] = [
     ("kg", [1, 0, 0, 0, 0, 0]),
     ("g", [1, 0, 0, 0, 0, -3]),
     ("t", [1, 0, 0, 0, 0, 3]),
@@ -24,6 +24,8 @@ pub(super) const SYMBOLS: [(&str, [i128; 6]); 30] = [
     ("rad", [0; 6]),
     ("Hz", [0, 0, -1, 0, 0, 0]),
     ("kHz", [0, 0, -1, 0, 0, 3]),
+    ("nN", [1, 1, -2, 0, 0, -9]),
+    ("uN", [1, 1, -2, 0, 0, -6]),
     ("mN", [1, 1, -2, 0, 0, -3]),
     ("N", [1, 1, -2, 0, 0, 0]),
     ("kN", [1, 1, -2, 0, 0, 3]),
@@ -73,6 +75,12 @@ impl Dimension {
         Some(power)
     }
 
+    /// The power of ten between this and another unit of the same; `None` where they measure something else.
+    pub fn in_units_of(self, other: Self) -> Option<Rational> {
+        let alike = self.0[..5] == other.0[..5];
+        alike.then(|| self.0[5].checked_sub(other.0[5])).flatten()
+    }
+
     /// Divided by a power of time.
     pub fn per_time(self, times: i128) -> Option<Self> {
         let second = Self::of_symbol("s")?;
@@ -86,11 +94,19 @@ impl fmt::Display for Dimension {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let is_own = |symbol: &&str| Self::of_symbol(symbol) == Some(*self);
         let names = SYMBOLS.iter().map(|(symbol, _)| *symbol);
-        if let Some(symbol) = names.clone().filter(|symbol| *symbol != "rad").find(is_own) {
+        // Rates by time are those of angles here: Hz counts whole turns.
+        let names = names.filter(|symbol| !["rad", "Hz", "kHz"].contains(symbol));
+        if let Some(symbol) = names.clone().find(is_own) {
             return formatter.write_str(symbol);
         }
         let lengths = ["mm", "um", "nm"].into_iter();
-        let prefixed = lengths.chain(names).filter_map(|symbol| self.with(symbol));
+        // Nothing is measured by forces that has no mass in it: `mm/s^2`, not `N/t`.
+        let massless = self.0[0].is_zero();
+        let has_mass =
+            |symbol: &str| Self::of_symbol(symbol).is_some_and(|own| !own.0[0].is_zero());
+        let fitting = lengths.chain(names);
+        let fitting = fitting.filter(|symbol| !(massless && has_mass(symbol)));
+        let prefixed = fitting.filter_map(|symbol| self.with(symbol));
         let shortest = prefixed.min_by_key(|text| (text.contains('('), text.len()));
         match shortest.filter(|_| !self.0[5].is_zero()) {
             Some(text) => formatter.write_str(&text),

@@ -2,6 +2,7 @@
 
 pub mod forcing;
 pub mod inertia;
+pub mod outputs;
 pub mod pieces;
 pub mod powers;
 pub mod rates;

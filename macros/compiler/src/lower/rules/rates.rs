@@ -10,6 +10,9 @@ use crate::lower::interval::Stretch;
 use crate::lower::resolve::shown;
 use crate::lower::written::Written;
 
+/// A sum that is smaller than this part of its terms is rounding.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// The force does not jump with the rate. (Across a level it may: the level is crossed at the same speed on both sides. A jump in the rate sticks and
 /// slides, which is another kind of mathematics.)
 pub fn force_does_not_jump_with_the_rate(
@@ -110,6 +113,18 @@ fn on_side(dag: &mut Dag, force: Id, switch: Id, above: bool) -> Id {
     dag.rebuild(force, replacements)
 }
 
+/// Whether a sum of numbers is zero but for rounding. Products of numbers with many digits are not exact.
+fn cancels(dag: &Dag, terms: &[Id]) -> bool {
+    if terms.iter().any(|term| !dag.variables(*term).is_empty()) {
+        return false;
+    }
+    let values = terms.iter().map(|term| dag.evaluate(*term, &|_| f64::NAN));
+    let [sum, sizes] = values.fold([0.0, 0.0], |[sum, sizes], value| {
+        [sum + value, sizes + value.abs()]
+    });
+    sum.abs() <= ROUNDING * sizes
+}
+
 /// Whether an expression is zero, powers of zero with positive exponents included.
 fn vanishes(context: &mut Expander, id: Id) -> bool {
     let mut known: HashMap<Id, bool> = HashMap::new();
@@ -120,7 +135,9 @@ fn vanishes(context: &mut Expander, id: Id) -> bool {
             | Node::Variable(_)
             | Node::PowerLog(..)
             | Node::Call(Function::Cosine | Function::Exponential, _) => false,
-            Node::Sum(terms) => terms.iter().all(|term| known[term]),
+            Node::Sum(terms) => {
+                terms.iter().all(|term| known[term]) || cancels(&context.dag, &terms)
+            }
             Node::Product(factors) => factors.iter().any(|factor| known[factor]),
             Node::Power(base, exponent) => {
                 known[&base]

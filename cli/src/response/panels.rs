@@ -1,0 +1,38 @@
+//! `--panels`: a page about every orbit at the values of `--at`.
+
+use hertzian::chart::Page;
+use hertzian::error::chain;
+use hertzian::{Branch, Point, export};
+
+use super::options::Options;
+use super::run::Failure;
+
+/// Writes the page if it was asked for; returns why something is missing on it.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write(
+    options: &Options,
+    branches: &[Branch],
+    orbits: &[(usize, Point)],
+) -> Result<Vec<String>, Failure> {
+    let mut missing = Vec::new();
+    let Some(path) = &options.panels else {
+        return Ok(missing);
+    };
+    let mut page = Page::new(2);
+    let views = options.views();
+    for (number, point) in orbits {
+        match branches[*number].panels(point, &views[0]) {
+            Ok(panels) => page = page.page(panels),
+            Err(error) => missing.push(format!(
+                "no panels at {} = {}: {}",
+                options.varied(),
+                point.value,
+                chain(&error)
+            )),
+        }
+    }
+    export::write(path, page.to_svg()).map_err(|error| Failure::File(path.clone(), error))?;
+    Ok(missing)
+}

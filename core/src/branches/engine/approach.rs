@@ -1,0 +1,175 @@
+//! Approaches an orbit that touches a level.
+//!
+//! Where the force jumps at the level, or its slope does not exist there, the branch has a corner at the touch: beyond it the orbit
+//! moves as the root of the distance, and the branch may turn back. But up to the touch it is smooth, and the distance of the
+//! extreme from the level is a linear form of the orbit once its phase is known,
+//!
+//! ```text
+//! d(tau*) . q(tau*) - delta(tau*) - level = 0,                                                                 (1)
+//! ```
+//!
+//! which closes the equations of the orbit, as its value of the parameter or a step along the branch does. They are solved from the end of
+//! the step where the level is not crossed, with the phase of the extreme from the orbit before.
+//!
+//! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing), and 7.1
+//! (corners of branches).
+
+use super::zero::{Aim, root};
+use crate::branches::extreme::{Extreme, Passage};
+use crate::branches::problem::BranchProblem;
+use crate::continuation::follow::{CurvePoint, Step};
+use crate::continuation::locate::Located;
+use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::numeric::linear::dot;
+
+/// The extreme is brought so close to its level, in units of the gap, from its side of it.
+const AIM: f64 = 1e-12;
+/// It touches when it is so close, and is as close as can be told when it does not come this much closer any more, or at so many times
+/// what was aimed at.
+const TOUCHES: f64 = 1e-10;
+const NEARER: f64 = 0.5;
+const ROUNDED: f64 = 3.0;
+/// Each orbit is so much closer than the one before, so that none of them crosses the level on the way.
+const CLOSER: f64 = 0.03;
+/// Orbits on the way, at most.
+const ORBITS: usize = 16;
+
+/// An extreme at other unknowns.
+pub(super) fn again(
+    problem: &mut dyn BranchProblem,
+    u: &[f64],
+    extreme: &Extreme,
+) -> Option<Extreme> {
+    let mut extremes = Vec::new();
+    let known = problem.extremes(u, &mut extremes);
+    if extreme.begins {
+        problem.add_beginnings(u, &mut extremes);
+    }
+    extreme.nearest(&extremes).filter(|_| known).copied()
+}
+
+/// Where an extreme goes through its level between both ends of a step, which it is followed along.
+pub(super) fn on_the_way(
+    problem: &mut dyn BranchProblem,
+    newton: &mut Newton,
+    step: Step<'_>,
+    passage: Passage,
+    options: NewtonOptions,
+) -> Option<Reached> {
+    let Passage { before, next } = passage;
+    let [from, to] = step.parameters();
+    let mut extremes = Vec::new();
+    let mut extreme = before;
+    let above = |problem: &mut (dyn BranchProblem + '_), at: &CurvePoint| {
+        problem.extremes(&at.u, &mut extremes);
+        extreme.nearest(&extremes).map_or(f64::NAN, |found| {
+            // The next one is looked for where this one was.
+            extreme = *found;
+            found.above
+        })
+    };
+    let aim = Aim::Below(TOUCHES);
+    let root = root(problem, newton, step, options, aim, above)?;
+    let located = root.located.vanishes.then_some(root.located)?;
+    Some(Reached {
+        located,
+        extreme,
+        error: root.error,
+        rate: ((to - from) / (next.above - before.above)).abs(),
+    })
+}
+
+/// Where the search for an orbit that touches a level begins, and how far it may lead.
+#[derive(Clone, Copy)]
+pub(super) struct Approach<'p> {
+    pub(super) from: &'p CurvePoint,
+    pub(super) extreme: Extreme,
+    pub(super) farthest: f64,
+}
+
+/// An orbit that touches a level, on the side where it does not cross it. Along its tangent the extreme rises.
+pub(super) struct Reached {
+    pub(super) located: Located,
+    pub(super) extreme: Extreme,
+    /// What is left of the way, in the parameter.
+    pub(super) error: f64,
+    /// What the parameter changes by while the extreme rises by half of the gap's range.
+    pub(super) rate: f64,
+}
+
+impl Approach<'_> {
+    /// The orbit whose extreme reaches its level, by Newton's method with (1) as its border; `None` if that leads elsewhere.
+    pub(super) fn close_in(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        options: NewtonOptions,
+    ) -> Option<Reached> {
+        let Self {
+            from, mut extreme, ..
+        } = *self;
+        let scale = from.scale;
+        let mut u = from.u.clone();
+        let mut form = vec![0.0; u.len()];
+        let mut before = f64::INFINITY;
+        for _ in 0..ORBITS {
+            let aim = extreme.above.signum() * (CLOSER * extreme.above.abs()).max(AIM);
+            if !problem.extreme_form(&u, &extreme, scale.parameter, &mut form) {
+                return None;
+            }
+            let border = Border {
+                row: &form,
+                value: dot(&form, &u) + aim - extreme.above,
+            };
+            newton
+                .correct(problem.equations(), &mut u, border, scale, options)
+                .ok()?;
+            extreme = again(problem, &u, &extreme)?;
+            let height = extreme.above.abs();
+            // As near as rounding allows, if that is near enough.
+            let nearer = height > ROUNDED * AIM && height < NEARER * before;
+            before = height;
+            if nearer || height > TOUCHES {
+                continue;
+            }
+            return self.reached(problem, newton, u, extreme);
+        }
+        None
+    }
+
+    /// The orbit that was reached, unless it is too far away.
+    fn reached(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        u: Vec<f64>,
+        extreme: Extreme,
+    ) -> Option<Reached> {
+        let (from, scale) = (self.from, self.from.scale);
+        let pairs = u.iter().zip(&from.u);
+        let moved: Vec<f64> = pairs.map(|(x, y)| x - y).collect();
+        let mut tangent = vec![0.0; u.len()];
+        if newton.norm().length(scale, &moved) > self.farthest
+            || !newton.tangent(problem.equations(), &u, &mut tangent, true)
+        {
+            return None;
+        }
+        let rate = tangent[tangent.len() - 1].abs();
+        let error = ROUNDED * extreme.above.abs() * rate + newton.left_in_parameter();
+        let length = newton.norm().length(scale, &tangent);
+        for t in &mut tangent {
+            *t /= length;
+        }
+        let located = Located {
+            point: CurvePoint { u, tangent, scale },
+            test: extreme.above,
+            vanishes: true,
+        };
+        Some(Reached {
+            located,
+            extreme,
+            error,
+            rate,
+        })
+    }
+}

@@ -1,0 +1,288 @@
+//! Beyond a touch of a level at which the force jumps.
+//!
+//! An orbit whose extreme is by `h` beyond the level is there for a time that goes as the root of `h`, and the jump of the force gives it
+//! an impulse that does so too. With the equations `R(u) = 0` as they are without it, and `v` what the jump does to them,
+//!
+//! ```text
+//! R(u) + sqrt(h) v + O(h) = 0,    h = d . (u - u_0)                                                            (1)
+//! ```
+//!
+//! at the touch `u_0`, so that `h` is quadratic in the arc length and the branch goes on as
+//!
+//! ```text
+//! u = u_0 - sqrt(h) w + O(h),    R_u w = v,    d . w = 0                                                       (2)
+//! ```
+//!
+//! which is a corner of any angle. If it is sharper than a right one, no plane across the tangent before it cuts the branch behind it, and
+//! steps of arc length end. But `h` itself goes through zero from one side to the other. At a prescribed `h`, where `sqrt(h)` is
+//! constant, the equations are as well conditioned as those of the touch. The orbit is sought from (2) with the matrix of the touch: one
+//! side is reached from the other with steps along the tangent, which bring `h` to what is wanted, and steps that solve (1).
+//!
+//! By shooting the branch has a kink too where a gap passes such a level just where its unknowns begin to tell the orbit. Nothing
+//! happens to the orbit there, but Newton's method may fail beside it: it is passed in the same way.
+//!
+//! If the force on the other side pulls the gap on, motions that pass the level go far away however slowly they pass it: then there is
+//! no orbit at a small `h`, and the branch ends.
+//!
+//! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (the square root) and 7.1
+//! (corners of branches); Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (a border that is not the
+//! tangent).
+
+use super::approach::Approach;
+use super::corner_search::{Corner, CornerSearch};
+use super::touch::touching;
+use super::{Engine, Looked, Seen};
+use crate::branches::extreme::{Extreme, passed};
+use crate::branches::problem::{BranchProblem, Touch};
+use crate::continuation::follow::{CurvePoint, Step, Stop};
+use crate::continuation::newton::Newton;
+use crate::continuation::problem::Norm;
+use crate::numeric::linear::dot;
+
+/// A corner is looked for as far ahead as so many times the step that failed.
+const REACH: f64 = 2.0;
+/// A step so much shorter is worth another look.
+const SHORTER: f64 = 0.1;
+/// An orbit farther away than so many times that is another one.
+const FARTHEST: f64 = 10.0;
+/// Extremes that are farther from their level, in units of the gap, are not those that a step fails at.
+const NEAR: f64 = 0.2;
+/// An event that so many of its errors do not tell apart from a touch is one with it.
+const ERRORS: f64 = 3.0;
+/// Kinks where nothing touches are looked for where so short a step fails.
+const SHORTEST: f64 = 1e-3;
+/// A walk that ends nearer to a touch than this ends there.
+const PULLED: f64 = 1e-5;
+
+/// What is tried out on the way.
+struct Tried<'p> {
+    problem: &'p mut dyn BranchProblem,
+    newton: Newton,
+    coupled: bool,
+}
+
+impl<'p> Tried<'p> {
+    /// With all of the equations in the matrix.
+    fn begin(problem: &'p mut dyn BranchProblem) -> Self {
+        let coupled = problem.couple_fully_once(true);
+        Self {
+            newton: Newton::new(problem.equations()),
+            problem,
+            coupled,
+        }
+    }
+
+    fn end(self) {
+        self.problem.count(&self.newton);
+        if self.coupled {
+            self.problem.couple_fully_once(false);
+        }
+    }
+}
+
+impl Engine {
+    /// Looks for a corner of the branch ahead of a point where a step of some length failed.
+    pub(super) fn corner_ahead(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        at: &CurvePoint,
+        step: f64,
+    ) -> bool {
+        let looked = self.looked.take().filter(|looked| looked.at == at.u);
+        let enough = |looked: &Looked| step > SHORTER * looked.step;
+        if !problem.force_jumps() || looked.as_ref().is_some_and(enough) {
+            self.looked = looked;
+            return false;
+        }
+        self.looked = Some(Looked {
+            at: at.u.clone(),
+            step,
+        });
+        let ahead = ahead(problem, at, step);
+        self.pass(problem, at, &ahead)
+    }
+
+    /// Looks for a corner in the step to a point that is not kept yet.
+    pub(super) fn corner_before(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        next: &CurvePoint,
+    ) -> bool {
+        if !problem.force_jumps() {
+            return false;
+        }
+        let last = self.seen.last().map(|seen| seen.point.clone());
+        let Some(before) = last.filter(|last| last.u.len() == next.u.len()) else {
+            return false;
+        };
+        let [Some(here), Some(there)] = [&before, next].map(|at| self.gaps_at(problem, at)) else {
+            return false;
+        };
+        let norm = Norm::of(problem.equations());
+        let step = Step {
+            before: &before,
+            next,
+        };
+        let length = norm.length(before.scale, &step.difference());
+        let through = passed(&here.extremes, &there.extremes).into_iter();
+        let through = through.map(|passage| (length, passage.before));
+        let through: Vec<_> = through.filter(|(_, extreme)| extreme.jumps).collect();
+        !through.is_empty() && self.pass(problem, &before, &through)
+    }
+
+    /// Why a walk ended, with the reason if that is a touch behind which there are no orbits near by.
+    pub(super) fn named(&self, problem: &mut dyn BranchProblem, stop: Stop) -> Stop {
+        let (Stop::StepTooShort { value, .. }, Some(last)) = (stop, self.seen.last()) else {
+            return stop;
+        };
+        if !problem.force_jumps() {
+            return stop;
+        }
+        let u = &last.point.u;
+        let mut extremes = Vec::new();
+        problem.extremes(u, &mut extremes);
+        let touches =
+            |extreme: &Extreme| extreme.jumps && extreme.is_clear() && extreme.above.abs() < PULLED;
+        if extremes.iter().any(touches) || problem.slowest(u) < PULLED {
+            return Stop::PulledOn { value };
+        }
+        stop
+    }
+
+    /// Passes the nearest corner to which one of these extremes leads: records it, and remembers a point behind it to go on from.
+    fn pass(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        at: &CurvePoint,
+        extremes: &[(f64, Extreme)],
+    ) -> bool {
+        if extremes.is_empty() {
+            return false;
+        }
+        let mut tried = Tried::begin(problem);
+        let found = extremes.iter().filter_map(|(length, extreme)| {
+            let mut search = self.search(&mut tried, at, *extreme, *length);
+            let corner = search.corner()?;
+            let next = search.behind(&corner)?;
+            Some((search.distance(at, &corner.end), corner, next))
+        });
+        let nearest = found.min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, corner, next)) = &nearest {
+            let after = tried.problem.points();
+            self.keep_corner(&mut tried, [at, next], corner, after);
+            self.seen.clear();
+            self.gaps.clear();
+            self.touched.clear();
+            self.refused = true;
+        }
+        tried.end();
+        self.passed = nearest.map(|(_, _, next)| next);
+        self.passed.is_some()
+    }
+
+    /// The search for the corner that an extreme leads to, on a way of some length.
+    fn search<'s>(
+        &self,
+        tried: &'s mut Tried<'_>,
+        from: &'s CurvePoint,
+        extreme: Extreme,
+        length: f64,
+    ) -> CornerSearch<'s> {
+        CornerSearch {
+            problem: &mut *tried.problem,
+            newton: &mut tried.newton,
+            options: self.options.newton,
+            range: [self.options.from, self.options.to],
+            approach: Approach {
+                from,
+                extreme,
+                farthest: FARTHEST * length,
+            },
+        }
+    }
+
+    /// Records the touch at a corner, what happens between the point before it and the corner, and what between it and the point behind.
+    fn keep_corner(
+        &mut self,
+        tried: &mut Tried<'_>,
+        [before, next]: [&CurvePoint; 2],
+        corner: &Corner,
+        after: usize,
+    ) {
+        let Tried {
+            problem, newton, ..
+        } = tried;
+        let Corner {
+            touch, end, begin, ..
+        } = corner;
+        let (value, known) = (touch.located.point.parameter(), problem.events());
+        let mut from = before;
+        for point in corner.way.iter().chain([end]) {
+            self.events_between(*problem, newton, [from, point], after);
+            from = point;
+        }
+        // Multipliers are unbounded at the touch: what a series leaves of that beside it is none of its own.
+        problem.drop_beside(known, value, ERRORS);
+        if !touch.extreme.begins {
+            let mut extremes = Vec::new();
+            problem.extremes(&touch.located.point.u, &mut extremes);
+            // On the side that is clear the branch is smooth up to the touch.
+            let comes_clear = end.u == touch.located.point.u;
+            let step = Step {
+                before: if comes_clear { before } else { next },
+                next: &touch.located.point,
+            };
+            let touch = Touch {
+                contacts: touching(&extremes),
+                turns: corner.turns(),
+                located: touch.located.clone(),
+                extreme: touch.extreme,
+                error: touch.error,
+                rate: touch.rate,
+                after,
+            };
+            problem.keep_touch(newton, step, &touch);
+        }
+        let known = problem.events();
+        self.events_between(*problem, newton, [begin, next], after);
+        problem.drop_beside(known, value, ERRORS);
+    }
+
+    /// What changes its sign between two points that are not kept as a step.
+    fn events_between(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        ends: [&CurvePoint; 2],
+        after: usize,
+    ) {
+        let [a, b] = ends.map(|point| Seen::at(problem, point));
+        if self.ended.is_none() {
+            self.record_all(problem, newton, [&a, &b], after, |_| true);
+        }
+    }
+}
+
+/// The extremes that come to levels where the force jumps, the nearest first, with the length of the way to them.
+fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f64, Extreme)> {
+    let mut extremes = Vec::new();
+    let mut ahead: Vec<(f64, Extreme)> = Vec::new();
+    let mut form = vec![0.0; at.u.len()];
+    problem.extremes(&at.u, &mut extremes);
+    if step < SHORTEST {
+        problem.add_beginnings(&at.u, &mut extremes);
+    }
+    for extreme in extremes {
+        if !extreme.jumps || extreme.above.abs() > NEAR {
+            continue;
+        }
+        let range = at.scale.parameter;
+        let known = problem.extreme_form(&at.u, &extreme, range, &mut form);
+        let distance = -extreme.above / dot(&form, &at.tangent);
+        if known && distance > 0.0 && distance < REACH * step {
+            ahead.push((distance.max(step), extreme));
+        }
+    }
+    ahead.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ahead
+}

@@ -1,0 +1,312 @@
+//! Touches of levels between two points of a branch.
+//!
+//! An extreme that is on the other side of its level at the other end of a step has touched it in between. Extremes that went there and
+//! back are looked for [inside](super::inside_touch), and where extremes appear or disappear near a level, or level crossings do that no
+//! extreme explains, the step is halved. Each touch is located by [approaching](super::approach) it.
+
+use super::Engine;
+use super::approach::{Approach, Reached, on_the_way};
+use super::inside_touch::Steps;
+use crate::branches::extreme::{Extreme, Passage, appears, crossings, distinct, is_copy, passed};
+use crate::branches::problem::{BranchProblem, Touch};
+use crate::continuation::follow::{CurvePoint, Step};
+use crate::continuation::locate::inside;
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::event::{EventKind, Turn};
+
+/// Values that differ by this part of the range are one.
+const SAME: f64 = 1e-9;
+/// Extremes that are so near to their levels, in units of the gap, at an orbit that touches one, touch as well: Newton's method leaves
+/// less between copies.
+const AT_ONCE: f64 = 1e-8;
+/// A slope that is smaller where the branch turns does not jump there.
+const STEEP: f64 = 1e-6;
+/// An orbit farther from where it was sought than so many steps is another one.
+const FARTHEST: f64 = 3.0;
+/// Points whose gaps are remembered: those of the last two steps, and the next one.
+const READ: usize = 4;
+/// Extremes that appear, or disappear, farther from their level, in units of the gap, do not come to it in the same step.
+const NEAR: f64 = 0.05;
+/// A step is halved so often where its ends do not tell which extremes went through their levels.
+const HALVINGS: usize = 5;
+
+/// A step in which levels are touched.
+struct TouchSearch<'s> {
+    whole: Step<'s>,
+    options: NewtonOptions,
+    range: f64,
+    after: usize,
+    /// Where the branch turned back without a fold, until a touch explains that.
+    turned: Option<Turn>,
+    /// Where touches were found.
+    found: Vec<f64>,
+}
+
+/// A point with the extremes of its gaps.
+#[derive(Debug, Clone)]
+pub(super) struct Gaps {
+    pub(super) point: CurvePoint,
+    pub(super) extremes: Vec<Extreme>,
+}
+
+impl Gaps {
+    pub(super) fn at(problem: &mut dyn BranchProblem, point: &CurvePoint) -> Option<Self> {
+        let mut extremes = Vec::new();
+        let known = problem.extremes(&point.u, &mut extremes);
+        let point = point.clone();
+        known.then_some(Self { point, extremes })
+    }
+}
+
+impl Engine {
+    /// Where extremes of gaps reach levels in a step, and whether that is where the branch `turned` back without a fold.
+    pub(super) fn touches(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        step: Step<'_>,
+        turned: Option<Turn>,
+    ) {
+        if !problem.seeks_touches() {
+            return;
+        }
+        let earlier = self.seen.len().checked_sub(3);
+        let earlier = earlier.map(|place| self.seen[place].point.clone());
+        let earlier = earlier.and_then(|point| self.gaps_at(problem, &point));
+        let ends = [step.before, step.next].map(|point| self.gaps_at(problem, point));
+        let [Some(before), Some(next)] = ends else {
+            return;
+        };
+        let after = problem.points() - 1;
+        let touched = std::mem::take(&mut self.touched);
+        let mut parts = vec![before.clone(), next.clone()];
+        let steps = earlier.and_then(|earlier| Steps::new(newton, [earlier, before, next]));
+        if let Some(mut steps) = steps {
+            steps.divide(problem, newton, self.options.newton);
+            let [earlier, last] = steps.parts;
+            if earlier.len() > 2 {
+                let whole = Step {
+                    before: &earlier[0].point,
+                    next: step.before,
+                };
+                let mut search = self.touch_search(whole, after - 1);
+                search.found = touched;
+                search.between_all(problem, newton, &earlier);
+            }
+            parts = last;
+        }
+        let mut search = self.touch_search(step, after);
+        search.turned = turned;
+        search.between_all(problem, newton, &parts);
+        self.touched = search.found;
+    }
+
+    /// A search for the touches in a step behind so many points.
+    fn touch_search<'s>(&self, whole: Step<'s>, after: usize) -> TouchSearch<'s> {
+        TouchSearch {
+            whole,
+            options: self.options.newton,
+            range: (self.options.to - self.options.from).abs(),
+            after,
+            turned: None,
+            found: Vec::new(),
+        }
+    }
+
+    /// The extremes at a point, which are read once.
+    pub(super) fn gaps_at(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        point: &CurvePoint,
+    ) -> Option<Gaps> {
+        let mut known = self.gaps.iter();
+        if let Some(known) = known.find(|gaps| gaps.point == *point) {
+            return Some(known.clone());
+        }
+        let gaps = Gaps::at(problem, point)?;
+        if self.gaps.len() == READ {
+            self.gaps.remove(0);
+        }
+        self.gaps.push(gaps.clone());
+        Some(gaps)
+    }
+}
+
+impl TouchSearch<'_> {
+    /// Looks at all parts of the step.
+    fn between_all(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        parts: &[Gaps],
+    ) {
+        for pair in parts.windows(2) {
+            self.between(problem, newton, [&pair[0], &pair[1]], HALVINGS);
+        }
+    }
+
+    /// Looks at a part of the step, or at both halves of it.
+    fn between(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        [before, next]: [&Gaps; 2],
+        halvings: usize,
+    ) {
+        let mut found = passed(&before.extremes, &next.extremes);
+        let begun = found.iter().filter(|passage| passage.before.is_clear());
+        let more = 2 * begun.count() + crossings(&before.extremes);
+        let fewer = found.iter().filter(|passage| passage.next.is_clear());
+        let explained = more == 2 * fewer.count() + crossings(&next.extremes);
+        let appeared = appears(&before.extremes, &next.extremes, NEAR);
+        let part = Step {
+            before: &before.point,
+            next: &next.point,
+        };
+        if (!explained || appeared) && halvings > 0 {
+            let middle = inside(problem.equations(), newton, part, 0.5, self.options);
+            let middle = middle.as_ref().and_then(|point| Gaps::at(problem, point));
+            if let Some(middle) = middle {
+                self.between(problem, newton, [before, &middle], halvings - 1);
+                self.between(problem, newton, [&middle, next], halvings - 1);
+                return;
+            }
+        }
+        if !explained && found.is_empty() {
+            self.omit(problem, part);
+        }
+        while let Some(&passage) = found.first() {
+            let mut at_once = vec![passage];
+            if self.touch(problem, newton, part, &found, &mut at_once) {
+                found.retain(|other| !at_once.contains(other));
+            } else {
+                self.omit(problem, part);
+                found.retain(|other| !is_copy(&passage, other));
+            }
+        }
+    }
+
+    /// Records what could not be located.
+    fn omit(&self, problem: &mut dyn BranchProblem, step: Step<'_>) {
+        let [a, b] = step.parameters();
+        problem.keep_turn(Turn {
+            kind: EventKind::Grazing {
+                // What was located nowhere may be where the branch turned.
+                turns: self.turned.is_some(),
+            },
+            value: 0.5 * (a + b),
+            test: f64::NAN,
+            after: self.after,
+        });
+    }
+
+    /// Locates where the first of the extremes that were `found` reaches its level, with what the matrix has or else with more of the
+    /// equations in it, and keeps it. Writes which of them do so `at_once`.
+    fn touch(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        step: Step<'_>,
+        found: &[Passage],
+        at_once: &mut Vec<Passage>,
+    ) -> bool {
+        if self.locate(problem, newton, step, found, at_once) {
+            return true;
+        }
+        if !problem.couple_fully_once(true) {
+            return false;
+        }
+        let mut newton = Newton::new(problem.equations());
+        let kept = self.locate(problem, &mut newton, step, found, at_once);
+        problem.count(&newton);
+        problem.couple_fully_once(false);
+        kept
+    }
+
+    /// From the end of the step where the level is not crossed, or anywhere between both ends.
+    fn locate(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        step: Step<'_>,
+        found: &[Passage],
+        at_once: &mut Vec<Passage>,
+    ) -> bool {
+        let Passage { before, next } = found[0];
+        let (from, extreme) = if before.is_clear() {
+            (step.before, before)
+        } else {
+            (step.next, next)
+        };
+        let farthest = FARTHEST * newton.norm().length(from.scale, &step.difference());
+        let approach = Approach {
+            from,
+            extreme,
+            farthest,
+        };
+        let options = self.options;
+        let located = approach
+            .close_in(problem, newton, options)
+            .or_else(|| on_the_way(problem, newton, step, found[0], options));
+        let Some(Reached {
+            located,
+            extreme,
+            error,
+            rate,
+        }) = located
+        else {
+            return false;
+        };
+        // Contacts that are copies of each other, and orbits with a symmetry, touch in several places at once: one event.
+        let mut extremes = Vec::new();
+        problem.extremes(&located.point.u, &mut extremes);
+        let touches = |other: &&Passage| {
+            let there = other.before.nearest(&extremes);
+            let there = there.or(other.next.nearest(&extremes));
+            there.is_some_and(|there| there.above.abs() <= AT_ONCE)
+        };
+        at_once.extend(found[1..].iter().filter(touches));
+        let value = located.point.parameter();
+        let known = |other: &f64| (other - value).abs() <= SAME * self.range;
+        if self.found.iter().any(known) {
+            return true;
+        }
+        self.found.push(value);
+        let touch = Touch {
+            located,
+            extreme,
+            error,
+            rate,
+            contacts: distinct(at_once),
+            turns: self.turns_at(problem, value),
+            after: self.after,
+        };
+        problem.keep_touch(newton, self.whole, &touch);
+        true
+    }
+
+    /// Whether a touch is where the branch turned: at a corner the slope jumps, and the value there is beyond those of both ends of the
+    /// step.
+    fn turns_at(&mut self, problem: &mut dyn BranchProblem, value: f64) -> bool {
+        let [a, b] = self.whole.parameters();
+        let turned = self.turned.take_if(|turned| {
+            let jumps = turned.test.abs() > STEEP;
+            (jumps && (value <= a.min(b) || value >= a.max(b)))
+                || (value - turned.value).abs() <= SAME * self.range
+        });
+        // That is where the branch turned, and why.
+        turned.is_some_and(|turned| {
+            problem.drop_turn(&turned);
+            true
+        })
+    }
+}
+
+/// The number of contacts of which an extreme touches a level.
+pub(super) fn touching(extremes: &[Extreme]) -> usize {
+    // They are in order of contacts.
+    extremes
+        .chunk_by(|a, b| a.contact == b.contact)
+        .filter(|of| of.iter().any(|extreme| extreme.above.abs() <= AT_ONCE))
+        .count()
+}

@@ -1,0 +1,143 @@
+//! Where a walk along a branch is, as data: so that it can be resumed, from a file too.
+//!
+//! It is taken before each step, and what a step finds follows from it and from the equations alone. A walk that is interrupted within a
+//! step makes that step again, and comes to the same points to the last bit.
+
+use super::{Engine, Seen};
+use crate::branches::problem::{Kept, Test};
+use crate::continuation::follow::{CurvePoint, FollowOptions, Halted};
+
+/// A walk along a branch before one of its steps.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Walk {
+    halted: Halted,
+    /// Of Newton's method.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    contraction: f64,
+    seen: Vec<Seen>,
+    divided: Vec<(usize, Test)>,
+    decided: Option<usize>,
+    looked: Option<Looked>,
+    /// Where levels are touched in the step before.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    touched: Vec<f64>,
+    /// What the branch had then.
+    pub(crate) kept: Places,
+}
+
+/// Where a corner was looked for last.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Looked {
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(super) at: Vec<f64>,
+    /// How far ahead.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(super) step: f64,
+}
+
+/// What a branch had at some time: so many points, and the events and turns at these places.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Places {
+    pub(crate) points: usize,
+    pub(crate) events: Vec<usize>,
+    pub(crate) turns: Vec<usize>,
+}
+
+impl Places {
+    /// All that there is.
+    pub(crate) fn all(kept: Kept<'_>) -> Self {
+        Self {
+            points: kept.points.len(),
+            events: (0..kept.events.len()).collect(),
+            turns: (0..kept.turns.len()).collect(),
+        }
+    }
+
+    /// What is at these places; `None` where there is nothing.
+    pub(crate) fn taken<T: Clone>(places: &[usize], from: &[T]) -> Option<Vec<T>> {
+        places
+            .iter()
+            .map(|&place| from.get(place).cloned())
+            .collect()
+    }
+
+    /// The places of what is sorted by the number of points before it, as [`sort_by_key`](slice::sort_by_key) does.
+    pub(crate) fn sorted(places: &mut [usize], after: &[usize]) {
+        let mut order: Vec<usize> = (0..after.len()).collect();
+        order.sort_by_key(|&place| after[place]);
+        for place in places {
+            if let Some(new) = order.iter().position(|old| old == place) {
+                *place = new;
+            }
+        }
+    }
+}
+
+impl Walk {
+    /// Whether all its vectors are those of so many unknowns, and what it says of the branch can be: it may have been read from a file.
+    pub(crate) fn fits(&self, unknowns: usize) -> bool {
+        let Halted {
+            point,
+            previous,
+            before,
+            first,
+            ..
+        } = &self.halted;
+        let is_vector = |vector: &Vec<f64>| {
+            vector.len() == unknowns + 1 && vector.iter().all(|x| x.is_finite())
+        };
+        let is_point = |point: &CurvePoint| is_vector(&point.u) && is_vector(&point.tangent);
+        let points = [point, first].into_iter().chain(previous);
+        let points = points.chain(self.seen.iter().map(|seen| &seen.point));
+        let are_points = points.into_iter().all(is_point);
+        are_points
+            && before.iter().all(is_vector)
+            && self.looked.iter().all(|looked| is_vector(&looked.at))
+            && self.touched.iter().all(|value| value.is_finite())
+            && self.halted.is_possible()
+            && self.contraction.is_finite()
+            && self.kept.points > 0
+            && self
+                .decided
+                .is_none_or(|points| (1..=self.kept.points).contains(&points))
+    }
+
+    /// Whether its points have so many test functions, and nothing was divided for another one.
+    pub(crate) fn tests(&self, tests: usize) -> bool {
+        let is_one = |test: &Test| !matches!(test, Test::Watched(index) if *index >= tests);
+        self.seen.iter().all(|seen| seen.values.len() == tests)
+            && self.divided.iter().all(|(_, test)| is_one(test))
+    }
+}
+
+impl Engine {
+    /// Where the walk is, halted like this.
+    pub(super) fn here(&self, halted: Halted, contraction: f64, kept: Kept<'_>) -> Walk {
+        Walk {
+            halted,
+            contraction,
+            seen: self.seen.clone(),
+            divided: self.divided.clone(),
+            decided: self.decided,
+            looked: self.looked.clone(),
+            touched: self.touched.clone(),
+            kept: Places::all(kept),
+        }
+    }
+
+    /// As it was there, with the halted walk and what the last correction left behind.
+    pub(super) fn resumed(walk: Walk, options: FollowOptions) -> (Self, Halted, f64) {
+        let engine = Self {
+            seen: walk.seen,
+            divided: walk.divided,
+            decided: walk.decided,
+            looked: walk.looked,
+            touched: walk.touched,
+            ..Self::new(options)
+        };
+        (engine, walk.halted, walk.contraction)
+    }
+}

@@ -1,0 +1,190 @@
+//! One orbit, or a branch of them, from a guess.
+
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+use super::equations::Equations;
+use super::method::ContactBranch;
+use super::plan::{Frame, Gaps, Plan};
+use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
+use super::run::Run;
+use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::engine;
+use crate::branches::error::OrbitError;
+use crate::branches::observed::Motion;
+use crate::branches::orbit::Orbit;
+use crate::branches::point::Point;
+use crate::branches::progress::See;
+use crate::branches::solve;
+use crate::continuation::follow::{CurvePoint, Start, Stop};
+use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
+use crate::error::Error;
+use crate::time::Work;
+
+/// Resolutions that a first orbit is looked for with.
+const TRIED: [usize; 3] = [FIRST, 5, 7];
+
+/// A first orbit.
+struct First {
+    equations: Equations,
+    u: Vec<f64>,
+    frame: Frame,
+    resolution: usize,
+}
+
+/// The orbit near another one where what is varied has a value.
+///
+/// # Errors
+/// If none is found.
+pub(crate) fn orbit(problem: &ContactProblem, guess: &Point, value: f64) -> Result<Point, Error> {
+    let First {
+        equations,
+        u,
+        frame,
+        resolution,
+    } = first(problem, guess, value)?;
+    let mut run = Run::new(problem, frame, resolution, equations);
+    let newton = Newton::new(&run.equations);
+    let at = CurvePoint {
+        scale: solve::scale_at(&newton, &u),
+        tangent: vec![0.0; u.len() - 1].into_iter().chain([1.0]).collect(),
+        u,
+    };
+    let read = run.read(&at);
+    let read = read.ok_or(lost(value))?;
+    Ok(read.point)
+}
+
+fn lost(value: f64) -> OrbitError {
+    OrbitError::NoStart {
+        value,
+        reason: NewtonError::NotFinite { iterations: 0 },
+    }
+}
+
+/// The branch from near an orbit at the first value to the second.
+///
+/// # Errors
+/// If there is no first orbit.
+pub(crate) fn branch(
+    problem: &ContactProblem,
+    guess: &Point,
+    [from, to]: [f64; 2],
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let started = Instant::now();
+    let First {
+        equations,
+        u,
+        frame,
+        resolution,
+    } = first(problem, guess, from)?;
+    let options = problem.asked.follow(from, to, 1.0);
+    let mut run = Run::new(problem, frame, resolution, equations);
+    let mut branch = ContactBranch::new(&mut run, visit);
+    let stopped = engine::run(&mut branch, Start::Near(u), options);
+    let lost = branch.lost;
+    let stopped = match stopped {
+        Ok(Stop::Interrupted) if lost => {
+            let value = run.points.last().map_or(from, |point| point.value);
+            Stop::StepTooShort {
+                step: options.steps.smallest,
+                value,
+                reason: NewtonError::NotFinite { iterations: 0 },
+            }
+        }
+        Ok(stopped) => stopped,
+        Err(reason) => {
+            return Err(OrbitError::NoStart {
+                value: from,
+                reason,
+            }
+            .into());
+        }
+    };
+    let Run {
+        points,
+        events,
+        turns,
+        statistics,
+        ..
+    } = run;
+    Ok(Branch {
+        model: Model::of(problem.asked.system.as_ref()),
+        varied: problem.asked.varied.clone(),
+        points,
+        events,
+        turns,
+        begin: None,
+        stopped,
+        statistics,
+        work: Work::default(),
+        elapsed: started.elapsed(),
+        further: Further::default(),
+    })
+}
+
+/// A solution near an orbit that is given by its series.
+fn first(problem: &ContactProblem, guess: &Point, value: f64) -> Result<First, Error> {
+    let mut last = OrbitError::NoStart {
+        value,
+        reason: NewtonError::NotFinite { iterations: 0 },
+    };
+    for resolution in TRIED {
+        match first_with(problem, guess, value, resolution) {
+            Ok(first) => return Ok(first),
+            Err(reason) => last = OrbitError::NoStart { value, reason },
+        }
+    }
+    Err(last.into())
+}
+
+fn first_with(
+    problem: &ContactProblem,
+    guess: &Point,
+    value: f64,
+    resolution: usize,
+) -> Result<First, NewtonError> {
+    let unusable = NewtonError::NotFinite { iterations: 0 };
+    let values = problem.setting.values(value).ok_or(unusable)?;
+    let orbit: &Orbit = &guess.orbit;
+    let coordinates = orbit.coordinates();
+    // The orbit goes on at the pace of the value that is asked for.
+    let rate = orbit.base * orbit.period as f64;
+    let pace = values.base / rate;
+    let at = |phase: f64, state: &mut [f64]| {
+        for i in 0..coordinates {
+            if let Some((x, v)) = orbit.state_at(i, phase / rate) {
+                (state[i], state[coordinates + i]) = (x, v * pace);
+            }
+        }
+    };
+    let gaps = Gaps {
+        values: &values,
+        at: &at,
+        coordinates,
+    };
+    let length = TAU * problem.asked.period as f64;
+    let plan = Plan::sampled(&gaps, length);
+    let middles = guess.observed.motions.iter().map(Motion::middle);
+    let frame = Frame {
+        reference: middles.chain(vec![0.0; coordinates]).collect(),
+        size: guess.size(),
+        resolution: RESOLUTIONS[resolution],
+    };
+    let planned = plan.equations(&problem.setting, value, &gaps, &frame);
+    let (mut equations, mut u) = planned.ok_or(unusable)?;
+    let mut newton = Newton::new(&equations);
+    let options = NewtonOptions {
+        tolerance: 1e-10,
+        iterations: 40,
+        damped: true,
+    };
+    solve::at_value(&mut equations, &mut newton, &mut u, options)?;
+    Ok(First {
+        equations,
+        u,
+        frame,
+        resolution,
+    })
+}

@@ -1,0 +1,462 @@
+//! The equations of an orbit, by one pass from its beginning to its end.
+//!
+//! Over an interval of length `s` that begins at `tau_a` with the states `y_a`, at a part `psi` of it,
+//!
+//! ```text
+//! y = e^(A psi s) (y_a - y_p(tau_a)) + y_p(tau) + int_0^(psi s) e^(A (psi s - t)) B f dt                      (1)
+//! ```
+//!
+//! with the steady response `y_p` to the load, and the polynomials through the forces `f` at the nodes. The equations are
+//!
+//! ```text
+//! f - phi(g, g') = 0 at the nodes,    g = level at switches,    y_end - y_begin = 0                          (2)
+//! ```
+//!
+//! Derivatives by all unknowns are carried along. With `X f` for the integral of (1), where everything is held but the length,
+//!
+//! ```text
+//! d(X f)/ds = X f / s + A int_0^(psi s) (psi - t / s) e^(A (psi s - t)) B f dt                                (3)
+//! ```
+//!
+//! The map of the states is what is left when forces and switches are eliminated: perturbed states have their own switches.
+//!
+//! ```text
+//! M = E_y - E_w W^-1 W_y,    rows E of the end, W of the others; columns y of states, w of the others         (4)
+//! ```
+//!
+//! Source: the integral equation of the periodic contact force, Babitsky (1998), Theory of Vibro-Impact Systems and Applications,
+//! section 2.2, in causal form; collocation at Gauss nodes, Hairer, Norsett and Wanner (1993), section II.7.
+
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use super::extremes::Extremes;
+use super::pass::Room;
+use super::skeleton::{Skeleton, Told, half_way};
+use super::values::Values;
+use crate::cancel::Cancel;
+use crate::continuation::jacobian::Jacobian;
+use crate::continuation::problem::Problem;
+use crate::model::layout::Layout;
+use crate::system::{System, Variable};
+
+/// Part of the parameter's unit for differences of fourth order.
+const DIFFERENCE: f64 = 1e-3;
+
+/// What is the same for all orbits of a branch.
+#[derive(Clone)]
+pub(super) struct Setting {
+    pub(super) system: Arc<dyn System>,
+    pub(super) layout: Arc<Layout>,
+    pub(super) variable: Variable,
+    pub(super) parameters: Vec<f64>,
+    /// Unless it is varied.
+    pub(super) omega: f64,
+    pub(super) cancel: Cancel,
+    /// Nothing but the time depends on the frequency that is varied.
+    plain: bool,
+}
+
+impl Setting {
+    pub(super) fn new(
+        system: &Arc<dyn System>,
+        variable: Variable,
+        parameters: Vec<f64>,
+        omega: f64,
+        cancel: &Cancel,
+    ) -> Self {
+        let layout = Layout::of(system.as_ref());
+        let mut by = vec![0.0; layout.coefficients];
+        system.coefficients_by(Variable::Omega, &parameters, omega, &mut by);
+        Self {
+            system: Arc::clone(system),
+            layout: Arc::new(layout),
+            variable,
+            plain: variable == Variable::Omega && by.iter().all(|x| *x == 0.0),
+            parameters,
+            omega,
+            cancel: cancel.clone(),
+        }
+    }
+
+    /// Parameters and frequency where what is varied has a value.
+    pub(super) fn at(&self, value: f64) -> (Vec<f64>, f64) {
+        let mut parameters = self.parameters.clone();
+        match self.variable {
+            Variable::Omega => (parameters, value),
+            Variable::Parameter(index) => {
+                parameters[index] = value;
+                (parameters, self.omega)
+            }
+        }
+    }
+
+    /// The system there.
+    pub(super) fn values(&self, value: f64) -> Option<Values> {
+        let (parameters, omega) = self.at(value);
+        Values::new(self.system.as_ref(), &self.layout, &parameters, omega)
+    }
+}
+
+/// What was met on an interval, for whoever looks at the motion afterwards.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Passed {
+    pub(super) phases: [f64; 2],
+    /// States less the steady response at its beginning.
+    pub(super) free: Vec<f64>,
+    /// What the forces do to the states, at the nodes and the end.
+    pub(super) forced: Vec<f64>,
+    /// The states at the beginning, the nodes and the end.
+    pub(super) states: Vec<f64>,
+}
+
+/// The equations on one skeleton.
+pub(super) struct Equations {
+    pub(super) setting: Setting,
+    pub(super) values: Values,
+    /// What is varied where `values` were made.
+    at: f64,
+    pub(super) skeleton: Skeleton,
+    /// Positions and velocities that the unknowns count from.
+    pub(super) reference: Vec<f64>,
+    /// Weight of a phase, and of velocities, in the norm.
+    pub(super) size: f64,
+    /// Residuals, and their derivatives by the extended unknowns row by row.
+    residual: Vec<f64>,
+    matrix: Vec<f64>,
+    pub(super) passed: Vec<Passed>,
+    /// Of the last pass, when they are asked for.
+    pub(super) extremes: OnceCell<Extremes>,
+    /// The last orbit of the branch, and the last one that was found.
+    pub(super) known: [Vec<f64>; 2],
+    room: Room,
+    /// Unknowns of the last pass, and whether it has made derivatives.
+    last: Vec<f64>,
+    derived: bool,
+    /// It has the derivatives by the parameter.
+    by_parameter: bool,
+    column: Vec<f64>,
+    /// The values cannot be computed.
+    pub(super) failed: bool,
+}
+
+impl Equations {
+    /// On a skeleton, where what is varied has a value; `None` where the system has no such values.
+    pub(super) fn new(
+        setting: Setting,
+        value: f64,
+        skeleton: Skeleton,
+        reference: Vec<f64>,
+        size: f64,
+    ) -> Option<Self> {
+        let values = setting.values(value)?;
+        let mut equations = Self {
+            values,
+            at: value,
+            setting,
+            skeleton,
+            reference,
+            size,
+            residual: Vec::new(),
+            matrix: Vec::new(),
+            passed: Vec::new(),
+            extremes: OnceCell::new(),
+            known: [Vec::new(), Vec::new()],
+            room: Room::default(),
+            last: Vec::new(),
+            derived: false,
+            by_parameter: false,
+            column: Vec::new(),
+            failed: false,
+        };
+        equations.resize();
+        Some(equations)
+    }
+
+    /// The same with more nodes.
+    pub(super) fn finer_equations(&self, value: f64) -> Option<Self> {
+        let (setting, reference) = (self.setting.clone(), self.reference.clone());
+        Self::new(setting, value, self.skeleton.finer(), reference, self.size)
+    }
+
+    fn resize(&mut self) {
+        let n = self.skeleton.unknowns();
+        self.residual = vec![0.0; n];
+        self.matrix = vec![0.0; n * (n + 1)];
+        self.column = vec![0.0; n];
+        self.passed = vec![Passed::default(); self.skeleton.intervals.len()];
+        self.room = Room::new(&self.skeleton, self.values.contacts.len());
+    }
+
+    /// Goes over to a value of what is varied. Says whether the system has one there.
+    fn set(&mut self, value: f64) -> bool {
+        if value == self.at {
+            return true;
+        }
+        if self.setting.plain {
+            let divisor = f64::from(self.setting.system.facts().divisor);
+            self.values.set_omega(value, divisor);
+        } else {
+            match self.setting.values(value) {
+                Some(values) => self.values = values,
+                None => return false,
+            }
+        }
+        self.at = value;
+        true
+    }
+
+    /// Residuals, and their derivatives by the unknowns if asked for. What the last pass has is not computed again.
+    fn pass(&mut self, u: &[f64], derivatives: bool) {
+        if self.last == u && (self.derived || !derivatives) {
+            return;
+        }
+        let n = self.skeleton.unknowns();
+        self.last.clear();
+        self.extremes = OnceCell::new();
+        self.failed = !self.set(u[n]);
+        if self.failed {
+            self.residual.fill(f64::NAN);
+            return;
+        }
+        self.last.extend_from_slice(u);
+        self.derived = derivatives;
+        self.by_parameter = false;
+        if derivatives {
+            self.matrix.fill(0.0);
+        }
+        let (values, skeleton) = (&self.values, &self.skeleton);
+        let omega = self.setting.at_omega(u[n]);
+        let mut pass = super::pass::Pass {
+            system: self.setting.system.as_ref(),
+            values,
+            skeleton,
+            u,
+            omega: self.setting.plain.then_some(omega),
+            derivatives,
+            residual: &mut self.residual,
+            matrix: &mut self.matrix,
+            room: &mut self.room,
+        };
+        pass.begin(&self.reference);
+        for (interval, passed) in skeleton.intervals.iter().zip(&mut self.passed) {
+            pass.go(interval, passed);
+        }
+        pass.close(&self.reference);
+        self.switches(u, derivatives);
+    }
+
+    /// Equations (2) and (3) of [`skeleton`](super::skeleton).
+    fn switches(&mut self, u: &[f64], derivatives: bool) {
+        let columns = self.skeleton.unknowns() + 1;
+        for index in 0..self.skeleton.switches.len() {
+            let row = self.skeleton.slot(index);
+            match self.skeleton.switches[index].told {
+                Told::Alone => {
+                    self.residual[row] = self.room.at_switch[index][0];
+                    if derivatives {
+                        let of = &self.room.switch_rows[index * columns..][..columns];
+                        self.matrix[row * columns..][..columns].copy_from_slice(of);
+                    }
+                }
+                Told::First { other, bend } => {
+                    self.touching(u, [index, other], bend, derivatives);
+                }
+                Told::Second { .. } => {}
+            }
+        }
+    }
+
+    /// Those of two switches that may meet.
+    fn touching(&mut self, u: &[f64], [first, second]: [usize; 2], bend: f64, derivatives: bool) {
+        let columns = self.skeleton.unknowns() + 1;
+        let rows = [first, second].map(|switch| self.skeleton.slot(switch));
+        let square = u[rows[1]];
+        let half = half_way(square);
+        let [a, b] = [first, second].map(|switch| self.room.at_switch[switch]);
+        let of = |rows: &[f64], switch: usize, column: usize| rows[switch * columns + column];
+        let room = &self.room;
+        if half > 0.0 {
+            self.residual[rows[0]] = 0.5 * (a[0] + b[0]);
+            let slope = (b[0] - a[0]) / (2.0 * half);
+            self.residual[rows[1]] = slope;
+            if !derivatives {
+                return;
+            }
+            for column in 0..columns {
+                let [x, y] = [first, second].map(|switch| of(&room.switch_rows, switch, column));
+                self.matrix[rows[0] * columns + column] = 0.5 * (x + y);
+                self.matrix[rows[1] * columns + column] = (y - x) / (2.0 * half);
+            }
+            self.matrix[rows[1] * columns + rows[1]] -= slope / (2.0 * half * half);
+        } else {
+            self.residual[rows[0]] = a[0] + bend * square;
+            self.residual[rows[1]] = a[1];
+            if !derivatives {
+                return;
+            }
+            for column in 0..columns {
+                self.matrix[rows[0] * columns + column] = of(&room.switch_rows, first, column);
+                self.matrix[rows[1] * columns + column] = of(&room.slope_rows, first, column);
+            }
+            self.matrix[rows[0] * columns + rows[1]] += bend;
+        }
+    }
+
+    /// Writes the column of the parameter, where it changes more than the time.
+    fn parameter_column(&mut self, u: &[f64], column: &mut [f64]) {
+        let n = self.skeleton.unknowns();
+        let value = u[n];
+        let step = DIFFERENCE * if value == 0.0 { 1.0 } else { value.abs() };
+        let mut beside = u.to_vec();
+        column.fill(0.0);
+        // f' = (8 (f(h) - f(-h)) - (f(2h) - f(-2h))) / 12 h
+        for (at, weight) in [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)] {
+            beside[n] = value + at * step;
+            self.pass(&beside, false);
+            for (column, residual) in column.iter_mut().zip(&self.residual) {
+                *column += weight * residual / (12.0 * step);
+            }
+        }
+    }
+
+    /// Everything at unknowns: residuals, and derivatives if asked for.
+    pub(super) fn compute(&mut self, u: &[f64], derivatives: bool) {
+        if !derivatives || self.setting.plain || self.last == u && self.by_parameter {
+            return self.pass(u, derivatives);
+        }
+        let n = self.skeleton.unknowns();
+        let mut column = std::mem::take(&mut self.column);
+        self.parameter_column(u, &mut column);
+        self.pass(u, true);
+        for (row, slope) in column.iter().enumerate() {
+            self.matrix[row * (n + 1) + n] = *slope;
+        }
+        self.column = column;
+        self.by_parameter = true;
+    }
+
+    /// The map (4) of the states over the period, in the units of [`states`](Self::unit).
+    pub(super) fn map(&mut self, u: &[f64]) -> Option<DMatrix<f64>> {
+        self.pass(u, true);
+        if self.failed {
+            return None;
+        }
+        let (n, order) = (self.skeleton.unknowns(), self.skeleton.order);
+        let entry = |row: usize, column: usize| self.matrix[row * (n + 1) + column];
+        let others = n - order;
+        let inner = DMatrix::from_fn(others, others, |i, j| entry(order + i, order + j));
+        let by_states = DMatrix::from_fn(others, order, |i, j| entry(order + i, j));
+        let end = DMatrix::from_fn(order, others, |i, j| entry(i, order + j));
+        let mut map = DMatrix::from_fn(order, order, |i, j| {
+            entry(i, j) + f64::from(u8::from(i == j))
+        });
+        if others > 0 {
+            map -= end * inner.lu().solve(&by_states)?;
+        }
+        let scaled = DMatrix::from_fn(order, order, |i, j| {
+            map[(i, j)] * self.unit(j) / self.unit(i)
+        });
+        scaled.iter().all(|x| x.is_finite()).then_some(scaled)
+    }
+
+    /// What counts as one in a position or velocity: velocities count by the frequency.
+    fn unit(&self, state: usize) -> f64 {
+        if 2 * state < self.skeleton.order {
+            1.0
+        } else {
+            self.values.base
+        }
+    }
+
+    /// The largest residual.
+    fn defect(&mut self, u: &[f64]) -> f64 {
+        self.compute(u, false);
+        self.residual.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+    }
+
+    /// Residuals at the last unknowns.
+    pub(super) fn residual(&self) -> &[f64] {
+        &self.residual
+    }
+
+    /// Derivatives of residuals at the last unknowns, row by row, the parameter last.
+    pub(super) fn matrix(&self) -> &[f64] {
+        &self.matrix
+    }
+}
+
+impl Setting {
+    fn at_omega(&self, value: f64) -> f64 {
+        match self.variable {
+            Variable::Omega => value,
+            Variable::Parameter(_) => self.omega,
+        }
+    }
+}
+
+impl Problem for Equations {
+    fn unknowns(&self) -> usize {
+        self.skeleton.unknowns()
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
+        self.compute(u, jacobian.is_some());
+        residual.copy_from_slice(&self.residual);
+        let Some(jacobian) = jacobian else { return };
+        let n = self.skeleton.unknowns();
+        let mut column = vec![0.0; n];
+        for (row, entries) in self.matrix.chunks_exact(n + 1).enumerate() {
+            jacobian.core_mut().row_mut(row)[..n].copy_from_slice(&entries[..n]);
+            column[row] = entries[n];
+        }
+        jacobian.set_column(&column);
+    }
+
+    fn prepare(&mut self, u: &mut [f64]) {
+        let known = std::mem::take(&mut self.known);
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for of in known.iter().filter(|of| of.len() == u.len()) {
+            let mut carried = u.to_vec();
+            if !self.skeleton.carry_forces(of, &mut carried) {
+                continue;
+            }
+            let plain = best.as_ref().map_or_else(|| self.defect(u), |best| best.0);
+            let defect = self.defect(&carried);
+            if defect < plain {
+                best = Some((defect, carried));
+            }
+        }
+        if let Some((_, carried)) = best {
+            u.copy_from_slice(&carried);
+        }
+        self.known = known;
+    }
+
+    fn found(&mut self, u: &[f64]) {
+        self.known[1].clear();
+        self.known[1].extend_from_slice(u);
+    }
+
+    fn weights(&self, weights: &mut [f64]) {
+        let order = self.skeleton.order;
+        for (state, weight) in weights[..order].iter_mut().enumerate() {
+            *weight = 1.0 / (self.unit(state) * self.unit(state));
+        }
+        let whole = self.size / self.skeleton.length;
+        let switches = self.skeleton.switches.len();
+        weights[order..order + switches].fill(whole * whole);
+        // Forces follow from the motion.
+        weights[order + switches..].fill(0.0);
+    }
+
+    fn is_mean(&self, _: usize) -> bool {
+        false
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.setting.cancel.is_cancelled()
+    }
+}

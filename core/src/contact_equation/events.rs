@@ -1,0 +1,280 @@
+//! Events of a branch, located again with more nodes until their value does not change.
+//!
+//! With test function `T` along the curve of the finer equations, from the orbit that the coarser ones gave, the secant method finds
+//! where `T` vanishes; the last change of the value is its error.
+
+use nalgebra::DMatrix;
+
+use super::equations::Equations;
+use super::method::VANISHED;
+use super::run::Run;
+use crate::branches::point::{Event, Point};
+use crate::branches::problem::{Touch, Zero};
+use crate::branches::solve;
+use crate::branches::stability::Stability;
+use crate::continuation::follow::CurvePoint;
+use crate::continuation::newton::{Border, Newton, NewtonOptions};
+use crate::event::EventKind;
+use crate::numeric::linear::dot;
+use crate::numeric::spectrum::{distance, eigenvalues};
+use crate::shooting::tested::{Test, Tests};
+
+/// An event is known well enough when more nodes change its value by this part of it.
+const KNOWN: f64 = 2e-10;
+/// It is located so often with more nodes at most.
+const FINER: usize = 4;
+/// Iterations of the secant method at most.
+const SECANTS: usize = 12;
+/// The first of them, in units of the orbit.
+const APART: f64 = 1e-6;
+/// What the last change is multiplied by.
+const SAFETY: f64 = 2.0;
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// What rounding leaves in the value of a touch.
+const TOUCHED: f64 = 4e-12;
+/// Of Newton's method with more nodes.
+const OPTIONS: NewtonOptions = NewtonOptions {
+    tolerance: 1e-11,
+    iterations: 12,
+    damped: false,
+};
+/// An orbit that moves farther, in units of the orbit, is another one.
+const FARTHEST: f64 = 0.1;
+
+/// The event at a zero of a test function, with the error that more nodes show.
+pub(super) fn event(run: &mut Run<'_>, zero: &Zero, kind: EventKind) -> Option<Event> {
+    let at = &zero.root.located.point;
+    let test = Test::of(zero.change.test);
+    let read = run.read(at)?;
+    let mut event = Event {
+        kind,
+        point: read.point,
+        error: SAFETY * read.shift.abs() + zero.root.error,
+        test: zero.root.located.test,
+        after: zero.after,
+        contacts: 0,
+        tangent: at.tangent.clone(),
+    };
+    if zero.change.kind == EventKind::BranchPoint {
+        // The equations are singular there, and nothing is solved.
+        if let Some(map) = &read.finer {
+            let there = Tests::of(Some(map), at.parameter_slope()).value(test);
+            event.error += SAFETY * there.abs() / zero.steepness;
+        }
+        return Some(event);
+    }
+    let again = located_again(run, at, test);
+    let Some(mut again) = again else {
+        event.error = f64::INFINITY;
+        return Some(event);
+    };
+    let map = again.equations.map(&again.point.u);
+    event.point = at_event(run, &mut again, map.as_ref(), read.map.as_ref(), kind);
+    (event.error, event.test) = (again.error, again.test);
+    event.tangent = again.point.tangent;
+    Some(event)
+}
+
+/// An event of equations with more nodes.
+struct Again {
+    equations: Equations,
+    point: CurvePoint,
+    test: f64,
+    error: f64,
+}
+
+/// Where a test function vanishes with more nodes, and more again until that does not change.
+fn located_again(run: &Run<'_>, at: &CurvePoint, test: Test) -> Option<Again> {
+    let mut found: Option<Again> = None;
+    for _ in 0..FINER {
+        let (from, point) = match &found {
+            Some(again) => (&again.equations, &again.point),
+            None => (&run.equations, at),
+        };
+        let value = point.parameter();
+        let Some(mut next) = from.finer_equations(value) else {
+            break;
+        };
+        let there = |u: &[f64]| from.skeleton.interpolated(&next.skeleton, u);
+        let start = CurvePoint {
+            u: there(&point.u),
+            tangent: there(&point.tangent),
+            scale: point.scale,
+        };
+        let Some((point, test)) = again(&mut next, &start, test) else {
+            break;
+        };
+        let error = SAFETY * (point.parameter() - value).abs() + ROUNDING * value.abs();
+        let known = error <= KNOWN * value.abs();
+        found = Some(Again {
+            equations: next,
+            point,
+            test,
+            error,
+        });
+        if known {
+            break;
+        }
+    }
+    found
+}
+
+/// The orbit at an event. Where one multiplier is known, its difference counts among the errors.
+fn at_event(
+    run: &Run<'_>,
+    again: &mut Again,
+    map: Option<&DMatrix<f64>>,
+    coarse: Option<&DMatrix<f64>>,
+    kind: EventKind,
+) -> Point {
+    again.equations.compute(&again.point.u, false);
+    let mut point = run.observed(&again.equations, again.point.parameter());
+    if let (Some(map), Some(coarse)) = (map, coarse) {
+        let found = eigenvalues(map);
+        let critical = if kind == EventKind::PeriodDoubling {
+            -1.0
+        } else {
+            1.0
+        };
+        let nearest = found.iter().map(|m| match kind {
+            EventKind::NeimarkSacker => (m.norm() - 1.0).abs(),
+            _ => (m - critical).norm(),
+        });
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        let spread = distance(&found, &eigenvalues(coarse)) + nearest;
+        point.stability = Stability::of(found, spread);
+    }
+    point
+}
+
+/// The curve of equations near a point, by the arc length along a direction.
+struct Curve<'c> {
+    equations: &'c mut Equations,
+    newton: Newton,
+    start: &'c CurvePoint,
+    form: Vec<f64>,
+}
+
+impl Curve<'_> {
+    /// The point at an arc length, and the test function there.
+    fn at(&mut self, s: f64, test: Test) -> Option<(CurvePoint, f64)> {
+        let Self {
+            equations,
+            newton,
+            start,
+            form,
+        } = self;
+        let mut u = start.u.clone();
+        let length = dot(form, &start.tangent);
+        for (x, t) in u.iter_mut().zip(&start.tangent) {
+            *x += s / length * t;
+        }
+        let border = Border {
+            row: form,
+            value: dot(form, &start.u) + s,
+        };
+        newton
+            .correct(*equations, &mut u, border, start.scale, OPTIONS)
+            .ok()?;
+        let mut tangent = vec![0.0; u.len()];
+        newton.tangent(*equations, &u, &mut tangent, true);
+        let size = newton.norm().length(start.scale, &tangent);
+        for t in &mut tangent {
+            *t /= size;
+        }
+        let point = CurvePoint {
+            u,
+            tangent,
+            scale: start.scale,
+        };
+        let slope = point.parameter_slope();
+        let value = if test == Test::Slope {
+            slope
+        } else {
+            Tests::of(equations.map(&point.u).as_ref(), slope).value(test)
+        };
+        Some((point, value))
+    }
+}
+
+/// Where the test function vanishes along the curve of these equations, near a point of a coarser one.
+fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(CurvePoint, f64)> {
+    let newton = Newton::new(equations);
+    let mut form = vec![0.0; start.u.len()];
+    newton
+        .norm()
+        .linear_form(start.scale, &start.tangent, &mut form);
+    let mut curve = Curve {
+        equations,
+        newton,
+        start,
+        form,
+    };
+    let (mut x0, mut x1) = (0.0, APART);
+    let mut f0 = curve.at(x0, test)?.1;
+    let (mut best, mut f1) = curve.at(x1, test)?;
+    for _ in 0..SECANTS {
+        if f1 == f0 || f1.abs() <= VANISHED {
+            break;
+        }
+        let next = x1 - f1 * (x1 - x0) / (f1 - f0);
+        if next.is_nan() || next.abs() > FARTHEST {
+            return None;
+        }
+        (x0, f0) = (x1, f1);
+        x1 = next;
+        (best, f1) = curve.at(x1, test)?;
+        if (x1 - x0).abs() <= 1e-14 {
+            break;
+        }
+    }
+    Some((best, f1))
+}
+
+/// Keeps a touch of a level, solved again with more nodes until its value is known.
+pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
+    let at = &touch.located.point;
+    let Some(mut read) = run.read(at) else { return };
+    let mut error = touch.error + SAFETY * read.shift.abs();
+    if let Some((square, _)) = run.watched(&at.u, &touch.extreme) {
+        let mut finer: Option<Equations> = None;
+        let mut u = at.u.clone();
+        for _ in 0..FINER {
+            let from = finer.as_ref().unwrap_or(&run.equations);
+            let Some(mut next) = from.finer_equations(u[u.len() - 1]) else {
+                break;
+            };
+            let mut there = from.skeleton.interpolated(&next.skeleton, &u);
+            there[square] = 0.0;
+            let mut newton = Newton::new(&next);
+            if solve::with_held(&mut next, &mut newton, &mut there, square, OPTIONS).is_err() {
+                break;
+            }
+            let value = there[there.len() - 1];
+            error = SAFETY * (value - u[u.len() - 1]).abs();
+            u = there;
+            finer = Some(next);
+            if error <= KNOWN * value.abs() {
+                break;
+            }
+        }
+        if let Some(mut equations) = finer {
+            equations.compute(&u, false);
+            let value = u[u.len() - 1];
+            read.point = Point {
+                stability: read.point.stability,
+                error: read.point.error,
+                ..run.observed(&equations, value)
+            };
+        }
+    }
+    run.events.push(Event {
+        kind: EventKind::Grazing { turns: touch.turns },
+        error: error + TOUCHED * at.parameter().abs(),
+        point: read.point,
+        test: touch.located.test,
+        after: touch.after,
+        contacts: touch.contacts,
+        tangent: at.tangent.clone(),
+    });
+}

@@ -1,0 +1,269 @@
+//! Extremes of the coordinates and of the gaps of an orbit, from one walk along its period.
+//!
+//! States are taken where the pass has them, and as densely as the linear part asks for where it has none. Where a slope changes its sign,
+//! its zero is closed in to: for a gap every one, for a coordinate those that may be its smallest or its largest value, as far as the cubic
+//! through positions and velocities on both sides tells.
+
+use super::motion::{GapExtreme, Motion};
+use super::skeleton::Told;
+use crate::numeric::roots::{self, Place};
+
+/// Samples of a rate in the shortest period of what an interval without forces can do.
+const SAMPLES: f64 = 8.0;
+/// The same at least.
+const FEWEST: f64 = 6.0;
+/// Accuracy of the phase of an extreme, in parts of the distance of two samples.
+const LOCATED: f64 = 1e-9;
+/// Two extremes of a gap as near as this are one.
+const SEEN_TWICE: f64 = 1e-6;
+/// A cubic may be wrong by this part of the range of a coordinate.
+const FORETOLD: f64 = 0.02;
+
+/// Of one orbit.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Extremes {
+    /// Per coordinate, phase and value where it is smallest and largest.
+    pub(super) coordinates: Vec<[Place; 2]>,
+    /// Per contact, in the order of time; none where its law has no levels.
+    pub(super) gaps: Vec<Vec<GapExtreme>>,
+}
+
+/// A turn of a coordinate between two phases.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    interval: usize,
+    /// Phases, and velocities there.
+    ends: [Place; 2],
+    /// The position, about.
+    about: f64,
+}
+
+/// Turns of a coordinate, and its smallest and largest sample.
+#[derive(Debug, Clone)]
+struct Turns {
+    /// Minima and maxima.
+    of: [Vec<Turn>; 2],
+    best: [Place; 2],
+}
+
+/// Phases of an interval with the states there.
+#[derive(Debug, Default)]
+struct Samples {
+    phases: Vec<f64>,
+    states: Vec<f64>,
+}
+
+impl Extremes {
+    /// Of the motion of the last pass.
+    pub(super) fn of(motion: &Motion<'_>) -> Self {
+        let values = &motion.equations.values;
+        let coordinates = values.linear.positions.nrows();
+        let mut gaps = vec![Vec::new(); values.contacts.len()];
+        let none = |value: f64| Place { x: 0.0, value };
+        let nothing = Turns {
+            of: [Vec::new(), Vec::new()],
+            best: [none(f64::INFINITY), none(f64::NEG_INFINITY)],
+        };
+        let mut turns = vec![nothing; coordinates];
+        let mut samples = Samples::default();
+        for interval in 0..motion.intervals() {
+            let [from, to] = motion.phases(interval);
+            if to <= from {
+                continue;
+            }
+            samples.take(motion, interval);
+            for (contact, gaps) in gaps.iter_mut().enumerate() {
+                if !values.contacts[contact].levels.is_empty() {
+                    samples.gap(motion, interval, contact, gaps);
+                }
+            }
+            for (coordinate, turns) in turns.iter_mut().enumerate() {
+                samples.coordinate(motion, interval, coordinate, turns);
+            }
+        }
+        for (contact, gaps) in gaps.iter_mut().enumerate() {
+            add_short(motion, contact, gaps);
+        }
+        let coordinates = turns.into_iter().enumerate();
+        Self {
+            coordinates: coordinates
+                .map(|(coordinate, turns)| turns.located(motion, coordinate))
+                .collect(),
+            gaps,
+        }
+    }
+}
+
+impl Samples {
+    fn take(&mut self, motion: &Motion<'_>, interval: usize) {
+        self.phases.clear();
+        self.states.clear();
+        let passed = &motion.equations.passed[interval];
+        let [from, to] = passed.phases;
+        let of = &motion.equations.skeleton.intervals[interval];
+        let parts = (SAMPLES * motion.fastest() * (to - from)).max(FEWEST);
+        let known = !of.active.is_empty() && parts * of.nodes.widest() <= 1.0;
+        let order = motion.equations.skeleton.order;
+        if known {
+            self.phases.push(from);
+            let targets = of.nodes.targets.iter();
+            self.phases
+                .extend(targets.map(|psi| from + psi * (to - from)));
+            self.states.extend_from_slice(&passed.states);
+            return;
+        }
+        let parts = parts.ceil() as usize;
+        self.states.resize((parts + 1) * order, 0.0);
+        for (part, states) in self.states.chunks_exact_mut(order).enumerate() {
+            let phase = from + (to - from) * (part as f64 / parts as f64);
+            self.phases.push(phase);
+            motion.states(interval, phase, states);
+        }
+    }
+
+    fn states(&self, index: usize) -> &[f64] {
+        let order = self.states.len() / self.phases.len();
+        &self.states[index * order..][..order]
+    }
+
+    /// Extremes of a gap.
+    fn gap(
+        &self,
+        motion: &Motion<'_>,
+        interval: usize,
+        contact: usize,
+        found: &mut Vec<GapExtreme>,
+    ) {
+        let at = |index: usize| {
+            let x = self.phases[index];
+            let value = motion.gap_of(contact, x, self.states(index))[1];
+            Place { x, value }
+        };
+        let slope = |phase: f64| motion.gap(contact, interval, phase)[1];
+        let mut before = at(0);
+        for index in 1..self.phases.len() {
+            let next = at(index);
+            if (before.value > 0.0) != (next.value > 0.0) {
+                let within = LOCATED * (next.x - before.x);
+                if let Some(phase) = roots::root(before, next, within, slope) {
+                    found.push(GapExtreme {
+                        contact,
+                        interval,
+                        phase,
+                        gap: motion.gap(contact, interval, phase)[0],
+                        maximum: before.value > 0.0,
+                    });
+                }
+            }
+            before = next;
+        }
+    }
+
+    /// Turns of a coordinate.
+    fn coordinate(
+        &self,
+        motion: &Motion<'_>,
+        interval: usize,
+        coordinate: usize,
+        turns: &mut Turns,
+    ) {
+        let at = |index: usize| motion.coordinate_of(coordinate, self.states(index));
+        let mut before = at(0);
+        turns.see(self.phases[0], before[0]);
+        for index in 1..self.phases.len() {
+            let next = at(index);
+            let ends = [self.phases[index - 1], self.phases[index]];
+            turns.see(ends[1], next[0]);
+            if (before[1] > 0.0) != (next[1] > 0.0) {
+                let time = (ends[1] - ends[0]) / motion.equations.values.base;
+                let velocities = [before[1], next[1]];
+                let turn = Turn {
+                    interval,
+                    ends: [0, 1].map(|end| Place {
+                        x: ends[end],
+                        value: velocities[end],
+                    }),
+                    about: of_cubic([before, next], time),
+                };
+                turns.of[usize::from(before[1] > 0.0)].push(turn);
+            }
+            before = next;
+        }
+    }
+}
+
+impl Turns {
+    fn see(&mut self, x: f64, value: f64) {
+        if value < self.best[0].value {
+            self.best[0] = Place { x, value };
+        }
+        if value > self.best[1].value {
+            self.best[1] = Place { x, value };
+        }
+    }
+
+    /// The smallest and the largest value.
+    fn located(mut self, motion: &Motion<'_>, coordinate: usize) -> [Place; 2] {
+        let spread = FORETOLD * (self.best[1].value - self.best[0].value);
+        for (side, turns) in self.of.iter_mut().enumerate() {
+            let sign = if side == 1 { 1.0 } else { -1.0 };
+            turns.sort_by(|a, b| (sign * b.about).total_cmp(&(sign * a.about)));
+            let best = &mut self.best[side];
+            for turn in turns {
+                if sign * (best.value - turn.about) > spread {
+                    break;
+                }
+                let [a, b] = turn.ends;
+                let velocity = |phase: f64| motion.coordinate(coordinate, turn.interval, phase)[1];
+                let within = LOCATED * (b.x - a.x);
+                if let Some(x) = roots::root(a, b, within, velocity) {
+                    let value = motion.coordinate(coordinate, turn.interval, x)[0];
+                    if sign * (value - best.value) > 0.0 {
+                        *best = Place { x, value };
+                    }
+                }
+            }
+        }
+        self.best
+    }
+}
+
+/// Where the cubic through positions and velocities on both sides turns.
+fn of_cubic([[x, v], [y, w]]: [[f64; 2]; 2], time: f64) -> f64 {
+    let (v, w) = (v * time, w * time);
+    // p' = a s^2 + b s + v
+    let a = 6.0 * (x - y) + 3.0 * (v + w);
+    let b = -6.0 * (x - y) - 4.0 * v - 2.0 * w;
+    let root = (b * b - 4.0 * a * v).max(0.0).sqrt();
+    let q = -0.5 * (b + root.copysign(b));
+    let s = [v / q, q / a]
+        .into_iter()
+        .find(|s| (0.0..=1.0).contains(s))
+        .unwrap_or(0.5);
+    let t = 1.0 - s;
+    (1.0 + 2.0 * s) * t * t * x + s * t * t * v + s * s * (3.0 - 2.0 * s) * y - s * s * t * w
+}
+
+/// Extremes that are short of a level stand where two intervals meet: rounding says whether they are seen within one.
+fn add_short(motion: &Motion<'_>, contact: usize, found: &mut Vec<GapExtreme>) {
+    let skeleton = &motion.equations.skeleton;
+    for interval in 1..motion.intervals() {
+        let [from, to] = motion.phases(interval);
+        let before = skeleton.intervals[interval - 1].ends;
+        let Some(switch) = before.map(|switch| skeleton.switches[switch]) else {
+            continue;
+        };
+        let nowhere = to <= from && matches!(switch.told, Told::First { .. });
+        if switch.contact != contact || !nowhere {
+            continue;
+        }
+        found.retain(|extreme| (extreme.phase - from).abs() > SEEN_TWICE);
+        found.push(GapExtreme {
+            contact,
+            interval: interval - 1,
+            phase: from,
+            gap: motion.gap(contact, interval - 1, from)[0],
+            maximum: switch.rises,
+        });
+    }
+}

@@ -1,0 +1,334 @@
+//! The contact equation as the engine of branches sees it.
+
+use super::equations::Equations;
+use super::events;
+use super::problem::{FIRST, RESOLUTIONS};
+use super::run::{Fits, ReadOrbit, Run};
+use crate::branches::extreme::Extreme;
+use crate::branches::moduli;
+use crate::branches::point::{self, Point};
+use crate::branches::problem::{
+    BranchProblem, Change, Kept, Read, TestValue, Touch, Watched, Zero, ZeroOutcome,
+};
+use crate::branches::progress::{Progress, See};
+use crate::continuation::follow::{CurvePoint, Halted, Step};
+use crate::continuation::locate::Located;
+use crate::continuation::newton::Newton;
+use crate::continuation::problem::Problem;
+use crate::event::{EventKind, Turn};
+use crate::shooting::tested::{self, Tests};
+
+/// Brackets of an event are narrowed until rounding stops it, or this is reached.
+pub(super) const VANISHED: f64 = 1e-14;
+/// A test function must vanish as exactly.
+pub(super) const VANISHING: f64 = 1e-9;
+/// A point is refused so often at most.
+const REFUSALS: usize = 8;
+/// Multipliers that may be wrong by more are not compared with one.
+const COARSE: f64 = 1e-3;
+/// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
+/// events are seen that are none.
+const MULTIPLIERS: f64 = 100.0;
+/// Parts of the tolerance below which fewer nodes do.
+const PLENTY: f64 = 1e-4;
+
+/// A branch by the contact equation.
+pub(super) struct ContactBranch<'b, 'r> {
+    pub(super) run: &'b mut Run<'r>,
+    watched: Vec<Watched>,
+    /// The test functions computed last, and where.
+    tested: Option<(Vec<f64>, Tests)>,
+    /// The equations that the walk goes on with, and its last point in them.
+    next: Option<Next>,
+    /// The equations before, while others are tried.
+    before: Option<(Equations, usize)>,
+    /// Other equations lead nowhere from the last point.
+    stuck: bool,
+    /// How often the last point was refused.
+    refused: usize,
+    /// The branch was lost where a gap reached a level, and not why.
+    pub(super) lost: bool,
+    visit: See<'b>,
+}
+
+/// What the walk goes on with.
+struct Next {
+    equations: Equations,
+    u: Vec<f64>,
+    resolution: usize,
+}
+
+impl<'b, 'r> ContactBranch<'b, 'r> {
+    pub(super) fn new(run: &'b mut Run<'r>, visit: See<'b>) -> Self {
+        let watched = if run.problem.asked.stability {
+            tested::watched(EventKind::PeriodDoubling, run.equations.skeleton.order)
+        } else {
+            Vec::new()
+        };
+        Self {
+            run,
+            watched,
+            tested: None,
+            next: None,
+            before: None,
+            stuck: false,
+            refused: 0,
+            lost: false,
+            visit,
+        }
+    }
+
+    fn tests(&mut self, at: &CurvePoint) -> &Tests {
+        let known = self.tested.take().filter(|(u, _)| *u == at.u);
+        let found = known.unwrap_or_else(|| {
+            let map = self.run.equations.map(&at.u);
+            (at.u.clone(), Tests::of(map.as_ref(), at.parameter_slope()))
+        });
+        &self.tested.insert(found).1
+    }
+
+    /// How well multipliers are known along the last step.
+    fn last_error(&self) -> f64 {
+        let last = self.run.points.iter().rev().take(2);
+        last.map(|point| point.stability.error)
+            .fold(VANISHING, f64::max)
+    }
+
+    /// Prepares the equations that fit an orbit. Says whether there are any.
+    fn prepare(&mut self, u: &[f64], resolution: usize) -> bool {
+        let former = std::mem::replace(&mut self.run.resolution, resolution);
+        let planned = self.run.replanned(u);
+        self.run.resolution = former;
+        self.next = planned.map(|(equations, u)| Next {
+            equations,
+            u,
+            resolution,
+        });
+        self.next.is_some()
+    }
+
+    /// The resolution that the last error asks for.
+    fn wanted(&self, point: &Point) -> usize {
+        let now = self.run.resolution;
+        let sizes = point.stability.multipliers.iter().map(|m| m.norm());
+        let largest = sizes.fold(1.0, f64::max);
+        let asked = self.run.problem.asked.stability;
+        let spread = if asked { point.stability.error } else { 0.0 };
+        let errors = [point.error.unwrap_or(0.0), spread / (MULTIPLIERS * largest)];
+        let error = errors.map(|error| error / self.run.problem.tolerance);
+        let error = error[0].max(error[1]);
+        if error > 1.0 && now + 1 < RESOLUTIONS.len() {
+            now + 1
+        } else if error < PLENTY && now > FIRST {
+            now - 1
+        } else {
+            now
+        }
+    }
+
+    fn keep_point(&mut self, at: &CurvePoint, read: ReadOrbit) -> bool {
+        let ReadOrbit { point, map, .. } = read;
+        let tests = Tests::of(map.as_ref(), at.parameter_slope());
+        self.tested = Some((at.u.clone(), tests));
+        let done = self.run.points.len() + 1;
+        let answer = (self.visit)(Progress::orbit(done, &point));
+        self.run.points.push(point);
+        answer.is_continue()
+    }
+}
+
+impl BranchProblem for ContactBranch<'_, '_> {
+    fn equations(&mut self) -> &mut dyn Problem {
+        &mut self.run.equations
+    }
+
+    fn watched(&self) -> &[Watched] {
+        &self.watched
+    }
+
+    fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue {
+        TestValue::plain(self.tests(at).value(tested::Test::watched(index)))
+    }
+
+    fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
+        if self.watched.is_empty() {
+            return None;
+        }
+        Some(moduli::complex_outside(&self.tests(at).multipliers))
+    }
+
+    fn vanishing(&self) -> f64 {
+        VANISHING
+    }
+
+    fn noise(&self, index: usize) -> f64 {
+        match tested::Test::watched(index) {
+            tested::Test::Modulus(_) => self.last_error().min(COARSE),
+            _ => 0.0,
+        }
+    }
+
+    fn aim(&self) -> f64 {
+        VANISHED
+    }
+
+    fn vanishes(&mut self, change: Change, located: &Located) -> bool {
+        let point = &located.point;
+        let unit = match tested::Test::of(change.test) {
+            tested::Test::Slope => (point.parameter().abs() / point.scale.parameter).max(1.0),
+            tested::Test::Bordered => {
+                self.run.others(&point.u, 1.0) / point.parameter_slope().abs()
+            }
+            tested::Test::Plus => self.run.others(&point.u, -1.0),
+            tested::Test::Modulus(_) => return located.test.abs() <= self.last_error(),
+        };
+        located.test.abs() <= VANISHING * unit
+    }
+
+    fn points(&self) -> usize {
+        self.run.points.len()
+    }
+
+    fn kept(&self) -> Kept<'_> {
+        Kept {
+            points: &self.run.points,
+            events: &self.run.events,
+            turns: &self.run.turns,
+        }
+    }
+
+    fn read(&mut self, _: &mut Newton, at: &CurvePoint) -> Read {
+        let stuck = std::mem::take(&mut self.stuck);
+        let Some(read) = self.run.read_on(at) else {
+            self.lost = true;
+            return Read::Stop;
+        };
+        let fits = self.run.fits(&at.u);
+        let wanted = self.wanted(&read.point);
+        let again = !stuck && self.refused < REFUSALS;
+        if fits == Fits::No {
+            if !again || !self.prepare(&at.u, self.run.resolution) {
+                self.lost = true;
+                return Read::Stop;
+            }
+            self.refused += 1;
+            return Read::Refused;
+        }
+        let coarse = wanted > self.run.resolution;
+        if coarse && again && self.prepare(&at.u, wanted) {
+            self.refused += 1;
+            return Read::Refused;
+        }
+        self.refused = 0;
+        self.run.equations.known[0].clone_from(&at.u);
+        if !self.keep_point(at, read) {
+            return Read::Stop;
+        }
+        let other = fits == Fits::Soon || wanted != self.run.resolution;
+        if other && !stuck && self.prepare(&at.u, wanted) {
+            return Read::ResizeBehind;
+        }
+        Read::Kept
+    }
+
+    fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> ZeroOutcome {
+        let mut kind = zero.change.kind;
+        let of_modulus = kind == EventKind::NeimarkSacker;
+        if let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) {
+            let tells = zero.told || zero.least <= self.last_error();
+            let multipliers = &self.tests(&zero.root.located.point).multipliers;
+            let Some(seen) = moduli::seen_by_moduli(multipliers, place, tells) else {
+                return ZeroOutcome::Nothing;
+            };
+            kind = seen;
+        }
+        let Some(event) = events::event(self.run, zero, kind) else {
+            return ZeroOutcome::Unread;
+        };
+        if of_modulus && moduli::is_recorded(&self.run.events, &event) {
+            return ZeroOutcome::Nothing;
+        }
+        self.run.events.push(event);
+        ZeroOutcome::Event
+    }
+
+    fn keep_turn(&mut self, turn: Turn) {
+        self.run.turns.push(turn);
+    }
+
+    fn drop_turn(&mut self, turn: &Turn) {
+        self.run.turns.retain(|other| other != turn);
+    }
+
+    fn events(&self) -> usize {
+        self.run.events.len()
+    }
+
+    fn drop_beside(&mut self, first: usize, touch: f64, errors: f64) {
+        point::drop_beside(&mut self.run.events, first, touch, errors);
+    }
+
+    fn seeks_touches(&self) -> bool {
+        self.run.problem.asked.stability
+    }
+
+    fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        self.run.extremes(u, extremes)
+    }
+
+    fn extreme_form(&mut self, u: &[f64], extreme: &Extreme, _: f64, form: &mut [f64]) -> bool {
+        self.run.extreme_form(u, extreme, form)
+    }
+
+    fn keep_touch(&mut self, _: &mut Newton, _: Step<'_>, touch: &Touch) {
+        events::touch(self.run, touch);
+    }
+
+    fn remap(&mut self, halted: &mut Halted) {
+        let Some(Next {
+            equations,
+            u,
+            resolution,
+        }) = self.next.take()
+        else {
+            return;
+        };
+        let length = u.len();
+        let nowhere = |scale| CurvePoint {
+            u: vec![f64::NAN; length],
+            tangent: vec![f64::NAN; length],
+            scale,
+        };
+        let mut point = |of: &CurvePoint| self.run.point_in(of, &equations, &u);
+        if let Some(known) = point(&halted.point) {
+            halted.point.tangent = known.tangent;
+        } else {
+            halted.point.tangent = vec![0.0; length];
+        }
+        halted.point.u.clone_from(&u);
+        halted.previous = halted.previous.as_ref().and_then(&mut point);
+        // A curve is not closed where its first point has no place.
+        halted.first = point(&halted.first).unwrap_or_else(|| nowhere(halted.first.scale));
+        halted.before = None;
+        let former = std::mem::replace(&mut self.run.resolution, resolution);
+        let known = std::mem::replace(&mut self.run.equations, equations);
+        self.run.equations.known = [u, Vec::new()];
+        self.run.clear_finer();
+        self.before = Some((known, former));
+        self.tested = None;
+    }
+
+    fn revert(&mut self) {
+        if let Some((equations, resolution)) = self.before.take() {
+            self.run.equations = equations;
+            self.run.resolution = resolution;
+            self.run.clear_finer();
+            self.tested = None;
+            self.stuck = true;
+        }
+    }
+
+    fn count(&mut self, newton: &Newton) {
+        self.run.statistics += newton.statistics;
+    }
+}

@@ -1,0 +1,221 @@
+//! The motion of an orbit at any phase, and the extremes of its gaps.
+
+use std::cell::RefCell;
+
+use super::block::times;
+use super::equations::Equations;
+use super::extremes::Extremes;
+use super::values::{Contact, dot, pair};
+use crate::time;
+
+/// An extreme of a gap within an interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct GapExtreme {
+    pub(super) contact: usize,
+    pub(super) interval: usize,
+    pub(super) phase: f64,
+    pub(super) gap: f64,
+    pub(super) maximum: bool,
+}
+
+/// The motion that the last pass has left.
+pub(super) struct Motion<'e> {
+    pub(super) equations: &'e Equations,
+    room: RefCell<Room>,
+}
+
+/// Room for one instant.
+struct Room {
+    states: Vec<f64>,
+    row: Vec<f64>,
+    weights: Vec<f64>,
+    steady: [Vec<f64>; 3],
+    resonant: [Vec<f64>; 4],
+}
+
+impl<'e> Motion<'e> {
+    pub(super) fn of(equations: &'e Equations) -> Self {
+        let states = || vec![0.0; equations.skeleton.order];
+        let room = Room {
+            states: states(),
+            row: states(),
+            weights: Vec::new(),
+            steady: std::array::from_fn(|_| states()),
+            resonant: std::array::from_fn(|_| states()),
+        };
+        Self {
+            equations,
+            room: RefCell::new(room),
+        }
+    }
+
+    /// Number of intervals.
+    pub(super) fn intervals(&self) -> usize {
+        self.equations.passed.len()
+    }
+
+    /// Where an interval begins and ends.
+    pub(super) fn phases(&self, interval: usize) -> [f64; 2] {
+        self.equations.passed[interval].phases
+    }
+
+    /// The interval that a phase is in; phases outside of the period are shifted into it.
+    pub(super) fn interval(&self, phase: f64) -> (usize, f64) {
+        let (begin, length) = (
+            self.equations.skeleton.begin,
+            self.equations.skeleton.length,
+        );
+        let phase = begin + (phase - begin).rem_euclid(length);
+        let passed = self.equations.passed.iter();
+        let mut found = 0;
+        for (index, passed) in passed.enumerate() {
+            if passed.phases[0] <= phase && passed.phases[1] > passed.phases[0] {
+                found = index;
+            }
+        }
+        (found, phase)
+    }
+
+    /// Writes the states within an interval.
+    fn write(&self, interval: usize, phase: f64, room: &mut Room) {
+        let Equations {
+            values,
+            skeleton,
+            passed,
+            ..
+        } = self.equations;
+        let (of, passed) = (&skeleton.intervals[interval], &passed[interval]);
+        let [from, to] = passed.phases;
+        let time = (phase - from) / values.base;
+        let psi = if to > from {
+            (phase - from) / (to - from)
+        } else {
+            0.0
+        };
+        values.write_steady(phase, &mut room.steady);
+        let resonant = values.write_resonant(from, time, &mut room.resonant);
+        let forced = !of.active.is_empty() && !passed.forced.is_empty();
+        if forced {
+            of.nodes.through_ends(psi, &mut room.weights);
+        }
+        for (r, block) in values.linear.blocks.iter().enumerate() {
+            let free = times(block.exponential(time), pair(&passed.free, r));
+            for i in 0..2 {
+                let at = 2 * r + i;
+                room.states[at] = free[i] + room.steady[0][at];
+                if resonant {
+                    room.states[at] += room.resonant[0][at];
+                }
+                if forced {
+                    let targets = passed.forced.chunks_exact(skeleton.order);
+                    let pairs = room.weights.iter().zip(targets);
+                    room.states[at] += pairs
+                        .map(|(weight, forced)| weight * forced[at])
+                        .sum::<f64>();
+                }
+            }
+        }
+    }
+
+    /// Gap of a contact and its slope by the phase, within an interval.
+    pub(super) fn gap(&self, contact: usize, interval: usize, phase: f64) -> [f64; 2] {
+        let room = &mut *self.room.borrow_mut();
+        self.write(interval, phase, room);
+        self.gap_in(contact, phase, &room.states, &mut room.row)
+    }
+
+    /// The same in these states.
+    pub(super) fn gap_of(&self, contact: usize, phase: f64, states: &[f64]) -> [f64; 2] {
+        let room = &mut *self.room.borrow_mut();
+        self.gap_in(contact, phase, states, &mut room.row)
+    }
+
+    fn gap_in(&self, contact: usize, phase: f64, states: &[f64], row: &mut [f64]) -> [f64; 2] {
+        let values = &self.equations.values;
+        let contact = &values.contacts[contact];
+        contact.gap.write(phase, 0, row);
+        let gap = dot(row, states) - contact.offset.value(phase, 0);
+        contact.rate.write(phase, 0, row);
+        let mut slope = dot(row, states) / values.base - contact.offset.value(phase, 1);
+        if !contact.gap.is_constant() {
+            contact.gap.write(phase, 1, row);
+            slope += dot(row, states);
+        }
+        [gap, slope]
+    }
+
+    /// Writes positions and velocities at a phase within an interval.
+    pub(super) fn state(&self, interval: usize, phase: f64, state: &mut [f64]) {
+        let room = &mut *self.room.borrow_mut();
+        self.write(interval, phase, room);
+        let linear = &self.equations.values.linear;
+        let n = state.len() / 2;
+        for (i, x) in state.iter_mut().enumerate() {
+            let row = if i < n {
+                linear.positions.row(i)
+            } else {
+                linear.velocities.row(i - n)
+            };
+            *x = row.iter().zip(&room.states).map(|(a, y)| a * y).sum();
+        }
+    }
+
+    /// A coordinate and its velocity, within an interval.
+    pub(super) fn coordinate(&self, index: usize, interval: usize, phase: f64) -> [f64; 2] {
+        let room = &mut *self.room.borrow_mut();
+        self.write(interval, phase, room);
+        self.coordinate_of(index, &room.states)
+    }
+
+    /// A coordinate and its velocity in these states.
+    pub(super) fn coordinate_of(&self, index: usize, states: &[f64]) -> [f64; 2] {
+        let linear = &self.equations.values.linear;
+        [&linear.positions, &linear.velocities].map(|matrix| {
+            let row = matrix.row(index);
+            row.iter().zip(states).map(|(a, y)| a * y).sum()
+        })
+    }
+
+    /// Writes the states at a phase within an interval.
+    pub(super) fn states(&self, interval: usize, phase: f64, states: &mut [f64]) {
+        let room = &mut *self.room.borrow_mut();
+        self.write(interval, phase, room);
+        states.copy_from_slice(&room.states);
+    }
+
+    /// Extremes of the coordinates and of the gaps. They are looked for once.
+    pub(super) fn extremes(&self) -> &'e Extremes {
+        self.equations.extremes.get_or_init(|| Extremes::of(self))
+    }
+
+    /// Periods in a unit of phase of the fastest that the linear part and its load do.
+    pub(super) fn fastest(&self) -> f64 {
+        let values = &self.equations.values;
+        let modes = values
+            .linear
+            .blocks
+            .iter()
+            .map(|block| block.turns() / values.base);
+        let waves = values.load.iter().map(|wave| wave.harmonic);
+        // A gap whose direction moves has the sum of both.
+        let gaps = values.contacts.iter().map(Contact::harmonic);
+        let moving = gaps.fold(0.0, f64::max);
+        (moving + modes.chain(waves).fold(1.0, f64::max)) / std::f64::consts::TAU
+    }
+}
+
+/// One interval as a stretch of motion.
+pub(super) struct Within<'m, 'e> {
+    pub(super) motion: &'m Motion<'e>,
+    pub(super) interval: usize,
+}
+
+impl time::Stretch for Within<'_, '_> {
+    fn phases(&self) -> (f64, f64) {
+        self.motion.phases(self.interval).into()
+    }
+
+    fn state(&self, phase: f64, state: &mut [f64]) {
+        self.motion.state(self.interval, phase, state);
+    }
+}

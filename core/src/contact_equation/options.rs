@@ -1,0 +1,36 @@
+//! Options of the contact equation.
+
+/// Orbits from the forces at a few nodes of each stretch in contact: nothing else is unknown but where stretches begin and end, and the
+/// state where the period begins. Between contacts the motion is known in closed form, so that no harmonic is cut off and nothing is
+/// sampled.
+///
+/// Nodes follow the [tolerance](crate::FrequencyResponse::tolerance); events are located again with more nodes until their value is known
+/// to nine digits. Branches that begin at its events, and orbits at a value, are computed by [`Shooting`](crate::Shooting).
+///
+/// ```
+/// use hertzian::{ContactEquation, FrequencyResponse};
+///
+/// hertzian::oscillator! {
+///     OneSided(x) {
+///         law contact(gap) { gap > 0 => 0.064*dot(gap) + gap, else => 0 }
+///         ddot(x) + contact(x) = 0.1*cos(omega*t) + 1;
+///     }
+/// }
+///
+/// let request = FrequencyResponse::of(&OneSided {}).by(ContactEquation::new());
+/// let branch = request.from(0.5).to(1.5).run()?;
+/// // A fold of Wang et al. (2021), figure 5a.
+/// let exact = 0.715119549676419;
+/// assert!(branch.folds().any(|fold| (fold.point.value - exact).abs() < 1e-9));
+/// # Ok::<(), hertzian::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct ContactEquation {}
+
+impl ContactEquation {
+    /// With everything by default.
+    pub fn new() -> Self {
+        Self::default()
+    }
+}

@@ -1,0 +1,71 @@
+//! What a computation by the contact equation works with: checked, and the same for all orbits of a branch.
+
+use super::equations::Setting;
+use super::skeleton::Resolution;
+use crate::branches::extreme;
+use crate::error::Error;
+use crate::model::error::ModelError;
+use crate::shooting::problem::ShootingProblem;
+
+/// Nodes of a stretch and panels of a whole period, coarser ones first.
+pub(super) const RESOLUTIONS: [Resolution; 10] = [
+    resolution(8, 1),
+    resolution(12, 1),
+    resolution(16, 1),
+    resolution(20, 1),
+    resolution(24, 2),
+    resolution(32, 2),
+    resolution(32, 4),
+    resolution(32, 8),
+    resolution(32, 16),
+    resolution(32, 32),
+];
+/// The one that a branch begins with.
+pub(super) const FIRST: usize = 2;
+
+const fn resolution(nodes: usize, panels: usize) -> Resolution {
+    Resolution { nodes, panels }
+}
+
+/// The system, what is varied, and how.
+pub(crate) struct ContactProblem {
+    pub(super) setting: Setting,
+    /// What was asked for, in the time domain.
+    pub(super) asked: ShootingProblem,
+    /// Asked of peak-to-peak.
+    pub(super) tolerance: f64,
+}
+
+impl ContactProblem {
+    /// Of what was asked for.
+    ///
+    /// # Errors
+    /// If the stiffness varies in time, a force jumps at a level, or orbits of several periods are asked for: other methods have those.
+    pub(crate) fn new(asked: ShootingProblem, tolerance: f64) -> Result<Self, Error> {
+        let setting = Setting::new(
+            &asked.system,
+            asked.variable,
+            asked.parameters.clone(),
+            asked.omega,
+            &asked.cancel,
+        );
+        let mut stiffness = setting.layout.stiffness.iter();
+        if stiffness.any(|entry| entry.wave.harmonic > 0) {
+            let why = "the stiffness varies in time";
+            return Err(ModelError::NoContactEquation { why }.into());
+        }
+        if extreme::force_jumps(asked.system.as_ref()) {
+            let why = "a force jumps at a level";
+            return Err(ModelError::NoContactEquation { why }.into());
+        }
+        if asked.period > 1 {
+            let why = "orbits of several periods";
+            return Err(ModelError::NoContactEquation { why }.into());
+        }
+        Ok(Self {
+            setting,
+            asked,
+            tolerance,
+        })
+    }
+}

@@ -1,0 +1,556 @@
+//! Which pieces the gaps of an orbit are on, one after the other, and where the unknowns that tell it stand.
+//!
+//! The period is cut where a gap switches from one piece of its law to the next. What lies between two successive cuts is an *interval*: on
+//! each the forces of contacts whose piece has one are unknown at [nodes](super::nodes), and those of the others are zero.
+//!
+//! ```text
+//! u = [ states at the beginning | places of switches | forces at nodes, interval by interval | parameter ]     (1)
+//! ```
+//!
+//! A switch has its phase as unknown. Two that may meet, since the stretch between them is short, have their middle `c` and `H`, the square
+//! of half of the way between them:
+//!
+//! ```text
+//! tau = c -+ sqrt(H),    (g_1 + g_2)/2 = level,    (g_2 - g_1)/(2 sqrt H) = 0,    H > 0                       (2)
+//! g(c) - level + (g''/2) H = 0,    g'(c) = 0,                                     H <= 0                      (3)
+//! ```
+//!
+//! So `H` passes zero smoothly where the gap touches its level: beyond, (3) goes on with the extreme of a gap that does not reach it.
+//!
+//! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing: the time in
+//! contact grows as the root of the penetration).
+
+use super::nodes::{COUNTS, Nodes, STEEPEST};
+use super::values::Contact;
+use crate::law::{Law, Quantity, Variation};
+use crate::numeric::fourier::grading;
+use crate::system::System;
+
+/// Where an interval begins or ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Cut {
+    /// Where the period begins.
+    Begin,
+    /// Where it ends.
+    End,
+    /// At a switch.
+    Switch(usize),
+}
+
+/// A part of the way from one cut to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Mark {
+    pub(super) from: Cut,
+    pub(super) to: Cut,
+    pub(super) part: f64,
+}
+
+impl Mark {
+    fn at(cut: Cut) -> Self {
+        Self {
+            from: cut,
+            to: cut,
+            part: 0.0,
+        }
+    }
+}
+
+/// How a switch is told by its unknown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Told {
+    /// By its phase.
+    Alone,
+    /// It is the first of two: its unknown is the middle, and half of `g''` of (3) belongs to it, by the phase.
+    First { other: usize, bend: f64 },
+    /// It is the second of two: its unknown is `H`.
+    Second { other: usize },
+}
+
+/// A gap at a level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Switch {
+    pub(super) contact: usize,
+    pub(super) level: usize,
+    /// The gap rises there.
+    pub(super) rises: bool,
+    pub(super) told: Told,
+}
+
+/// A contact whose force is unknown on an interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Active {
+    pub(super) contact: usize,
+    pub(super) piece: usize,
+    /// Place of the first of its forces among the unknowns.
+    pub(super) first: usize,
+}
+
+/// What lies between two cuts, or a part of it.
+#[derive(Debug, Clone)]
+pub(super) struct Interval {
+    pub(super) from: Mark,
+    pub(super) to: Mark,
+    /// Per contact.
+    pub(super) pieces: Vec<usize>,
+    pub(super) active: Vec<Active>,
+    pub(super) nodes: &'static Nodes,
+    /// The switch where it ends.
+    pub(super) ends: Option<usize>,
+}
+
+/// A switch with the phase where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Placed {
+    pub(super) switch: Switch,
+    pub(super) phase: f64,
+}
+
+impl Interval {
+    /// Half of the way from its beginning to its end.
+    fn middle(&self) -> Mark {
+        // Panels of one way have the same ends; a whole one has its own.
+        if (self.from.from, self.from.to) == (self.to.from, self.to.to)
+            && self.from.part != self.to.part
+        {
+            return Mark {
+                part: 0.5 * (self.from.part + self.to.part),
+                ..self.from
+            };
+        }
+        let whole = |mark: Mark| mark.from == mark.to;
+        let [from, to] = match [whole(self.from), whole(self.to)] {
+            [true, true] => [self.from.from, self.to.from],
+            [true, false] => [self.to.from, self.to.to],
+            _ => [self.from.from, self.from.to],
+        };
+        let part = |mark: Mark, end: f64| if whole(mark) { end } else { mark.part };
+        Mark {
+            from,
+            to,
+            part: 0.5 * (part(self.from, 0.0) + part(self.to, 1.0)),
+        }
+    }
+}
+
+/// All of it.
+#[derive(Debug, Clone)]
+pub(super) struct Skeleton {
+    /// Phase where the period begins, and its length.
+    pub(super) begin: f64,
+    pub(super) length: f64,
+    /// Number of states.
+    pub(super) order: usize,
+    /// In the order of time.
+    pub(super) switches: Vec<Switch>,
+    pub(super) intervals: Vec<Interval>,
+    /// Number of forces.
+    pub(super) forces: usize,
+    pub(super) resolution: Resolution,
+}
+
+/// Nodes of a stretch and panels of a stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Resolution {
+    pub(super) nodes: usize,
+    /// Nodes, with finer panels the longer the stretch: so many panels in a whole period.
+    pub(super) panels: usize,
+}
+
+/// Where a period begins, how long it is, and on which pieces the gaps are there.
+#[derive(Debug, Clone)]
+pub(super) struct Beginning {
+    pub(super) phase: f64,
+    pub(super) length: f64,
+    pub(super) pieces: Vec<usize>,
+}
+
+impl Skeleton {
+    /// From the switches of an orbit, in the order of time from its beginning on.
+    pub(super) fn new(
+        system: &dyn System,
+        contacts: &[Contact],
+        order: usize,
+        beginning: &Beginning,
+        placed: &[Placed],
+        resolution: Resolution,
+    ) -> Self {
+        let mut skeleton = Self {
+            begin: beginning.phase,
+            length: beginning.length,
+            order,
+            switches: placed.iter().map(|placed| placed.switch).collect(),
+            intervals: Vec::new(),
+            forces: 0,
+            resolution,
+        };
+        let mut pieces = beginning.pieces.clone();
+        let end = beginning.phase + beginning.length;
+        let (mut from, mut phase) = (Cut::Begin, beginning.phase);
+        let ends = placed
+            .iter()
+            .enumerate()
+            .map(|(index, placed)| (Some(index), placed.phase));
+        for (ends, next) in ends.chain([(None, end)]) {
+            let to = ends.map_or(Cut::End, Cut::Switch);
+            let way = Way {
+                cuts: [from, to],
+                length: next - phase,
+                pieces: &pieces,
+                ends,
+            };
+            skeleton.add(system, contacts, &way);
+            if let Some(index) = ends {
+                let Switch {
+                    contact,
+                    level,
+                    rises,
+                    ..
+                } = skeleton.switches[index];
+                pieces[contact] = level + usize::from(rises);
+            }
+            (from, phase) = (to, next);
+        }
+        skeleton
+    }
+
+    /// The same with more nodes, and with more panels where those are as many as can be.
+    pub(super) fn finer(&self) -> Self {
+        let most = COUNTS[COUNTS.len() - 1];
+        let mut finer = self.clone();
+        finer.forces = 0;
+        finer.intervals.clear();
+        let first = self.order + self.switches.len();
+        for interval in &self.intervals {
+            let count = interval.nodes.count();
+            let next = COUNTS.iter().copied().find(|more| *more > count);
+            let parts = if next.is_none() && !interval.active.is_empty() {
+                2
+            } else {
+                1
+            };
+            for part in 0..parts {
+                let grading = interval.nodes.grading;
+                let grading = [
+                    if part == 0 { grading[0] } else { 1 },
+                    if part + 1 == parts { grading[1] } else { 1 },
+                ];
+                let nodes = Nodes::of(next.unwrap_or(most), grading);
+                let mut panel = Interval {
+                    nodes,
+                    ends: interval.ends.filter(|_| part + 1 == parts),
+                    ..interval.clone()
+                };
+                if parts == 2 {
+                    let middle = interval.middle();
+                    if part == 0 {
+                        panel.to = middle;
+                    } else {
+                        panel.from = middle;
+                    }
+                }
+                for active in &mut panel.active {
+                    active.first = first + finer.forces;
+                    finer.forces += nodes.count();
+                }
+                finer.intervals.push(panel);
+            }
+        }
+        finer
+    }
+
+    /// Extended unknowns as those of a finer skeleton: forces are interpolated.
+    pub(super) fn interpolated(&self, finer: &Self, u: &[f64]) -> Vec<f64> {
+        let told = self.order + self.switches.len();
+        let mut to = u[..told].to_vec();
+        to.resize(finer.unknowns(), 0.0);
+        to.push(u[u.len() - 1]);
+        let parts = |interval: &Interval| {
+            let most = COUNTS[COUNTS.len() - 1];
+            if interval.nodes.count() == most && !interval.active.is_empty() {
+                2
+            } else {
+                1
+            }
+        };
+        let mut panels = finer.intervals.iter();
+        for interval in &self.intervals {
+            let parts = parts(interval);
+            let n = interval.nodes.count();
+            for (part, panel) in panels.by_ref().take(parts).enumerate() {
+                let of_panel = |part: usize| {
+                    let mut matrix = vec![0.0; panel.nodes.count() * n];
+                    let rows = matrix.chunks_exact_mut(n);
+                    for (row, target) in rows.zip(&panel.nodes.targets) {
+                        let psi = (part as f64 + target) / parts as f64;
+                        interval.nodes.polynomials(psi, row);
+                    }
+                    matrix
+                };
+                let made;
+                let matrix = if interval.active.is_empty() {
+                    continue;
+                } else if parts == 1 {
+                    interval.nodes.at_next(panel.nodes)
+                } else {
+                    made = of_panel(part);
+                    &made
+                };
+                for (of, at) in interval.active.iter().zip(&panel.active) {
+                    let forces = &u[of.first..][..n];
+                    let to = to[at.first..].iter_mut();
+                    for (to, row) in to.zip(matrix.chunks_exact(n)) {
+                        *to = row.iter().zip(forces).map(|(l, f)| l * f).sum();
+                    }
+                }
+            }
+        }
+        to
+    }
+
+    /// Adds what lies between two cuts, in as many panels as its length asks for.
+    fn add(&mut self, system: &dyn System, contacts: &[Contact], way: &Way<'_>) {
+        let law = |contact: usize| system.law(contacts[contact].law);
+        let has_force = |contact: &usize| {
+            let facts = &law(*contact).facts().pieces[way.pieces[*contact]];
+            facts.force != Variation::Zero
+        };
+        let active: Vec<usize> = (0..contacts.len()).filter(has_force).collect();
+        let panels = if active.is_empty() {
+            1
+        } else {
+            let asked = self.resolution.panels as f64 * way.length / self.length;
+            asked.ceil().max(1.0) as usize
+        };
+        let [first, last] = way.cuts.map(|cut| self.steepness(system, contacts, cut));
+        let [from, to] = way.cuts;
+        for panel in 0..panels {
+            let mark = |index: usize| match index {
+                0 => Mark::at(from),
+                index if index == panels => Mark::at(to),
+                index => Mark {
+                    from,
+                    to,
+                    part: index as f64 / panels as f64,
+                },
+            };
+            let grading = [
+                if panel == 0 { first } else { 1 },
+                if panel + 1 == panels { last } else { 1 },
+            ];
+            let nodes = Nodes::of(self.resolution.nodes, grading);
+            let unknown = self.order + self.switches.len() + self.forces;
+            let of = |(place, contact): (usize, &usize)| Active {
+                contact: *contact,
+                piece: way.pieces[*contact],
+                first: unknown + place * nodes.count(),
+            };
+            let active: Vec<Active> = active.iter().enumerate().map(of).collect();
+            self.forces += active.len() * nodes.count();
+            self.intervals.push(Interval {
+                from: mark(panel),
+                to: mark(panel + 1),
+                pieces: way.pieces.to_vec(),
+                active,
+                nodes,
+                ends: way.ends.filter(|_| panel + 1 == panels),
+            });
+        }
+    }
+
+    /// The power of the grading at a cut, which makes the force's exponents there whole.
+    fn steepness(&self, system: &dyn System, contacts: &[Contact], cut: Cut) -> usize {
+        let Cut::Switch(index) = cut else { return 1 };
+        let Switch { contact, level, .. } = self.switches[index];
+        let of = &contacts[contact];
+        let exponents = exponents_at(system.law(of.law), &of.arguments, level);
+        let power = grading::power_for(&exponents.iter().copied());
+        (power as usize).clamp(1, STEEPEST)
+    }
+
+    /// Number of unknowns, without the parameter.
+    pub(super) fn unknowns(&self) -> usize {
+        self.order + self.switches.len() + self.forces
+    }
+
+    /// The place of a switch's unknown.
+    pub(super) fn slot(&self, switch: usize) -> usize {
+        self.order + switch
+    }
+
+    /// Phase of a cut, and its derivatives by unknowns.
+    fn cut(&self, u: &[f64], cut: Cut) -> Place {
+        match cut {
+            Cut::Begin => Place::fixed(self.begin),
+            Cut::End => Place::fixed(self.begin + self.length),
+            Cut::Switch(index) => {
+                let own = self.slot(index);
+                let (middle, square, sign) = match self.switches[index].told {
+                    Told::Alone => {
+                        let mut place = Place::fixed(self.begin + u[own]);
+                        place.add(own, 1.0);
+                        return place;
+                    }
+                    Told::First { other, .. } => (own, self.slot(other), -1.0),
+                    Told::Second { other } => (self.slot(other), own, 1.0),
+                };
+                let half = half_way(u[square]);
+                let mut place = Place::fixed(self.begin + u[middle] + sign * half);
+                place.add(middle, 1.0);
+                if half > 0.0 {
+                    place.add(square, sign / (2.0 * half));
+                }
+                place
+            }
+        }
+    }
+
+    /// Phase of a mark, and its derivatives by unknowns.
+    pub(super) fn place(&self, u: &[f64], mark: Mark) -> Place {
+        let mut place = self.cut(u, mark.from);
+        if mark.part > 0.0 {
+            let to = self.cut(u, mark.to);
+            place.scale(1.0 - mark.part);
+            place.phase += mark.part * to.phase;
+            for (unknown, slope) in to.slopes() {
+                place.add(unknown, mark.part * slope);
+            }
+        }
+        place
+    }
+
+    /// Takes forces from another orbit where a gap hardly opens within a stretch. Its ends move as the root of `H` then, and forces at
+    /// nodes with them; as functions of the phase from the middle `c` they hardly change. Says whether there were any.
+    pub(super) fn carry_forces(&self, known: &[f64], u: &mut [f64]) -> bool {
+        let mut polynomials = Vec::new();
+        let mut carried = false;
+        for interval in &self.intervals {
+            let opening = [interval.from, interval.to]
+                .into_iter()
+                .find_map(|mark| self.opening(mark));
+            let Some((middle, square)) = opening.filter(|_| !interval.active.is_empty()) else {
+                continue;
+            };
+            if u[square].max(known[square]) <= 0.0 || u[square].min(known[square]) > OPEN {
+                continue;
+            }
+            carried = true;
+            let moved = u[middle] - known[middle];
+            let ends =
+                |u: &[f64]| [interval.from, interval.to].map(|mark| self.place(u, mark).phase);
+            let ([from, to], [a, b]) = (ends(u), ends(known));
+            polynomials.resize(interval.nodes.count(), 0.0);
+            for node in 0..polynomials.len() {
+                let phase = from + interval.nodes.targets[node] * (to - from) - moved;
+                let psi = (phase - a) / (b - a);
+                interval
+                    .nodes
+                    .polynomials(psi.clamp(0.0, 1.0), &mut polynomials);
+                for active in &interval.active {
+                    let forces = &known[active.first..][..polynomials.len()];
+                    let force = polynomials.iter().zip(forces).map(|(l, f)| l * f).sum();
+                    u[active.first + node] = force;
+                }
+            }
+        }
+        carried
+    }
+
+    /// Middle and `H` of the pair of switches between which a gap opens, where one of them is at a mark and its force goes on beyond.
+    fn opening(&self, mark: Mark) -> Option<(usize, usize)> {
+        let Cut::Switch(index) = mark.from else {
+            return None;
+        };
+        let (first, second) = match self.switches[index].told {
+            Told::Alone => return None,
+            Told::First { other, .. } => (index, other),
+            Told::Second { other } => (other, index),
+        };
+        let beyond = self
+            .intervals
+            .iter()
+            .find(|interval| interval.ends == Some(second))?;
+        beyond
+            .active
+            .is_empty()
+            .then_some((self.slot(first), self.slot(second)))
+    }
+
+    /// Phase of a switch.
+    pub(super) fn phase(&self, u: &[f64], switch: usize) -> f64 {
+        self.cut(u, Cut::Switch(switch)).phase
+    }
+}
+
+/// What is added between two cuts.
+struct Way<'w> {
+    cuts: [Cut; 2],
+    length: f64,
+    pieces: &'w [usize],
+    ends: Option<usize>,
+}
+
+/// `sqrt(H)`; zero where there is no way between the two.
+pub(super) fn half_way(square: f64) -> f64 {
+    if square > 0.0 {
+        square.max(CLOSEST).sqrt()
+    } else {
+        0.0
+    }
+}
+
+/// A gap hardly opens where `H` is less.
+const OPEN: f64 = 0.05;
+/// `H` below which differences over the way are rounding.
+const CLOSEST: f64 = 1e-13;
+
+/// A phase with its derivatives by unknowns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) phase: f64,
+    by: [(usize, f64); 4],
+    count: usize,
+}
+
+impl Place {
+    fn fixed(phase: f64) -> Self {
+        Self {
+            phase,
+            by: [(0, 0.0); 4],
+            count: 0,
+        }
+    }
+
+    fn add(&mut self, unknown: usize, slope: f64) {
+        self.by[self.count] = (unknown, slope);
+        self.count += 1;
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.phase *= factor;
+        for (_, slope) in &mut self.by {
+            *slope *= factor;
+        }
+    }
+
+    pub(super) fn slopes(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
+        self.by.into_iter().take(self.count)
+    }
+}
+
+/// Exponents of a force at one of its levels, from both sides, and whether each comes with a logarithm.
+fn exponents_at(law: &dyn Law, arguments: &[f64], level: usize) -> Vec<(f64, bool)> {
+    let facts = law.facts();
+    let below = facts.pieces[level]
+        .terms
+        .iter()
+        .map(|term| (term, term.upper));
+    let above = facts.pieces[level + 1]
+        .terms
+        .iter()
+        .map(|term| (term, term.lower));
+    below
+        .chain(above)
+        .filter(|(term, _)| term.of == Quantity::Force)
+        .map(|(term, exponent)| (exponent.value(arguments), term.logarithm))
+        .collect()
+}

@@ -1,0 +1,272 @@
+//! Orbits against those of shooting, and derivatives against differences.
+
+use super::equations::{Equations, Setting};
+use super::plan::{Frame, Gaps, Plan};
+use super::skeleton::Resolution;
+use crate::branches::solve;
+use crate::cancel::Cancel;
+use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::system::{System, Variable};
+use crate::{Branch, ContactEquation, FrequencyResponse, Shooting};
+
+crate::oscillator! {
+    OneSided(x) {
+        param alpha > 0;
+        param load;
+        param drive;
+        law contact(gap) { gap > 0 => 0.064*dot(gap) + gap^alpha, else => 0 }
+        ddot(x) + contact(x) = drive*cos(omega*t) + load;
+    }
+}
+
+crate::oscillator! {
+    TwoMasses(x, y) {
+        param gap;
+        law stop(g) { g > 0 => 20*g + 0.1*g*dot(g), else => 0 }
+        law hertz(g) { g > 0 => 5*g^1.5, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + (x - y) + 0.05*dot(x - y) + stop(x - gap) = 0.3*cos(omega*t);
+        ddot(y) + 0.05*dot(y) + 0.5*y - (x - y) - hertz(-y - 0.1*cos(omega*t)) = 0.1*sin(2*omega*t);
+    }
+}
+
+crate::oscillator! {
+    /// The modes change with what couples the masses, and are complex.
+    Coupled(x, y) {
+        param coupling;
+        law stop(g) { g > 0 => 5*g, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + coupling*(x - y) + stop(x - 0.2) = 0.3*cos(omega*t);
+        2*ddot(y) + 0.05*dot(y) + 0.5*y - coupling*(x - y) = 0;
+    }
+}
+
+fn first(
+    system: &dyn System,
+    vary: Option<&str>,
+    omega: f64,
+    nodes: usize,
+) -> (Equations, Vec<f64>) {
+    let request = FrequencyResponse::of(system);
+    let point = request.orbit(omega).unwrap();
+    let parameters = crate::model::values(system);
+    let variable = vary.map_or(Variable::Omega, |name| {
+        let names = system.facts().parameters.iter();
+        Variable::Parameter(names.map(|p| &p.name).position(|p| p == name).unwrap())
+    });
+    let value = match variable {
+        Variable::Omega => omega,
+        Variable::Parameter(index) => parameters[index],
+    };
+    let setting = Setting::new(
+        &system.shared(),
+        variable,
+        parameters,
+        omega,
+        &Cancel::new(),
+    );
+    let values = setting.values(value).unwrap();
+    let base = point.orbit.omega;
+    let coordinates = point.orbit.coordinates();
+    let at = |phase: f64, state: &mut [f64]| {
+        for i in 0..coordinates {
+            (state[i], state[coordinates + i]) = point.orbit.state_at(i, phase / base).unwrap();
+        }
+    };
+    let gaps = Gaps {
+        values: &values,
+        at: &at,
+        coordinates,
+    };
+    let plan = Plan::sampled(&gaps, std::f64::consts::TAU);
+    let frame = Frame {
+        reference: vec![0.0; 2 * coordinates],
+        size: point.size(),
+        resolution: Resolution { nodes, panels: 1 },
+    };
+    plan.equations(&setting, value, &gaps, &frame).unwrap()
+}
+
+fn derivatives_are_those_of_differences(system: &dyn System, vary: Option<&str>, omega: f64) {
+    let (mut equations, u) = first(system, vary, omega, 12);
+    equations.compute(&u, true);
+    let n = u.len() - 1;
+    let matrix = equations.matrix().to_vec();
+    let mut at = |column: usize, step: f64| {
+        let mut u = u.clone();
+        u[column] += step;
+        equations.compute(&u, false);
+        equations.residual().to_vec()
+    };
+    for column in 0..=n {
+        // A force of exponent 3/2 is not smooth beside its level.
+        let h = 1e-7;
+        let [a, b] = [at(column, h), at(column, -h)];
+        for row in 0..n {
+            let difference = (a[row] - b[row]) / (2.0 * h);
+            let exact = matrix[row * (n + 1) + column];
+            assert!(
+                (difference - exact).abs() < 1e-5 * (1.0 + exact.abs()),
+                "row {row} column {column}: {difference} {exact}"
+            );
+        }
+    }
+}
+
+#[test]
+fn matrices_are_those_of_differences() {
+    let one = OneSided {
+        alpha: 1.5,
+        load: 1.0,
+        drive: 0.5,
+    };
+    derivatives_are_those_of_differences(&one, None, 0.7);
+    derivatives_are_those_of_differences(&one, Some("drive"), 0.7);
+    let two = TwoMasses { gap: 0.2 };
+    derivatives_are_those_of_differences(&two, None, 0.9);
+    derivatives_are_those_of_differences(&two, Some("gap"), 0.9);
+    derivatives_are_those_of_differences(&Coupled { coupling: 1.0 }, Some("coupling"), 0.9);
+}
+
+fn solved(system: &dyn System, omega: f64, nodes: usize) -> (Equations, Vec<f64>) {
+    let (mut equations, mut u) = first(system, None, omega, nodes);
+    let mut newton = Newton::new(&equations);
+    let options = NewtonOptions {
+        tolerance: 1e-11,
+        iterations: 20,
+        damped: false,
+    };
+    solve::at_value(&mut equations, &mut newton, &mut u, options).unwrap();
+    (equations, u)
+}
+
+#[test]
+fn multipliers_are_those_of_shooting() {
+    let one = OneSided {
+        alpha: 1.5,
+        load: 1.0,
+        drive: 0.5,
+    };
+    let two = TwoMasses { gap: 0.2 };
+    let (one, two): (&dyn System, &dyn System) = (&one, &two);
+    // A stretch of two masses is cut where the other contact begins and ends, and is not all of what 24 nodes resolve.
+    for (system, omega, tolerance) in [
+        (one, 0.7, 1e-8),
+        (one, 1.0, 1e-8),
+        (two, 0.9, 1e-7),
+        (two, 1.4, 1e-7),
+    ] {
+        let (mut equations, u) = solved(system, omega, 24);
+        let map = equations.map(&u).unwrap();
+        let found = crate::numeric::spectrum::eigenvalues(&map);
+        let shooting = FrequencyResponse::of(system).by(Shooting::new().tolerance(1e-13));
+        let exact = shooting.orbit(omega).unwrap().stability.multipliers;
+        let apart = crate::numeric::spectrum::distance(&found, &exact);
+        assert!(apart < tolerance, "{omega}: {found:?} {exact:?}");
+    }
+}
+
+/// Folds and touches of figure 5 of Wang et al. (2021), from either end: as shooting has them, which are exact to rounding where the
+/// force is affine.
+#[test]
+fn events_are_those_of_shooting() {
+    for (alpha, from, to) in [(1.0, 0.5, 1.5), (1.5, 1.3, 0.6), (0.6, 1.0, 0.6)] {
+        let model = OneSided {
+            alpha,
+            load: 1.0,
+            drive: 0.1,
+        };
+        let request = FrequencyResponse::of(&model).from(from).to(to);
+        let branch = request.clone().by(ContactEquation::new()).run().unwrap();
+        let exact = request.by(Shooting::new().tolerance(1e-12)).run().unwrap();
+        assert_eq!(branch.stopped, exact.stopped);
+        assert_eq!(branch.turns, []);
+        let sorted = |branch: &Branch| {
+            let mut events: Vec<_> = branch
+                .events
+                .iter()
+                .map(|e| (e.point.value, e.kind))
+                .collect();
+            events.sort_by(|a, b| a.0.total_cmp(&b.0));
+            events
+        };
+        let (found, exact) = (sorted(&branch), sorted(&exact));
+        assert_eq!(found.len(), exact.len(), "{found:?} {exact:?}");
+        for (found, exact) in found.iter().zip(&exact) {
+            assert_eq!(found.1, exact.1);
+            assert!((found.0 - exact.0).abs() < 1e-9, "{found:?} {exact:?}");
+        }
+    }
+}
+
+/// The pair of switches between which a gap is about to open: `H` passes zero, and the branch goes on.
+#[test]
+fn a_touch_is_passed_smoothly() {
+    let one = OneSided {
+        alpha: 1.5,
+        load: 1.0,
+        drive: 0.1,
+    };
+    let (mut equations, mut u) = first(&one, None, 1.2005, 16);
+    let mut newton = Newton::new(&equations);
+    let options = NewtonOptions {
+        tolerance: 1e-11,
+        iterations: 20,
+        damped: false,
+    };
+    assert_eq!(equations.skeleton.switches.len(), 2);
+    let square = equations.skeleton.slot(1);
+    let mut values = Vec::new();
+    for h in [-0.01, -1e-3, -1e-5, -1e-8, 1e-8, 1e-5, 1e-3] {
+        u[square] = h;
+        solve::with_held(&mut equations, &mut newton, &mut u, square, options).unwrap();
+        values.push(u[u.len() - 1]);
+    }
+    // Shooting has the touch at 1.199413489, and the value falls with H.
+    assert!((values[3] - 1.199_413_489).abs() < 1e-7, "{values:?}");
+    assert!(
+        values.windows(2).all(|pair| pair[1] < pair[0]),
+        "{values:?}"
+    );
+}
+
+/// Along a branch whose modes change, orbits and multipliers are those of shooting, whose motions are exact here; what is stated of their
+/// errors holds, where a finer solution has shown them and between.
+#[test]
+fn orbits_are_those_of_shooting_and_their_errors_hold() {
+    let coupled = Coupled { coupling: 1.0 };
+    let one = OneSided {
+        alpha: 1.5,
+        load: 1.0,
+        drive: 0.1,
+    };
+    let of = |system| FrequencyResponse::of(system).by(ContactEquation::new());
+    let requests = [
+        of(&coupled).vary("coupling").omega(0.9).from(0.5).to(2.0),
+        of(&one).from(0.6).to(0.8),
+    ];
+    for request in requests {
+        let branch = request.run().unwrap();
+        assert!(branch.points.len() > 10);
+        for point in &branch.points {
+            let shooting = request.clone().by(Shooting::new().tolerance(1e-12));
+            let exact = shooting
+                .near_orbit(&point.orbit)
+                .orbit(point.value)
+                .unwrap();
+            let pairs = point.observed.motions.iter().zip(&exact.observed.motions);
+            let size = |motion: &crate::observe::Motion| motion.peak_to_peak();
+            let largest = exact.observed.motions.iter().map(size).fold(0.0, f64::max);
+            let apart = pairs.map(|(a, b)| (size(a) - size(b)).abs() / largest);
+            let (apart, stated) = (apart.fold(0.0, f64::max), point.error.unwrap());
+            assert!(
+                apart <= stated + 1e-11,
+                "{}: {apart:e} {stated:e}",
+                point.value
+            );
+            let [a, b] = [&point.stability, &exact.stability];
+            let spread = crate::numeric::spectrum::distance(&a.multipliers, &b.multipliers);
+            let known = a.error + b.error + 1e-9;
+            assert!(spread <= known, "{}: {spread:e} {known:e}", point.value);
+            assert_eq!(a.verdict, b.verdict);
+        }
+    }
+}

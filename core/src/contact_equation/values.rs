@@ -1,0 +1,338 @@
+//! A system at values of its parameters and its frequency, in the pairs of its [linear part](super::linear).
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::block::Pair;
+use super::linear::Linear;
+use crate::model::layout::{Layout, Term, constant};
+use crate::system::{Part, System};
+
+/// A vector that moves with the phase, `sum_h a_h cos h tau + b_h sin h tau`.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Moving {
+    constant: Vec<f64>,
+    waves: Vec<(f64, Vec<f64>, Vec<f64>)>,
+}
+
+impl Moving {
+    fn add(&mut self, term: &Term, factor: f64, column: &[f64]) {
+        if self.constant.is_empty() {
+            self.constant = vec![0.0; column.len()];
+        }
+        let add = |to: &mut Vec<f64>| {
+            for (to, x) in to.iter_mut().zip(column) {
+                *to += factor * x;
+            }
+        };
+        if term.wave.harmonic == 0 {
+            add(&mut self.constant);
+            return;
+        }
+        let harmonic = f64::from(term.wave.harmonic);
+        let known = self.waves.iter().position(|(h, ..)| *h == harmonic);
+        let place = known.unwrap_or_else(|| {
+            let zero = vec![0.0; column.len()];
+            self.waves.push((harmonic, zero.clone(), zero));
+            self.waves.len() - 1
+        });
+        let (_, cosine, sine) = &mut self.waves[place];
+        match term.wave.part {
+            Part::Cosine => add(cosine),
+            Part::Sine => add(sine),
+        }
+    }
+
+    /// It does not move.
+    pub(super) fn is_constant(&self) -> bool {
+        self.waves.is_empty()
+    }
+
+    /// Writes a derivative by the phase; the zeroth is the vector.
+    pub(super) fn write(&self, tau: f64, derivative: u32, to: &mut [f64]) {
+        to.fill(0.0);
+        if derivative == 0 {
+            to[..self.constant.len()].copy_from_slice(&self.constant);
+        }
+        for (harmonic, cosine, sine) in &self.waves {
+            let (s, c) = (harmonic * tau).sin_cos();
+            let (c, s) = match derivative % 4 {
+                0 => (c, s),
+                1 => (-s, c),
+                2 => (-c, -s),
+                _ => (s, -c),
+            };
+            let factor = match derivative {
+                0 => 1.0,
+                1 => *harmonic,
+                2 => harmonic * harmonic,
+                more => harmonic.powi(more as i32),
+            };
+            for (i, to) in to.iter_mut().enumerate().take(cosine.len()) {
+                *to += factor * (c * cosine[i] + s * sine[i]);
+            }
+        }
+    }
+
+    /// The highest harmonic.
+    fn harmonic(&self) -> f64 {
+        let harmonics = self.waves.iter().map(|(harmonic, ..)| *harmonic);
+        harmonics.fold(0.0, f64::max)
+    }
+
+    /// Of a single entry.
+    pub(super) fn value(&self, tau: f64, derivative: u32) -> f64 {
+        if self.is_constant() {
+            let value = if derivative == 0 {
+                self.constant.first()
+            } else {
+                None
+            };
+            return value.copied().unwrap_or(0.0);
+        }
+        let mut to = [0.0];
+        self.write(tau, derivative, &mut to);
+        to[0]
+    }
+}
+
+/// A contact.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Contact {
+    pub(super) law: usize,
+    pub(super) arguments: Vec<f64>,
+    pub(super) levels: Vec<f64>,
+    /// `T^-1 [0; M^-1 e]`: what a unit force does to the states, with the sign of the right-hand side.
+    pub(super) input: Moving,
+    /// `d . q` and `d . q'` as rows over the states.
+    pub(super) gap: Moving,
+    pub(super) rate: Moving,
+    /// `delta`
+    pub(super) offset: Moving,
+}
+
+impl Contact {
+    /// The highest harmonic of what moves in its gap.
+    pub(super) fn harmonic(&self) -> f64 {
+        self.gap.harmonic().max(self.offset.harmonic())
+    }
+}
+
+/// A wave of the load.
+#[derive(Debug, Clone)]
+pub(super) struct Wave {
+    pub(super) harmonic: f64,
+    /// Per pair, the complex amplitude of what it does to the states.
+    pub(super) input: Vec<[Complex<f64>; 2]>,
+    /// Per pair, the steady response and its derivative by the base frequency; none in resonance.
+    pub(super) steady: Vec<Option<[[Complex<f64>; 2]; 2]>>,
+}
+
+/// Everything of a system at values of its parameters and its frequency.
+#[derive(Debug, Clone)]
+pub(super) struct Values {
+    pub(super) linear: Linear,
+    /// How fast the phase moves.
+    pub(super) base: f64,
+    pub(super) contacts: Vec<Contact>,
+    pub(super) load: Vec<Wave>,
+}
+
+impl Values {
+    /// `None` where the mass is singular or the linear part has dependent eigenvectors.
+    pub(super) fn new(
+        system: &dyn System,
+        layout: &Layout,
+        parameters: &[f64],
+        omega: f64,
+    ) -> Option<Self> {
+        let n = layout.coordinates;
+        let mut coefficients = vec![0.0; layout.coefficients];
+        system.coefficients(parameters, omega, &mut coefficients);
+        let damping = constant(&layout.damping, &coefficients, n);
+        let stiffness = constant(&layout.stiffness, &coefficients, n);
+        let linear = Linear::new(&layout.mass(&coefficients), &damping, &stiffness)?;
+        let contacts = (0..layout.contacts.len())
+            .map(|contact| self::contact(system, layout, &coefficients, &linear, contact))
+            .collect();
+        let load = self::load(layout, &coefficients, &linear);
+        let mut values = Self {
+            linear,
+            base: 0.0,
+            contacts,
+            load,
+        };
+        values.set_omega(omega, f64::from(system.facts().divisor));
+        Some(values)
+    }
+
+    /// Goes over to another frequency, which no coefficient depends on.
+    pub(super) fn set_omega(&mut self, omega: f64, divisor: f64) {
+        self.base = omega / divisor;
+        for wave in &mut self.load {
+            let frequency = wave.harmonic * self.base;
+            let pairs = wave.input.iter().zip(&self.linear.blocks);
+            for ((input, block), steady) in pairs.zip(&mut wave.steady) {
+                *steady = block
+                    .steady(frequency, *input)
+                    .map(|[response, by]| [response, by.map(|x| x * wave.harmonic)]);
+            }
+        }
+    }
+
+    /// Number of states.
+    pub(super) fn order(&self) -> usize {
+        2 * self.linear.blocks.len()
+    }
+
+    /// Writes the steady response at a phase, its derivatives by the phase, and by the base frequency.
+    pub(super) fn write_steady(&self, tau: f64, to: &mut [Vec<f64>; 3]) {
+        for to in to.iter_mut() {
+            to.fill(0.0);
+        }
+        for wave in &self.load {
+            let turn = turn(wave.harmonic * tau);
+            let slope = turn * Complex::new(0.0, wave.harmonic);
+            for (r, steady) in wave.steady.iter().enumerate() {
+                let Some([response, by]) = steady else {
+                    continue;
+                };
+                for i in 0..2 {
+                    to[0][2 * r + i] += (turn * response[i]).re;
+                    to[1][2 * r + i] += (slope * response[i]).re;
+                    to[2][2 * r + i] += (turn * by[i]).re;
+                }
+            }
+        }
+    }
+
+    /// What waves in resonance do within a time from rest at a phase: states, and their derivatives by the time, by the phase where it
+    /// begins, and by the base frequency. Says whether there are such waves.
+    pub(super) fn write_resonant(&self, tau: f64, time: f64, to: &mut [Vec<f64>; 4]) -> bool {
+        let resonant = |wave: &Wave| wave.steady.iter().any(Option::is_none);
+        if !self.load.iter().any(resonant) {
+            return false;
+        }
+        for to in to.iter_mut() {
+            to.fill(0.0);
+        }
+        for wave in &self.load {
+            if wave.steady.iter().all(Option::is_some) {
+                continue;
+            }
+            let begun = wave.harmonic * tau;
+            let later = turn(begun + wave.harmonic * self.base * time);
+            let turn = turn(begun);
+            for (r, block) in self.linear.blocks.iter().enumerate() {
+                if wave.steady[r].is_some() {
+                    continue;
+                }
+                let input = wave.input[r];
+                let [p, k, p_by, k_by] = block.response_at_rest(wave.harmonic * self.base, time);
+                let d = block.deviation;
+                let turned = |i: usize| input[0] * d[i][0] + input[1] * d[i][1];
+                let state = [0, 1].map(|i| turn * (p * input[i] + k * turned(i)));
+                for i in 0..2 {
+                    let a = block.matrix[i];
+                    let by = turn * wave.harmonic * (p_by * input[i] + k_by * turned(i));
+                    to[0][2 * r + i] += state[i].re;
+                    to[1][2 * r + i] += (state[0] * a[0] + state[1] * a[1] + later * input[i]).re;
+                    to[2][2 * r + i] += (state[i] * Complex::new(0.0, wave.harmonic)).re;
+                    to[3][2 * r + i] += by.re;
+                }
+            }
+        }
+        true
+    }
+}
+
+fn contact(
+    system: &dyn System,
+    layout: &Layout,
+    coefficients: &[f64],
+    linear: &Linear,
+    index: usize,
+) -> Contact {
+    let of = &layout.contacts[index];
+    let law = system.law(of.law);
+    let mut contact = Contact {
+        law: of.law,
+        arguments: vec![0.0; of.argument_count],
+        levels: vec![0.0; law.facts().levels.len()],
+        ..Contact::default()
+    };
+    of.arguments(coefficients, &mut contact.arguments);
+    law.levels(&contact.arguments, &mut contact.levels);
+    let column = |matrix: &DMatrix<f64>, i: usize| matrix.column(i).as_slice().to_vec();
+    let row =
+        |matrix: &DMatrix<f64>, i: usize| -> Vec<f64> { matrix.row(i).iter().copied().collect() };
+    for term in &of.force {
+        let states = column(&linear.input, term.index);
+        contact
+            .input
+            .add(term, -coefficients[term.coefficient], &states);
+    }
+    for term in &of.gap {
+        let factor = coefficients[term.coefficient];
+        contact
+            .gap
+            .add(term, factor, &row(&linear.positions, term.index));
+        contact
+            .rate
+            .add(term, factor, &row(&linear.velocities, term.index));
+    }
+    for term in &of.offset {
+        contact
+            .offset
+            .add(term, coefficients[term.coefficient], &[1.0]);
+    }
+    contact
+}
+
+fn load(layout: &Layout, coefficients: &[f64], linear: &Linear) -> Vec<Wave> {
+    let pairs = linear.blocks.len();
+    let mut waves: Vec<(u32, DVector<Complex<f64>>)> = Vec::new();
+    for entry in &layout.load {
+        let harmonic = entry.wave.harmonic;
+        let known = waves.iter().position(|(h, _)| *h == harmonic);
+        let place = known.unwrap_or_else(|| {
+            waves.push((harmonic, DVector::zeros(layout.coordinates)));
+            waves.len() - 1
+        });
+        // a cos + b sin = Re((a - i b) e^(i h tau))
+        let value = coefficients[entry.coefficient];
+        waves[place].1[entry.row] += match entry.wave.part {
+            Part::Cosine => Complex::new(value, 0.0),
+            Part::Sine => Complex::new(0.0, -value),
+        };
+    }
+    let waves = waves.into_iter().map(|(harmonic, amplitude)| {
+        let input = linear.input.map(|x| Complex::new(x, 0.0)) * amplitude;
+        Wave {
+            harmonic: f64::from(harmonic),
+            input: (0..pairs)
+                .map(|r| [input[2 * r], input[2 * r + 1]])
+                .collect(),
+            steady: vec![None; pairs],
+        }
+    });
+    waves.collect()
+}
+
+/// `e^(i angle)`
+fn turn(angle: f64) -> Complex<f64> {
+    if angle == 0.0 {
+        return Complex::new(1.0, 0.0);
+    }
+    let (sine, cosine) = angle.sin_cos();
+    Complex::new(cosine, sine)
+}
+
+/// The product of a row and states, which are few.
+pub(super) fn dot(row: &[f64], states: &[f64]) -> f64 {
+    row.iter().zip(states).map(|(a, y)| a * y).sum()
+}
+
+/// Two of the states.
+pub(super) fn pair(states: &[f64], r: usize) -> Pair {
+    [states[2 * r], states[2 * r + 1]]
+}

@@ -1,0 +1,321 @@
+//! Going on with a branch: where it was interrupted, beyond its range, or anew with other options.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use super::following::Following;
+use super::sealed::Follow;
+use super::{by_balance, by_shooting};
+use crate::balance_branch::check::Asked;
+use crate::branches::branch::Branch;
+use crate::branches::keep::Keep;
+use crate::branches::progress::{Progress, See};
+use crate::branches::request::{Guess, Request};
+use crate::cancel::Cancel;
+use crate::continuation::follow::Stop;
+use crate::error::Error;
+use crate::model::request::RequestError;
+use crate::model::validate;
+
+/// How to go on with a branch, set up step by step, then [run](Resume::run): see [`Branch::resume`].
+#[derive(Debug, Clone)]
+pub struct Resume<'b> {
+    branch: &'b Branch,
+    to: Option<f64>,
+    max_points: Option<usize>,
+    tolerance: Option<f64>,
+    largest_step: Option<f64>,
+    bifurcations: Option<bool>,
+    cancel: Cancel,
+    keep: Option<Arc<dyn Keep>>,
+}
+
+impl Branch {
+    /// Goes on with this branch, by what it was asked for. Nothing but its number of points is changed by default: where it was
+    /// interrupted, or met its limit of points, it goes on with the step that it was in, and what comes of it is what an uninterrupted
+    /// run gives, to the last bit. A branch from a file takes its model first, by [`attach`](Self::attach).
+    ///
+    /// ```
+    /// use hertzian::FrequencyResponse;
+    ///
+    /// hertzian::oscillator! {
+    ///     Duffing(x) {
+    ///         param drive;
+    ///         ddot(x) + 0.1*dot(x) + x + x^3 = drive*cos(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let request = FrequencyResponse::of(&Duffing { drive: 0.2 }).from(0.5).to(1.5);
+    /// let whole = request.clone().run()?;
+    /// let part = request.max_points(20).run()?;
+    /// assert_eq!(part.points.len(), 20);
+    /// let resumed = part.resume().run()?;
+    /// assert_eq!(resumed.points, whole.points);
+    /// // Beyond the end of its range, and once more with another tolerance.
+    /// let longer = whole.resume().to(1.8).run()?;
+    /// assert_eq!(longer.at(1.7)?.len(), 1);
+    /// let finer = whole.resume().tolerance(1e-9).run()?;
+    /// assert!(finer.points.iter().all(|point| point.error.unwrap() < 1e-9));
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    pub fn resume(&self) -> Resume<'_> {
+        Resume {
+            branch: self,
+            to: None,
+            max_points: None,
+            tolerance: None,
+            largest_step: None,
+            bifurcations: None,
+            cancel: Cancel::new(),
+            keep: None,
+        }
+    }
+
+    /// With what follows behind its last orbit, which is the first of that.
+    fn with(&self, mut on: Self) -> Self {
+        let shift = self.points.len().saturating_sub(1);
+        let mut branch = self.clone();
+        branch.points.extend(on.points.drain(..).skip(1));
+        branch.events.extend(on.events.drain(..).map(|mut event| {
+            event.after += shift;
+            event
+        }));
+        branch.turns.extend(on.turns.drain(..).map(|mut turn| {
+            turn.after += shift;
+            turn
+        }));
+        branch.statistics += on.statistics;
+        branch.work += on.work;
+        branch.elapsed += on.elapsed;
+        Self {
+            stopped: on.stopped,
+            // What the new part goes on from counts the points of that part alone.
+            further: self.further.clone(),
+            ..branch
+        }
+    }
+}
+
+impl Resume<'_> {
+    hertzian_contract::setters! { self:
+        /// Goes on to this value, beyond the range that it was asked for.
+        to(value: f64) { self.to = Some(value) }
+
+        /// The branch has no more points than this, those that it has included. Default: as many more as it was asked for where it met
+        /// that limit, and otherwise as it was asked for.
+        max_points(points: usize) { self.max_points = Some(points) }
+
+        /// Follows the branch once more from its first orbit, with another accuracy of the output.
+        tolerance(tolerance: f64) { self.tolerance = Some(tolerance) }
+
+        /// Follows the branch once more from its first orbit, with another largest step.
+        largest_step(step: f64) { self.largest_step = Some(step) }
+
+        /// Follows the branch once more from its first orbit, and looks for all bifurcations, or for folds alone. Shooting always looks
+        /// for all.
+        bifurcations(wanted: bool) { self.bifurcations = Some(wanted) }
+
+        /// What is computed ends when this token is cancelled.
+        cancel(cancel: &Cancel) { self.cancel = cancel.clone() }
+    }
+
+    /// Keeps it by this.
+    #[cfg(feature = "serde")]
+    pub(crate) fn kept_by(self, keep: Arc<dyn Keep>) -> Self {
+        Self {
+            keep: Some(keep),
+            ..self
+        }
+    }
+
+    /// Goes on.
+    ///
+    /// # Errors
+    /// If an option is not usable, the branch was read from a file and has no [model](Branch::attach), or there is nothing to go on to.
+    pub fn run(&self) -> Result<Branch, Error> {
+        self.run_with(|_| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Self::run), and calls `visit` at every point as it is found: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with(
+        &self,
+        mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Branch, Error> {
+        let following = self.branch.following()?;
+        let asked = following.request();
+        let more = match self.branch.stopped {
+            Stop::PointLimit { .. } => self.branch.points.len(),
+            _ => 0,
+        };
+        let most = asked.max_points.saturating_add(more);
+        let request = Request {
+            max_points: self.max_points.unwrap_or(most),
+            tolerance: self.tolerance.unwrap_or(asked.tolerance),
+            largest_step: self.largest_step.unwrap_or(asked.largest_step),
+            cancel: self.cancel.clone(),
+            keep: self.keep.clone(),
+            ..asked.clone()
+        };
+        let again = self.tolerance.or(self.largest_step).is_some() || self.bifurcations.is_some();
+        let farther = self.to.is_some() && self.to != asked.to;
+        if let Some(most) = self.max_points.filter(|_| !again) {
+            let has = self.branch.points.len();
+            let least = has as f64 + 1.0;
+            let must = "must be more than the points that the branch has";
+            validate::option("max_points", most as f64, least..=f64::INFINITY, must)?;
+        }
+        let found = if again {
+            self.again(following, &request, &mut visit)
+        } else if farther {
+            self.beyond(following, &request, &mut visit)
+        } else {
+            self.onward(following, &request, &mut visit)
+        };
+        let value = self
+            .branch
+            .points
+            .last()
+            .map_or(f64::NAN, |point| point.value);
+        request.unless_lost(value, found)
+    }
+
+    /// The rest of what was asked for.
+    fn onward(
+        &self,
+        following: &Following,
+        request: &Request,
+        visit: See<'_>,
+    ) -> Result<Branch, Error> {
+        let branch = self.branch;
+        let mut resumed = match following {
+            Following::Balance {
+                context,
+                balance,
+                rest: Some(rest),
+                ..
+            } => {
+                let asked = Asked::of(request, balance);
+                by_balance::resume(asked, context.as_ref().clone(), branch, rest, visit)?
+            }
+            Following::Shooting {
+                shooting,
+                rest: Some(rest),
+                ..
+            } => by_shooting::resume(request, *shooting, branch, rest, visit)?,
+            _ => return self.beyond(following, request, visit),
+        };
+        resumed.statistics += branch.statistics;
+        resumed.work += branch.work;
+        resumed.elapsed += branch.elapsed;
+        Ok(resumed)
+    }
+
+    /// The branch with what follows behind its last orbit.
+    fn beyond(
+        &self,
+        following: &Following,
+        request: &Request,
+        visit: See<'_>,
+    ) -> Result<Branch, Error> {
+        let nothing = |must| RequestError::Varied {
+            name: self.branch.varied.clone(),
+            must,
+        };
+        let points = &self.branch.points;
+        let ends = matches!(
+            self.branch.stopped,
+            Stop::ReachedEnd | Stop::Interrupted | Stop::PointLimit { .. }
+        );
+        let [.., before, last] = &points[..] else {
+            return self.again(following, request, visit);
+        };
+        if self.keep.is_some() {
+            let must =
+                "goes on beyond what is kept in its file: write the longer branch when it is there";
+            return Err(nothing(must).into());
+        }
+        let to = self.to.or(request.to).unwrap_or(last.value);
+        if !ends {
+            return Err(
+                nothing("ended before its range does, and there is nothing to go on to").into(),
+            );
+        }
+        if self.to.is_none() && self.branch.stopped == Stop::ReachedEnd {
+            return Err(
+                nothing("has reached the end of its range: `to` says how far to go on").into(),
+            );
+        }
+        if (to - last.value) * (last.value - before.value) <= 0.0 {
+            return Err(RequestError::Option {
+                name: "to",
+                value: to,
+                must: "must be ahead of the last orbit, in the direction of the branch",
+            }
+            .into());
+        }
+        let request = Request {
+            from: Some(last.value),
+            to: Some(to),
+            near: Some(Guess::Orbit(last.orbit.clone())),
+            period: Some(last.orbit.period),
+            max_points: request.max_points.saturating_sub(points.len() - 1).max(2),
+            ..request.clone()
+        };
+        let on = run(following, &request, None, visit)?;
+        Ok(self.branch.with(on))
+    }
+
+    /// The branch once more.
+    fn again(
+        &self,
+        following: &Following,
+        request: &Request,
+        visit: See<'_>,
+    ) -> Result<Branch, Error> {
+        let points = &self.branch.points;
+        let (Some(first), [from, to]) = (points.first(), request.range()?) else {
+            return Err(RequestError::Rest.into());
+        };
+        let to = self.to.unwrap_or(to);
+        let second = points.get(1).map_or(to, |second| second.value);
+        let upwards = second > first.value;
+        let ahead = (to > first.value) == upwards && to != first.value;
+        if self.to.is_some() && !ahead {
+            let must = "must be ahead of the first orbit, in the direction of the branch";
+            return Err(RequestError::Option {
+                name: "to",
+                value: to,
+                must,
+            }
+            .into());
+        }
+        let end = if ahead { to } else { from };
+        let request = Request {
+            from: Some(first.value),
+            to: Some(end),
+            near: Some(Guess::Orbit(first.orbit.clone())),
+            period: Some(first.orbit.period),
+            ..request.clone()
+        };
+        run(following, &request, self.bifurcations, visit)
+    }
+}
+
+/// The branch that a request gives, by the method that followed another one.
+fn run(
+    following: &Following,
+    request: &Request,
+    bifurcations: Option<bool>,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    match following {
+        Following::Balance { balance, .. } => {
+            let wanted = bifurcations.unwrap_or(balance.bifurcations);
+            balance.bifurcations(wanted).run(request, visit)
+        }
+        Following::Shooting { shooting, .. } => shooting.run(request, visit),
+    }
+}

@@ -1,0 +1,446 @@
+//! Outputs and forces over an orbit, from its motion in time.
+//!
+//! Between two switches a signal is smooth but for powers of the distance from where they are: in `s` with
+//! `tau = a + (b - a) s^2 (3 - 2 s)` the half-integer ones are analytic. A Gauss rule on a part of `s` is compared with the same rule on its
+//! halves, which are taken where both agree, and divided again where they do not. A largest value is looked for beside those of the nodes
+//! that may be exceeded.
+//!
+//! Of an orbit that comes back after a part of its period, with coordinates in each other's place, that part is shown alone, and all of its
+//! images are read at once.
+
+use std::f64::consts::TAU;
+
+use super::problem::ShootingProblem;
+use crate::branches::observed::{ContactMotion, Motion};
+use crate::branches::recurrence::{Recurrence, SignedPermutation};
+use crate::numeric::fourier::{gauss, series};
+use crate::numeric::golden;
+use crate::time::Stretch;
+use crate::time::signals::{Asked, Signals};
+
+/// Nodes of a rule.
+const NODES: usize = 8;
+/// Two rules agree if they differ by this part of the largest value: the finer one has twice as many digits.
+const AGREE: f64 = 1e-9;
+/// What differs by less and does not fall when a part is halved is rounding.
+const NOISE: f64 = 1e-5;
+/// A stretch is divided into at most two to this power.
+const DEEPEST: usize = 9;
+/// Angle of the highest harmonic over a part, where harmonics are asked for.
+const ANGLE: f64 = 2.0;
+
+impl ShootingProblem {
+    /// Reads signals, with so many harmonics, off an orbit that comes back like this, where what is varied has a value.
+    pub(crate) fn reader(
+        &self,
+        value: f64,
+        asked: Asked,
+        recurrence: &Recurrence,
+        harmonics: usize,
+    ) -> Reader<'_> {
+        let system = self.system.as_ref();
+        let (parameters, omega) = (self.parameters_at(value), self.omega_at(value));
+        let signals = Signals::new(system, &parameters, omega, asked);
+        let coordinates = system.facts().coordinates.len();
+        Reader::new(signals, recurrence, coordinates, harmonics)
+    }
+
+    /// The same of all outputs, without harmonics; nothing where the system has none.
+    pub(crate) fn output_reader(&self, value: f64, recurrence: &Recurrence) -> Option<Reader<'_>> {
+        let any = !self.system.facts().outputs.is_empty();
+        any.then(|| self.reader(value, Asked::Outputs, recurrence, 0))
+    }
+}
+
+/// What is found of a signal.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    /// Extremes, mean and root of the mean square.
+    pub(crate) motion: Motion,
+    /// Its Fourier series in harmonics of the orbit, as many as were asked for.
+    pub(crate) series: Vec<f64>,
+}
+
+/// Reads signals off an orbit, stretch after stretch.
+pub(crate) struct Reader<'s> {
+    signals: Signals<'s>,
+    images: Vec<Image>,
+    /// Periods of the declaration.
+    period: usize,
+    found: Vec<Found>,
+    harmonics: usize,
+    /// Where the present stretch begins, in the phase of the orbit from zero on; nothing before the first one.
+    passed: Option<f64>,
+    /// Phase on each piece of each contact.
+    on_pieces: Vec<Vec<f64>>,
+    state: Vec<f64>,
+    image: Vec<f64>,
+}
+
+/// One part of the orbit.
+struct Image {
+    of: SignedPermutation,
+    /// Its phase after the first part.
+    phase: f64,
+    /// The piece of every contact on the present stretch.
+    pieces: Vec<usize>,
+    /// For every contact, whether it touched on each stretch, where that changed.
+    touched: Vec<Vec<bool>>,
+}
+
+/// The nodes of a rule with all signals of all images.
+struct Nodes {
+    phases: [f64; NODES],
+    weights: [f64; NODES],
+    /// Node after node.
+    values: Vec<f64>,
+}
+
+impl Nodes {
+    /// A signal of an image at a node.
+    fn at(&self, index: usize, channel: usize) -> f64 {
+        self.values[index * (self.values.len() / NODES) + channel]
+    }
+
+    /// Its integral, and that of its square.
+    fn sums(&self, channel: usize) -> [f64; 2] {
+        let weights = self.weights.iter().enumerate();
+        weights.fold([0.0; 2], |sums, (index, weight)| {
+            let x = self.at(index, channel);
+            [sums[0] + weight * x, sums[1] + weight * x * x]
+        })
+    }
+}
+
+impl<'s> Reader<'s> {
+    /// Reads these signals, with so many harmonics, off an orbit of so many coordinates that comes back like this.
+    pub(crate) fn new(
+        signals: Signals<'s>,
+        recurrence: &Recurrence,
+        coordinates: usize,
+        harmonics: usize,
+    ) -> Self {
+        let pieces: Vec<usize> = signals.pieces().collect();
+        let Recurrence {
+            period,
+            parts,
+            image,
+        } = recurrence;
+        let images = (0..*parts).map(|part| Image {
+            of: image.power(part),
+            phase: TAU * (period * part) as f64 / *parts as f64,
+            pieces: vec![0; pieces.len()],
+            touched: vec![Vec::new(); pieces.len()],
+        });
+        let found = Found {
+            motion: Motion {
+                mean: Some(0.0),
+                rms: Some(0.0),
+                ..Motion::NONE
+            },
+            series: vec![0.0; series::length(harmonics)],
+        };
+        Self {
+            images: images.collect(),
+            period: *period,
+            found: vec![found; signals.count()],
+            harmonics,
+            signals,
+            passed: None,
+            on_pieces: pieces.iter().map(|&count| vec![0.0; count]).collect(),
+            state: vec![0.0; 2 * coordinates],
+            image: vec![0.0; 2 * coordinates],
+        }
+    }
+
+    /// Includes a stretch.
+    pub(crate) fn include(&mut self, stretch: &dyn Stretch) {
+        let (from, to) = stretch.phases();
+        let passed = self.passed.unwrap_or(from);
+        self.passed = Some(passed);
+        if from >= to {
+            return;
+        }
+        self.place(stretch, [from, to]);
+        let angle = self.harmonics as f64 * (to - from) / self.period as f64;
+        let parts = (angle / ANGLE).ceil().max(1.0) as usize;
+        for part in 0..parts {
+            let ends = [part, part + 1].map(|part| part as f64 / parts as f64);
+            let whole = self.nodes(stretch, ends);
+            self.part(stretch, ends, &whole, f64::INFINITY, DEEPEST);
+        }
+        self.passed = Some(passed + (to - from));
+    }
+
+    /// What was found of every signal.
+    pub(crate) fn found(self) -> Vec<Found> {
+        let whole = TAU * self.period as f64;
+        let mut found = self.found;
+        for Found { motion, series } in &mut found {
+            motion.mean = motion.mean.map(|sum| sum / whole);
+            motion.rms = motion.rms.map(|sum| (sum / whole).max(0.0).sqrt());
+            for (index, x) in series.iter_mut().enumerate() {
+                *x *= if index == 0 { 1.0 } else { 2.0 } / whole;
+            }
+        }
+        found
+    }
+
+    /// The same without the series.
+    pub(crate) fn motions(self) -> Vec<Motion> {
+        let found = self.found().into_iter();
+        found.map(|found| found.motion).collect()
+    }
+
+    /// What was found of the contacts, where their forces were asked for, over a period of this length; and the part of it on each piece.
+    pub(crate) fn contacts(self, time: f64) -> (Vec<ContactMotion>, Vec<Vec<f64>>) {
+        let whole = TAU * self.period as f64;
+        let mut on_pieces = self.on_pieces.clone();
+        for part in on_pieces.iter_mut().flatten() {
+            *part = (*part / whole).min(1.0);
+        }
+        let count = self.on_pieces.len();
+        let touches: Vec<Vec<usize>> = (0..count)
+            .map(|contact| {
+                let pieces = 0..on_pieces[contact].len();
+                pieces
+                    .filter(|&piece| self.signals.touches(contact, piece))
+                    .collect()
+            })
+            .collect();
+        let intervals: Vec<usize> = (0..count).map(|contact| self.intervals(contact)).collect();
+        let found = self.found().into_iter().enumerate();
+        let contacts = found.map(|(contact, Found { motion, .. })| {
+            let on = touches[contact]
+                .iter()
+                .map(|&piece| on_pieces[contact][piece]);
+            ContactMotion {
+                peak_force: motion.maximum.max(-motion.minimum),
+                minimum_force: motion.minimum,
+                maximum_force: motion.maximum,
+                fraction: on.sum::<f64>().min(1.0),
+                count: intervals[contact],
+                impulse: motion.mean.map(|mean| mean * time),
+            }
+        });
+        (contacts.collect(), on_pieces)
+    }
+
+    /// Separate intervals of contact in the period: one where it is never lost.
+    fn intervals(&self, contact: usize) -> usize {
+        let all = self.images.iter().flat_map(|image| &image.touched[contact]);
+        let all: Vec<bool> = all.copied().collect();
+        if all.iter().all(|&touches| touches) {
+            return usize::from(!all.is_empty());
+        }
+        let next = all.iter().skip(1).chain(all.first());
+        all.iter()
+            .zip(next)
+            .filter(|&(before, next)| !before && *next)
+            .count()
+    }
+
+    /// Takes the pieces that gaps are on along a stretch.
+    fn place(&mut self, stretch: &dyn Stretch, [from, to]: [f64; 2]) {
+        let middle = 0.5 * (from + to);
+        stretch.state(middle, &mut self.state);
+        for image in &mut self.images {
+            image.of.write(&self.state, &mut self.image);
+            let phase = middle + image.phase;
+            self.signals.place(phase, &self.image, &mut image.pieces);
+            for (contact, &piece) in image.pieces.iter().enumerate() {
+                self.on_pieces[contact][piece] += to - from;
+                let touches = self.signals.touches(contact, piece);
+                let touched = &mut image.touched[contact];
+                if touched.last() != Some(&touches) {
+                    touched.push(touches);
+                }
+            }
+        }
+    }
+
+    /// Writes all signals of all images at a phase.
+    fn write(&mut self, stretch: &dyn Stretch, phase: f64, out: &mut [f64]) {
+        let count = self.found.len().max(1);
+        stretch.state(phase, &mut self.state);
+        for (image, out) in self.images.iter().zip(out.chunks_exact_mut(count)) {
+            image.of.write(&self.state, &mut self.image);
+            let phase = phase + image.phase;
+            self.signals.write(phase, &self.image, &image.pieces, out);
+        }
+    }
+
+    fn nodes(&mut self, stretch: &dyn Stretch, [from, to]: [f64; 2]) -> Nodes {
+        let (begin, end) = stretch.phases();
+        let count = self.found.len() * self.images.len();
+        let mut nodes = Nodes {
+            phases: [0.0; NODES],
+            weights: [0.0; NODES],
+            values: vec![0.0; NODES * count],
+        };
+        let rule = gauss::rule(NODES);
+        for (index, row) in nodes.values.chunks_exact_mut(count.max(1)).enumerate() {
+            let s = from + (to - from) * rule.nodes[index];
+            let phase = place(s, [begin, end]);
+            nodes.phases[index] = phase;
+            nodes.weights[index] =
+                (end - begin) * 6.0 * s * (1.0 - s) * (to - from) * rule.weights[index];
+            self.write(stretch, phase, row);
+        }
+        nodes
+    }
+
+    /// Includes a part of a stretch, of which one rule is known: what halves changed before says whether that still means something.
+    fn part(
+        &mut self,
+        stretch: &dyn Stretch,
+        [from, to]: [f64; 2],
+        whole: &Nodes,
+        before: f64,
+        depth: usize,
+    ) {
+        let middle = 0.5 * (from + to);
+        let halves = [[from, middle], [middle, to]];
+        let parts = halves.map(|ends| self.nodes(stretch, ends));
+        let apart = apart(whole, &parts);
+        let noise = apart <= NOISE && apart >= 0.25 * before;
+        if apart <= AGREE || noise || depth == 0 {
+            self.take(stretch, [from, to], &parts);
+            return;
+        }
+        for (ends, nodes) in halves.into_iter().zip(&parts) {
+            self.part(stretch, ends, nodes, apart, depth - 1);
+        }
+    }
+
+    /// Takes the nodes of two halves of a part.
+    fn take(&mut self, stretch: &dyn Stretch, [from, to]: [f64; 2], halves: &[Nodes; 2]) {
+        let (begin, end) = stretch.phases();
+        let count = self.found.len();
+        let passed = self.passed.unwrap_or(begin);
+        for channel in 0..count * self.images.len() {
+            let shift = self.images[channel / count].phase;
+            let Found { motion, series } = &mut self.found[channel % count];
+            for nodes in halves {
+                let [sum, square] = nodes.sums(channel);
+                motion.mean = motion.mean.map(|mean| mean + sum);
+                motion.rms = motion.rms.map(|rms| rms + square);
+                for (index, (phase, weight)) in nodes.phases.iter().zip(nodes.weights).enumerate() {
+                    let angle = (passed + phase - begin + shift) / self.period as f64;
+                    add_waves(series, angle, weight * nodes.at(index, channel));
+                }
+            }
+        }
+        let ends = [from, to].map(|s| place(s, [begin, end]));
+        self.take_extremes(stretch, ends, halves);
+    }
+
+    fn take_extremes(&mut self, stretch: &dyn Stretch, ends: [f64; 2], halves: &[Nodes; 2]) {
+        let count = self.found.len();
+        let channels = count * self.images.len();
+        let mut at_ends = [vec![0.0; channels], vec![0.0; channels]];
+        for (phase, values) in ends.into_iter().zip(&mut at_ends) {
+            self.write(stretch, phase, values);
+        }
+        let mut row = vec![0.0; channels];
+        for channel in 0..channels {
+            let mut samples = [[0.0; 2]; 2 * NODES + 2];
+            samples[0] = [ends[0], at_ends[0][channel]];
+            samples[2 * NODES + 1] = [ends[1], at_ends[1][channel]];
+            for (half, nodes) in halves.iter().enumerate() {
+                for index in 0..NODES {
+                    samples[1 + half * NODES + index] =
+                        [nodes.phases[index], nodes.at(index, channel)];
+                }
+            }
+            let mut motion = self.found[channel % count].motion;
+            for [_, value] in &samples {
+                motion.include(*value);
+            }
+            for sign in [1.0, -1.0] {
+                let known = if sign > 0.0 {
+                    motion.maximum
+                } else {
+                    -motion.minimum
+                };
+                let mut at = |phase: f64| {
+                    self.write(stretch, phase, &mut row);
+                    sign * row[channel]
+                };
+                let largest = largest(&samples, sign, known, &mut at);
+                motion.include(sign * largest);
+            }
+            self.found[channel % count].motion = motion;
+        }
+    }
+}
+
+/// A phase between two others, graded at both.
+fn place(s: f64, [begin, end]: [f64; 2]) -> f64 {
+    begin + (end - begin) * s * s * (3.0 - 2.0 * s)
+}
+
+/// The largest difference of integrals by a rule and by the rule on halves, in parts of the largest value.
+fn apart(whole: &Nodes, halves: &[Nodes; 2]) -> f64 {
+    let length: f64 = whole.weights.iter().sum();
+    let mut apart: f64 = 0.0;
+    for channel in 0..whole.values.len() / NODES {
+        let [a, b, c] = [whole, &halves[0], &halves[1]].map(|nodes| nodes.sums(channel));
+        let size = |nodes: &Nodes| {
+            let values = (0..NODES).map(|index| nodes.at(index, channel).abs());
+            values.fold(0.0, f64::max)
+        };
+        let size = size(&halves[0]).max(size(&halves[1]));
+        if size > 0.0 {
+            apart = apart.max((a[0] - b[0] - c[0]).abs() / (size * length));
+            apart = apart.max((a[1] - b[1] - c[1]).abs() / (size * size * length));
+        }
+    }
+    apart
+}
+
+/// The largest value near samples, or the one that is known.
+fn largest(samples: &[[f64; 2]], sign: f64, known: f64, at: &mut dyn FnMut(f64) -> f64) -> f64 {
+    let mut largest = known;
+    let last = samples.len() - 1;
+    let value = |index: usize| sign * samples[index][1];
+    for index in 0..=last {
+        let (before, next) = (index.saturating_sub(1), (index + 1).min(last));
+        let here = value(index);
+        if here < value(before) || here < value(next) {
+            continue;
+        }
+        let middle = index.clamp(1, last - 1);
+        let three = [middle - 1, middle, middle + 1].map(|index| samples[index]);
+        let (slope, rise) = parabola(three, samples[index][0]);
+        // Beyond an end it may grow, but that is not asked.
+        let outwards = index == 0 && sign * slope <= 0.0 || index == last && sign * slope >= 0.0;
+        if !outwards && here + 2.0 * rise > largest {
+            let found = golden::largest(&mut *at, samples[before][0], samples[next][0]);
+            largest = largest.max(found);
+        }
+    }
+    largest
+}
+
+/// The slope of the parabola through three samples at a place, and how far its value there is from that at its vertex.
+fn parabola([a, b, c]: [[f64; 2]; 3], place: f64) -> (f64, f64) {
+    let divided = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
+    let first = divided(a, b);
+    let bend = (divided(b, c) - first) / (c[0] - a[0]);
+    let slope = first + bend * (2.0 * place - a[0] - b[0]);
+    let rise = slope * slope / (4.0 * bend.abs());
+    (slope, if rise.is_finite() { rise } else { 0.0 })
+}
+
+/// Adds a number times the cosine and the sine of every harmonic of an angle.
+fn add_waves(series: &mut [f64], angle: f64, number: f64) {
+    let (sine, cosine) = angle.sin_cos();
+    let (mut c, mut s) = (1.0, 0.0);
+    series[0] += number;
+    for pair in series[1..].chunks_exact_mut(2) {
+        (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
+        pair[0] += number * c;
+        pair[1] += number * s;
+    }
+}

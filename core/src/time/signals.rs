@@ -1,0 +1,244 @@
+//! Signals of a motion at one instant: sums of coordinates, rates, accelerations and forces of laws, from the state there and the pieces
+//! that the gaps are on.
+//!
+//! An acceleration is what the equations of motion give, `q'' = M^-1 ( f - C q' - K q - sum_c e_c phi_c )`.
+
+use nalgebra::DMatrix;
+
+use super::gap::{Gap, value};
+use crate::law::{On, Variation};
+use crate::laws::single;
+use crate::model::layout::Layout;
+use crate::system::{Place, Signal, System, Wave};
+
+/// Which signals are asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Asked {
+    /// All outputs of the system.
+    Outputs,
+    /// One of them.
+    Output(usize),
+    /// A coordinate.
+    Coordinate(usize),
+    /// The law of a contact.
+    Contact(usize),
+    /// The laws of all contacts.
+    Contacts,
+}
+
+/// A multiple of something that moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Term {
+    of: Signal,
+    wave: Wave,
+    coefficient: f64,
+}
+
+impl Term {
+    fn once(of: Signal) -> Self {
+        Self {
+            of,
+            wave: Wave::CONSTANT,
+            coefficient: 1.0,
+        }
+    }
+}
+
+/// What is known of a contact at these values.
+#[derive(Debug)]
+struct Contact {
+    law: usize,
+    gap: Gap,
+    arguments: Vec<f64>,
+    levels: Vec<f64>,
+    /// Its force is in a signal.
+    needed: bool,
+}
+
+/// Signals of a system at values of its parameters and of `omega`.
+#[derive(Debug)]
+pub(crate) struct Signals<'s> {
+    system: &'s dyn System,
+    layout: Layout,
+    coefficients: Vec<f64>,
+    contacts: Vec<Contact>,
+    /// `M^-1`, where an acceleration is asked for.
+    inverse_mass: Option<DMatrix<f64>>,
+    sums: Vec<Vec<Term>>,
+    /// Room for the forces of the contacts, and for what accelerates the coordinates.
+    forces: Vec<f64>,
+    loads: Vec<f64>,
+}
+
+impl<'s> Signals<'s> {
+    pub(crate) fn new(
+        system: &'s dyn System,
+        parameters: &[f64],
+        omega: f64,
+        asked: Asked,
+    ) -> Self {
+        let layout = Layout::of(system);
+        let mut coefficients = vec![0.0; layout.coefficients];
+        system.coefficients(parameters, omega, &mut coefficients);
+        let base = omega / f64::from(system.facts().divisor);
+        let signals = terms(system, &coefficients, asked);
+        let uses = |signal: fn(&Signal) -> bool| signals.iter().flatten().any(|t| signal(&t.of));
+        let accelerates = uses(|of| matches!(of, Signal::Acceleration(_)));
+        let has_force = |contact: usize| {
+            signals
+                .iter()
+                .flatten()
+                .any(|t| t.of == Signal::Force(contact))
+        };
+        let contacts = layout.contacts.iter().enumerate().map(|(index, contact)| {
+            let law = system.law(contact.law);
+            let mut arguments = vec![0.0; contact.argument_count];
+            contact.arguments(&coefficients, &mut arguments);
+            let mut levels = vec![0.0; law.facts().levels.len()];
+            law.levels(&arguments, &mut levels);
+            Contact {
+                law: contact.law,
+                gap: Gap::new(contact, &coefficients, base),
+                arguments,
+                levels,
+                needed: accelerates || has_force(index),
+            }
+        });
+        let contacts: Vec<Contact> = contacts.collect();
+        let inverse_mass = accelerates.then(|| layout.mass(&coefficients).try_inverse());
+        Self {
+            system,
+            forces: vec![0.0; contacts.len()],
+            loads: vec![0.0; layout.coordinates],
+            contacts,
+            inverse_mass: inverse_mass.flatten(),
+            sums: signals,
+            layout,
+            coefficients,
+        }
+    }
+
+    /// Number of signals.
+    pub(crate) fn count(&self) -> usize {
+        self.sums.len()
+    }
+
+    /// Number of pieces of the law of each contact.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = usize> {
+        self.contacts.iter().map(|contact| contact.levels.len() + 1)
+    }
+
+    /// Whether a contact has a force on a piece.
+    pub(crate) fn touches(&self, contact: usize, piece: usize) -> bool {
+        let law = self.system.law(self.contacts[contact].law);
+        law.facts().pieces[piece].force != Variation::Zero
+    }
+
+    /// Writes the pieces that the gaps are on.
+    pub(crate) fn place(&self, phase: f64, state: &[f64], pieces: &mut [usize]) {
+        for (piece, contact) in pieces.iter_mut().zip(&self.contacts) {
+            let (gap, _) = contact.gap.at(phase, state);
+            *piece = contact.levels.iter().filter(|&&level| gap > level).count();
+        }
+    }
+
+    /// Writes all signals, with every contact on a piece.
+    pub(crate) fn write(&mut self, phase: f64, state: &[f64], pieces: &[usize], out: &mut [f64]) {
+        self.compute_forces(phase, state, pieces);
+        if self.inverse_mass.is_some() {
+            self.compute_loads(phase, state);
+        }
+        for (out, terms) in out.iter_mut().zip(&self.sums) {
+            let values = terms.iter().map(|term| {
+                term.coefficient * value(term.wave, phase) * self.signal(term.of, state)
+            });
+            *out = values.sum();
+        }
+    }
+
+    fn signal(&self, of: Signal, state: &[f64]) -> f64 {
+        match of {
+            Signal::Coordinate(index) => state[index],
+            Signal::Rate(index) => state[self.layout.coordinates + index],
+            Signal::Acceleration(index) => {
+                let Some(inverse) = &self.inverse_mass else {
+                    return f64::NAN;
+                };
+                let row = inverse.row(index);
+                row.iter().zip(&self.loads).map(|(m, f)| m * f).sum()
+            }
+            Signal::Force(contact) => self.forces[contact],
+            _ => 1.0,
+        }
+    }
+
+    fn compute_forces(&mut self, phase: f64, state: &[f64], pieces: &[usize]) {
+        let contacts = self.contacts.iter().zip(pieces);
+        for (force, (contact, &piece)) in self.forces.iter_mut().zip(contacts) {
+            let law = self.system.law(contact.law);
+            *force = 0.0;
+            if !contact.needed || law.facts().pieces[piece].force == Variation::Zero {
+                continue;
+            }
+            let (gap, rate) = contact.gap.at(phase, state);
+            // Where a stretch ends rounding must not take the gap off its piece.
+            let lower = piece.checked_sub(1).map(|level| contact.levels[level]);
+            let gap = lower.map_or(gap, |lower| gap.max(lower));
+            let upper = contact.levels.get(piece);
+            let gap = upper.map_or(gap, |&upper| gap.min(upper));
+            *force = single::force(law, On::Piece(piece), &contact.arguments, [gap, rate]);
+        }
+    }
+
+    /// `f - C q' - K q - sum_c e_c phi_c`.
+    fn compute_loads(&mut self, phase: f64, state: &[f64]) {
+        let (q, v) = state.split_at(self.layout.coordinates);
+        let (loads, coefficients) = (&mut self.loads, &self.coefficients);
+        loads.fill(0.0);
+        for entry in &self.layout.load {
+            loads[entry.row] += coefficients[entry.coefficient] * value(entry.wave, phase);
+        }
+        for entry in &self.layout.damping {
+            loads[entry.row] -= coefficients[entry.coefficient] * v[entry.column];
+        }
+        for entry in &self.layout.stiffness {
+            let k = coefficients[entry.coefficient] * value(entry.wave, phase);
+            loads[entry.row] -= k * q[entry.column];
+        }
+        for (contact, force) in self.layout.contacts.iter().zip(&self.forces) {
+            for term in &contact.force {
+                let e = coefficients[term.coefficient] * value(term.wave, phase);
+                loads[term.index] -= e * force;
+            }
+        }
+    }
+}
+
+/// What is asked for, as sums.
+fn terms(system: &dyn System, coefficients: &[f64], asked: Asked) -> Vec<Vec<Term>> {
+    let facts = system.facts();
+    let output = |output: usize| -> Vec<Term> {
+        let places = facts.places.iter().zip(coefficients);
+        let terms = places.filter_map(|(place, &coefficient)| match *place {
+            Place::Output {
+                output: own,
+                of,
+                wave,
+            } if own == output => Some(Term {
+                of,
+                wave,
+                coefficient,
+            }),
+            _ => None,
+        });
+        terms.collect()
+    };
+    let force = |contact: usize| vec![Term::once(Signal::Force(contact))];
+    match asked {
+        Asked::Outputs => (0..facts.outputs.len()).map(output).collect(),
+        Asked::Output(index) => vec![output(index)],
+        Asked::Coordinate(index) => vec![vec![Term::once(Signal::Coordinate(index))]],
+        Asked::Contact(contact) => vec![force(contact)],
+        Asked::Contacts => (0..facts.contacts.len()).map(force).collect(),
+    }
+}

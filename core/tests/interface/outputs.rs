@@ -1,0 +1,654 @@
+//! Outputs by name: against closed forms, what the equations say of means and harmonics, and motions integrated here.
+
+use std::f64::consts::TAU;
+
+use hertzian::observe::{Reading, Wanted};
+
+use hertzian::structure::{Contact, DMatrix, Structure, parameter};
+use hertzian::{Branch, FrequencyResponse, Point, RequestError, Shooting};
+
+hertzian::oscillator! {
+    /// Linear, seen from a floor that moves.
+    Isolated(x) {
+        param zeta = 0.1;
+        param drive = 0.3;
+        param floor = 0.05;
+        ddot(x) + 2*zeta*dot(x) + x = drive*cos(omega*t);
+        output path = x + floor*cos(omega*t);
+        output speed = 2*dot(x);
+        output shaking = ddot(x);
+        output turned = x*cos(omega*t);
+    }
+}
+
+hertzian::oscillator! {
+    /// A mass that is thrown off a rough surface.
+    Thrown(x: mm) {
+        param m: t = 1 > 0;
+        param c: N*s/mm = 0.1;
+        param k: N/mm^1.5 = 1 > 0;
+        param load: N = 1;
+        param drive: N = 0.8;
+        law ground(gap) { gap > 0 => k*gap^1.5, else => 0 }
+        m*ddot(x) + c*dot(x) + ground(x) = drive*cos(omega*t) + load;
+        output tooth: mN = force(ground);
+        output speed: m/s = dot(x);
+        /// what an accelerometer shows
+        output shaking = ddot(x);
+        output carried = ground(x) + c*dot(x);
+    }
+}
+
+hertzian::oscillator! {
+    /// A stop that pushes back as soon as it is touched.
+    Preloaded(x) {
+        law stop(gap) { gap > 0 => 2 + 20*gap + dot(gap)/5, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + 2*stop(x - 1) = 0.5*cos(omega*t);
+        output force = force(stop);
+        output shaking = ddot(x);
+    }
+}
+
+hertzian::oscillator! {
+    /// Half a period of its motion is the other half with opposite signs.
+    Symmetric(x) {
+        law stop(gap) { gap > 1 => 5*(gap - 1), gap < -1 => 5*(gap + 1), else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x) = 0.9*cos(omega*t);
+        output speed = dot(x);
+        output push = force(stop) + 0.5*cos(omega*t);
+        output turned = x*cos(omega*t) + 0.25;
+    }
+}
+
+fn at(system: &dyn hertzian::System, omega: f64) -> (Branch, Point) {
+    within(system, omega, 1e-8)
+}
+
+fn within(system: &dyn hertzian::System, omega: f64, tolerance: f64) -> (Branch, Point) {
+    let request = FrequencyResponse::of(system).from(omega).to(1.001 * omega);
+    let branch = request.tolerance(tolerance).run().expect("a branch");
+    let point = branch.points[0].clone();
+    (branch, point)
+}
+
+fn close(found: f64, expected: f64, tolerance: f64) {
+    let error = (found - expected).abs();
+    assert!(
+        error <= tolerance * (1.0 + expected.abs()),
+        "{found} {expected} {error:e}"
+    );
+}
+
+/// An orbit that is on no branch is read by its request.
+#[test]
+fn an_orbit_alone_is_read_as_one_of_a_branch() {
+    let (omega, model) = (0.8, Isolated::default());
+    let request = FrequencyResponse::of(&model);
+    let (re, im) = (1.0 - omega * omega, 2.0 * model.zeta * omega);
+    let speed = 2.0 * omega * model.drive / re.hypot(im);
+    let point = request.orbit(omega).expect("an orbit");
+    let reading = request.reading("speed", &point).expect("an output");
+    close(reading.motion.peak_to_peak(), 2.0 * speed, 1e-9);
+    let wanted: Wanted = "speed:h1".parse().expect("a measure");
+    let measured = request.measured(&wanted, &point).expect("an output");
+    close(measured.expect("a harmonic"), speed, 1e-9);
+    let by_shooting = request.clone().by(Shooting::new());
+    let states = by_shooting.orbit(omega).expect("an orbit");
+    let measured = by_shooting.measured(&wanted, &states).expect("an output");
+    close(measured.expect("a harmonic"), speed, 1e-8);
+    let error = request.reading("stop", &point).unwrap_err();
+    assert!(matches!(
+        error.downcast_ref(),
+        Some(RequestError::UnknownSignal { .. })
+    ));
+}
+
+#[test]
+fn linear_outputs_are_the_closed_form() {
+    let (omega, model) = (0.8, Isolated::default());
+    let (branch, point) = at(&model, omega);
+    let (re, im) = (1.0 - omega * omega, 2.0 * model.zeta * omega);
+    let (size, lag) = (model.drive / re.hypot(im), im.atan2(re));
+    let speed = branch.reading("speed", &point).expect("an output");
+    close(speed.motion.peak_to_peak(), 4.0 * omega * size, 1e-12);
+    close(
+        speed.motion.rms.unwrap(),
+        2.0 * omega * size / 2.0_f64.sqrt(),
+        1e-12,
+    );
+    close(speed.motion.crest_factor().unwrap(), 2.0_f64.sqrt(), 1e-12);
+    let line = speed.spectrum()[1];
+    close(line.omega, omega, 1e-15);
+    close(line.amplitude, 2.0 * omega * size, 1e-12);
+    // The rate leads by a quarter.
+    close((line.phase - lag + TAU / 4.0).sin(), 0.0, 1e-12);
+    let shaking = branch.reading("shaking", &point).expect("an output");
+    close(shaking.motion.maximum, omega * omega * size, 1e-12);
+    let path = branch.reading("path", &point).expect("an output");
+    let absolute = (size * lag.cos() + model.floor).hypot(size * lag.sin());
+    close(path.motion.maximum, absolute, 1e-12);
+    // x cos = size/2 ( cos lag + cos(2 omega t - lag) )
+    let turned = branch.reading("turned", &point).expect("an output");
+    close(turned.motion.mean.unwrap(), 0.5 * size * lag.cos(), 1e-12);
+    close(turned.spectrum()[2].amplitude, 0.5 * size, 1e-12);
+    for (name, reading) in [("speed", &speed), ("path", &path)] {
+        let index = ["path", "speed"]
+            .iter()
+            .position(|own| *own == name)
+            .unwrap();
+        assert_eq!(point.observed.outputs[index], reading.motion);
+    }
+    let measured = |text: &str| {
+        let value = branch.measured(&text.parse().expect(text), &point);
+        value.expect("a value").expect("it is known")
+    };
+    assert_eq!(measured("speed:max"), speed.motion.maximum);
+    assert_eq!(
+        measured("x:h1"),
+        branch.reading("x", &point).unwrap().spectrum()[1].amplitude
+    );
+    close(measured("x:phase1"), lag, 1e-12);
+}
+
+/// Positions, velocities and accelerations over a period, by the classical method of Runge and Kutta: smooth forces only.
+fn integrated(
+    state: [f64; 2],
+    omega: f64,
+    count: usize,
+    force: impl Fn(f64, f64, f64) -> f64,
+) -> Vec<[f64; 3]> {
+    let step = TAU / omega / count as f64;
+    let (mut x, mut v) = (state[0], state[1]);
+    let mut all = Vec::new();
+    for index in 0..count {
+        let t = index as f64 * step;
+        all.push([x, v, force(t, x, v)]);
+        let h = 0.5 * step;
+        let a1 = force(t, x, v);
+        let (x2, v2) = (x + h * v, v + h * a1);
+        let a2 = force(t + h, x2, v2);
+        let (x3, v3) = (x + h * v2, v + h * a2);
+        let a3 = force(t + h, x3, v3);
+        let (x4, v4) = (x + step * v3, v + step * a3);
+        let a4 = force(t + step, x4, v4);
+        x += step / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
+        v += step / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    }
+    all
+}
+
+/// An output by its name, and what it is of position, velocity and acceleration.
+type Known<'k> = (&'k str, &'k dyn Fn(&[f64; 3]) -> f64);
+
+/// Extremes, mean, root of the mean square and second harmonic of an output are those of samples over a period.
+fn is_read_off(name: &str, values: &[f64], reading: &Reading) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square = values.iter().map(|y| y * y).sum::<f64>() / count;
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let size = largest - smallest;
+    let sum = |part: fn(f64) -> f64| {
+        let terms = values.iter().enumerate();
+        let terms = terms.map(|(j, y)| y * part(2.0 * TAU * j as f64 / count));
+        2.0 * terms.sum::<f64>() / count
+    };
+    let amplitude = sum(f64::cos).hypot(sum(f64::sin));
+    let found = reading.motion;
+    for (found, expected) in [
+        (found.maximum, largest),
+        (found.minimum, smallest),
+        (found.mean.unwrap(), mean),
+        (found.rms.unwrap(), square.sqrt()),
+        (reading.spectrum()[2].amplitude, amplitude),
+    ] {
+        assert!(
+            (found - expected).abs() < 1e-6 * size,
+            "{name} {found} {expected}"
+        );
+    }
+}
+
+#[test]
+fn outputs_with_forces_are_those_of_the_integrated_motion() {
+    let (omega, model) = (0.9, Thrown::default());
+    let (branch, point) = at(&model, omega);
+    assert!(
+        point.observed.contacts[0].fraction < 1.0,
+        "it is thrown off"
+    );
+    let state = point.orbit.state();
+    let ground = |x: f64| model.k * x.max(0.0).powf(1.5);
+    let acceleration = |t: f64, x: f64, v: f64| {
+        model.drive * (omega * t).cos() + model.load - model.c * v - ground(x)
+    };
+    let count = 40_000;
+    let motion = integrated([state[0], state[1]], omega, count, acceleration);
+    let outputs: [Known<'_>; 4] = [
+        ("tooth", &|s| 1e3 * ground(s[0])),
+        ("speed", &|s| 1e-3 * s[1]),
+        ("shaking", &|s| s[2]),
+        ("carried", &|s| ground(s[0]) + model.c * s[1]),
+    ];
+    for (index, (name, of)) in outputs.into_iter().enumerate() {
+        let values: Vec<f64> = motion.iter().map(of).collect();
+        let reading = branch.reading(name, &point).expect(name);
+        is_read_off(name, &values, &reading);
+        assert_eq!(point.observed.outputs[index], reading.motion, "{name}");
+    }
+    // Nothing but the ground holds the load.
+    let impulse = point.observed.contacts[0].impulse.expect("it was read off");
+    close(impulse, model.load * TAU / omega, 1e-9);
+    assert_eq!(point.observed.contacts[0].impacts(), 1);
+    let measured = |text: &str| {
+        let value = branch.measured(&text.parse().expect(text), &point);
+        value.expect("a value").expect("it is known")
+    };
+    assert_eq!(measured("ground:impulse"), impulse);
+    assert_eq!(measured("ground:impacts"), 1.0);
+    close(measured("tooth:mean"), 1e3 * model.load, 1e-9);
+    let parts = measured("ground:piece1") + measured("ground:piece2");
+    close(parts, 1.0, 1e-12);
+    close(
+        measured("ground:piece2"),
+        point.observed.contacts[0].fraction,
+        1e-12,
+    );
+    close(measured("tooth:max"), 1e3 * measured("ground:max"), 1e-12);
+}
+
+/// Outputs at orbits of shooting are those of the integrated motion, without anything else being asked for.
+#[test]
+fn outputs_of_orbits_by_shooting_are_those_of_the_integrated_motion() {
+    let (omega, model) = (0.9, Thrown::default());
+    let request = FrequencyResponse::of(&model).by(Shooting::new());
+    let branch = request.from(omega).to(0.91).tolerance(1e-9).run();
+    let branch = branch.expect("a branch");
+    let point = &branch.points[0];
+    let state = point.orbit.state();
+    let ground = |x: f64| model.k * x.max(0.0).powf(1.5);
+    let acceleration = |t: f64, x: f64, v: f64| {
+        model.drive * (omega * t).cos() + model.load - model.c * v - ground(x)
+    };
+    let motion = integrated([state[0], state[1]], omega, 40_000, acceleration);
+    let outputs: [Known<'_>; 4] = [
+        ("tooth", &|s| 1e3 * ground(s[0])),
+        ("speed", &|s| 1e-3 * s[1]),
+        ("shaking", &|s| s[2]),
+        ("carried", &|s| ground(s[0]) + model.c * s[1]),
+    ];
+    for (index, (name, of)) in outputs.into_iter().enumerate() {
+        let values: Vec<f64> = motion.iter().map(of).collect();
+        let reading = branch.reading(name, point).expect(name);
+        is_read_off(name, &values, &reading);
+        let read = point.observed.outputs[index];
+        for (found, expected) in [
+            (read.maximum, reading.motion.maximum),
+            (read.minimum, reading.motion.minimum),
+            (read.mean.unwrap(), reading.motion.mean.unwrap()),
+            (read.rms.unwrap(), reading.motion.rms.unwrap()),
+        ] {
+            close(found, expected, 1e-9 * (1.0 + expected.abs()));
+        }
+    }
+    // Nothing but the ground holds the load.
+    let measured = |text: &str| {
+        let value = branch.measured(&text.parse().expect(text), point);
+        value.expect("a value").expect("it is known")
+    };
+    close(measured("ground:impulse"), model.load * TAU / omega, 1e-7);
+    close(measured("tooth:mean"), 1e3 * model.load, 1e-4);
+    close(measured("tooth:max"), 1e3 * measured("ground:max"), 1e-5);
+    assert_eq!(measured("ground:impacts"), 1.0);
+    close(
+        measured("ground:piece1") + measured("ground:piece2"),
+        1.0,
+        1e-12,
+    );
+    assert_eq!(branch.leading().name, "tooth");
+    let table = branch.to_csv();
+    let cells = table.lines().flat_map(|line| line.split(','));
+    let header = cells.clone().position(|cell| cell == "tooth_rms [mN]");
+    let column = header.expect("a column");
+    for line in table.lines().skip(1) {
+        let cell = line.split(',').nth(column).expect("a cell");
+        assert!(cell.parse::<f64>().expect("a number") > 0.0);
+    }
+}
+
+/// What both methods read off one orbit differs by no more than the sum of what they state.
+#[test]
+fn both_methods_read_the_same_outputs() {
+    let both = |system: &dyn hertzian::System, omega: f64, tolerance: f64| {
+        let (balance, by_balance) = within(system, omega, tolerance);
+        let request = FrequencyResponse::of(system).by(Shooting::new());
+        let request = request.near_orbit(&by_balance.orbit);
+        let request = request.from(omega).to(1.001 * omega).tolerance(tolerance);
+        let shot = request.run().expect("a branch");
+        let by_shooting = &shot.points[0];
+        let size = by_balance.observed.motions[0].peak_to_peak();
+        let stated = by_balance.error.expect("one") + by_shooting.error.expect("one");
+        for (index, output) in balance.model.outputs.iter().enumerate() {
+            let [a, b] = [&by_balance, by_shooting].map(|point| point.observed.outputs[index]);
+            let error = stated * a.peak_to_peak().max(size) + 1e-12;
+            let name = &output.name;
+            close(a.mean.unwrap(), b.mean.unwrap(), error);
+            close(a.rms.unwrap(), b.rms.unwrap(), error);
+            // What is stated is of displacements. The harmonics that the balance leaves out count more in an extreme of a rate or a force.
+            let of_extremes = if name == "path" { error } else { 100.0 * error };
+            close(a.maximum, b.maximum, of_extremes);
+            close(a.minimum, b.minimum, of_extremes);
+            let [a, b] = [(&balance, &by_balance), (&shot, by_shooting)]
+                .map(|(branch, point)| branch.reading(name, point).expect("a signal"));
+            for harmonic in 0..4 {
+                let [a, b] = [&a, &b].map(|reading| reading.spectrum()[harmonic].amplitude);
+                close(a, b, error);
+            }
+        }
+    };
+    both(&Isolated::default(), 0.8, 1e-8);
+    both(&Thrown::default(), 0.9, 1e-8);
+    both(&Preloaded {}, 1.1, 1e-6);
+    both(&Symmetric {}, 0.7, 1e-8);
+}
+
+#[test]
+fn a_force_that_jumps_is_read_from_both_sides() {
+    let (branch, point) = within(&Preloaded {}, 1.1, 1e-3);
+    let contact = point.observed.contacts[0];
+    assert!(contact.fraction > 0.0 && contact.fraction < 1.0);
+    let force = branch.reading("force", &point).expect("an output").motion;
+    close(force.maximum, contact.maximum_force, 1e-12);
+    close(force.minimum, contact.minimum_force, 1e-12);
+    close(
+        force.mean.unwrap() * TAU / 1.1,
+        contact.impulse.unwrap(),
+        1e-9,
+    );
+    // The equation of motion, one moment after the other: between the switches the acceleration is that of the series.
+    let shaking = branch.reading("shaking", &point).expect("an output").motion;
+    assert!(shaking.minimum < -2.0 * force.maximum + 1.0);
+    close(shaking.mean.unwrap(), 0.0, 1e-9);
+}
+
+#[cfg(feature = "text")]
+#[test]
+fn text_and_structure_have_the_same_outputs() {
+    let text = hertzian::generic::Declaration::parse(
+        "Thrown(x: mm) {
+            param m: t = 1 > 0;
+            param c: N*s/mm = 0.1;
+            param k: N/mm^1.5 = 1 > 0;
+            param load: N = 1;
+            param drive: N = 0.8;
+            law ground(gap) { gap > 0 => k*gap^1.5, else => 0 }
+            m*ddot(x) + c*dot(x) + ground(x) = drive*cos(omega*t) + load;
+            output tooth: mN = force(ground);
+            output speed: m/s = dot(x);
+        }",
+    )
+    .expect("it is sound");
+    let (_, declared) = at(&Thrown::default(), 0.9);
+    let (branch, read) = at(&text, 0.9);
+    let units: Vec<&str> = (branch.model.outputs.iter())
+        .map(|output| output.unit.as_str())
+        .collect();
+    assert_eq!(units, ["mN", "m/s"]);
+    assert_eq!(branch.model.units, ["mm"]);
+    assert_eq!(branch.model.parameters[2].unit, "N/mm^1.5");
+    assert_eq!(branch.model.contacts, ["ground"]);
+    for (a, b) in read.observed.outputs.iter().zip(&declared.observed.outputs) {
+        close(a.peak_to_peak(), b.peak_to_peak(), 1e-9);
+    }
+
+    hertzian::law! { Spring(gap, k) { gap > 0 => k*gap, else => 0 } }
+    let matrix = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 2.0]);
+    let builder = || {
+        let stop = Contact::new(Spring)
+            .arguments([100.0])
+            .direction([1.0, 0.0]);
+        Structure::of(&DMatrix::identity(2, 2), &(0.03 * &matrix), &matrix)
+            .cosine(1, 1, parameter("drive", 0.1))
+            .contact(stop.offset(0.2))
+            .output("apart", [1.0, -1.0])
+            .force_output("stop", 0)
+    };
+    let structure = builder().build().expect("it is sound");
+    let (branch, point) = at(&structure, 0.8);
+    let [apart, stop] = ["apart", "stop"].map(|name| branch.reading(name, &point).expect(name));
+    let [x, y] = [0, 1].map(|index| point.orbit.series(index).expect("a series"));
+    for (apart, (x, y)) in apart.series.iter().zip(x.iter().zip(y)) {
+        close(*apart, x - y, 1e-14);
+    }
+    close(
+        stop.motion.maximum,
+        point.observed.contacts[0].maximum_force,
+        1e-12,
+    );
+    for builder in [
+        builder().output("apart", [1.0, 0.0]),
+        builder().output("q1", [1.0, 0.0]),
+        builder().output("drive", [1.0, 0.0]),
+        builder().output("", [1.0, 0.0]),
+        builder().output("short", [1.0]),
+        builder().force_output("other", 1),
+    ] {
+        assert!(builder.build().is_err());
+    }
+}
+
+hertzian::oscillator! {
+    /// A wheel on a shaft, with a belt that runs on it.
+    Wheel(theta: rad, belt: m) {
+        param j: kg*m^2 = 1 > 0;
+        param c: N*m*s = 0.1;
+        param k: N*m = 1;
+        param m: kg = 1 > 0;
+        param s: N/m = 2;
+        param length: m = 1 > 0;
+        param drive: N*m = 0.3;
+        j*ddot(theta) + c*dot(theta) + k*theta = drive*cos(omega*t);
+        m*ddot(belt) + 0.1*m*omega*dot(belt) + s*belt = 0;
+        output angle = 2*theta;
+        output spin = dot(theta);
+        output jolt = ddot(theta);
+        output turns: Hz = dot(theta);
+        output slip = dot(belt);
+        output rate = omega*belt/length;
+    }
+}
+
+#[test]
+fn rates_of_angles_are_not_in_whole_turns() {
+    let model = hertzian::Model::of(&Wheel::default());
+    let units: Vec<&str> = model.outputs.iter().map(|own| own.unit.as_str()).collect();
+    assert_eq!(units, ["rad", "rad/s", "rad/s^2", "Hz", "m/s", "1/s"]);
+}
+
+#[test]
+fn what_cannot_be_read_is_said() {
+    let (branch, point) = at(&Isolated::default(), 0.8);
+    let failed = |text: &str| {
+        let wanted = text.parse().expect(text);
+        branch.measured(&wanted, &point).expect_err(text)
+    };
+    let unknown = failed("sped:max");
+    assert!(
+        matches!(unknown.downcast_ref(), Some(RequestError::UnknownSignal { name, known }) if name == "sped" && known[1] == "speed"),
+    );
+    let impulse = failed("speed:impulse");
+    assert_eq!(
+        impulse.to_string(),
+        "impulse per period is one of contacts, and speed is none"
+    );
+    let (thrown, _) = at(&Thrown::default(), 0.9);
+    let model = thrown.model.clone();
+    let piece = model.check(&"ground:piece9".parse().expect("a measure"));
+    let piece = piece.expect_err("there are two").to_string();
+    assert_eq!(piece, "ground has no piece 9: its law has 2");
+    #[cfg(feature = "plot")]
+    {
+        let view = hertzian::chart::View::new().of("x:h500".parse().expect("a measure"));
+        let harmonic = thrown.chart_of(&view).expect_err("there are fewer");
+        let highest = thrown.points.iter().map(|point| point.orbit.harmonics());
+        let highest = highest.max().expect("orbits");
+        let said =
+            format!("harmonic 500 of x was not computed: these orbits have {highest} of them");
+        assert_eq!(harmonic.to_string(), said);
+    }
+    let model = Isolated::default();
+    let request = FrequencyResponse::of(&model).by(Shooting::new());
+    let shot = request.from(0.8).to(0.81).run().expect("a branch");
+    let bare = &shot.points[0];
+    let complete = shot.complete(bare).expect("a series");
+    let speed = shot.reading("speed", &complete).expect("an output");
+    let expected = branch.reading("speed", &point).expect("an output");
+    close(
+        speed.motion.peak_to_peak(),
+        expected.motion.peak_to_peak(),
+        1e-7,
+    );
+}
+
+#[test]
+fn tables_have_columns_by_name_and_unit() {
+    let (branch, point) = at(&Thrown::default(), 0.9);
+    let text = branch.to_csv();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let (names, cells) = (
+        lines.next().expect("names"),
+        lines.next().expect("an orbit"),
+    );
+    let cell = |name: &str| {
+        let column = names.iter().position(|own| *own == name);
+        cells[column.unwrap_or_else(|| panic!("{name} in {names:?}"))]
+    };
+    let value = |name: &str| cell(name).parse::<f64>().expect("a number");
+    for (name, wanted) in [
+        ("tooth_max [mN]", "tooth:max"),
+        ("speed_rms [m/s]", "speed:rms"),
+        ("shaking_p2p [mm/s^2]", "shaking:p2p"),
+        ("carried_crest", "carried:crest"),
+        ("x_min [mm]", "x:min"),
+        ("contact_1_impulse", "ground:impulse"),
+        ("contact_1_impacts", "ground:impacts"),
+    ] {
+        let expected = branch.measured(&wanted.parse().expect(wanted), &point);
+        assert_eq!(Some(value(name)), expected.expect(wanted), "{name}");
+    }
+    assert_eq!(value("omega [rad/s]"), 0.9);
+    assert_eq!(value("k [N/mm^1.5]"), 1.0);
+    assert_eq!(cell("peak_to_peak [mm]"), cell("x_p2p [mm]"));
+    let widths = text.lines().map(|line| line.split(',').count());
+    assert!(widths.into_iter().all(|width| width == names.len()));
+}
+
+#[cfg(feature = "plot")]
+mod drawn {
+    use hertzian::chart::{Frequency, View};
+
+    use super::*;
+
+    hertzian::oscillator! {
+        /// The second mass moves most.
+        Pair(first: m, second: m, turn: rad) {
+            param m: kg = 1 > 0;
+            param k: N/m = 1e9 in 0.0..;
+            param c: N*s/m = 1e3 in 0.0..;
+            param soft: N/m = 1e6;
+            param inertia: N*s^2 = 1 > 0;
+            param spring: N = 1;
+            param rub: N*s = 1;
+            param drive: N = 1;
+            m*ddot(first) + c*dot(first) + k*first - soft*second = 0;
+            m*ddot(second) + c*dot(second) + soft*(second - first) = drive*cos(omega*t);
+            inertia*ddot(turn) + rub*dot(turn) + spring*turn = 0;
+        }
+    }
+
+    fn chart(branch: &Branch, view: &View) -> String {
+        branch.chart_of(view).expect("a chart").to_svg()
+    }
+
+    #[test]
+    fn axes_say_what_is_shown_and_in_which_unit() {
+        let (branch, _) = at(&Thrown::default(), 0.9);
+        let usual = branch.chart().to_svg();
+        for part in [
+            "peak-to-peak of tooth [mN]",
+            "excitation frequency ω [rad/s]",
+            "k = 1 N/mm^1.5",
+            "load = 1 N",
+        ] {
+            assert!(usual.contains(part), "{part}");
+        }
+        let view = View::new().of("shaking:h2".parse().expect("a signal"));
+        let other = chart(&branch, &view.frequency(Frequency::Hertz));
+        for part in [
+            "harmonic 2 of shaking (what an accelerometer shows) [mm/s^2]",
+            "excitation frequency [Hz]",
+        ] {
+            assert!(other.contains(part), "{part}");
+        }
+        let of_contact = View::new().of("ground:impulse".parse().expect("a signal"));
+        let impulse = chart(&branch, &of_contact.frequency(Frequency::Rpm));
+        assert!(impulse.contains("impulse per period of ground") && impulse.contains("[rpm]"));
+        let unknown = View::new().of("tuth".parse().expect("a name"));
+        assert!(branch.chart_of(&unknown).is_err());
+    }
+
+    #[test]
+    fn hertz_are_where_the_orbits_are() {
+        let (branch, point) = at(&Isolated::default(), 0.8);
+        let size = branch.reading("speed", &point).expect("an output");
+        close(Frequency::Hertz.of(TAU), 1.0, 1e-15);
+        close(Frequency::Rpm.of(TAU), 60.0, 1e-15);
+        assert_eq!(branch.leading().to_string(), "path:p2p");
+        let rates = branch
+            .points
+            .iter()
+            .map(|p| p.observed.outputs[1].peak_to_peak());
+        assert_eq!(rates.into_iter().next(), Some(size.motion.peak_to_peak()));
+    }
+
+    #[test]
+    fn the_coordinate_that_moves_most_leads() {
+        let (branch, _) = at(&Pair::default(), 900.0);
+        assert_eq!(branch.leading().name, "second");
+        let svg = branch.chart().to_svg();
+        for part in [
+            "peak-to-peak of second [m]",
+            "k = 1 GN/m",
+            "soft = 1 MN/m",
+            "c = 1000 N*s/m",
+        ] {
+            assert!(svg.contains(part), "{part}");
+        }
+    }
+}
+
+/// What is said of an event names what leads, with units, and has no more digits than its error bears.
+#[test]
+fn events_are_described_by_what_leads() {
+    let (branch, point) = at(&Thrown::default(), 0.9);
+    let said = branch.describe_size(&point);
+    assert!(
+        said.starts_with("peak-to-peak of tooth ") && said.ends_with(" mN"),
+        "{said}"
+    );
+    let request = FrequencyResponse::of(&Thrown::default()).from(0.6).to(1.2);
+    let branch = request.run().expect("a branch");
+    let fold = branch.folds().next().expect("a fold");
+    let said = branch.describe(fold);
+    let number = said.strip_prefix("fold at ").expect(&said);
+    let number = number.split(' ').next().expect("a number");
+    assert!(said.contains(&format!("{number} rad/s (error ")), "{said}");
+    let last = 10.0_f64.powi(-(number.split('.').nth(1).map_or(0, str::len) as i32));
+    assert!(last <= fold.error && fold.error < 10.0 * last, "{said}");
+    let value: f64 = number.parse().expect("a number");
+    assert!((value - fold.point.value).abs() <= 0.5 * last, "{said}");
+    assert!(
+        said.contains(" peak-to-peak of tooth ") && said.ends_with(" mN"),
+        "{said}"
+    );
+}

@@ -1,0 +1,9 @@
+hertzian::oscillator! {
+    pub Model(x) {
+        law stop(gap) { gap > 0 => gap^1.5, else => 0 }
+        ddot(x) + stop(x) = cos(omega*t);
+        output beat = x*cos(omega*t/2);
+    }
+}
+
+fn main() {}

@@ -1,0 +1,10 @@
+hertzian::oscillator! {
+    pub Model(x) {
+        law stop(gap) { gap > 0 => gap^1.5, else => 0 }
+        ddot(x) + stop(x) = cos(omega*t);
+        output tip = 2*x;
+        output twice = 2*tip;
+    }
+}
+
+fn main() {}
