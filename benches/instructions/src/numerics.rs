@@ -103,7 +103,7 @@ fn flows(count: &mut dyn FnMut(&str, &mut dyn FnMut())) -> Result<(), Error> {
     count("strobe\t2000 periods in closed form", &mut || {
         advance(&mut exact, 2000, false);
     });
-    count("strobe\tthe same with derivatives", &mut || {
+    count("strobe\t2000 periods with derivatives", &mut || {
         advance(&mut exact, 2000, true);
     });
     count("strobe\t100 periods integrated", &mut || {
