@@ -1,6 +1,8 @@
 """Models that the tests share. Exact values come from an independent computation: the closed-form flow between switches in 80-bit
 arithmetic for the exponent one (see the fields that they are quoted from)."""
 
+import signal
+
 import pytest
 
 import hertzian
@@ -25,6 +27,14 @@ OneSided(x) {
 LINEAR = "Linear(x) { param zeta = 0.1; param drive = 3; ddot(x) + 2*zeta*dot(x) + 4*x = drive*cos(omega*t); }"
 
 DUFFING = "Duffing(x) { param drive; ddot(x) + 0.1*dot(x) + x + x^3 = drive*cos(omega*t); }"
+
+
+@pytest.fixture(autouse=True)
+def ctrl_c():
+    """What a shell begins in the background ignores Ctrl-C, and Python with it; the tests that send it themselves do not."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture
