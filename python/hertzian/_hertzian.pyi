@@ -14,6 +14,7 @@ _Method = Union["HarmonicBalance", "Shooting", "ContactEquation"]
 _Watch = Callable[["Progress"], object]
 _Verdict = Literal["stable", "unstable", "undecided"]
 _Kind = Literal["fold", "symmetry-breaking", "period-doubling", "branch-point", "neimark-sacker", "grazing"]
+_Scale = Literal["linear", "log", "db"]
 _Frequency = Literal["omega", "hertz", "rpm"]
 _Side = Literal["one", "other"]
 _Floats = NDArray[np.float64]
@@ -133,6 +134,30 @@ class Model:
         bifurcations: bool | None = False,
         symmetric: bool | None = True,
     ) -> Solutions: ...
+    def map(
+        self,
+        values: ArrayLike,
+        from_: float,
+        to: float,
+        second: str,
+        others: ArrayLike,
+        *,
+        vary: str | None = None,
+        omega: float | None = None,
+        period: int | None = 1,
+        tolerance: float | None = 1e-6,
+        stability: bool | None = True,
+        largest_step: float | None = 0.1,
+        max_points: int | None = 20000,
+        near_orbit: Orbit | Point | None = None,
+        near_state: ArrayLike | None = None,
+        by: _Method | None = None,
+        harmonics: int | None = None,
+        doublings: bool | None = False,
+        bifurcations: bool | None = False,
+        symmetric: bool | None = True,
+        progress: _Watch | None = None,
+    ) -> Map: ...
     def bifurcations(
         self,
         from_: float,
@@ -337,8 +362,25 @@ class Branch:
         progress: _Watch | None = None,
     ) -> Branch: ...
     def runs(self, wanted: str | None = None) -> list[Run]: ...
-    def plot(self, path: _Path, of: str | None = None, frequency: _Frequency = "omega") -> None: ...
-    def to_svg(self, of: str | None = None, frequency: _Frequency = "omega") -> str: ...
+    def plot(
+        self,
+        path: _Path,
+        of: str | None = None,
+        frequency: _Frequency = "omega",
+        *,
+        scale: _Scale = "linear",
+        stack: int = 0,
+        events: Sequence[_Kind] | None = None,
+    ) -> None: ...
+    def to_svg(
+        self,
+        of: str | None = None,
+        frequency: _Frequency = "omega",
+        *,
+        scale: _Scale = "linear",
+        stack: int = 0,
+        events: Sequence[_Kind] | None = None,
+    ) -> str: ...
     def _repr_svg_(self) -> str: ...
     def __len__(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -573,6 +615,41 @@ class BifurcationCurve:
     @property
     def ends(self) -> tuple[Stop, Stop]: ...
     def __len__(self) -> int: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class Map:
+    @staticmethod
+    def read(path: _Path) -> Map: ...
+    def write(self, path: _Path) -> None: ...
+    @property
+    def names(self) -> tuple[str, str]: ...
+    @property
+    def columns(self) -> _Floats: ...
+    @property
+    def rows(self) -> _Floats: ...
+    @property
+    def stable(self) -> NDArray[np.uint64]: ...
+    @property
+    def unstable(self) -> NDArray[np.uint64]: ...
+    @property
+    def undecided(self) -> NDArray[np.uint64]: ...
+    @property
+    def missed(self) -> NDArray[np.uint64]: ...
+    @property
+    def motions(self) -> NDArray[np.uint64]: ...
+    @property
+    def restless(self) -> NDArray[np.uint64]: ...
+    @property
+    def largest(self) -> _Floats: ...
+    @property
+    def signal(self) -> str: ...
+    @property
+    def verdicts(self) -> list[list[str]]: ...
+    @property
+    def branches(self) -> list[int]: ...
+    def plot(self, path: _Path, of: Literal["stable", "largest", "verdict"] = "stable") -> None: ...
+    def _repr_svg_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use hertzian::chart::{Frequency, Line, View};
-use hertzian::{Branch, Complex, Error, Point};
+use hertzian::chart::{Frequency, Line, Scale, View};
+use hertzian::{Branch, Complex, Error, EventKind, Point};
 use numpy::{PyArray1, PyArray2};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
@@ -104,6 +104,41 @@ pub fn view(of: Option<&str>, frequency: &str) -> PyResult<View> {
         Some(text) => view.of(wanted(text)?),
         None => view,
     })
+}
+
+/// How the chart of a branch looks.
+pub struct Look {
+    scale: Scale,
+    stack: usize,
+    events: Option<Vec<EventKind>>,
+}
+
+impl Look {
+    pub fn new(scale: &str, stack: usize, events: Option<Vec<String>>) -> PyResult<Self> {
+        let scale = match scale {
+            "linear" => Scale::Linear,
+            "log" => Scale::Logarithmic,
+            "db" => Scale::Decibel,
+            _ => {
+                let text = format!("{scale} is no scale: linear, log or db");
+                return Err(PyValueError::new_err(text));
+            }
+        };
+        let kinds = events.map(|names| names.iter().map(|name| event::kind(name)).collect());
+        Ok(Self {
+            scale,
+            stack,
+            events: kinds.transpose()?,
+        })
+    }
+
+    pub fn on(self, view: View) -> View {
+        let view = view.scale(self.scale).harmonics(self.stack);
+        match self.events {
+            Some(kinds) => view.events(kinds),
+            None => view,
+        }
+    }
 }
 
 #[pymethods]
@@ -457,25 +492,39 @@ impl PyBranch {
     }
 
     /// Draws what is asked of a signal, as ``"tip:rms"``, as an SVG file; by default `leading`. ``frequency`` is what is at its axis:
-    /// ``"omega"``, ``"hertz"`` or ``"rpm"``.
-    #[pyo3(signature = (path, of=None, frequency="omega"))]
+    /// ``"omega"``, ``"hertz"`` or ``"rpm"``. ``scale``: ``"linear"``, ``"log"`` or ``"db"``. ``stack``: the amplitudes of so many harmonics
+    /// upon each other instead. ``events``: the kinds that are marked, all by default.
+    #[pyo3(signature = (path, of=None, frequency="omega", *, scale="linear", stack=0, events=None))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn plot(
         &self,
         py: Python<'_>,
         path: PathBuf,
         of: Option<&str>,
         frequency: &str,
+        scale: &str,
+        stack: usize,
+        events: Option<Vec<String>>,
     ) -> PyResult<()> {
-        let (branch, view) = (self.held(), view(of, frequency)?);
+        let view = Look::new(scale, stack, events)?.on(view(of, frequency)?);
+        let branch = self.held();
         let written =
             py.detach(|| -> Result<(), Error> { Ok(branch.chart_of(&view)?.write(path)?) });
         written.map_err(exception)
     }
 
     /// The same as text: str.
-    #[pyo3(signature = (of=None, frequency="omega"))]
-    fn to_svg(&self, of: Option<&str>, frequency: &str) -> PyResult<String> {
-        let chart = self.held().chart_of(&view(of, frequency)?);
+    #[pyo3(signature = (of=None, frequency="omega", *, scale="linear", stack=0, events=None))]
+    fn to_svg(
+        &self,
+        of: Option<&str>,
+        frequency: &str,
+        scale: &str,
+        stack: usize,
+        events: Option<Vec<String>>,
+    ) -> PyResult<String> {
+        let view = Look::new(scale, stack, events)?.on(view(of, frequency)?);
+        let chart = self.held().chart_of(&view);
         Ok(chart.map_err(exception)?.to_svg())
     }
 

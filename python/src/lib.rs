@@ -14,6 +14,7 @@ mod event;
 mod facts;
 mod given;
 mod held;
+mod map;
 mod methods;
 mod model;
 mod observed;
@@ -64,6 +65,7 @@ fn _hertzian(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<solutions::PySolutions>()?;
     module.add_class::<solutions::PySolutionsAt>()?;
     module.add_class::<solutions::PySolution>()?;
+    module.add_class::<map::PyMap>()?;
     module.add_class::<attractors::PyAxis>()?;
     module.add_class::<attractors::PyBasins>()?;
     module.add_class::<attractors::PyAttractor>()?;

@@ -16,6 +16,7 @@ use crate::errors::exception;
 use crate::facts::Facts;
 use crate::given::Given;
 use crate::held::{Owner, PointRef};
+use crate::map::PyMap;
 use crate::methods::PySettling;
 use crate::point::PyPoint;
 use crate::request::{Method, Request, by_any};
@@ -283,6 +284,39 @@ impl PyModel {
             watch,
             |cancel, _| by_any!(request, r => r.cancel(cancel).solutions(&values)),
             PySolutions::new,
+        )
+    }
+
+    /// All periodic solutions over two parameters, as far as they are found: `Map`. ``values``: of what is varied, in the range; ``second``:
+    /// the other parameter, or ``"omega"``, and ``others``: its values, each of which is a row. Options are those of `response`; by
+    /// `Shooting` a map with many bifurcations takes a small part of the time.
+    #[pyo3(
+        signature = (values, from_, to, second, others, **options),
+        text_signature = "($self, values, from_, to, second, others, *, vary=None, omega=None, period=1, tolerance=1e-6, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, progress=None)"
+    )]
+    fn map<'py>(
+        &self,
+        values: &Bound<'py, PyAny>,
+        from_: f64,
+        to: f64,
+        second: &str,
+        others: &Bound<'py, PyAny>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = values.py();
+        let given = Given::new(py, "map", options)?;
+        let system = self.system();
+        let (request, watch) =
+            Self::asked(&given, &system, Method::Balance(HarmonicBalance::new()))?;
+        let request = request.between(from_, to);
+        let [values, others] = [values, others].map(crate::arrays::numbers);
+        let (values, others) = (values?, others?);
+        given.end()?;
+        compute(
+            py,
+            watch,
+            |cancel, see| by_any!(request, r => r.cancel(cancel).map_with(&values, second, &others, see)),
+            PyMap,
         )
     }
 

@@ -60,3 +60,26 @@ def test_a_range_is_covered(duffing):
     assert len(at[0].fates) == 6
     # Two stable orbits, and motions that settle to each.
     assert {orbit.period for orbit in at[0].orbits} == {1} and set(at[0].fates) == {0, 1}
+
+
+def test_a_map_counts_what_exists(one_sided, tmp_path):
+    # Folds at a drive of 0.1 are at 0.7151 and 0.9602; at 0.02 the contact is never lost.
+    found = one_sided.map([0.7, 0.9], 0.65, 1.05, "drive", [0.02, 0.1], by=hertzian.Shooting())
+    assert found.names == ("omega", "drive")
+    assert found.columns.tolist() == [0.7, 0.9] and found.rows.tolist() == [0.02, 0.1]
+    assert found.stable.tolist() == [[1, 1], [1, 2]]
+    assert found.unstable.tolist() == [[0, 0], [0, 1]]
+    assert found.verdicts[1][1] == "stable and unstable"
+    # Without contact lost the mass is on a linear spring: the amplitude is drive over that of its stiffness.
+    stiffness = np.abs(1 - 0.7**2 + 2j * 0.032 * 0.7)
+    assert abs(found.largest[0, 0] / (2 * 0.02 / stiffness) - 1) < 1e-5
+    path = tmp_path / "map.json"
+    found.write(path)
+    assert hertzian.Map.read(path) == found
+    for of in ["stable", "largest", "verdict"]:
+        found.plot(tmp_path / "map.svg", of)
+        assert "drive" in (tmp_path / "map.svg").read_text()
+    with pytest.raises(ValueError, match="peak is no chart of a map"):
+        found.plot(tmp_path / "map.svg", "peak")
+    with pytest.raises(hertzian.RequestError):
+        one_sided.map([0.7], 0.65, 1.05, "omega", [0.02])

@@ -189,3 +189,16 @@ def test_all_solutions_of_a_range(duffing):
     # An orbit knows the branch that it lies on.
     [one] = below.orbits
     assert one.branch == 0 and one.point.measured("x:h1") > 0.0
+
+
+def test_charts_look_as_asked(fold_branch):
+    decibels = fold_branch.to_svg("x:rms", scale="db")
+    assert "dB over 1" in decibels
+    stacked = fold_branch.to_svg("x", stack=3)
+    assert "amplitudes of x" in stacked
+    without = fold_branch.to_svg(events=["period-doubling"])
+    assert "fold" in fold_branch.to_svg() and "not marked: 2 fold" in without
+    with pytest.raises(ValueError, match="cubic is no scale"):
+        fold_branch.to_svg(scale="cubic")
+    with pytest.raises(ValueError):
+        fold_branch.to_svg(events=["peak"])

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use hertzian::attractors::basin::Fate;
 use hertzian::bifurcation::{Bifurcations, Diagram, Reason, Searched, Settling};
 use hertzian::export::Decimal;
-use hertzian::{Error, FrequencyResponse, Progress, Stop};
+use hertzian::{Error, FrequencyResponse, OrbitMethod, Progress, Stop};
 
 use super::bifurcations::describe;
 use super::options::Options;
@@ -15,7 +15,8 @@ use super::options::Options;
 pub fn settling(options: &Options) -> Option<Settling> {
     let settling = Settling::new()
         .values(options.values)
-        .starts(options.starts);
+        .starts(options.starts)
+        .patience(options.patience);
     (!options.one_branch).then_some(settling)
 }
 
@@ -24,12 +25,12 @@ pub fn settling(options: &Options) -> Option<Settling> {
 ///
 /// # Errors
 /// As that of the request.
-pub fn find(
+pub fn find<M: OrbitMethod>(
     options: &Options,
-    request: &FrequencyResponse,
+    request: FrequencyResponse<M>,
     visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Diagram, Error> {
-    let all = Bifurcations::starting_with(request.clone());
+    let all = Bifurcations::starting_with(request);
     let all = all.depth(0).margin(0.0);
     let elsewhere = options.bifurcations || options.track.is_some();
     match settling(options).filter(|_| !elsewhere) {

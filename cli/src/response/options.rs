@@ -30,6 +30,7 @@ use crate::model::{ModelOptions, setting};
         hertzian response --sweep drive --omega 0.9 --from 0.01 --to 0.3\n  \
         hertzian response --model two-masses --set drive=0.2\n  \
         hertzian response --model FILE --set zeta=0.01 --to 2.2\n  \
+        hertzian response --alpha 1 --by shooting --tolerance 1e-10\n  \
         hertzian response --model gear-pair --values 20     and what motions settle to at 20 values\n  \
         hertzian response --model FILE --plot tip:rms,stop:max --axis hz\n  \
         hertzian response --model FILE --plot tip --stack 5 --scale db --events fold,period-doubling\n\n\
@@ -73,6 +74,10 @@ pub struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count)]
     pub period: usize,
 
+    /// How the orbits of the curve are computed
+    #[arg(long, value_enum, value_name = "METHOD", default_value_t = By::Balance)]
+    pub by: By,
+
     /// Harmonics per period of the excitation [default: from the tolerance]
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub harmonics: Option<usize>,
@@ -114,6 +119,10 @@ pub struct Options {
     /// Motions from so many initial states at each of these values
     #[arg(long, value_name = "COUNT", default_value_t = 4, conflicts_with = "one_branch", value_parser = count)]
     pub starts: usize,
+
+    /// Follow each of these motions for at most so many periods of the excitation; where there is little damping it takes more of them
+    #[arg(long, value_name = "COUNT", default_value_t = 500, conflicts_with = "one_branch", value_parser = count)]
+    pub patience: usize,
 
     /// Also compute every orbit of the branches at exactly these values of what varies
     #[arg(long, value_name = "VALUE", num_args = 1..)]
@@ -219,7 +228,7 @@ pub struct Options {
     #[arg(
         long,
         value_name = "FILE",
-        conflicts_with_all = ["keep", "bifurcations", "track", "backbone", "values", "starts", "one_branch", "period", "near", "at_rest"]
+        conflicts_with_all = ["keep", "bifurcations", "track", "backbone", "values", "starts", "patience", "one_branch", "period", "near", "at_rest"]
     )]
     pub resume: Option<PathBuf>,
 
@@ -239,6 +248,17 @@ pub enum Tracked {
     BranchPoint,
     /// Where a gap touches a level
     Grazing,
+}
+
+/// How orbits are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum By {
+    /// Harmonic balance
+    Balance,
+    /// Shooting: motions that return to their first state
+    Shooting,
+    /// The forces of contacts and their ends as unknowns, which pays where contacts open
+    ContactEquation,
 }
 
 /// How the harmonics of the contact force are computed.
@@ -312,6 +332,7 @@ impl Options {
             "from",
             "to",
             "sweep",
+            "by",
             "harmonics",
             "samples",
             "aft",
@@ -322,10 +343,15 @@ impl Options {
             let fault = "--resume takes range and options from the file: leave them out, but those of the oscillator";
             return Some(fault.to_owned());
         }
-        let motions = given.has("values") || given.has("starts");
+        let motions = ["values", "starts", "patience"];
+        let motions = motions.iter().any(|option| given.has(option));
         if motions && self.track.is_some() && !self.bifurcations {
-            let fault = "--values and --starts do nothing beside --track: add --bifurcations";
+            let fault =
+                "--values, --starts and --patience do nothing beside --track: add --bifurcations";
             return Some(fault.to_owned());
+        }
+        if let Some(fault) = self.of_the_balance(given) {
+            return Some(fault);
         }
         let look = ["scale", "events", "stack"];
         let look = look.into_iter().find(|option| given.has(option));
@@ -344,6 +370,16 @@ impl Options {
             "--samples belongs to --aft sampled or --aft primitive: nothing is sampled here"
                 .to_owned()
         })
+    }
+
+    /// What belongs to the harmonic balance, beside another method.
+    fn of_the_balance(&self, given: &Given<'_>) -> Option<String> {
+        let options = ["harmonics", "samples", "aft", "multipliers"];
+        let mut options = options.into_iter().filter(|option| given.has(option));
+        let option = options.next().filter(|_| self.by != By::Balance)?;
+        Some(format!(
+            "--{option} belongs to --by balance and would do nothing here"
+        ))
     }
 
     /// Name of what varies, as the models call it.

@@ -8,7 +8,8 @@ use hertzian::chart::{Chart, Page, Series, View};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::export::{self, Table};
 use hertzian::{
-    Branch, Cancel, Error, FrequencyResponse, Model, OrbitError, Point, Stop, System, remarks,
+    Branch, Cancel, ContactEquation, Error, FrequencyResponse, Model, OrbitError, Point, Shooting,
+    Stop, System, remarks,
 };
 
 use super::backbone::{self, Backbone};
@@ -19,7 +20,7 @@ use super::files::{self, Record};
 use super::model_file::{ModelError, Varied};
 use super::models::model;
 use super::near;
-use super::options::Options;
+use super::options::{By, Options};
 use super::panels;
 use super::progress::{Progress, Seen};
 use super::resumed;
@@ -118,7 +119,14 @@ pub fn run(
         let plain = request(options, &*model).cancel(cancel);
         let request;
         (request, note) = near::of(options, &*model, plain)?;
-        covered::find(options, &request, |progress| seen.see(progress))?
+        let visit = |progress: hertzian::Progress<'_>| seen.see(progress);
+        match options.by {
+            By::Balance => covered::find(options, request, visit)?,
+            By::Shooting => covered::find(options, request.by(Shooting::new()), visit)?,
+            By::ContactEquation => {
+                covered::find(options, request.by(ContactEquation::new()), visit)?
+            }
+        }
     };
     let covered = diagram.branches.iter();
     let mut branches: Vec<Branch> = covered.map(|found| found.branch.clone()).collect();

@@ -204,7 +204,11 @@ fn options_that_would_do_nothing_are_refused() {
         (&["--omega", "2"], "--sweep omega takes the place"),
         (
             &["--track", "fold", "--in", "omega,drive", "--values", "3"],
-            "--values and --starts do nothing beside --track",
+            "--values, --starts and --patience do nothing beside --track",
+        ),
+        (
+            &["--by", "shooting", "--harmonics", "9"],
+            "--harmonics belongs to --by balance",
         ),
         (
             &["--samples", "512"],

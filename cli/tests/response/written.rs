@@ -75,6 +75,28 @@ fn every_model_runs_both_ways() {
     }
 }
 
+/// Figure 5a, away from its folds: the peak-to-peak at 0.8 is the same by every method.
+#[test]
+fn a_curve_is_followed_by_every_method() {
+    let folder = Folder::new("by");
+    let (svg, json) = (folder.file("a.svg"), folder.file("a.json"));
+    let sizes = ["balance", "shooting", "contact-equation"].map(|by| {
+        let outcome = run_with(&[
+            "--alpha", "1", "--to", "0.85", "--at", "0.8", "--by", by, "--svg", &svg, "--json",
+            &json,
+        ])
+        .expect("a branch");
+        assert!(outcome.complete, "{by}: {}", outcome.summary);
+        let all = all(&json);
+        let motions = &all["at"][0]["observed"]["motions"];
+        motions[0]["max"].as_f64().expect("a maximum")
+            - motions[0]["min"].as_f64().expect("a minimum")
+    });
+    for size in sizes {
+        assert!((size / sizes[0] - 1.0).abs() < 1e-6, "{sizes:?}");
+    }
+}
+
 #[test]
 fn a_branch_that_ends_early_is_written_all_the_same() {
     let folder = Folder::new("early");

@@ -30,6 +30,27 @@ pub(super) struct Ticks {
     pub(super) power: i32,
 }
 
+/// Which powers of ten labels may be divided by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Powers {
+    /// That of the largest number, where it has many zeros.
+    Any,
+    /// Those that prefixes of units stand for.
+    Thousands,
+}
+
+impl Powers {
+    /// That for numbers of about ten to the power of `size`.
+    fn of(self, size: i32) -> i32 {
+        match self {
+            Self::Thousands if (-1..4).contains(&size) => 0,
+            Self::Thousands if (-12..15).contains(&size) => 3 * size.div_euclid(3),
+            _ if (-3..5).contains(&size) => 0,
+            _ => size.clamp(-300, 300),
+        }
+    }
+}
+
 impl Range {
     /// A range that shows all values, with a margin; from zero where that wastes little and is asked for.
     pub(super) fn of(scale: Scale, values: impl Iterator<Item = f64>, from_zero: bool) -> Self {
@@ -79,16 +100,16 @@ impl Range {
     }
 
     /// At most about `count` labelled ticks, and minor ones between them.
-    pub(super) fn ticks(&self, count: usize) -> Ticks {
+    pub(super) fn ticks(&self, count: usize, powers: Powers) -> Ticks {
         let by_value = |value: f64| self.position(value);
         match self.scale {
-            Scale::Linear => even_ticks([self.low, self.high], count, by_value),
+            Scale::Linear => even_ticks([self.low, self.high], count, powers, by_value),
             Scale::Logarithmic if self.high - self.low < 0.9 => {
                 let ends = [self.low, self.high].map(|end| 10_f64.powf(end));
-                even_ticks(ends, count, by_value)
+                even_ticks(ends, count, powers, by_value)
             }
             Scale::Logarithmic => self.decades(count),
-            Scale::Decibel => even_ticks([self.low, self.high], count, |level| {
+            Scale::Decibel => even_ticks([self.low, self.high], count, powers, |level| {
                 Some((level - self.low) / (self.high - self.low))
             }),
         }
@@ -120,14 +141,15 @@ impl Range {
 }
 
 /// Ticks at round numbers between two ends, each at the place that it has on the axis.
-fn even_ticks([low, high]: [f64; 2], count: usize, place: impl Fn(f64) -> Option<f64>) -> Ticks {
+fn even_ticks(
+    [low, high]: [f64; 2],
+    count: usize,
+    powers: Powers,
+    place: impl Fn(f64) -> Option<f64>,
+) -> Ticks {
     let step = Step::of((high - low) / count.max(2) as f64);
     let size = low.abs().max(high.abs()).log10().floor() as i32;
-    let power = if (-3..5).contains(&size) {
-        0
-    } else {
-        size.clamp(-300, 300)
-    };
+    let power = powers.of(size);
     let decimals = (power - step.power).clamp(0, 17) as usize;
     let multiples = |step: f64| ((low / step).ceil() as i64)..=((high / step).floor() as i64);
     let labelled = multiples(step.size())
@@ -218,7 +240,7 @@ mod tests {
     use super::*;
 
     fn labels(scale: Scale, values: &[f64]) -> (Vec<String>, i32) {
-        let ticks = Range::of(scale, values.iter().copied(), false).ticks(6);
+        let ticks = Range::of(scale, values.iter().copied(), false).ticks(6, Powers::Any);
         let labels = ticks.labelled.into_iter().map(|(position, label)| {
             assert!((0.0..=1.0).contains(&position), "{position}");
             label
@@ -248,6 +270,27 @@ mod tests {
     }
 
     #[test]
+    fn numbers_with_a_prefix_are_between_one_and_a_thousand() {
+        for (high, expected, power) in [
+            (2.5e-7, ["0", "100", "200"], -9),
+            (2.5e-2, ["0", "10", "20"], -3),
+            (0.25, ["0.0", "0.1", "0.2"], 0),
+            (2500.0, ["0", "1000", "2000"], 0),
+            (2.5e4, ["0", "10", "20"], 3),
+            (2.5e-30, ["0", "1", "2"], -30),
+        ] {
+            let range = Range::between(Scale::Linear, [0.0, high]);
+            let ticks = range.ticks(3, Powers::Thousands);
+            let found: Vec<String> = ticks.labelled.into_iter().map(|(_, label)| label).collect();
+            assert_eq!(
+                (&found[..], ticks.power),
+                (&expected.map(str::to_owned)[..], power),
+                "{high}"
+            );
+        }
+    }
+
+    #[test]
     fn logarithmic_ticks_are_decades() {
         assert_eq!(
             labels(Scale::Logarithmic, &[1e-4, 1.0]).0,
@@ -267,7 +310,7 @@ mod tests {
         assert!((range.position(10.0).unwrap() - 0.5).abs() < 1e-15);
         let twice = range.position(20.0).unwrap() - range.position(10.0).unwrap();
         assert!((80.0 * twice - 6.020_599_913_279_624).abs() < 1e-12);
-        let ticks = range.ticks(4).labelled;
+        let ticks = range.ticks(4, Powers::Any).labelled;
         let found: Vec<(i32, &str)> = ticks
             .iter()
             .map(|(place, label)| ((100.0 * place).round() as i32, label.as_str()))
@@ -294,7 +337,7 @@ mod tests {
             for scale in [Scale::Linear, Scale::Logarithmic, Scale::Decibel] {
                 let range = Range::of(scale, values.iter().copied(), true);
                 assert!(range.low < range.high, "{values:?}");
-                let ticks = range.ticks(6);
+                let ticks = range.ticks(6, Powers::Any);
                 assert!(ticks.labelled.len() < 20, "{values:?}");
                 assert!(ticks.minor.len() < 100, "{values:?}");
             }

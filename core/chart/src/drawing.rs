@@ -1,8 +1,9 @@
 //! Puts a chart on the page.
 
-use super::axis::{Range, Scale, Ticks, superscript};
+use super::axis::{Powers, Range, Scale, Ticks, superscript};
 use super::contents::{Contents, entries, shown};
 use super::legend::Legend;
+use super::prefix::{prefixed, takes_prefix};
 use super::svg::{Anchor, INK, Pen, Pixel, Rectangle, Svg, fitted, pen, width_of};
 use super::{Axis, Chart};
 
@@ -89,14 +90,21 @@ impl Ruler {
                 .map(|(_, label)| size_of(label) + 1.5 * TICK);
             sizes.sum::<f64>()
         };
+        let (name, unit) = in_brackets(&axis.label);
+        let powers = if takes_prefix(unit) {
+            Powers::Thousands
+        } else {
+            Powers::Any
+        };
         let ticks = (3..=10)
             .rev()
-            .map(|count| range.ticks(count))
+            .map(|count| range.ticks(count, powers))
             .find(|ticks| length_of(ticks) < length)
-            .unwrap_or_else(|| range.ticks(2));
-        let label = match ticks.power {
-            0 => axis.label.clone(),
-            power => format!("{} (×10{})", axis.label, superscript(power)),
+            .unwrap_or_else(|| range.ticks(2, powers));
+        let label = match (ticks.power, prefixed(ticks.power, unit)) {
+            (0, _) => axis.label.clone(),
+            (power, (of_prefix, unit)) if power == of_prefix => format!("{name} [{unit}]"),
+            (power, _) => format!("{} (×10{})", axis.label, superscript(power)),
         };
         Self {
             label,
@@ -105,6 +113,14 @@ impl Ruler {
             minor: ticks.minor,
         }
     }
+}
+
+/// A label and the unit in brackets at its end, which is empty if there is none.
+fn in_brackets(label: &str) -> (&str, &str) {
+    let unit = label
+        .strip_suffix(']')
+        .and_then(|rest| rest.rsplit_once(" ["));
+    unit.unwrap_or((label, ""))
 }
 
 impl Plot {

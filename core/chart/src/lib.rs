@@ -34,6 +34,7 @@ mod mark;
 mod note;
 mod page;
 mod polyline;
+mod prefix;
 mod raster;
 mod shape;
 mod smooth;
@@ -46,6 +47,7 @@ use std::path::{Path, PathBuf};
 
 pub use axis::Scale;
 pub use page::Page;
+pub use prefix::{prefixed, takes_prefix};
 pub use raster::{Colour, Raster, STEPS};
 pub use smooth::{Bend, smoothed};
 
@@ -172,14 +174,15 @@ impl Chart {
         self
     }
 
-    /// Labels the horizontal axis; a unit belongs to the label.
+    /// Labels the horizontal axis; a unit belongs to the label. Where it stands at the end, in brackets, numbers that are small or large
+    /// have a prefix of the unit: `tip [um]`.
     #[must_use]
     pub fn x(mut self, label: impl Into<String>) -> Self {
         self.x.label = label.into();
         self
     }
 
-    /// Labels the vertical axis; a unit belongs to the label.
+    /// Labels the vertical axis, as the [horizontal](Chart::x) one.
     #[must_use]
     pub fn y(mut self, label: impl Into<String>) -> Self {
         self.y.label = label.into();

@@ -1,5 +1,6 @@
 //! Residual and Jacobian, put together: the balance as a problem of continuation.
 
+use super::alike::Alike;
 use super::terms::stretched;
 use super::{Balance, blocks};
 use crate::continuation::jacobian::{Jacobian, Partition};
@@ -131,21 +132,26 @@ impl Problem for Balance<'_> {
         self.add_gauge(u, residual);
         let Some(jacobian) = jacobian else {
             let mut force = std::mem::take(&mut self.scratch.force);
-            for contact in 0..self.layout.contacts.len() {
+            for index in 0..self.alike.len() {
+                let Alike { contact, count } = self.alike[index];
                 self.contact_force(u, contact, &mut force);
-                self.add_in_direction(contact, &force, residual);
+                self.add_in_direction(contact, count, &force, residual);
             }
             self.scratch.force = force;
+            self.keep_unknowns(residual);
             return;
         };
         let mut column = std::mem::take(&mut self.scratch.column);
         self.linear_by_variable(u, &mut column);
         self.scratch.column = column;
         self.start_blocks();
-        for contact in 0..self.layout.contacts.len() {
-            let changes = self.contact_derivatives(u, contact);
-            self.scatter(contact, changes, residual);
+        for index in 0..self.alike.len() {
+            let alike = self.alike[index];
+            let changes = self.contact_derivatives(u, alike.contact);
+            self.scatter(alike, changes, residual);
         }
+        self.keep_unknowns(residual);
+        self.keep_couplings();
         self.assemble(jacobian);
     }
 
@@ -162,9 +168,10 @@ impl Problem for Balance<'_> {
             *to += direction[unknowns] * by;
         }
         self.scratch.column = column;
-        for contact in 0..self.layout.contacts.len() {
-            self.add_contact_in(u, direction, contact, derivative);
+        for index in 0..self.alike.len() {
+            self.add_contact_in(u, direction, self.alike[index], derivative);
         }
+        self.keep_unknowns(derivative);
     }
 
     fn terms(&mut self, u: &[f64], terms: &mut [f64]) -> bool {

@@ -62,6 +62,11 @@ impl Block {
         self.damping.fill(0.0);
     }
 
+    /// The series that couple harmonics.
+    pub(super) fn series_mut(&mut self) -> [&mut [f64]; 2] {
+        [&mut self.stiffness, &mut self.damping]
+    }
+
     /// The equation, and how strongly harmonics are coupled in it: the largest coefficient of the stiffness but the mean, or
     /// what the mean would make of it if contact came and went. Zero without a contact or a wave.
     pub(super) fn coupling(&self) -> (usize, f64) {

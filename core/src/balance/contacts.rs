@@ -1,5 +1,6 @@
 //! The terms of the balance that come from contacts.
 
+use super::alike::Alike;
 use super::terms::{block_mut, gap_series, rate_series, stretched};
 use super::{Balance, Resolution, blocks};
 use crate::balance::aft::{Change, ContactDerivatives, ContactInput};
@@ -150,12 +151,18 @@ impl Balance<'_> {
         self.aft.force(input, force);
     }
 
-    /// Adds the force of one contact, in its direction, to the equations it acts on.
-    pub(crate) fn add_in_direction(&self, contact: usize, force: &[f64], residual: &mut [f64]) {
+    /// Adds the force of one contact, so many times, in its direction, to the equations it acts on.
+    pub(crate) fn add_in_direction(
+        &self,
+        contact: usize,
+        count: f64,
+        force: &[f64],
+        residual: &mut [f64],
+    ) {
         for e in &self.layout.contacts[contact].force {
             let wave = stretched(e.wave, self.resolution.period);
             let to = block_mut(residual, e.index, self.length());
-            series::add_product(force, wave, self.coefficients[e.coefficient], to);
+            series::add_product(force, wave, count * self.coefficients[e.coefficient], to);
         }
     }
 
@@ -177,7 +184,8 @@ impl Balance<'_> {
     }
 
     /// Puts the scratch series of one contact where they belong.
-    pub(super) fn scatter(&mut self, contact: usize, changes: bool, residual: &mut [f64]) {
+    pub(super) fn scatter(&mut self, alike: Alike, changes: bool, residual: &mut [f64]) {
+        let Alike { contact, count } = alike;
         let (base, length, period) = (self.base(), self.length(), self.resolution.period);
         let s = &mut self.scratch;
         for rate in &mut s.by_rate {
@@ -186,10 +194,11 @@ impl Balance<'_> {
         let layout = &self.layout.contacts[contact];
         for e in &layout.force {
             let wave = stretched(e.wave, period);
-            let value = self.coefficients[e.coefficient];
+            let value = count * self.coefficients[e.coefficient];
             series::add_product(&s.force, wave, value, block_mut(residual, e.index, length));
             let column = block_mut(&mut s.column, e.index, length);
-            series::add_product(&s.force, wave, self.coefficients_by[e.coefficient], column);
+            let by = count * self.coefficients_by[e.coefficient];
+            series::add_product(&s.force, wave, by, column);
             if changes {
                 series::add_product(&s.by_parameter, wave, value, column);
             }
@@ -210,7 +219,7 @@ impl Balance<'_> {
         &mut self,
         u: &[f64],
         direction: &[f64],
-        contact: usize,
+        Alike { contact, count }: Alike,
         derivative: &mut [f64],
     ) {
         let base_by = self.base_by();
@@ -239,9 +248,9 @@ impl Balance<'_> {
         for e in &layout.force {
             let wave = stretched(e.wave, period);
             let to = block_mut(derivative, e.index, length);
-            let value = self.coefficients[e.coefficient];
+            let value = count * self.coefficients[e.coefficient];
             series::add_product(&s.by_parameter, wave, value, to);
-            let value = by * self.coefficients_by[e.coefficient];
+            let value = count * by * self.coefficients_by[e.coefficient];
             series::add_product(&s.force, wave, value, to);
         }
     }

@@ -31,6 +31,7 @@ pub(crate) mod subharmonics;
 pub(crate) mod symmetry;
 pub(crate) mod truncation;
 
+mod alike;
 mod assemble;
 mod blocks;
 mod contacts;
@@ -51,6 +52,7 @@ use crate::model::layout::Layout;
 use crate::model::rigid::{Place, Rigid};
 use crate::numeric::fourier::series;
 use crate::system::{System, Variable};
+use alike::Alike;
 use blocks::Block;
 use contacts::Scratch;
 use harmonics::Harmonics;
@@ -139,6 +141,8 @@ pub struct Balance<'a> {
     scratch: Scratch,
     harmonics: Harmonics,
     blocks: Vec<Block>,
+    /// The contacts that are evaluated.
+    alike: Vec<Alike>,
     rigid: Option<Rigid>,
     /// What gives the mean along rigid motions its stiffness, row by row.
     gauge: Vec<f64>,
@@ -168,13 +172,15 @@ impl<'a> Balance<'a> {
         let harmonics = Harmonics::of(resolution);
         let mut coefficients = vec![0.0; layout.coefficients];
         system.coefficients(parameters, omega, &mut coefficients);
-        let rigid = Rigid::beside(Place {
+        let place = Place {
             system,
             layout: &layout,
             parameters,
             omega,
             variable,
-        });
+        };
+        let rigid = Rigid::beside(place);
+        let alike = alike::of(place, resolution);
         let base = omega / (f64::from(system.facts().divisor) * resolution.period as f64);
         let gauge = rigid.as_ref().map_or(Vec::new(), |rigid| {
             let rows = rigid.inertia().transpose();
@@ -183,6 +189,7 @@ impl<'a> Balance<'a> {
         Self {
             rigid,
             gauge,
+            alike,
             system,
             resolution,
             parameters: parameters.to_vec(),

@@ -10,6 +10,7 @@
 //! where `|.|` of a series is the sum of its coefficients by size, and `|g|` is that of the terms of a gap, before they cancel.
 
 use super::Balance;
+use super::alike::Alike;
 use super::terms::{block, block_mut, stretched};
 
 impl Balance<'_> {
@@ -17,9 +18,10 @@ impl Balance<'_> {
     pub(super) fn sizes_of_terms(&mut self, u: &[f64], sizes: &mut [f64]) {
         sizes.fill(0.0);
         let (base, length) = (self.base(), self.length());
-        for contact in 0..self.layout.contacts.len() {
+        for index in 0..self.alike.len() {
+            let Alike { contact, count } = self.alike[index];
             self.contact_derivatives(u, contact);
-            let size = self.size_of_contact(u, contact);
+            let size = count * self.size_of_contact(u, contact);
             for e in &self.layout.contacts[contact].force {
                 sizes[e.index * length] += self.coefficients[e.coefficient].abs() * size;
             }

@@ -1,11 +1,8 @@
 //! Numbers with units, as titles and summaries have them.
 
 use crate::numeric::decimal::Decimal;
+use hertzian_chart::{prefixed, takes_prefix};
 
-/// Symbols that take a prefix.
-const PLAIN: [&str; 11] = ["N", "m", "Pa", "s", "Hz", "J", "W", "V", "A", "F", "C"];
-/// Prefixes of powers of a thousand, from the smallest on.
-const PREFIXES: [&str; 9] = ["p", "n", "u", "m", "", "k", "M", "G", "T"];
 /// Sizes that are read without a prefix.
 const READ: std::ops::Range<f64> = 1e-3..1e4;
 /// Digits of a number that was divided by a prefix: enough for what anyone writes, and rounding is left out.
@@ -16,22 +13,18 @@ pub(crate) fn with_unit(value: f64, unit: &str) -> String {
     if unit.is_empty() {
         return Decimal::plain(value).to_string();
     }
-    let end = unit.find(|c: char| !c.is_alphabetic());
-    let (symbol, rest) = unit.split_at(end.unwrap_or(unit.len()));
-    let takes = PLAIN.contains(&symbol) && !rest.starts_with('^');
     let usual = value == 0.0 || !value.is_finite() || READ.contains(&value.abs());
-    if usual || !takes {
+    if usual || !takes_prefix(unit) {
         return format!("{} {unit}", Decimal::plain(value));
     }
-    let thousands = ((value.abs().log10() / 3.0).floor() as i32).clamp(-4, 4);
-    let scaled = if thousands < 0 {
-        value * 10_f64.powi(-3 * thousands)
+    let (power, unit) = prefixed(value.abs().log10().floor() as i32, unit);
+    let scaled = if power < 0 {
+        value * 10_f64.powi(-power)
     } else {
-        value / 10_f64.powi(3 * thousands)
+        value / 10_f64.powi(power)
     };
     let rounded: f64 = format!("{scaled:.DIGITS$e}").parse().unwrap_or(scaled);
-    let prefix = PREFIXES[(thousands + 4) as usize];
-    format!("{} {prefix}{unit}", Decimal::plain(rounded))
+    format!("{} {unit}", Decimal::plain(rounded))
 }
 
 #[cfg(test)]

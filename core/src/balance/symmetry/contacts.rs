@@ -98,6 +98,47 @@ pub(super) fn shifted(
     Some(moved)
 }
 
+/// The contacts that take each other's place a part of the period later, one of so many, one after the other, where they do so at all of
+/// some values of the coefficients.
+pub(crate) fn cycles(
+    system: &dyn System,
+    layout: &Layout,
+    values: &[Vec<f64>],
+    parts: usize,
+) -> Option<Vec<Vec<usize>>> {
+    let count = layout.contacts.len();
+    let at = |contact: usize| -> Vec<Contact> {
+        let of = &layout.contacts[contact];
+        values
+            .iter()
+            .map(|values| Contact::of(of, values))
+            .collect()
+    };
+    let all: Vec<Vec<Contact>> = (0..count).map(at).collect();
+    let mut images: Vec<usize> = Vec::with_capacity(count);
+    for contact in &all {
+        let turned: Vec<Contact> = contact.iter().map(|of| of.turned(parts)).collect();
+        let is_image = |other: &usize| {
+            let pairs = || turned.iter().zip(&all[*other]);
+            let mut signs = SIGNS.into_iter();
+            !images.contains(other)
+                && signs.any(|signs| pairs().all(|(of, other)| of.is_like(system, other, signs)))
+        };
+        let image = (0..count).find(is_image)?;
+        images.push(image);
+    }
+    let mut cycles: Vec<Vec<usize>> = Vec::new();
+    for first in 0..count {
+        if cycles.iter().any(|cycle| cycle.contains(&first)) {
+            continue;
+        }
+        let others = std::iter::successors(Some(images[first]), |of| Some(images[*of]));
+        let others = others.take_while(|of| *of != first);
+        cycles.push(std::iter::once(first).chain(others).collect());
+    }
+    Some(cycles)
+}
+
 /// Whether all contacts are taken into each other where coordinates take each other's place, a part of the period later, one of so many.
 pub(super) fn are_permuted(
     system: &dyn System,

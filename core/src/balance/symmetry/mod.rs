@@ -26,6 +26,7 @@ const LOOKED_AT: [f64; 6] = [0.0, 0.137, 0.36, 0.618, 0.83, 1.0];
 /// Sum of terms that cancel, in parts of their sizes.
 const ROUNDING: f64 = 1e-14;
 
+pub(crate) use contacts::cycles;
 pub(crate) use permutations::Permutations;
 pub(crate) use stride::has_stride;
 

@@ -186,7 +186,7 @@ impl<'a> RefinedBalance<'a> {
             for contact in 0..plain.layout().contacts.len() {
                 plain.contact_force(u, contact, &mut self.force);
                 self.balance
-                    .add_in_direction(contact, &self.force, &mut self.residual);
+                    .add_in_direction(contact, 1.0, &self.force, &mut self.residual);
             }
         }
         self.core.fill(0.0);
@@ -198,7 +198,7 @@ impl<'a> RefinedBalance<'a> {
             let force = &mut self.force[..self.short];
             self.balance.contact_force(&self.orbit, contact, force);
             self.balance
-                .add_in_direction(contact, force, &mut self.residual);
+                .add_in_direction(contact, 1.0, force, &mut self.residual);
         }
         self.add_stiffness_of_tail();
         self.add_core(1.0);

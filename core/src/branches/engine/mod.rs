@@ -49,6 +49,10 @@ use crate::event::{EventKind, Turn};
 /// Points that are remembered: a parabola goes through them.
 const POINTS: usize = 3;
 
+/// A component of the unit tangent along the parameter that is smaller at both ends of a step is rounding: the branch is vertical there, as
+/// orbits of any size are at a parametric resonance as long as the stiffness that varies is linear.
+const VERTICAL: f64 = 1e-10;
+
 /// A point of the branch with its test functions.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -451,13 +455,14 @@ fn is_modulus(change: &Change) -> bool {
 }
 
 /// What changes its sign from one point to the next, and what that means. Without the bordered determinant every turn counts as a
-/// fold.
+/// fold, unless the branch is [vertical](VERTICAL).
 fn changes(problem: &dyn BranchProblem, a: &Seen, b: &Seen) -> Vec<Change> {
     let differs = |test: Test| {
         let [x, y] = [a, b].map(|seen| seen.value(test));
         x.is_known() && y.is_known() && x.is_negative() != y.is_negative()
     };
-    let turned = differs(Test::Slope);
+    let vertical = [a, b].map(|seen| seen.point.parameter_slope().abs() < VERTICAL);
+    let turned = differs(Test::Slope) && vertical != [true, true];
     let watched = problem.watched();
     let bordered = watched.iter().position(|watched| watched.bordered);
     let crossed = bordered.filter(|index| differs(Test::Watched(*index)));

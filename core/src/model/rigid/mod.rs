@@ -83,7 +83,7 @@ impl Place<'_> {
     }
 
     /// The value that the variable has there.
-    fn value(&self) -> f64 {
+    pub(crate) fn value(&self) -> f64 {
         match self.variable {
             Variable::Omega => self.omega,
             Variable::Parameter(index) => self.parameters[index],

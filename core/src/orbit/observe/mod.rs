@@ -167,7 +167,7 @@ impl Observer {
             }
             balance.contact_force(u, contact, &mut self.force);
             self.impulses.push(self.force[0] * TAU / balance.base());
-            balance.add_in_direction(contact, &self.force, &mut self.forces);
+            balance.add_in_direction(contact, 1.0, &self.force, &mut self.forces);
         }
         self.velocity.resize(length, 0.0);
         let mut powers = (0.0, 0.0);
