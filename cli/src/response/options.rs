@@ -202,6 +202,10 @@ pub struct Options {
     #[arg(long, value_name = "FILE", requires = "at")]
     pub panels: Option<PathBuf>,
 
+    /// And, on that page, each of these orbits in the plane of two signals: NAME over NAME, as the path of a shaft
+    #[arg(long, value_name = "NAME,NAME", value_delimiter = ',', num_args = 1..=2, requires = "panels")]
+    pub path: Vec<String>,
+
     /// Write one row per point to this file
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,

@@ -23,14 +23,23 @@ pub fn write(
     let mut page = Page::new(2);
     let views = options.views();
     for (number, point) in orbits {
-        match branches[*number].panels(point, &views[0]) {
-            Ok(panels) => page = page.page(panels),
-            Err(error) => missing.push(format!(
-                "no panels at {} = {}: {}",
-                options.varied(),
-                point.value,
-                chain(&error)
-            )),
+        let branch = &branches[*number];
+        let path = match &options.path[..] {
+            [up, across] => Some(branch.path([across, up], point)),
+            _ => None,
+        };
+        let path = path.map(|path| path.map(|chart| Page::new(2).chart(chart)));
+        let panels = std::iter::once(branch.panels(point, &views[0])).chain(path);
+        for panels in panels {
+            match panels {
+                Ok(panels) => page = page.page(panels),
+                Err(error) => missing.push(format!(
+                    "no panels at {} = {}: {}",
+                    options.varied(),
+                    point.value,
+                    chain(&error)
+                )),
+            }
         }
     }
     export::write(path, page.to_svg()).map_err(|error| Failure::File(path.clone(), error))?;

@@ -288,6 +288,9 @@ fn numbers(options: &Options) -> Result<(), String> {
     if !two(options.plane.len()) {
         return Err("--in takes two names: --in omega,drive".to_owned());
     }
+    if !two(options.path.len()) {
+        return Err("--path takes two names: --path y,x".to_owned());
+    }
     values::once("--in", options.plane.iter().map(String::as_str))?;
     if !two(options.within.len()) {
         return Err("--within takes two values: --within 0.05,0.5".to_owned());

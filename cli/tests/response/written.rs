@@ -98,6 +98,32 @@ fn a_curve_is_followed_by_every_method() {
 }
 
 #[test]
+fn an_orbit_is_drawn_in_the_plane_of_two_signals() {
+    let folder = Folder::new("path");
+    let [model, svg, page] = ["stop.txt", "a.svg", "page.svg"].map(|name| folder.file(name));
+    let text = "Stop(x) { law stop(g) { g > 0 => g, else => 0 }
+                ddot(x) + dot(x)/10 + x + stop(x - 1) = cos(omega*t)/5; output speed = dot(x); }";
+    std::fs::write(&model, text).expect("written");
+    let command = format!(
+        "--model {model} --from 0.8 --to 0.9 --at 0.85 --svg {svg} --panels {page} --path speed,x"
+    );
+    let words: Vec<&str> = command.split_whitespace().collect();
+    let outcome = run_with(&words).expect("a branch");
+    assert!(outcome.complete, "{:?}", outcome.warnings);
+    let drawn = std::fs::read_to_string(&page).expect("a page");
+    assert!(drawn.contains("speed over x at omega = 0.85"));
+    // One name is no plane, and what is not there is said.
+    let alone = command.replace("speed,x", "speed");
+    let words: Vec<&str> = alone.split_whitespace().collect();
+    let refused = run_with(&words).expect_err("one name");
+    assert!(refused.to_string().contains("--path takes two names"));
+    let unknown = command.replace("speed,x", "speed,z");
+    let words: Vec<&str> = unknown.split_whitespace().collect();
+    let outcome = run_with(&words).expect("a branch");
+    assert!(!outcome.complete && outcome.warnings[0].contains("no panels at omega = 0.85"));
+}
+
+#[test]
 fn a_branch_that_ends_early_is_written_all_the_same() {
     let folder = Folder::new("early");
     let json = folder.file("a.json");

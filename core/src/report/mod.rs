@@ -17,6 +17,8 @@ mod map_chart;
 #[cfg(feature = "plot")]
 mod panels;
 #[cfg(feature = "plot")]
+mod path;
+#[cfg(feature = "plot")]
 pub(crate) mod picture;
 #[cfg(feature = "plot")]
 mod prefix;

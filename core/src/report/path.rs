@@ -1,0 +1,96 @@
+//! An orbit in the plane of two signals.
+
+use hertzian_chart::{Chart, Note, Series};
+
+use crate::branches::branch::Branch;
+use crate::branches::point::Point;
+use crate::error::Error;
+use crate::numeric::decimal::Decimal;
+use crate::report::unit::in_unit;
+
+/// Digits of the value in the title.
+const DIGITS: usize = 6;
+
+impl Branch {
+    /// An orbit in the plane of two signals, coordinates, outputs or forces of contacts by their names: the path of a shaft in its bearing, a
+    /// phase portrait where the second is the rate of the first. Where the period of the declaration begins is marked.
+    ///
+    /// ```
+    /// use hertzian::FrequencyResponse;
+    ///
+    /// hertzian::oscillator! {
+    ///     /// A shaft on two springs.
+    ///     Shaft(x: mm, y: mm) {
+    ///         param m: t = 1e-3 > 0;
+    ///         param drive: N = 1;
+    ///         m*ddot(x) + 0.01*dot(x) + 40*x = drive*cos(omega*t);
+    ///         m*ddot(y) + 0.01*dot(y) + 60*y = drive*sin(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let branch = FrequencyResponse::of(&Shaft::default()).from(150.0).to(300.0).run()?;
+    /// let orbit = &branch.at(220.0)?[0];
+    /// let svg = branch.path(["x", "y"], orbit)?.to_svg();
+    /// assert!(svg.contains("x [mm]") && svg.contains("y [mm]"));
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`waveform`](Self::waveform).
+    pub fn path(&self, names: [&str; 2], point: &Point) -> Result<Chart, Error> {
+        let [x, y] = [
+            self.waveform(names[0], point)?,
+            self.waveform(names[1], point)?,
+        ];
+        let points = together(&x, &y);
+        let [across, up] = names.map(|name| in_unit(name, self.model.unit_of(name)));
+        let value = Decimal::rounded(point.value, DIGITS);
+        let title = format!(
+            "{} over {} at {} = {value}",
+            names[1], names[0], self.varied
+        );
+        let begin = points.first().map(|&point| Note {
+            label: "begin of the period".to_owned(),
+            point,
+        });
+        let chart = Chart::new(title).x(across).y(up).trace(Series {
+            label: String::new(),
+            points,
+        });
+        Ok(begin.into_iter().fold(chart, Chart::note))
+    }
+}
+
+/// Two signals over the same times: those of the one that has more of them.
+fn together(x: &[[f64; 2]], y: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    if x.len() > y.len() {
+        return together(y, x).into_iter().map(|[y, x]| [x, y]).collect();
+    }
+    y.iter().map(|&[t, y]| [value(x, t), y]).collect()
+}
+
+/// The value of a signal at a time, on the chord between its neighbours; of two at one time the first.
+fn value(of: &[[f64; 2]], t: f64) -> f64 {
+    let after = of.partition_point(|[time, _]| *time < t).min(of.len() - 1);
+    let [[from, a], [to, b]] = [of[after.saturating_sub(1)], of[after]];
+    if to > from {
+        a + (t - from) / (to - from) * (b - a)
+    } else {
+        b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signals_of_different_times_meet_at_those_of_the_finer_one() {
+        let coarse = [[0.0, 1.0], [1.0, 3.0], [2.0, 2.0]];
+        let fine = [[0.0, 5.0], [0.5, 6.0], [1.0, 7.0], [1.0, 8.0], [2.0, 9.0]];
+        let expected = [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0], [3.0, 8.0], [2.0, 9.0]];
+        assert_eq!(together(&coarse, &fine), expected);
+        let turned = expected.map(|[x, y]| [y, x]);
+        assert_eq!(together(&fine, &coarse), turned);
+    }
+}
