@@ -21,7 +21,7 @@ pub fn settling(options: &Options) -> Option<Settling> {
 }
 
 /// The branches of a request that cover its range; the first is the one that was asked for, and alone where that is wanted, or where
-/// they are followed by shooting anyway.
+/// the bifurcations of the range are followed anyway.
 ///
 /// # Errors
 /// As that of the request.

@@ -74,7 +74,7 @@ pub struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count)]
     pub period: usize,
 
-    /// How the orbits of the curve are computed
+    /// How the orbits of the curve are computed; --bifurcations and --track go by shooting
     #[arg(long, value_enum, value_name = "METHOD", default_value_t = By::Balance)]
     pub by: By,
 

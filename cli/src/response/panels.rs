@@ -28,13 +28,13 @@ pub fn write(
             [up, across] => Some(branch.path([across, up], point)),
             _ => None,
         };
-        let path = path.map(|path| path.map(|chart| Page::new(2).chart(chart)));
-        let panels = std::iter::once(branch.panels(point, &views[0])).chain(path);
-        for panels in panels {
-            match panels {
+        let path = path.map(|path| ("path", path.map(|chart| Page::new(2).chart(chart))));
+        let panels = ("panels", branch.panels(point, &views[0]));
+        for (what, drawn) in std::iter::once(panels).chain(path) {
+            match drawn {
                 Ok(panels) => page = page.page(panels),
                 Err(error) => missing.push(format!(
-                    "no panels at {} = {}: {}",
+                    "no {what} at {} = {}: {}",
                     options.varied(),
                     point.value,
                     chain(&error)

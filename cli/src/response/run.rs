@@ -7,6 +7,7 @@ use hertzian::bifurcation::Diagram;
 use hertzian::chart::{Chart, Page, Series, View};
 use hertzian::error::{ErrorKind, chain};
 use hertzian::export::{self, Table};
+use hertzian::observe::Wanted;
 use hertzian::{
     Branch, Cancel, ContactEquation, Error, FrequencyResponse, Model, OrbitError, Point, Shooting,
     Stop, System, remarks,
@@ -222,6 +223,10 @@ fn checked(options: &Options) -> Result<Box<dyn System>, Failure> {
     let known = Model::of(&*model);
     for wanted in &options.plot {
         known.check(wanted)?;
+    }
+    for name in &options.path {
+        let wanted: Wanted = name.parse().map_err(Error::from)?;
+        known.check(&wanted)?;
     }
     search::check(options, &*model)?;
     bifurcations::check(options, &*model)?;

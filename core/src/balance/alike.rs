@@ -7,8 +7,8 @@
 //! sum_j (F_j)_k = N (F_0)_k,    k = 0, m, 2 m, ...                                                              (1)
 //! ```
 //!
-//! with as many contacts `N` as take each other's place. Of eight balls of a bearing one is evaluated. The others are where they were, so
-//! the same holds of the derivatives by orbits of this kind.
+//! with as many contacts `N` as take each other's place. Of eight balls of a bearing one is evaluated in each iteration.
+//! The others are where they were, so the same holds of the derivatives by orbits of this kind.
 //!
 //! Source: Golubitsky, Stewart and Schaeffer (1988), Singularities and Groups in Bifurcation Theory II, chapter XVI.
 

@@ -50,7 +50,7 @@ impl Branch {
             names[1], names[0], self.varied
         );
         let begin = points.first().map(|&point| Note {
-            label: "begin of the period".to_owned(),
+            label: "beginning of the period".to_owned(),
             point,
         });
         let chart = Chart::new(title).x(across).y(up).trace(Series {
@@ -61,22 +61,32 @@ impl Branch {
     }
 }
 
-/// Two signals over the same times: those of the one that has more of them.
+/// Two signals over the times of both. Where one jumps there are two places, before and after.
 fn together(x: &[[f64; 2]], y: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    if x.len() > y.len() {
-        return together(y, x).into_iter().map(|[y, x]| [x, y]).collect();
+    let mut times: Vec<f64> = x.iter().chain(y).map(|[t, _]| *t).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let mut places = Vec::with_capacity(times.len());
+    for t in times {
+        let [[x, later], [y, after]] = [sides(x, t), sides(y, t)];
+        places.push([x, y]);
+        if [later, after] != [x, y] {
+            places.push([later, after]);
+        }
     }
-    y.iter().map(|&[t, y]| [value(x, t), y]).collect()
+    places
 }
 
-/// The value of a signal at a time, on the chord between its neighbours; of two at one time the first.
-fn value(of: &[[f64; 2]], t: f64) -> f64 {
-    let after = of.partition_point(|[time, _]| *time < t).min(of.len() - 1);
-    let [[from, a], [to, b]] = [of[after.saturating_sub(1)], of[after]];
-    if to > from {
-        a + (t - from) / (to - from) * (b - a)
-    } else {
-        b
+/// The values of a signal just before a time and just after it; between its times on the chord.
+fn sides(of: &[[f64; 2]], t: f64) -> [f64; 2] {
+    let first = of.partition_point(|[time, _]| *time < t);
+    let end = of.partition_point(|[time, _]| *time <= t);
+    match (&of[..first], &of[first..end], &of[end..]) {
+        (_, [[_, before], .., [_, after]], _) => [*before, *after],
+        (_, [[_, value]], _) => [*value; 2],
+        ([.., [from, a]], [], [[to, b], ..]) => [a + (t - from) / (to - from) * (b - a); 2],
+        ([.., [_, value]], [], []) | ([], [], [[_, value], ..]) => [*value; 2],
+        ([], [], []) => [f64::NAN; 2],
     }
 }
 
@@ -85,12 +95,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn signals_of_different_times_meet_at_those_of_the_finer_one() {
+    fn signals_of_different_times_meet_at_those_of_both() {
         let coarse = [[0.0, 1.0], [1.0, 3.0], [2.0, 2.0]];
         let fine = [[0.0, 5.0], [0.5, 6.0], [1.0, 7.0], [1.0, 8.0], [2.0, 9.0]];
         let expected = [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0], [3.0, 8.0], [2.0, 9.0]];
         assert_eq!(together(&coarse, &fine), expected);
         let turned = expected.map(|[x, y]| [y, x]);
         assert_eq!(together(&fine, &coarse), turned);
+    }
+
+    #[test]
+    fn signals_that_jump_together_stay_together() {
+        let jumps = [[0.0, 0.0], [1.0, 1.0], [1.0, 4.0], [2.0, 5.0]];
+        assert_eq!(
+            together(&jumps, &jumps),
+            [[0.0, 0.0], [1.0, 1.0], [4.0, 4.0], [5.0, 5.0]]
+        );
+        assert!(together(&jumps, &[]).iter().all(|[_, y]| y.is_nan()));
     }
 }
