@@ -40,6 +40,7 @@ use nalgebra::{DMatrix, DVector};
 use modes::Modes;
 
 use crate::balance::aft::Aft;
+use crate::balance::alike::Alike;
 use crate::balance::{Balance, Parity, Resolution};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
@@ -183,23 +184,27 @@ impl<'a> RefinedBalance<'a> {
         self.residual.fill(0.0);
         if let Some(plain) = &mut self.plain {
             plain.set(value);
-            for contact in 0..plain.layout().contacts.len() {
+            for index in 0..plain.alike.len() {
+                let Alike { contact, count } = plain.alike[index];
                 plain.contact_force(u, contact, &mut self.force);
                 self.balance
-                    .add_in_direction(contact, 1.0, &self.force, &mut self.residual);
+                    .add_in_direction(contact, count, &self.force, &mut self.residual);
             }
+            self.balance.keep_unknowns(&mut self.residual);
         }
         self.core.fill(0.0);
         self.add_core(-1.0);
         self.add_stiffness();
         self.solve_tail()?;
         self.residual.fill(0.0);
-        for contact in 0..self.balance.layout().contacts.len() {
+        for index in 0..self.balance.alike.len() {
+            let Alike { contact, count } = self.balance.alike[index];
             let force = &mut self.force[..self.short];
             self.balance.contact_force(&self.orbit, contact, force);
             self.balance
-                .add_in_direction(contact, 1.0, force, &mut self.residual);
+                .add_in_direction(contact, count, force, &mut self.residual);
         }
+        self.balance.keep_unknowns(&mut self.residual);
         self.add_stiffness_of_tail();
         self.add_core(1.0);
         Some(())
