@@ -83,9 +83,10 @@ fn sides(of: &[[f64; 2]], t: f64) -> [f64; 2] {
     let end = of.partition_point(|[time, _]| *time <= t);
     match (&of[..first], &of[first..end], &of[end..]) {
         (_, [[_, before], .., [_, after]], _) => [*before, *after],
-        (_, [[_, value]], _) => [*value; 2],
         ([.., [from, a]], [], [[to, b], ..]) => [a + (t - from) / (to - from) * (b - a); 2],
-        ([.., [_, value]], [], []) | ([], [], [[_, value], ..]) => [*value; 2],
+        (_, [[_, value]], _) | ([.., [_, value]], [], []) | ([], [], [[_, value], ..]) => {
+            [*value; 2]
+        }
         ([], [], []) => [f64::NAN; 2],
     }
 }
