@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use hertzian::Error;
 use hertzian::bifurcation::{Cell, Map};
 use hertzian::chart::Chart;
 use numpy::{PyArray1, PyArray2};
@@ -138,7 +139,8 @@ impl PyMap {
     #[pyo3(signature = (path, of="stable"))]
     fn plot(&self, py: Python<'_>, path: PathBuf, of: &str) -> PyResult<()> {
         let chart = self.chart(of)?;
-        Ok(py.detach(|| chart.write(path))?)
+        let written = py.detach(|| -> Result<(), Error> { Ok(chart.write(path)?) });
+        written.map_err(exception)
     }
 
     fn _repr_svg_(&self) -> String {
