@@ -70,9 +70,10 @@ def test_a_map_counts_what_exists(one_sided, tmp_path):
     assert found.stable.tolist() == [[1, 1], [1, 2]]
     assert found.unstable.tolist() == [[0, 0], [0, 1]]
     assert found.verdicts[1][1] == "stable and unstable"
-    # Without contact lost the mass is on a linear spring: the amplitude is drive over that of its stiffness.
+    # Without contact lost the mass is on a linear spring: the amplitude is drive over that of its stiffness; the output is twice the speed.
     stiffness = np.abs(1 - 0.7**2 + 2j * 0.032 * 0.7)
-    assert abs(found.largest[0, 0] / (2 * 0.02 / stiffness) - 1) < 1e-5
+    assert found.signal == "speed"
+    assert abs(found.largest[0, 0] / (2 * 0.7 * 2 * 0.02 / stiffness) - 1) < 1e-5
     path = tmp_path / "map.json"
     found.write(path)
     assert hertzian.Map.read(path) == found

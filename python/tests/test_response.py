@@ -197,7 +197,7 @@ def test_charts_look_as_asked(fold_branch):
     stacked = fold_branch.to_svg("x", stack=3)
     assert "amplitudes of x" in stacked
     without = fold_branch.to_svg(events=["period-doubling"])
-    assert "fold" in fold_branch.to_svg() and "not marked: 2 fold" in without
+    assert "fold" in fold_branch.to_svg() and "not marked: 1 fold" in without
     with pytest.raises(ValueError, match="cubic is no scale"):
         fold_branch.to_svg(scale="cubic")
     with pytest.raises(ValueError):
