@@ -22,9 +22,12 @@ impl Branch {
     ///     /// A shaft on two springs.
     ///     Shaft(x: mm, y: mm) {
     ///         param m: t = 1e-3 > 0;
+    ///         param c: N*s/mm = 0.01;
+    ///         param soft: N/mm = 40;
+    ///         param stiff: N/mm = 60;
     ///         param drive: N = 1;
-    ///         m*ddot(x) + 0.01*dot(x) + 40*x = drive*cos(omega*t);
-    ///         m*ddot(y) + 0.01*dot(y) + 60*y = drive*sin(omega*t);
+    ///         m*ddot(x) + c*dot(x) + soft*x = drive*cos(omega*t);
+    ///         m*ddot(y) + c*dot(y) + stiff*y = drive*sin(omega*t);
     ///     }
     /// }
     ///

@@ -617,7 +617,7 @@ mod drawn {
         assert_eq!(branch.leading().name, "second");
         let svg = branch.chart().to_svg();
         for part in [
-            "peak-to-peak of second [m]",
+            "peak-to-peak of second [um]",
             "k = 1 GN/m",
             "soft = 1 MN/m",
             "c = 1000 N*s/m",
