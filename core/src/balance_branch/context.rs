@@ -45,7 +45,7 @@ pub(crate) enum EventSelection {
     All,
 }
 
-/// What it takes to compute further orbits of a branch.
+/// What it takes to compute further orbits of a branch. Shooting has such a list of its own: of other equations, with some of the same names.
 #[derive(Debug, Clone)]
 pub(crate) struct BranchContext {
     pub(crate) system: Arc<dyn System>,

@@ -9,6 +9,7 @@ use std::time::Duration;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::point::{Event, Point};
+use super::record::Kept;
 use crate::cancel::Cancel;
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
@@ -266,6 +267,14 @@ impl Branch {
     /// The system that it belongs to; `None` of a branch that was read from a file.
     pub fn system(&self) -> Option<&dyn System> {
         self.further.system.as_deref()
+    }
+
+    pub(crate) fn kept(&self) -> Kept<'_> {
+        Kept {
+            points: &self.points,
+            events: &self.events,
+            turns: &self.turns,
+        }
     }
 
     /// Period of its orbits in periods of the declaration; zero without orbits.

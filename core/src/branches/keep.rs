@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use super::branch::{Branch, Further, Model};
-use super::problem::Kept;
+use super::record::Kept;
 use crate::continuation::follow::{Continue, Halt};
 use crate::error::Error;
 

@@ -12,6 +12,7 @@ pub(crate) mod orbit;
 pub(crate) mod point;
 pub(crate) mod problem;
 pub(crate) mod progress;
+pub(crate) mod record;
 pub(crate) mod recurrence;
 pub(crate) mod request;
 pub(crate) mod solve;

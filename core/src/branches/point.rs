@@ -94,15 +94,6 @@ impl Event {
     }
 }
 
-/// Drops those of the events from one on that their errors, so many times, do not tell apart from a touch at a value.
-pub(crate) fn drop_beside(events: &mut Vec<Event>, first: usize, touch: f64, errors: f64) {
-    let mut place = 0;
-    events.retain(|event| {
-        place += 1;
-        place <= first || (event.point.value - touch).abs() > errors * event.error
-    });
-}
-
 /// Decimals of the size of an orbit whose error was not asked for.
 pub(crate) const DECIMALS: usize = 6;
 

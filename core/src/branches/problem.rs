@@ -5,12 +5,12 @@
 
 use super::engine::Walk;
 use super::extreme::Extreme;
-use super::point::{Event, Point};
+use super::record::{Kept, Record};
 use crate::continuation::follow::{Continue, CurvePoint, Halted, Step, Stop};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{AsProblem, Problem};
-use crate::event::{EventKind, Turn};
+use crate::event::EventKind;
 
 /// Value of a test function: `mantissa exp(exponent)`, since determinants of many unknowns leave the range of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,14 +127,6 @@ pub(crate) struct Zero {
     pub(crate) after: usize,
 }
 
-/// What was kept of a branch.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Kept<'k> {
-    pub(crate) points: &'k [Point],
-    pub(crate) events: &'k [Event],
-    pub(crate) turns: &'k [Turn],
-}
-
 /// An orbit of which a gap touches a level.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Touch {
@@ -187,12 +179,20 @@ pub(crate) trait BranchProblem {
     /// Whether a test function has vanished, or jumps where it was located.
     fn vanishes(&mut self, change: Change, located: &Located) -> bool;
 
-    /// Number of points kept.
-    fn points(&self) -> usize;
+    /// What was gathered so far.
+    fn record(&self) -> &Record;
 
-    /// What was kept so far, where the verdicts on points are to be explained by events.
+    /// The same, to be changed.
+    fn record_mut(&mut self) -> &mut Record;
+
+    /// Number of points kept.
+    fn points(&self) -> usize {
+        self.record().points.len()
+    }
+
+    /// What was kept so far.
     fn kept(&self) -> Kept<'_> {
-        Kept::default()
+        self.record().kept()
     }
 
     /// Whether a point belongs to what comes after the end of the branch. It is not kept then.
@@ -213,12 +213,6 @@ pub(crate) trait BranchProblem {
 
     /// Reads a zero of a test function, whose factors Newton's method holds unless branches cross there, and keeps it.
     fn keep(&mut self, newton: &mut Newton, step: Step<'_>, zero: &Zero) -> ZeroOutcome;
-
-    /// Keeps a place that is none.
-    fn keep_turn(&mut self, turn: Turn);
-
-    /// Drops one of those again, which turned out to be where a level is touched.
-    fn drop_turn(&mut self, turn: &Turn);
 
     /// Whether touches of levels are looked for. Where the force jumps they always are.
     fn seeks_touches(&self) -> bool {
@@ -249,12 +243,6 @@ pub(crate) trait BranchProblem {
         let _ = (u, extreme, range, form);
         false
     }
-
-    /// Number of events kept.
-    fn events(&self) -> usize;
-
-    /// Drops those of the events from one on that their errors, so many times, do not tell apart from a touch at a value.
-    fn drop_beside(&mut self, first: usize, touch: f64, errors: f64);
 
     /// How slowly, at a solution, a gap passes a level where the force jumps while it is slowed down: the height at which it would turn,
     /// in units of half of the gap's range. The least of all; infinite where there is none, or it is not known.

@@ -15,6 +15,7 @@ use crate::branches::observed::Motion;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::progress::See;
+use crate::branches::record::Record;
 use crate::branches::solve;
 use crate::continuation::follow::{CurvePoint, Start, Stop};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
@@ -86,7 +87,7 @@ pub(crate) fn branch(
     let lost = branch.lost;
     let stopped = match stopped {
         Ok(Stop::Interrupted) if lost => {
-            let value = run.points.last().map_or(from, |point| point.value);
+            let value = run.record.points.last().map_or(from, |point| point.value);
             Stop::StepTooShort {
                 step: options.steps.smallest,
                 value,
@@ -103,12 +104,13 @@ pub(crate) fn branch(
         }
     };
     let Run {
+        record, statistics, ..
+    } = run;
+    let Record {
         points,
         events,
         turns,
-        statistics,
-        ..
-    } = run;
+    } = record;
     Ok(Branch {
         model: Model::of(problem.asked.system.as_ref()),
         varied: problem.asked.varied.clone(),

@@ -268,7 +268,7 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
             };
         }
     }
-    run.events.push(Event {
+    run.record.events.push(Event {
         kind: EventKind::Grazing { turns: touch.turns },
         error: error + TOUCHED * at.parameter().abs(),
         point: read.point,

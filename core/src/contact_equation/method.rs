@@ -6,16 +6,17 @@ use super::problem::{FIRST, RESOLUTIONS};
 use super::run::{Fits, ReadOrbit, Run};
 use crate::branches::extreme::Extreme;
 use crate::branches::moduli;
-use crate::branches::point::{self, Point};
+use crate::branches::point::Point;
 use crate::branches::problem::{
-    BranchProblem, Change, Kept, Read, TestValue, Touch, Watched, Zero, ZeroOutcome,
+    BranchProblem, Change, Read, TestValue, Touch, Watched, Zero, ZeroOutcome,
 };
 use crate::branches::progress::{Progress, See};
+use crate::branches::record::Record;
 use crate::continuation::follow::{CurvePoint, Halted, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
-use crate::event::{EventKind, Turn};
+use crate::event::EventKind;
 use crate::shooting::tested::{self, Tests};
 
 /// Brackets of an event are narrowed until rounding stops it, or this is reached.
@@ -89,9 +90,17 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
 
     /// How well multipliers are known along the last step.
     fn last_error(&self) -> f64 {
-        let last = self.run.points.iter().rev().take(2);
-        last.map(|point| point.stability.error)
-            .fold(VANISHING, f64::max)
+        self.run.record.last_error(VANISHING)
+    }
+
+    /// What happens at a zero, if anything does.
+    fn kind(&mut self, zero: &Zero) -> Option<EventKind> {
+        let error = self.last_error();
+        let doubling = self
+            .watched
+            .get(1)
+            .map_or(zero.change.kind, |watched| watched.kind);
+        tested::kind(zero, self.tests(&zero.root.located.point), error, doubling)
     }
 
     /// Prepares the equations that fit an orbit. Says whether there are any.
@@ -130,13 +139,15 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let ReadOrbit { point, map, .. } = read;
         let tests = Tests::of(map.as_ref(), at.parameter_slope());
         self.tested = Some((at.u.clone(), tests));
-        let done = self.run.points.len() + 1;
+        let done = self.run.record.points.len() + 1;
         let answer = (self.visit)(Progress::orbit(done, &point));
-        self.run.points.push(point);
+        self.run.record.points.push(point);
         answer.is_continue()
     }
 }
 
+// Test functions are those of a map over the period, as by shooting; where the map comes from is another thing, so what asks for them
+// is written for both.
 impl BranchProblem for ContactBranch<'_, '_> {
     fn equations(&mut self) -> &mut dyn Problem {
         &mut self.run.equations
@@ -151,10 +162,8 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
-        if self.watched.is_empty() {
-            return None;
-        }
-        Some(moduli::complex_outside(&self.tests(at).multipliers))
+        let watches = !self.watched.is_empty();
+        watches.then(|| moduli::complex_outside(&self.tests(at).multipliers))
     }
 
     fn vanishing(&self) -> f64 {
@@ -185,16 +194,12 @@ impl BranchProblem for ContactBranch<'_, '_> {
         located.test.abs() <= VANISHING * unit
     }
 
-    fn points(&self) -> usize {
-        self.run.points.len()
+    fn record(&self) -> &Record {
+        &self.run.record
     }
 
-    fn kept(&self) -> Kept<'_> {
-        Kept {
-            points: &self.run.points,
-            events: &self.run.events,
-            turns: &self.run.turns,
-        }
+    fn record_mut(&mut self) -> &mut Record {
+        &mut self.run.record
     }
 
     fn read(&mut self, _: &mut Newton, at: &CurvePoint) -> Read {
@@ -232,40 +237,18 @@ impl BranchProblem for ContactBranch<'_, '_> {
     }
 
     fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> ZeroOutcome {
-        let mut kind = zero.change.kind;
-        let of_modulus = kind == EventKind::NeimarkSacker;
-        if let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) {
-            let tells = zero.told || zero.least <= self.last_error();
-            let multipliers = &self.tests(&zero.root.located.point).multipliers;
-            let Some(seen) = moduli::seen_by_moduli(multipliers, place, tells) else {
-                return ZeroOutcome::Nothing;
-            };
-            kind = seen;
-        }
+        let of_modulus = zero.change.kind == EventKind::NeimarkSacker;
+        let Some(kind) = self.kind(zero) else {
+            return ZeroOutcome::Nothing;
+        };
         let Some(event) = events::event(self.run, zero, kind) else {
             return ZeroOutcome::Unread;
         };
-        if of_modulus && moduli::is_recorded(&self.run.events, &event) {
+        if of_modulus && moduli::is_recorded(&self.run.record.events, &event) {
             return ZeroOutcome::Nothing;
         }
-        self.run.events.push(event);
+        self.run.record.events.push(event);
         ZeroOutcome::Event
-    }
-
-    fn keep_turn(&mut self, turn: Turn) {
-        self.run.turns.push(turn);
-    }
-
-    fn drop_turn(&mut self, turn: &Turn) {
-        self.run.turns.retain(|other| other != turn);
-    }
-
-    fn events(&self) -> usize {
-        self.run.events.len()
-    }
-
-    fn drop_beside(&mut self, first: usize, touch: f64, errors: f64) {
-        point::drop_beside(&mut self.run.events, first, touch, errors);
     }
 
     fn seeks_touches(&self) -> bool {

@@ -12,12 +12,12 @@ use super::skeleton::Told;
 use crate::branches::extreme::Extreme;
 use crate::branches::observed::{Motion as Extent, Observed};
 use crate::branches::orbit::Orbit;
-use crate::branches::point::{Event, Point};
+use crate::branches::point::Point;
+use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
 use crate::branches::stability::{Stability, Verdict};
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::statistics::Statistics;
-use crate::event::Turn;
 use crate::numeric::roots::Place;
 use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::shooting::reading::Reader;
@@ -54,9 +54,7 @@ pub(super) struct Run<'r> {
     finer: Option<Equations>,
     /// What the last of them has said.
     screened: Option<Screened>,
-    pub(super) points: Vec<Point>,
-    pub(super) events: Vec<Event>,
-    pub(super) turns: Vec<Turn>,
+    pub(super) record: Record,
     pub(super) statistics: Statistics,
 }
 
@@ -112,9 +110,7 @@ impl<'r> Run<'r> {
             equations,
             finer: None,
             screened: None,
-            points: Vec::new(),
-            events: Vec::new(),
-            turns: Vec::new(),
+            record: Record::default(),
             statistics: Statistics::default(),
         }
     }
@@ -297,7 +293,7 @@ impl<'r> Run<'r> {
 
     /// The same, since the last point.
     fn rise(&self, point: &Point) -> f64 {
-        self.points.last().map_or(0.0, |last| {
+        self.record.points.last().map_or(0.0, |last| {
             let by = (point.value - last.value).abs();
             if by > 0.0 {
                 (point.peak_to_peak() - last.peak_to_peak()).abs() / by

@@ -21,6 +21,7 @@ pub struct Statistics {
     pub monodromies: usize,
 }
 
+// Counts of multipliers (`Cost`) and of motions in time (`Work`) are summed alike: other counts, of rooms above.
 impl std::ops::AddAssign for Statistics {
     fn add_assign(&mut self, other: Self) {
         self.residuals += other.residuals;

@@ -22,6 +22,7 @@ impl Valued {
     }
 }
 
+// All but the values is the system's own; another wrapper, which interprets its laws, says so in the same words.
 impl System for Valued {
     fn facts(&self) -> &SystemFacts {
         self.system.facts()

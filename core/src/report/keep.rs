@@ -19,7 +19,7 @@ use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::engine::Places;
 use crate::branches::keep::{Keep, Rest};
 use crate::branches::point::{Event, Point};
-use crate::branches::problem::Kept;
+use crate::branches::record::Kept;
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
@@ -272,12 +272,7 @@ impl Keep for Keeper {
             elapsed: branch.elapsed,
             request: branch.further.clone(),
         };
-        let kept = Kept {
-            points: &branch.points,
-            events: &branch.events,
-            turns: &branch.turns,
-        };
-        self.add(kept, Value::Null, Some(end))
+        self.add(branch.kept(), Value::Null, Some(end))
     }
 
     fn failure(&self) -> Option<Error> {

@@ -20,6 +20,7 @@ use crate::branches::engine::Places;
 use crate::branches::error::{Attempts, OrbitError};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
+use crate::branches::record::Record;
 use crate::branches::request::{Guess, Request};
 use crate::continuation::follow::{FollowOptions, Start, Stop};
 use crate::continuation::statistics::Statistics;
@@ -160,7 +161,7 @@ pub(super) fn resume(
     let first = branch.points.first().ok_or(RequestError::Rest)?;
     let first = context.unknowns_of(&first.orbit, first.value);
     let run = Run::new(&context, options, &first);
-    let run = run.resumed(rest, &branch.points, &branch.events, &branch.turns);
+    let run = run.resumed(rest, branch.kept());
     let followed = run.ok_or(RequestError::Rest)?.resume(rest, visit)?;
     let mut resumed = as_branch(asked, context.clone(), followed);
     resumed.elapsed = started.elapsed();
@@ -221,12 +222,15 @@ fn with_resolution_of(context: &mut BranchContext, event: &Event, period: usize)
 fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Branch {
     let Followed {
         stopped,
-        points,
-        mut events,
-        mut turns,
+        record,
         statistics,
         mut rest,
     } = followed;
+    let Record {
+        points,
+        mut events,
+        mut turns,
+    } = record;
     if let Some(rest) = &mut rest {
         let kept = rest.kept();
         let after: Vec<usize> = events.iter().map(|event| event.after).collect();

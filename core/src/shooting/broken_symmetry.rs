@@ -20,7 +20,7 @@ impl Run<'_> {
     /// The permutations that the last orbit has.
     fn had(&self, equations: &Equations) -> impl Iterator<Item = &SignedPermutation> {
         let same = self.same_state(equations);
-        let last = self.points.last().map(|point| point.orbit.state());
+        let last = self.record.points.last().map(|point| point.orbit.state());
         let images = self.problem.at_once.iter();
         images.filter(move |image| {
             let state = last.as_ref();

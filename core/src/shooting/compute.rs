@@ -11,6 +11,7 @@ use super::switch::{self, Begun};
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
+use crate::branches::record::Record;
 use crate::branches::request::Guess;
 use crate::continuation::follow::{Start, Stop};
 use crate::error::Error;
@@ -155,14 +156,17 @@ fn followed(
 /// The branch that a run has gathered.
 fn as_branch(problem: &ShootingProblem, run: Run<'_>, stopped: Stop, started: Instant) -> Followed {
     let Run {
-        points,
-        events,
-        turns,
+        record,
         statistics,
         work,
         rest,
         ..
     } = run;
+    let Record {
+        points,
+        events,
+        turns,
+    } = record;
     let branch = Branch {
         model: Model::of(problem.system.as_ref()),
         varied: problem.varied.clone(),

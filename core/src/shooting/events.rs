@@ -70,7 +70,7 @@ impl Run<'_> {
         let kind = EventKind::Grazing { turns: touch.turns };
         let (at, after) = (&touch.located.point, touch.after);
         let Ok((point, _)) = observe(self.problem, equations, &at.u) else {
-            self.turns.push(Turn {
+            self.record.turns.push(Turn {
                 kind,
                 value: at.parameter(),
                 test: f64::NAN,
@@ -84,7 +84,7 @@ impl Run<'_> {
         let of_states = (b - a).abs() / equations.apart(&step.before.u, &step.next.u);
         let rate = of_states.max(touch.rate / touch.extreme.size);
         let error = touch.error + self.state_error * rate + TOUCHED * point.value.abs();
-        self.events.push(Event {
+        self.record.events.push(Event {
             kind,
             point,
             error,

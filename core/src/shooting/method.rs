@@ -10,17 +10,17 @@ use crate::branches::engine::{Search, Walk};
 use crate::branches::extreme::{self, Extreme};
 use crate::branches::keep::keep;
 use crate::branches::moduli;
-use crate::branches::point;
 use crate::branches::problem::{
-    BranchProblem, Change, Kept, Read, Test, TestValue, Touch, Watched, Zero, ZeroOutcome,
+    BranchProblem, Change, Read, Test, TestValue, Touch, Watched, Zero, ZeroOutcome,
 };
 use crate::branches::progress::{Progress, See};
+use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
 use crate::continuation::follow::{Continue, CurvePoint, Step, Stop};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
-use crate::event::{EventKind, Turn};
+use crate::event::EventKind;
 use crate::time::FlowError;
 
 /// Brackets of an event are narrowed until rounding stops it, or this is reached.
@@ -106,14 +106,22 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
 
     /// The same, however coarse.
     fn last_error(&self) -> f64 {
-        let last = self.run.points.iter().rev().take(2);
-        let errors = last.map(|point| point.stability.error);
-        errors.fold(self.vanishing(), f64::max)
+        self.run.record.last_error(self.vanishing())
+    }
+
+    /// What happens at a zero, if anything does.
+    fn kind(&mut self, zero: &Zero) -> Option<EventKind> {
+        let error = self.last_error();
+        let doubling = self
+            .watched
+            .get(1)
+            .map_or(zero.change.kind, |watched| watched.kind);
+        tested::kind(zero, self.tests(&zero.root.located.point), error, doubling)
     }
 
     fn recurrence(&mut self, at: &CurvePoint) -> Result<Option<Recurrence>, FlowError> {
         let symmetries = &self.run.problem.symmetries;
-        if self.run.points.is_empty() {
+        if self.run.record.points.is_empty() {
             return Ok(None);
         }
         let same = self.run.same_state(&self.equations);
@@ -143,10 +151,8 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     }
 
     fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
-        if self.watched.is_empty() {
-            return None;
-        }
-        Some(moduli::complex_outside(&self.tests(at).multipliers))
+        let watches = !self.watched.is_empty();
+        watches.then(|| moduli::complex_outside(&self.tests(at).multipliers))
     }
 
     fn vanishing(&self) -> f64 {
@@ -181,8 +187,12 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         located.test.abs() <= self.vanishing() * unit
     }
 
-    fn points(&self) -> usize {
-        self.run.points.len()
+    fn record(&self) -> &Record {
+        &self.run.record
+    }
+
+    fn record_mut(&mut self) -> &mut Record {
+        &mut self.run.record
     }
 
     fn is_beyond(&mut self, at: &CurvePoint) -> bool {
@@ -215,7 +225,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
                 step: beyond,
                 change,
                 ends,
-                after: self.run.points.len(),
+                after: self.run.record.points.len(),
                 told: true,
                 options,
             };
@@ -237,9 +247,9 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         };
         let tests = Tests::of(map.as_ref(), at.parameter_slope());
         self.tested = Some((at.u.clone(), tests));
-        let done = self.run.points.len() + 1;
+        let done = self.run.record.points.len() + 1;
         let answer = (self.visit)(Progress::orbit(done, &point));
-        self.run.points.push(point);
+        self.run.record.points.push(point);
         if answer.is_break() {
             Read::Stop
         } else {
@@ -248,19 +258,10 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     }
 
     fn keep(&mut self, _: &mut Newton, step: Step<'_>, zero: &Zero) -> ZeroOutcome {
-        let mut kind = zero.change.kind;
-        let of_modulus = kind == EventKind::NeimarkSacker;
-        if let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) {
-            let tells = zero.told || zero.least <= self.last_error();
-            let multipliers = &self.tests(&zero.root.located.point).multipliers;
-            let Some(seen) = moduli::seen_by_moduli(multipliers, place, tells) else {
-                return ZeroOutcome::Nothing;
-            };
-            kind = seen;
-            if kind == EventKind::PeriodDoubling {
-                kind = self.watched[1].kind;
-            }
-        }
+        let of_modulus = zero.change.kind == EventKind::NeimarkSacker;
+        let Some(kind) = self.kind(zero) else {
+            return ZeroOutcome::Nothing;
+        };
         let found = self.run.event_at(&mut self.equations, step, zero, kind);
         let Some(mut event) = found else {
             return ZeroOutcome::Unread;
@@ -275,40 +276,16 @@ impl BranchProblem for ShootingBranch<'_, '_> {
                 // It is as good as zero from that end on.
                 event.error += self.error_of_multipliers() / zero.steepness;
             }
-            if moduli::is_recorded(&self.run.events, &event) {
+            if moduli::is_recorded(&self.run.record.events, &event) {
                 return ZeroOutcome::Nothing;
             }
         }
         let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();
-        self.run.events.push(event);
+        self.run.record.events.push(event);
         if meets && self.run.meets(&mut self.equations) {
             return ZeroOutcome::Ends(Stop::Interrupted);
         }
         ZeroOutcome::Event
-    }
-
-    fn keep_turn(&mut self, turn: Turn) {
-        self.run.turns.push(turn);
-    }
-
-    fn kept(&self) -> Kept<'_> {
-        Kept {
-            points: &self.run.points,
-            events: &self.run.events,
-            turns: &self.run.turns,
-        }
-    }
-
-    fn drop_turn(&mut self, turn: &Turn) {
-        self.run.turns.retain(|other| other != turn);
-    }
-
-    fn events(&self) -> usize {
-        self.run.events.len()
-    }
-
-    fn drop_beside(&mut self, first: usize, touch: f64, errors: f64) {
-        point::drop_beside(&mut self.run.events, first, touch, errors);
     }
 
     fn seeks_touches(&self) -> bool {

@@ -6,7 +6,7 @@ use super::problem::ShootingProblem;
 use super::run::Run;
 use super::start::First;
 use crate::branches::branch::Branch;
-use crate::branches::engine::{Places, Walk};
+use crate::branches::engine::Walk;
 use crate::error::Error;
 
 /// What a run goes on from.
@@ -79,16 +79,10 @@ impl ShootingBranch<'_, '_> {
 impl Run<'_> {
     /// Takes up what the branch had. Says whether it has that.
     pub(super) fn take_up(&mut self, rest: &Rest, branch: &Branch) -> bool {
-        let kept = &rest.walk.kept;
-        let (Some(points), Some(events), Some(turns)) = (
-            branch.points.get(..kept.points),
-            Places::taken(&kept.events, &branch.events),
-            Places::taken(&kept.turns, &branch.turns),
-        ) else {
+        let Some(record) = branch.kept().at(&rest.walk.kept) else {
             return false;
         };
-        self.points = points.to_vec();
-        (self.events, self.turns) = (events, turns);
+        self.record = record;
         self.state_error = rest.state_error;
         self.reference.newton.remember_contraction(rest.contraction);
         true

@@ -14,15 +14,15 @@ use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::{Motion, Observed};
 use crate::branches::orbit::Orbit;
-use crate::branches::point::{Event, Point};
+use crate::branches::point::Point;
 use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
+use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
 use crate::continuation::follow::{FollowOptions, Start, Stop};
 use crate::continuation::newton::NewtonError;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
-use crate::event::Turn;
 use crate::model::request::RequestError;
 use crate::numeric::spectrum::distance;
 use crate::orbit::stability::Stability;
@@ -41,9 +41,7 @@ pub(super) struct Run<'r> {
     pub(super) joined: Option<Recurrence>,
     /// Error of the states of the orbit read last; not a number where it is not known.
     pub(super) state_error: f64,
-    pub(super) points: Vec<Point>,
-    pub(super) events: Vec<Event>,
-    pub(super) turns: Vec<Turn>,
+    pub(super) record: Record,
     /// Why an orbit that was found could not be read.
     pub(super) failure: Option<FlowError>,
     pub(super) statistics: Statistics,
@@ -61,9 +59,7 @@ impl<'r> Run<'r> {
             size,
             joined: None,
             state_error: f64::NAN,
-            points: Vec::new(),
-            events: Vec::new(),
-            turns: Vec::new(),
+            record: Record::default(),
             failure: None,
             statistics: Statistics::default(),
             work: Work::default(),
@@ -123,9 +119,17 @@ impl<'r> Run<'r> {
         let failure = self.failure.or(failed);
         self.statistics += self.reference.newton.statistics;
         self.work += self.reference.work();
-        let value = self.points.last().map_or(options.from, |point| point.value);
+        let value = self
+            .record
+            .points
+            .last()
+            .map_or(options.from, |point| point.value);
         if let Some(Recurrence { period, image, .. }) = &self.joined {
-            let joint = self.events.last().map_or(value, |event| event.point.value);
+            let joint = self
+                .record
+                .events
+                .last()
+                .map_or(value, |event| event.point.value);
             return Ok(Stop::Joined {
                 period: *period,
                 symmetric: image.is_minus(),
@@ -133,10 +137,10 @@ impl<'r> Run<'r> {
             });
         }
         match (outcome, self.failure, failure) {
-            (_, Some(reason), _) if self.points.is_empty() => {
+            (_, Some(reason), _) if self.record.points.is_empty() => {
                 Err(MotionError { value, reason }.into())
             }
-            (Ok(_), _, Some(FlowError::Cancelled { .. })) if !self.points.is_empty() => {
+            (Ok(_), _, Some(FlowError::Cancelled { .. })) if !self.record.points.is_empty() => {
                 Ok(Stop::Interrupted)
             }
             (Err(reason), _, failure) => Err(no_orbit(options.from, reason, failure)),
@@ -159,7 +163,7 @@ impl<'r> Run<'r> {
     /// same orbits again, looked at from elsewhere.
     pub(super) fn meets(&mut self, equations: &mut Equations) -> bool {
         let symmetries = &self.problem.symmetries;
-        let Some(event) = self.events.last() else {
+        let Some(event) = self.record.events.last() else {
             return false;
         };
         if !may_be_earlier(equations, symmetries) && self.problem.at_once.is_empty() {
@@ -177,7 +181,7 @@ impl<'r> Run<'r> {
             _ => return false,
         };
         // The orbits behind the point are those before it.
-        self.points.truncate(after);
+        self.record.points.truncate(after);
         self.joined = Some(recurrence);
         true
     }

@@ -77,8 +77,8 @@ impl Corrections {
 impl<'a> Run<'a> {
     /// (1) at an orbit of one of the last steps, given as extended unknowns; not a number where nothing is known.
     pub(super) fn modulus(&self, monitor: &mut EventMonitor<'a>, at: &[f64], place: usize) -> f64 {
-        let first = self.points.len().saturating_sub(POINTS);
-        let last = &self.points[first..];
+        let first = self.record.points.len().saturating_sub(POINTS);
+        let last = &self.record.points[first..];
         let states: Vec<Vec<f64>> = last.iter().map(|point| like(point, at)).collect();
         let here = states.iter().position(|u| u == at);
         if let Some(known) = here.map(|index| &last[index].stability.multipliers)
@@ -115,7 +115,7 @@ impl<'a> Run<'a> {
         at: &[f64],
     ) -> Option<usize> {
         let multipliers = monitor.multipliers.as_mut()?;
-        let last = self.points.iter().rev().take(POINTS);
+        let last = self.record.points.iter().rev().take(POINTS);
         let here = last.clone().find(|point| like(point, at) == at);
         let known = here.map(|point| &point.stability.multipliers);
         Some(match known.filter(|known| !known.is_empty()) {
@@ -131,9 +131,7 @@ impl<'a> Run<'a> {
 
     /// The same, however coarse.
     pub(super) fn last_error(&self) -> f64 {
-        let last = self.points.iter().rev().take(2);
-        let errors = last.map(|point| point.stability.error);
-        errors.fold(0.0, f64::max)
+        self.record.last_error(0.0)
     }
 }
 

@@ -34,7 +34,7 @@ impl<'a> Run<'a> {
         } else {
             zero.change.kind
         };
-        self.events.push(Event {
+        self.record.events.push(Event {
             kind,
             error: unless_contradicted(or_infinite(error), kind, &point),
             point,
@@ -48,7 +48,7 @@ impl<'a> Run<'a> {
     /// Whether the branch that crosses is one of orbits without a symmetry that the last orbit has.
     fn breaks_symmetry(&self, at: &CurvePoint, test: &mut Test<'_, 'a>) -> bool {
         let permutations = &self.context.permutations;
-        let (Test::Block(block, _), Some(last)) = (test, self.points.last()) else {
+        let (Test::Block(block, _), Some(last)) = (test, self.record.points.last()) else {
             return false;
         };
         if permutations.is_empty() {

@@ -161,7 +161,7 @@ impl<'a> Run<'a> {
             f64::INFINITY
         };
         let point = self.evaluator.read(balance, newton, u);
-        self.events.push(Event {
+        self.record.events.push(Event {
             kind,
             error: unless_contradicted(error, kind, &point),
             point,

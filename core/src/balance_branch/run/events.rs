@@ -36,7 +36,7 @@ impl Run<'_> {
         let u = &located.point.u;
         let error = self.evaluator.finer.fold_error(u, newton);
         let point = self.evaluator.read(balance, newton, u);
-        let turns = |after: usize, value: f64| self.points[after - 1].value < value;
+        let turns = |after: usize, value: f64| self.record.points[after - 1].value < value;
         let same_way = turns(after, point.value);
         let near = |other: &&Event| {
             let apart = (other.point.value - point.value).abs();
@@ -46,13 +46,13 @@ impl Run<'_> {
             let alike = turns(other.after, other.point.value) == same_way;
             other.kind == kind && alike && errors.is_finite() && apart <= errors + 1e-9 * range
         };
-        let mut passed = self.events.iter().filter(near);
+        let mut passed = self.record.events.iter().filter(near);
         let stride = self.context.stride;
         let later = point.orbit.period > 1 || stride > point.orbit.recurrence().stride();
         if later && passed.any(|other| is_shifted(&other.point.orbit, &point.orbit, stride)) {
             return ZeroOutcome::Ends(Stop::Closed);
         }
-        self.events.push(Event {
+        self.record.events.push(Event {
             kind,
             point,
             error,
@@ -67,7 +67,7 @@ impl Run<'_> {
     /// Whether the branch has passed an orbit of a shorter period, or a symmetric one, since its last point: what its orbits have
     /// in addition has changed its sign.
     pub(super) fn joins(&self, u: &[f64]) -> bool {
-        let orbit = self.points.last().map(|point| &point.orbit);
+        let orbit = self.record.points.last().map(|point| &point.orbit);
         orbit.is_some_and(|orbit| {
             let length = orbit.row(0).len();
             let least = BEYOND_NEWTON * self.options.newton.tolerance;
@@ -87,7 +87,7 @@ impl Run<'_> {
         newton: &mut Newton,
         step: Step<'_>,
     ) -> bool {
-        let Some(last) = self.points.last() else {
+        let Some(last) = self.record.points.last() else {
             return false;
         };
         let joined = passes_shorter_period(&last.orbit, &step.next.u, self.context.stride);

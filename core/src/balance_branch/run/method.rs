@@ -11,16 +11,16 @@ use crate::branches::engine::{self, Walk};
 use crate::branches::extreme::{self, Extreme};
 use crate::branches::keep::keep;
 use crate::branches::moduli;
-use crate::branches::point;
 use crate::branches::problem::{
-    BranchProblem, Change, Kept, Read, Test, TestValue, Touch, Watched, Zero, ZeroOutcome,
+    BranchProblem, Change, Read, Test, TestValue, Touch, Watched, Zero, ZeroOutcome,
 };
 use crate::branches::progress::{Progress, See};
+use crate::branches::record::Record;
 use crate::continuation::follow::{Continue, CurvePoint, Halted, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
-use crate::event::{EventKind, Turn};
+use crate::event::EventKind;
 
 /// A branch by the balance at its present resolution.
 pub(super) struct BalanceBranch<'r, 'v> {
@@ -103,8 +103,12 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         }
     }
 
-    fn points(&self) -> usize {
-        self.run.points.len()
+    fn record(&self) -> &Record {
+        &self.run.record
+    }
+
+    fn record_mut(&mut self) -> &mut Record {
+        &mut self.run.record
     }
 
     fn is_beyond(&mut self, at: &CurvePoint) -> bool {
@@ -118,9 +122,9 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         // It only seemed to belong to what comes after the end. The walk cannot be halted here for more harmonics, so that the point
         // stands with the error it has.
         let point = self.run.read_again(&mut self.balance, newton, step.next);
-        let done = self.run.points.len() + 1;
+        let done = self.run.record.points.len() + 1;
         let answer = (self.visit)(Progress::orbit(done, &point));
-        self.run.points.push(point);
+        self.run.record.points.push(point);
         Some(if answer.is_break() {
             Read::Stop
         } else {
@@ -151,30 +155,6 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         let kept = run.keep(balance, newton, step, zero, &mut monitor, index);
         run.monitor = monitor;
         kept
-    }
-
-    fn keep_turn(&mut self, turn: Turn) {
-        self.run.turns.push(turn);
-    }
-
-    fn kept(&self) -> Kept<'_> {
-        Kept {
-            points: &self.run.points,
-            events: &self.run.events,
-            turns: &self.run.turns,
-        }
-    }
-
-    fn drop_turn(&mut self, turn: &Turn) {
-        self.run.turns.retain(|other| other != turn);
-    }
-
-    fn events(&self) -> usize {
-        self.run.events.len()
-    }
-
-    fn drop_beside(&mut self, first: usize, touch: f64, errors: f64) {
-        point::drop_beside(&mut self.run.events, first, touch, errors);
     }
 
     fn seeks_touches(&self) -> bool {
@@ -208,7 +188,7 @@ impl BranchProblem for BalanceBranch<'_, '_> {
             after: touch.after,
         };
         run.located(balance, newton, step, &mut test, &found);
-        if let Some(event) = run.events.last_mut() {
+        if let Some(event) = run.record.events.last_mut() {
             event.contacts = touch.contacts;
         }
     }
@@ -309,12 +289,12 @@ impl<'r> Run<'r> {
     /// Adds what errors of multipliers make of the last event, unless it is another one once more.
     fn widen(&mut self, zero: &Zero) {
         let spread = self.error_of_multipliers() / zero.steepness;
-        let Some(mut event) = self.events.pop() else {
+        let Some(mut event) = self.record.events.pop() else {
             return;
         };
         event.error += spread;
-        if !moduli::is_recorded(&self.events, &event) {
-            self.events.push(event);
+        if !moduli::is_recorded(&self.record.events, &event) {
+            self.record.events.push(event);
         }
     }
 }

@@ -15,14 +15,14 @@ use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::point_evaluator::PointEvaluator;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
-use crate::branches::point::{Event, Point};
+use crate::branches::point::Point;
 use crate::branches::problem::Read;
 use crate::branches::progress::{Progress, See};
+use crate::branches::record::Record;
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Stop};
 use crate::continuation::newton::{Border, Newton, NewtonError};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
-use crate::event::Turn;
 use crate::numeric::fourier::series;
 use event_monitor::EventMonitor;
 use method::BalanceBranch;
@@ -39,9 +39,7 @@ const ALL: usize = 1 << 24;
 /// A branch as it was followed.
 pub(crate) struct Followed {
     pub(crate) stopped: Stop,
-    pub(crate) points: Vec<Point>,
-    pub(crate) events: Vec<Event>,
-    pub(crate) turns: Vec<Turn>,
+    pub(crate) record: Record,
     pub(crate) statistics: Statistics,
     /// What it goes on from, where it was interrupted.
     pub(crate) rest: Option<Box<Rest>>,
@@ -68,9 +66,7 @@ pub(crate) struct Run<'a> {
     ended: Option<Stop>,
     /// Where it was before the last step.
     rest: Option<Box<Rest>>,
-    pub(crate) points: Vec<Point>,
-    pub(crate) events: Vec<Event>,
-    pub(crate) turns: Vec<Turn>,
+    pub(crate) record: Record,
     pub(crate) statistics: Statistics,
 }
 
@@ -92,9 +88,7 @@ impl<'a> Run<'a> {
             slow: 0,
             ended: None,
             rest: None,
-            points: Vec::new(),
-            events: Vec::new(),
-            turns: Vec::new(),
+            record: Record::default(),
             statistics: Statistics::default(),
         }
     }
@@ -136,9 +130,7 @@ impl<'a> Run<'a> {
         };
         Ok(Followed {
             stopped,
-            points: run.points,
-            events: run.events,
-            turns: run.turns,
+            record: run.record,
             statistics: run.statistics,
             rest: run.rest.filter(|_| stopped.can_be_resumed()),
         })
@@ -178,7 +170,7 @@ impl<'a> Run<'a> {
 
     /// No orbit where the walk begins: no branch at all, or the end of the one that there is.
     fn lost(&self, reason: NewtonError) -> Result<Stop, Error> {
-        match self.points.last() {
+        match self.record.points.last() {
             None => Err(OrbitError::NoStart {
                 value: self.options.from,
                 reason,
@@ -233,8 +225,8 @@ impl<'a> Run<'a> {
         if self.wanted.harmonics > self.resolution.harmonics {
             return Read::Refused;
         }
-        let answer = visit(Progress::orbit(self.points.len() + 1, &point));
-        self.points.push(point);
+        let answer = visit(Progress::orbit(self.record.points.len() + 1, &point));
+        self.record.points.push(point);
         if answer.is_break() {
             Read::Stop
         } else if change {

@@ -5,8 +5,7 @@ use super::{Run, SLOW_POINTS};
 use crate::balance::Resolution;
 use crate::balance::resolution::Chooser;
 use crate::branches::engine::{Places, Walk};
-use crate::branches::point::{Event, Point};
-use crate::event::Turn;
+use crate::branches::record::Kept;
 use crate::numeric::fourier::series;
 use crate::orbit::stability::judge::{self, Judge};
 use crate::orbit::stability::uncorrected::{self, Uncorrected};
@@ -54,14 +53,7 @@ impl Run<'_> {
     }
 
     /// As it was there, with what the branch had. `None` where that is not one of this run: it may have been read from a file.
-    pub(crate) fn resumed(
-        mut self,
-        rest: &Rest,
-        points: &[Point],
-        events: &[Event],
-        turns: &[Turn],
-    ) -> Option<Self> {
-        let kept = &rest.walk.kept;
+    pub(crate) fn resumed(mut self, rest: &Rest, had: Kept<'_>) -> Option<Self> {
         let coordinates = self.context.system.facts().coordinates.len();
         let asked = self.context.resolution;
         let same = Resolution {
@@ -84,9 +76,7 @@ impl Run<'_> {
         if same != asked || !chooser || !counts || !coarse {
             return None;
         }
-        self.points = points.get(..kept.points)?.to_vec();
-        self.events = Places::taken(&kept.events, events)?;
-        self.turns = Places::taken(&kept.turns, turns)?;
+        self.record = had.at(&rest.walk.kept)?;
         (self.core, self.core_before) = (rest.core, rest.core_before);
         self.slow = rest.slow;
         self.resolution = rest.resolution;

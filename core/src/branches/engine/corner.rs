@@ -215,14 +215,17 @@ impl Engine {
         let Corner {
             touch, end, begin, ..
         } = corner;
-        let (value, known) = (touch.located.point.parameter(), problem.events());
+        let (value, known) = (
+            touch.located.point.parameter(),
+            problem.record().events.len(),
+        );
         let mut from = before;
         for point in corner.way.iter().chain([end]) {
             self.events_between(*problem, newton, [from, point], after);
             from = point;
         }
         // Multipliers are unbounded at the touch: what a series leaves of that beside it is none of its own.
-        problem.drop_beside(known, value, ERRORS);
+        problem.record_mut().drop_beside(known, value, ERRORS);
         if !touch.extreme.begins {
             let mut extremes = Vec::new();
             problem.extremes(&touch.located.point.u, &mut extremes);
@@ -243,9 +246,9 @@ impl Engine {
             };
             problem.keep_touch(newton, step, &touch);
         }
-        let known = problem.events();
+        let known = problem.record().events.len();
         self.events_between(*problem, newton, [begin, next], after);
-        problem.drop_beside(known, value, ERRORS);
+        problem.record_mut().drop_beside(known, value, ERRORS);
     }
 
     /// What changes its sign between two points that are not kept as a step.

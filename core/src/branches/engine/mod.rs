@@ -37,7 +37,8 @@ pub(crate) use zero::{Aim, Search, is_crossing, root};
 
 use super::moduli;
 use super::point::Point;
-use super::problem::{BranchProblem, Change, Kept, Read, Test, TestValue};
+use super::problem::{BranchProblem, Change, Read, Test, TestValue};
+use super::record::Kept;
 use super::stability::Verdict;
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Step, Stop, Visit, Walked,
@@ -360,7 +361,7 @@ impl Engine {
             test: f64::NAN,
             after: points.len() - 1,
         };
-        problem.keep_turn(turn);
+        problem.record_mut().turns.push(turn);
     }
 
     /// Locates what happened in a step, and in the one before where that shows only now. Says where the branch turned without a fold.

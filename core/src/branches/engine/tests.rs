@@ -10,9 +10,15 @@
 use nalgebra::DMatrix;
 
 use super::run;
+use crate::branches::observed::Observed;
+use crate::branches::orbit::Orbit;
+use crate::branches::point::{Event, Point};
 use crate::branches::problem::{
     BranchProblem, Change, Read, TestValue, Watched, Zero, ZeroOutcome,
 };
+use crate::branches::record::Record;
+use crate::branches::recurrence::SignedPermutation;
+use crate::branches::stability::Stability;
 use crate::branches::switch::BranchSwitch;
 use crate::branches::value::{Chord, chain, solutions};
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted, Start, Step, Stop};
@@ -21,7 +27,7 @@ use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{Problem, Scale};
 use crate::continuation::step::StepControl;
-use crate::event::{EventKind, Turn};
+use crate::event::EventKind;
 
 const WATCHED: [Watched; 3] = [
     Watched {
@@ -42,9 +48,21 @@ const WATCHED: [Watched; 3] = [
 struct Algebraic {
     /// Whether `z` is an unknown.
     three: bool,
-    points: Vec<Vec<f64>>,
-    events: Vec<(EventKind, f64)>,
-    turns: Vec<Turn>,
+    record: Record,
+}
+
+impl Algebraic {
+    fn solutions(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.record.points.iter().map(|point| &point.parameters)
+    }
+
+    /// What happened, with `x` there.
+    fn events(&self) -> Vec<(EventKind, f64)> {
+        let events = self.record.events.iter();
+        events
+            .map(|event| (event.kind, event.point.parameters[0]))
+            .collect()
+    }
 }
 
 impl Problem for Algebraic {
@@ -121,14 +139,18 @@ impl BranchProblem for Algebraic {
         located.test.abs() <= 1e-9
     }
 
-    fn points(&self) -> usize {
-        self.points.len()
+    fn record(&self) -> &Record {
+        &self.record
+    }
+
+    fn record_mut(&mut self) -> &mut Record {
+        &mut self.record
     }
 
     fn read(&mut self, _: &mut Newton, at: &CurvePoint) -> Read {
-        self.points.push(at.u.clone());
+        self.record.points.push(orbit(&at.u));
         // From here on, and for a while.
-        if [20, 60].contains(&self.points.len()) {
+        if [20, 60].contains(&self.points()) {
             Read::Resize
         } else {
             Read::Kept
@@ -136,23 +158,16 @@ impl BranchProblem for Algebraic {
     }
 
     fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> ZeroOutcome {
-        let at = &zero.root.located.point;
-        self.events.push((zero.change.kind, at.u[0]));
+        self.record.events.push(Event {
+            kind: zero.change.kind,
+            point: orbit(&zero.root.located.point.u),
+            error: zero.root.error,
+            test: zero.root.located.test,
+            after: zero.after,
+            contacts: 0,
+            tangent: Vec::new(),
+        });
         ZeroOutcome::Event
-    }
-
-    fn events(&self) -> usize {
-        self.events.len()
-    }
-
-    fn drop_beside(&mut self, _: usize, _: f64, _: f64) {}
-
-    fn drop_turn(&mut self, turn: &Turn) {
-        self.turns.retain(|other| other != turn);
-    }
-
-    fn keep_turn(&mut self, turn: Turn) {
-        self.turns.push(turn);
     }
 
     fn remap(&mut self, halted: &mut Halted) {
@@ -171,6 +186,28 @@ impl BranchProblem for Algebraic {
     }
 
     fn count(&mut self, _: &Newton) {}
+}
+
+/// A solution as an orbit that does not move.
+fn orbit(u: &[f64]) -> Point {
+    Point {
+        value: u[u.len() - 1],
+        parameters: u.to_vec(),
+        orbit: Orbit {
+            series: Vec::new(),
+            states: vec![u[0], 0.0],
+            coordinates: 1,
+            omega: 1.0,
+            base: 1.0,
+            period: 1,
+            parts: 1,
+            symmetric: false,
+            image: SignedPermutation::identity(),
+        },
+        stability: Stability::unknown(),
+        observed: Observed::extremes(Vec::new(), 0),
+        error: None,
+    }
 }
 
 const NEWTON: NewtonOptions = NewtonOptions {
@@ -204,12 +241,16 @@ fn every_event_is_found_where_it_is() {
         (EventKind::NeimarkSacker, 1.71),
     ];
     for (from, to, x) in [(-8.0, 8.0, -2.4), (8.0, -8.0, 2.4)] {
-        let (mut branch, stop) = followed(from, to, Start::Near(vec![x, 0.0, from]));
-        assert_eq!((stop, &branch.turns[..]), (Stop::ReachedEnd, &[][..]));
-        assert!(branch.points.iter().any(|u| u.len() == 4));
-        branch.events.sort_by(|a, b| a.1.total_cmp(&b.1));
-        assert_eq!(branch.events.len(), known.len(), "{:?}", branch.events);
-        for ((kind, at), (wanted, exact)) in branch.events.iter().zip(known) {
+        let (branch, stop) = followed(from, to, Start::Near(vec![x, 0.0, from]));
+        assert_eq!(
+            (stop, &branch.record.turns[..]),
+            (Stop::ReachedEnd, &[][..])
+        );
+        assert!(branch.solutions().any(|u| u.len() == 4));
+        let mut events = branch.events();
+        events.sort_by(|a, b| a.1.total_cmp(&b.1));
+        assert_eq!(events.len(), known.len(), "{events:?}");
+        for ((kind, at), (wanted, exact)) in events.iter().zip(known) {
             assert!(
                 *kind == wanted && (at - exact).abs() < 1e-9,
                 "{kind} at {at}"
@@ -224,7 +265,7 @@ fn solutions_at_a_value_are_the_roots_of_the_cubic() {
     let (branch, _) = followed(-8.0, 8.0, Start::Near(vec![-2.4, 0.0, -8.0]));
     let [x, y] = [-1.0, 1.0].map(|x: f64| vec![x, 0.0, x * x * x - 3.0 * x]);
     let plain = |u: &[f64]| vec![u[0], u[1], u[u.len() - 1]];
-    let points: Vec<Vec<f64>> = branch.points.iter().map(|u| plain(u)).collect();
+    let points: Vec<Vec<f64>> = branch.solutions().map(|u| plain(u)).collect();
     let after = |fold: f64| points.iter().filter(|u| u[0] < fold).count();
     let turns = [(after(-1.0), &x), (after(1.0), &y)];
     let found = solutions(
@@ -272,7 +313,7 @@ fn the_branch_that_crosses_is_followed() {
         let start = Start::Along(Box::new(first.unwrap()));
         let (branch, stop) = followed(from[2], 8.0, start);
         assert_eq!(stop, Stop::ReachedEnd);
-        for u in &branch.points {
+        for u in branch.solutions() {
             assert!((u[1] * u[1] - (u[0] - 1.5)).abs() < 1e-10 && u[1] * side > 0.0);
         }
     }
@@ -283,7 +324,10 @@ fn the_branch_that_crosses_is_followed() {
 fn a_branch_that_turns_where_another_crosses_has_one_event_there() {
     let from = 2.5_f64.powi(3) - 7.5;
     let (branch, stop) = followed(from, -8.0, Start::Near(vec![2.5, -1.0, from]));
-    assert_eq!((stop, &branch.turns[..]), (Stop::LeftAtStart, &[][..]));
+    assert_eq!(
+        (stop, &branch.record.turns[..]),
+        (Stop::LeftAtStart, &[][..])
+    );
     let known = [
         (EventKind::NeimarkSacker, 1.71),
         (EventKind::NeimarkSacker, 1.70),
@@ -291,8 +335,9 @@ fn a_branch_that_turns_where_another_crosses_has_one_event_there() {
         (EventKind::NeimarkSacker, 1.70),
         (EventKind::NeimarkSacker, 1.71),
     ];
-    assert_eq!(branch.events.len(), known.len(), "{:?}", branch.events);
-    for ((kind, at), (wanted, exact)) in branch.events.iter().zip(known) {
+    let events = branch.events();
+    assert_eq!(events.len(), known.len(), "{events:?}");
+    for ((kind, at), (wanted, exact)) in events.iter().zip(known) {
         assert!(
             *kind == wanted && (at - exact).abs() < 1e-8,
             "{kind} at {at}"

@@ -189,7 +189,7 @@ impl TouchSearch<'_> {
     /// Records what could not be located.
     fn omit(&self, problem: &mut dyn BranchProblem, step: Step<'_>) {
         let [a, b] = step.parameters();
-        problem.keep_turn(Turn {
+        problem.record_mut().turns.push(Turn {
             kind: EventKind::Grazing {
                 // What was located nowhere may be where the branch turned.
                 turns: self.turned.is_some(),
@@ -296,7 +296,7 @@ impl TouchSearch<'_> {
         });
         // That is where the branch turned, and why.
         turned.is_some_and(|turned| {
-            problem.drop_turn(&turned);
+            problem.record_mut().drop_turn(&turned);
             true
         })
     }

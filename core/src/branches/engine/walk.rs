@@ -4,7 +4,8 @@
 //! step makes that step again, and comes to the same points to the last bit.
 
 use super::{Engine, Seen};
-use crate::branches::problem::{Kept, Test};
+use crate::branches::problem::Test;
+use crate::branches::record::Kept;
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted};
 
 /// A walk along a branch before one of its steps.
@@ -54,14 +55,6 @@ impl Places {
             events: (0..kept.events.len()).collect(),
             turns: (0..kept.turns.len()).collect(),
         }
-    }
-
-    /// What is at these places; `None` where there is nothing.
-    pub(crate) fn taken<T: Clone>(places: &[usize], from: &[T]) -> Option<Vec<T>> {
-        places
-            .iter()
-            .map(|&place| from.get(place).cloned())
-            .collect()
     }
 
     /// The places of what is sorted by the number of points before it, as [`sort_by_key`](slice::sort_by_key) does.

@@ -99,7 +99,7 @@ impl Search<'_> {
             test,
             after: self.after,
         };
-        problem.keep_turn(turn);
+        problem.record_mut().turns.push(turn);
         Recorded::Turn(turn)
     }
 

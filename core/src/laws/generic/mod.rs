@@ -50,6 +50,7 @@ impl Interpreted {
     }
 }
 
+// All but the laws is the system's own; another wrapper, which changes its values, says so in the same words.
 impl System for Interpreted {
     fn facts(&self) -> &SystemFacts {
         self.system.facts()

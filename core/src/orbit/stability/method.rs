@@ -95,6 +95,7 @@ pub struct Cost {
     pub order: usize,
 }
 
+// Counts of a continuation (`Statistics`) and of motions in time (`Work`) are summed alike: other counts.
 impl std::ops::AddAssign for Cost {
     fn add_assign(&mut self, other: Self) {
         self.slopes += other.slopes;

@@ -3,7 +3,7 @@
 
 use super::*;
 
-/// A fold of a curve of Wang et al. (2021), drive 0.1.
+/// A fold of a curve of Wang et al. (2021), drive 0.1. Values stand in full at every fold, as folds of one figure share some by chance.
 struct Fold {
     figure: &'static str,
     one_sided: bool,

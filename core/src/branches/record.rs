@@ -1,0 +1,71 @@
+//! What the walk along a branch has gathered, whichever method computes its orbits.
+
+use super::engine::Places;
+use super::point::{Event, Point};
+use crate::event::Turn;
+
+/// Orbits with what happened between them. Places of events and turns count the points before them.
+#[derive(Debug, Default)]
+pub(crate) struct Record {
+    pub(crate) points: Vec<Point>,
+    pub(crate) events: Vec<Event>,
+    pub(crate) turns: Vec<Turn>,
+}
+
+/// The same, looked at.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Kept<'k> {
+    pub(crate) points: &'k [Point],
+    pub(crate) events: &'k [Event],
+    pub(crate) turns: &'k [Turn],
+}
+
+impl Record {
+    pub(crate) fn kept(&self) -> Kept<'_> {
+        Kept {
+            points: &self.points,
+            events: &self.events,
+            turns: &self.turns,
+        }
+    }
+
+    /// Drops a place that turned out to be where a level is touched.
+    pub(crate) fn drop_turn(&mut self, turn: &Turn) {
+        self.turns.retain(|other| other != turn);
+    }
+
+    /// Drops those of the events from one on that their errors, so many times, do not tell apart from a touch at a value.
+    pub(crate) fn drop_beside(&mut self, first: usize, touch: f64, errors: f64) {
+        let mut place = 0;
+        self.events.retain(|event| {
+            place += 1;
+            place <= first || (event.point.value - touch).abs() > errors * event.error
+        });
+    }
+
+    /// The largest error that the multipliers of the last two points may have, or `least` if that is more.
+    pub(crate) fn last_error(&self, least: f64) -> f64 {
+        let last = self.points.iter().rev().take(2);
+        last.map(|point| point.stability.error)
+            .fold(least, f64::max)
+    }
+}
+
+impl Kept<'_> {
+    /// What was there when the walk was at these places; `None` where there is nothing.
+    pub(crate) fn at(&self, places: &Places) -> Option<Record> {
+        Some(Record {
+            points: self.points.get(..places.points)?.to_vec(),
+            events: taken(&places.events, self.events)?,
+            turns: taken(&places.turns, self.turns)?,
+        })
+    }
+}
+
+/// What is at these places; `None` where there is nothing.
+fn taken<T: Clone>(places: &[usize], from: &[T]) -> Option<Vec<T>> {
+    places
+        .iter()
+        .map(|&place| from.get(place).cloned())
+        .collect()
+}
