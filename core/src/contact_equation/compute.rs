@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 use super::equations::Equations;
+use super::gaps::Gaps;
 use super::method::ContactBranch;
-use super::plan::{Frame, Gaps, Plan};
+use super::plan::{Frame, Plan};
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
 use super::run::Run;
 use crate::branches::branch::{Branch, Further, Model};

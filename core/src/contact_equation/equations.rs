@@ -33,8 +33,9 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::extremes::Extremes;
-use super::pass::Room;
-use super::skeleton::{Skeleton, Told, half_way};
+use super::place::half_way;
+use super::room::Room;
+use super::skeleton::{Skeleton, Told};
 use super::values::Values;
 use crate::cancel::Cancel;
 use crate::continuation::jacobian::Jacobian;

@@ -2,8 +2,10 @@
 
 use super::equations::Equations;
 use super::events;
+use super::fits::Fits;
 use super::problem::{FIRST, RESOLUTIONS};
-use super::run::{Fits, ReadOrbit, Run};
+use super::reading::ReadOrbit;
+use super::run::Run;
 use crate::branches::extreme::Extreme;
 use crate::branches::moduli;
 use crate::branches::point::Point;

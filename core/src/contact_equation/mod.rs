@@ -1,9 +1,10 @@
 //! Periodic orbits by the contact equation: unknown are the forces at a few nodes of each stretch in contact, where stretches begin and
 //! end, and the state at one phase. Between contacts the system is linear, and its motion known in closed form.
 //!
-//! `linear` and `block` have the motion of the linear part, `nodes` the integrals over a stretch, `skeleton` which pieces gaps are on and
-//! where the unknowns stand, `pass` and `equations` residuals and derivatives, `motion` the motion at any phase, `plan` which skeleton an
-//! orbit has, `run`, `method` and `events` what the engine of branches asks for.
+//! `linear` and `block` have the motion of the linear part, `nodes` and `integrals` the integrals over a stretch, `skeleton` and `place`
+//! which pieces gaps are on and where the unknowns stand, `pass` and `equations` residuals and derivatives, `motion` and `extremes` the
+//! motion at any phase. `gaps`, `plan` and `transfer` tell which skeleton an orbit has, `fits` whether it still is right, `reading` what is
+//! read off an orbit, with its errors. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
 //!
 //! Source: Babitsky (1998), Theory of Vibro-Impact Systems and Applications, section 2.2 (integral equations of contact forces); Gauss
 //! collocation as in Hairer, Norsett and Wanner (1993), Solving Ordinary Differential Equations I, section II.7.
@@ -13,18 +14,26 @@ pub(crate) mod compute;
 mod equations;
 mod events;
 mod extremes;
+mod fits;
+mod gaps;
+mod integrals;
 mod linear;
 mod method;
 mod motion;
 mod nodes;
 mod options;
 mod pass;
+mod place;
 mod plan;
 pub(crate) mod problem;
+mod reading;
+mod room;
 mod run;
 mod skeleton;
 #[cfg(test)]
 mod tests;
+mod touches;
+mod transfer;
 mod values;
 
 pub use options::ContactEquation;

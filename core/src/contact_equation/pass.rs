@@ -2,111 +2,15 @@
 //!
 //! Numbers of equations are those of [`equations`](super::equations).
 
-use super::block::{Block, Square, product, row_times, times};
+use super::block::{Block, product, row_times, times};
 use super::equations::Passed;
-use super::skeleton::{Active, Interval, Place, Skeleton};
+use super::integrals::{add, by_time, by_time_of_free, integrate};
+use super::place::Place;
+use super::room::Room;
+use super::skeleton::{Active, Interval, Skeleton};
 use super::values::{Values, dot, pair};
 use crate::law::{Derivatives, On};
 use crate::system::System;
-
-/// Room for a pass.
-#[derive(Debug, Default)]
-pub(super) struct Room {
-    /// States, and their derivatives by the extended unknowns, row by row.
-    y: Vec<f64>,
-    by: Vec<f64>,
-    by_next: Vec<f64>,
-    /// Integrals of (1) per pair, row by row of targets: coefficients of `I` and of `D`.
-    once: Vec<f64>,
-    twice: Vec<f64>,
-    /// Per active contact and node: what a unit force does to the states.
-    input: Vec<f64>,
-    /// Per node: what all forces together do, and how that changes with the phase.
-    load: Vec<f64>,
-    load_by: Vec<f64>,
-    /// Per pair and target: what the forces have done changes so with the time.
-    by_time: Vec<[f64; 2]>,
-    steady_from: [Vec<f64>; 3],
-    steady: [Vec<f64>; 3],
-    resonant: [Vec<f64>; 4],
-    /// Per pair, the exponential up to a target.
-    exponentials: Vec<Square>,
-    target: Target,
-    /// Rows of gap and rate over the states, and their derivatives by the phase.
-    output: [Vec<f64>; 2],
-    output_by: [Vec<f64>; 2],
-    gaps: Vec<f64>,
-    rates: Vec<f64>,
-    forces: Vec<f64>,
-    by_gap: Vec<f64>,
-    by_rate: Vec<f64>,
-    /// Derivatives of gaps and rates by the extended unknowns, row by row of active contacts and nodes.
-    gap_rows: Vec<f64>,
-    rate_rows: Vec<f64>,
-    /// Per switch: gap less level and its slope by the phase, and their derivatives.
-    pub(super) at_switch: Vec<[f64; 2]>,
-    pub(super) switch_rows: Vec<f64>,
-    pub(super) slope_rows: Vec<f64>,
-}
-
-/// The states at a target, and how they change with where the interval begins and ends and with the frequency.
-#[derive(Debug, Default)]
-struct Target {
-    psi: f64,
-    phase: f64,
-    state: Vec<f64>,
-    by_from: Vec<f64>,
-    by_to: Vec<f64>,
-    by_omega: Vec<f64>,
-}
-
-impl Room {
-    pub(super) fn new(skeleton: &Skeleton, contacts: usize) -> Self {
-        let (order, columns) = (skeleton.order, skeleton.unknowns() + 1);
-        let pairs = order / 2;
-        let most =
-            |of: fn(&Interval) -> usize| skeleton.intervals.iter().map(of).max().unwrap_or(0);
-        let nodes = most(|interval| interval.nodes.count());
-        let forces = most(|interval| interval.active.len() * interval.nodes.count());
-        let states = || vec![0.0; order];
-        let switches = skeleton.switches.len();
-        let integrals = vec![0.0; pairs * (nodes + 1) * nodes];
-        Self {
-            y: states(),
-            by: vec![0.0; order * columns],
-            by_next: vec![0.0; order * columns],
-            once: integrals.clone(),
-            twice: integrals,
-            input: vec![0.0; forces.max(contacts) * order],
-            load: vec![0.0; nodes * order],
-            load_by: vec![0.0; nodes * order],
-            by_time: vec![[0.0; 2]; pairs * (nodes + 1)],
-            steady_from: std::array::from_fn(|_| states()),
-            steady: std::array::from_fn(|_| states()),
-            resonant: std::array::from_fn(|_| states()),
-            exponentials: vec![[[0.0; 2]; 2]; pairs],
-            target: Target {
-                state: states(),
-                by_from: states(),
-                by_to: states(),
-                by_omega: states(),
-                ..Target::default()
-            },
-            output: std::array::from_fn(|_| states()),
-            output_by: std::array::from_fn(|_| states()),
-            gaps: vec![0.0; forces],
-            rates: vec![0.0; forces],
-            forces: vec![0.0; forces],
-            by_gap: vec![0.0; forces],
-            by_rate: vec![0.0; forces],
-            gap_rows: vec![0.0; forces * columns],
-            rate_rows: vec![0.0; forces * columns],
-            at_switch: vec![[0.0; 2]; switches],
-            switch_rows: vec![0.0; switches * columns],
-            slope_rows: vec![0.0; switches * columns],
-        }
-    }
-}
 
 /// A pass at unknowns.
 pub(super) struct Pass<'p> {
@@ -625,13 +529,6 @@ impl Pass<'_> {
     }
 }
 
-/// Adds a multiple.
-fn add(to: &mut [f64], factor: f64, of: &[f64]) {
-    for (to, of) in to.iter_mut().zip(of) {
-        *to += factor * of;
-    }
-}
-
 /// What forces have done to a pair of states up to a target, and how it changes with where the interval begins and ends, if directions
 /// move.
 fn forced(
@@ -680,100 +577,4 @@ fn forced(
         sums[which] = [0, 1].map(|i| plain[which][i] + through[i]);
     }
     sums
-}
-
-/// Integrals of both parts of the kernel times every polynomial, up to every target.
-fn integrate(
-    block: &Block,
-    nodes: &super::nodes::Nodes,
-    time: f64,
-    once: &mut [f64],
-    twice: &mut [f64],
-) {
-    let n = nodes.count();
-    let rule = nodes.between(block.rate() * time);
-    let mut before = 0.0;
-    for (way, &psi) in nodes.targets.iter().enumerate() {
-        let step = block.kernel((psi - before) * time);
-        before = psi;
-        let (done, to) = (way * n, (way + 1) * n);
-        if way == 0 {
-            once[..n].fill(0.0);
-            twice[..n].fill(0.0);
-        } else {
-            for l in 0..n {
-                let [a, b] = [once[done - n + l], twice[done - n + l]];
-                (once[done + l], twice[done + l]) = block.compose(step, a, b);
-            }
-        }
-        for point in 0..rule.points {
-            let place = way * rule.points + point;
-            let kernel = block.kernel(rule.left[place] * time);
-            let weighted = &rule.weighted[place * n..][..n];
-            add(&mut once[done..to], kernel.c * time, weighted);
-            add(&mut twice[done..to], kernel.k * time, weighted);
-        }
-    }
-}
-
-/// (3) of a pair whose exponents are zero: `X f = s S1 f + s^2 D S2 f`.
-fn by_time_of_free(
-    block: &Block,
-    nodes: &super::nodes::Nodes,
-    time: f64,
-    load: impl Fn(usize) -> [f64; 2],
-    to: &mut [[f64; 2]],
-) {
-    let n = nodes.count();
-    for (index, to) in to.iter_mut().enumerate() {
-        let (mut once, mut twice) = ([0.0; 2], [0.0; 2]);
-        for l in 0..n {
-            let load = load(l);
-            for i in 0..2 {
-                once[i] += nodes.once[index * n + l] * load[i];
-                twice[i] += nodes.twice[index * n + l] * load[i];
-            }
-        }
-        let turned = times(block.deviation, twice);
-        *to = [0, 1].map(|i| once[i] + 2.0 * time * turned[i]);
-    }
-}
-
-/// (3) from target to target: with `X_(j+1) = e^(A h) X_j + s sum_q w_q e^(A d_q s) f_q`, where `h` and `d_q s` are times,
-/// `dX_(j+1)/ds = e^(A h) (dX_j/ds + (h / s) A X_j) + sum_q w_q (1 + d_q s A) e^(A d_q s) f_q`.
-fn by_time(
-    block: &Block,
-    nodes: &super::nodes::Nodes,
-    time: f64,
-    load: impl Fn(usize) -> [f64; 2],
-    to: &mut [[f64; 2]],
-) {
-    let n = nodes.count();
-    let rule = nodes.between(block.rate() * time);
-    let (mut integral, mut slope) = ([0.0; 2], [0.0; 2]);
-    let mut before = 0.0;
-    for (way, &psi) in nodes.targets.iter().enumerate() {
-        let step = psi - before;
-        before = psi;
-        let e = block.exponential(step * time);
-        let driven = times(block.matrix, integral);
-        slope = times(e, [0, 1].map(|i| slope[i] + step * driven[i]));
-        integral = times(e, integral);
-        for point in 0..rule.points {
-            let place = way * rule.points + point;
-            let mut sum = [0.0; 2];
-            for (l, weight) in rule.weighted[place * n..][..n].iter().enumerate() {
-                let load = load(l);
-                sum = [sum[0] + weight * load[0], sum[1] + weight * load[1]];
-            }
-            let left = rule.left[place] * time;
-            let carried = times(block.exponential(left), sum);
-            let driven = times(block.matrix, carried);
-            for i in 0..2 {
-                integral[i] += time * carried[i];
-                slope[i] += carried[i] + left * driven[i];
-            }
-        }
-        to[way] = slope;
-    }
 }

@@ -4,14 +4,11 @@
 //! that are short of a level.
 
 use super::equations::{Equations, Setting};
-use super::motion::{GapExtreme, Motion};
+use super::gaps::{BEND, Gaps, beginning, is_lonely, look, piece};
+use super::motion::GapExtreme;
 use super::skeleton::{Beginning, Placed, Resolution, Skeleton, Switch, Told};
-use super::values::{Values, dot};
 use crate::law::{Derivatives, Law, On};
-use crate::numeric::roots::{self, Place};
 
-/// Samples in a period of the declaration.
-const SAMPLES: f64 = 400.0;
 /// Two switches of a gap at one level with a shorter way between them are a pair; pairs part beyond the other length.
 const SHORT: f64 = 0.5;
 pub(super) const SHORTER: f64 = 0.4;
@@ -24,17 +21,6 @@ pub(super) const FAR: f64 = -1.0;
 /// Extremes are watched as long as those of the other kind are farther than this phase, and from the other one on.
 pub(super) const TOO_NEAR: f64 = 0.3;
 pub(super) const LONELY: f64 = 0.45;
-/// Where a period begins, in parts of the way between two switches, or of the period where there are none: not where a motion that is
-/// symmetric in time turns.
-const ASIDE: f64 = 0.46;
-const ANYWHERE: f64 = 0.0217;
-/// A switch of an orbit near another one has moved by less than this phase.
-const MOVED: f64 = 0.7;
-/// Phase over which a gap is differentiated twice.
-const BEND: f64 = 1e-3;
-
-/// Positions and velocities at a phase.
-pub(super) type At<'a> = &'a dyn Fn(f64, &mut [f64]);
 
 /// A switch with the value of its unknown, and the phase that it has in the order of time.
 #[derive(Debug, Clone, Copy)]
@@ -42,46 +28,6 @@ struct Planned {
     placed: Placed,
     /// Middle or `H` where it is one of two.
     value: f64,
-}
-
-/// Gaps of a motion that is given by samples.
-pub(super) struct Gaps<'a> {
-    pub(super) values: &'a Values,
-    pub(super) at: At<'a>,
-    pub(super) coordinates: usize,
-}
-
-impl Gaps<'_> {
-    /// Positions and velocities at a phase.
-    fn state(&self, phase: f64) -> Vec<f64> {
-        let mut state = vec![0.0; 2 * self.coordinates];
-        (self.at)(phase, &mut state);
-        state
-    }
-
-    /// States of the linear part at a phase.
-    fn states(&self, phase: f64) -> Vec<f64> {
-        self.values.linear.states(&self.state(phase))
-    }
-
-    /// Gap and rate by the time.
-    pub(super) fn gap(&self, contact: usize, phase: f64) -> [f64; 2] {
-        let states = self.states(phase);
-        let of = &self.values.contacts[contact];
-        let mut row = vec![0.0; states.len()];
-        of.gap.write(phase, 0, &mut row);
-        let gap = dot(&row, &states) - of.offset.value(phase, 0);
-        of.gap.write(phase, 1, &mut row);
-        let turning = dot(&row, &states) - of.offset.value(phase, 1);
-        of.rate.write(phase, 0, &mut row);
-        [gap, dot(&row, &states) + self.values.base * turning]
-    }
-
-    /// Half of the second derivative by the phase, beside a phase on both sides.
-    pub(super) fn bend(&self, contact: usize, phase: f64) -> f64 {
-        let rate = |phase: f64| self.gap(contact, phase)[1];
-        (rate(phase + BEND) - rate(phase - BEND)) / (4.0 * BEND * self.values.base)
-    }
 }
 
 /// The plan of an orbit.
@@ -196,7 +142,7 @@ impl Plan {
 }
 
 /// Writes the forces at the nodes that the gaps of a motion have there.
-fn write_forces(equations: &Equations, gaps: &Gaps<'_>, u: &mut [f64]) {
+pub(super) fn write_forces(equations: &Equations, gaps: &Gaps<'_>, u: &mut [f64]) {
     let skeleton = &equations.skeleton;
     for interval in &skeleton.intervals {
         let from = skeleton.place(u, interval.from).phase;
@@ -214,114 +160,6 @@ fn write_forces(equations: &Equations, gaps: &Gaps<'_>, u: &mut [f64]) {
             }
         }
     }
-}
-
-/// The unknowns of an orbit of other equations, from the motion of their last pass, or `None` where these have no place for it. An orbit
-/// near it has the unknowns `near` here.
-pub(super) fn transferred(
-    motion: &Motion<'_>,
-    u: &[f64],
-    gaps: &Gaps<'_>,
-    equations: &Equations,
-    near: &[f64],
-) -> Option<Vec<f64>> {
-    let (old, new) = (&motion.equations.skeleton, &equations.skeleton);
-    let mut to = near.to_vec();
-    to[near.len() - 1] = u[u.len() - 1];
-    let state = gaps.state(new.begin);
-    for ((x, state), origin) in to.iter_mut().zip(&state).zip(&equations.reference) {
-        *x = state - origin;
-    }
-    let known = crossings(old, u);
-    for (index, switch) in new.switches.iter().enumerate() {
-        let slot = new.slot(index);
-        match switch.told {
-            Told::Alone => {
-                let from = new.begin + near[slot];
-                to[slot] = near[slot] + nearest(&known, switch, from, new.length)?;
-            }
-            Told::First { other, bend } => {
-                let from = new.begin + near[slot];
-                let pair = [switch, &new.switches[other]];
-                let ends = pair.map(|switch| nearest(&known, switch, from, new.length));
-                let [by, square] = match ends {
-                    [Some(a), Some(b)] if a < b => [0.5 * (a + b), 0.25 * (b - a) * (b - a)],
-                    _ => short_of(motion, gaps, switch, [from, bend])?,
-                };
-                to[slot] = near[slot] + by;
-                to[new.slot(other)] = square;
-            }
-            Told::Second { .. } => {}
-        }
-    }
-    write_forces(equations, gaps, &mut to);
-    Some(to)
-}
-
-/// How far a phase is from another one, around a period of this length.
-fn apart(phase: f64, from: f64, length: f64) -> f64 {
-    let ahead = (phase - from).rem_euclid(length);
-    if ahead > 0.5 * length {
-        ahead - length
-    } else {
-        ahead
-    }
-}
-
-/// How far the nearest crossing of the same kind is from a phase.
-fn nearest(known: &[Placed], switch: &Switch, from: f64, length: f64) -> Option<f64> {
-    let place = |switch: &Switch| (switch.contact, switch.level, switch.rises);
-    known
-        .iter()
-        .filter(|placed| place(&placed.switch) == place(switch))
-        .map(|placed| apart(placed.phase, from, length))
-        .min_by(|a, b| a.abs().total_cmp(&b.abs()))
-        .filter(|apart| apart.abs() < MOVED)
-}
-
-/// How far the extreme that is short of a level is from a phase, and its `H`.
-fn short_of(
-    motion: &Motion<'_>,
-    gaps: &Gaps<'_>,
-    switch: &Switch,
-    [from, bend]: [f64; 2],
-) -> Option<[f64; 2]> {
-    let extremes = &motion.extremes().gaps[switch.contact];
-    let length = motion.equations.skeleton.length;
-    let level = gaps.values.contacts[switch.contact].levels[switch.level];
-    let found = extremes
-        .iter()
-        .filter(|extreme| extreme.maximum == switch.rises)
-        .map(|extreme| {
-            [
-                apart(extreme.phase, from, length),
-                -(extreme.gap - level) / bend,
-            ]
-        })
-        .min_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))?;
-    (found[0].abs() < MOVED && found[1] <= 0.0).then_some(found)
-}
-
-/// The crossings of an orbit.
-fn crossings(skeleton: &Skeleton, u: &[f64]) -> Vec<Placed> {
-    let mut crossings = Vec::new();
-    for (index, switch) in skeleton.switches.iter().enumerate() {
-        let square = match switch.told {
-            Told::Alone => f64::INFINITY,
-            Told::First { other, .. } => u[skeleton.slot(other)],
-            Told::Second { .. } => u[skeleton.slot(index)],
-        };
-        if square > 0.0 {
-            crossings.push(Placed {
-                switch: Switch {
-                    told: Told::Alone,
-                    ..*switch
-                },
-                phase: skeleton.phase(u, index),
-            });
-        }
-    }
-    crossings
 }
 
 /// What the unknowns of a branch count from.
@@ -355,111 +193,6 @@ fn force(law: &dyn Law, arguments: &[f64], piece: usize, gap: f64, rate: f64) ->
         out,
     );
     force[0]
-}
-
-/// Crossings of levels and extremes of a gap, from samples.
-fn look(
-    gaps: &Gaps<'_>,
-    contact: usize,
-    length: f64,
-    crossings: &mut Vec<Placed>,
-    extremes: &mut Vec<GapExtreme>,
-) {
-    let levels = &gaps.values.contacts[contact].levels;
-    let samples = (SAMPLES * length / std::f64::consts::TAU).ceil() as usize;
-    let at = |index: usize| {
-        let phase = length * (index as f64 / samples as f64);
-        (phase, gaps.gap(contact, phase))
-    };
-    let mut before = at(0);
-    for index in 1..=samples {
-        let next = at(index);
-        let within = 1e-12 * length;
-        // Between two samples the gap is followed to its extreme and from there.
-        let mut ends = vec![before];
-        if before.1[1] * next.1[1] < 0.0 {
-            let [a, b] = [before, next].map(|(x, gap)| Place { x, value: gap[1] });
-            if let Some(phase) = roots::root(a, b, within, |x| gaps.gap(contact, x)[1]) {
-                let gap = gaps.gap(contact, phase);
-                extremes.push(GapExtreme {
-                    contact,
-                    interval: 0,
-                    phase,
-                    gap: gap[0],
-                    maximum: a.value > 0.0,
-                });
-                ends.push((phase, gap));
-            }
-        }
-        ends.push(next);
-        for pair in ends.windows(2) {
-            for (level, value) in levels.iter().enumerate() {
-                let [a, b] = [pair[0], pair[1]].map(|(x, gap)| Place {
-                    x,
-                    value: gap[0] - value,
-                });
-                if (a.value > 0.0) == (b.value > 0.0) {
-                    continue;
-                }
-                let root = roots::root(a, b, within, |x| gaps.gap(contact, x)[0] - value);
-                crossings.push(Placed {
-                    switch: Switch {
-                        contact,
-                        level,
-                        rises: b.value > 0.0,
-                        told: Told::Alone,
-                    },
-                    phase: root.unwrap_or(b.x),
-                });
-            }
-        }
-        before = next;
-    }
-}
-
-/// In the middle of the longest way between two of these phases, of those where all gaps are at their lowest if there are any.
-fn beginning(gaps: &Gaps<'_>, length: f64, phases: impl Iterator<Item = f64>) -> f64 {
-    let mut phases: Vec<f64> = phases.map(|phase| phase.rem_euclid(length)).collect();
-    phases.sort_by(f64::total_cmp);
-    let Some(last) = phases.last() else {
-        return ANYWHERE * length;
-    };
-    let mut from = last - length;
-    let mut best = (0.0, 0.0);
-    for phase in phases {
-        let way = phase - from;
-        let middle = from + ASIDE * way;
-        let open = (0..gaps.values.contacts.len()).all(|contact| {
-            gaps.values.contacts[contact].levels.is_empty() || piece(gaps, contact, middle) == 0
-        });
-        let worth = if open { 2.0 * way } else { way };
-        if worth > best.0 {
-            best = (worth, middle);
-        }
-        from = phase;
-    }
-    best.1.rem_euclid(length)
-}
-
-/// Whether an extreme is away from those of the other kind of its gap. Two that meet are none any more.
-pub(super) fn is_lonely(
-    extreme: &GapExtreme,
-    extremes: &[GapExtreme],
-    length: f64,
-    distance: f64,
-) -> bool {
-    extremes.iter().all(|other| {
-        other.contact != extreme.contact
-            || other.maximum == extreme.maximum
-            || apart(other.phase, extreme.phase, length).abs() > distance
-    })
-}
-
-/// The piece that a gap is on.
-fn piece(gaps: &Gaps<'_>, contact: usize, phase: f64) -> usize {
-    let gap = gaps.gap(contact, phase)[0];
-    let levels = gaps.values.contacts[contact].levels.iter();
-    levels.filter(|level| gap > **level).count()
 }
 
 /// Makes pairs of switches with a short way between them, the shortest first.
@@ -541,58 +274,4 @@ fn join(planned: &mut [Planned]) {
         };
         planned[second].placed.switch.told = Told::Second { other: first };
     }
-}
-
-/// Adds the switches around an extreme that is beyond the levels of its piece, where the parabola of the gap has them.
-fn add_beyond(
-    gaps: &Gaps<'_>,
-    skeleton: &Skeleton,
-    extreme: &GapExtreme,
-    crossings: &mut Vec<Placed>,
-) {
-    let GapExtreme {
-        contact,
-        interval,
-        phase,
-        gap,
-        maximum,
-    } = *extreme;
-    let piece = skeleton.intervals[interval].pieces[contact];
-    for (level, value) in gaps.values.contacts[contact].levels.iter().enumerate() {
-        let beyond = if level < piece {
-            gap < *value
-        } else {
-            gap > *value
-        };
-        if !beyond || maximum != (level >= piece) {
-            continue;
-        }
-        let square = (value - gap) / gaps.bend(contact, phase);
-        if square.is_nan() || square <= 0.0 {
-            continue;
-        }
-        let half = square.sqrt();
-        for (rises, phase) in [(maximum, phase - half), (!maximum, phase + half)] {
-            crossings.push(Placed {
-                switch: Switch {
-                    contact,
-                    level,
-                    rises,
-                    told: Told::Alone,
-                },
-                phase,
-            });
-        }
-    }
-}
-
-/// The plan of an orbit of other equations, from the motion of their last pass.
-pub(super) fn replanned(motion: &Motion<'_>, u: &[f64], gaps: &Gaps<'_>) -> Plan {
-    let skeleton = &motion.equations.skeleton;
-    let mut crossings = crossings(skeleton, u);
-    let extremes = motion.extremes().gaps.concat();
-    for extreme in &extremes {
-        add_beyond(gaps, skeleton, extreme, &mut crossings);
-    }
-    Plan::of(gaps, skeleton.length, crossings, &extremes)
 }

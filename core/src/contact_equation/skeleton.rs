@@ -21,10 +21,14 @@
 //! contact grows as the root of the penetration).
 
 use super::nodes::{COUNTS, Nodes, STEEPEST};
+use super::place::{Place, half_way};
 use super::values::Contact;
 use crate::law::{Law, Quantity, Variation};
 use crate::numeric::fourier::grading;
 use crate::system::System;
+
+/// A gap hardly opens where `H` is less.
+const OPEN: f64 = 0.05;
 
 /// Where an interval begins or ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,13 +102,6 @@ pub(super) struct Interval {
     pub(super) ends: Option<usize>,
 }
 
-/// A switch with the phase where it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Placed {
-    pub(super) switch: Switch,
-    pub(super) phase: f64,
-}
-
 impl Interval {
     /// Half of the way from its beginning to its end.
     fn middle(&self) -> Mark {
@@ -130,6 +127,13 @@ impl Interval {
             part: 0.5 * (part(self.from, 0.0) + part(self.to, 1.0)),
         }
     }
+}
+
+/// A switch with the phase where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Placed {
+    pub(super) switch: Switch,
+    pub(super) phase: f64,
 }
 
 /// All of it.
@@ -487,54 +491,6 @@ struct Way<'w> {
     length: f64,
     pieces: &'w [usize],
     ends: Option<usize>,
-}
-
-/// `sqrt(H)`; zero where there is no way between the two.
-pub(super) fn half_way(square: f64) -> f64 {
-    if square > 0.0 {
-        square.max(CLOSEST).sqrt()
-    } else {
-        0.0
-    }
-}
-
-/// A gap hardly opens where `H` is less.
-const OPEN: f64 = 0.05;
-/// `H` below which differences over the way are rounding.
-const CLOSEST: f64 = 1e-13;
-
-/// A phase with its derivatives by unknowns.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
-    pub(super) phase: f64,
-    by: [(usize, f64); 4],
-    count: usize,
-}
-
-impl Place {
-    fn fixed(phase: f64) -> Self {
-        Self {
-            phase,
-            by: [(0, 0.0); 4],
-            count: 0,
-        }
-    }
-
-    fn add(&mut self, unknown: usize, slope: f64) {
-        self.by[self.count] = (unknown, slope);
-        self.count += 1;
-    }
-
-    fn scale(&mut self, factor: f64) {
-        self.phase *= factor;
-        for (_, slope) in &mut self.by {
-            *slope *= factor;
-        }
-    }
-
-    pub(super) fn slopes(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
-        self.by.into_iter().take(self.count)
-    }
 }
 
 /// Exponents of a force at one of its levels, from both sides, and whether each comes with a logarithm.

@@ -1,7 +1,8 @@
 //! Orbits against those of shooting, and derivatives against differences.
 
 use super::equations::{Equations, Setting};
-use super::plan::{Frame, Gaps, Plan};
+use super::gaps::Gaps;
+use super::plan::{Frame, Plan};
 use super::skeleton::Resolution;
 use crate::branches::solve;
 use crate::cancel::Cancel;

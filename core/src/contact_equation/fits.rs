@@ -1,0 +1,159 @@
+//! Whether equations fit the orbit of their last pass: switches are where its gaps have them, and what may meet is told in pairs.
+
+use super::gaps::is_lonely;
+use super::motion::{GapExtreme, Motion};
+use super::plan;
+use super::run::{Run, SAME};
+use super::skeleton::Told;
+
+/// A gap that is beyond its level by this part of its size is elsewhere.
+const BEYOND: f64 = 1e-9;
+
+/// What the gaps of an orbit say of its equations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fits {
+    /// They are right.
+    Yes,
+    /// They are right, and others are better from here on.
+    Soon,
+    /// The orbit is none: a gap is on another piece.
+    No,
+}
+
+impl Run<'_> {
+    /// Whether the equations still fit the orbit of their last pass.
+    pub(super) fn fits(&self, u: &[f64]) -> Fits {
+        let motion = Motion::of(&self.equations);
+        let skeleton = &self.equations.skeleton;
+        let mut last = skeleton.begin;
+        for passed in &self.equations.passed {
+            if passed.phases[1] < passed.phases[0] - BEYOND || passed.phases[1] < last - BEYOND {
+                return Fits::No;
+            }
+            last = passed.phases[1];
+        }
+        let found = motion.extremes().gaps.concat();
+        let mut fits = self.pairs_fit(u);
+        if self.meets_another(u, &found) {
+            fits = Fits::Soon;
+        }
+        for extreme in &found {
+            match self.extreme_fits(u, extreme, &found) {
+                Fits::No => return Fits::No,
+                Fits::Soon => fits = Fits::Soon,
+                Fits::Yes => {}
+            }
+        }
+        fits
+    }
+
+    /// Whether switches are told as they should be, and the beginning is away from them.
+    fn pairs_fit(&self, u: &[f64]) -> Fits {
+        let skeleton = &self.equations.skeleton;
+        let phases: Vec<f64> = (0..skeleton.switches.len())
+            .map(|switch| skeleton.phase(u, switch))
+            .collect();
+        let ways = phases.windows(2).map(|pair| pair[1] - pair[0]);
+        for (first, way) in ways.enumerate() {
+            let [a, b] = [skeleton.switches[first], skeleton.switches[first + 1]];
+            let same = (a.contact, a.level) == (b.contact, b.level) && a.rises != b.rises;
+            let alone = a.told == Told::Alone && b.told == Told::Alone;
+            let pair = matches!(a.told, Told::First { .. });
+            if same && alone && way < plan::SHORTER || same && pair && way > plan::LONG {
+                return Fits::Soon;
+            }
+        }
+        for (index, switch) in skeleton.switches.iter().enumerate() {
+            if matches!(switch.told, Told::Second { .. }) && u[skeleton.slot(index)] < plan::FAR {
+                return Fits::Soon;
+            }
+        }
+        let (Some(first), Some(last)) = (phases.first(), phases.last()) else {
+            return Fits::Yes;
+        };
+        let [before, after] = [
+            skeleton.begin + skeleton.length - last,
+            first - skeleton.begin,
+        ];
+        let around = before + after;
+        if before.min(after) < 0.2 * around && around > plan::CLOSE {
+            return Fits::Soon;
+        }
+        Fits::Yes
+    }
+
+    /// Whether an extreme that is watched comes near another one, with which it may end.
+    fn meets_another(&self, u: &[f64], found: &[GapExtreme]) -> bool {
+        let skeleton = &self.equations.skeleton;
+        skeleton.switches.iter().enumerate().any(|(index, switch)| {
+            let Told::First { other, .. } = switch.told else {
+                return false;
+            };
+            let extreme = GapExtreme {
+                contact: switch.contact,
+                interval: 0,
+                phase: skeleton.phase(u, index),
+                gap: 0.0,
+                maximum: switch.rises,
+            };
+            let short = u[skeleton.slot(other)] <= 0.0;
+            short && !is_lonely(&extreme, found, skeleton.length, plan::TOO_NEAR)
+        })
+    }
+
+    fn extreme_fits(&self, u: &[f64], extreme: &GapExtreme, all: &[GapExtreme]) -> Fits {
+        let GapExtreme {
+            contact,
+            interval,
+            gap,
+            maximum,
+            ..
+        } = *extreme;
+        let levels = &self.equations.values.contacts[contact].levels;
+        let own = all.iter().filter(|other| other.contact == contact);
+        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), other| {
+            (low.min(other.gap), high.max(other.gap))
+        });
+        let size = (high - low).max(f64::MIN_POSITIVE);
+        let skeleton = &self.equations.skeleton;
+        let piece = skeleton.intervals[interval].pieces[contact];
+        let mut fits = Fits::Yes;
+        for (level, value) in levels.iter().enumerate() {
+            let above = gap - value;
+            let beyond = if level < piece { -above } else { above };
+            if beyond > BEYOND * size {
+                return Fits::No;
+            }
+            let lonely = || is_lonely(extreme, all, skeleton.length, plan::LONELY);
+            if (above < 0.0) == maximum && lonely() && self.is_near(u, extreme, level) {
+                fits = Fits::Soon;
+            }
+        }
+        fits
+    }
+
+    /// Whether an extreme that is short of a level is to be watched and is not yet.
+    fn is_near(&self, u: &[f64], extreme: &GapExtreme, level: usize) -> bool {
+        let skeleton = &self.equations.skeleton;
+        let place = (extreme.contact, level);
+        let phase = extreme.phase;
+        let above = extreme.gap - self.equations.values.contacts[place.0].levels[level];
+        let watched = skeleton.switches.iter().enumerate().any(|(index, switch)| {
+            let told = matches!(switch.told, Told::First { .. });
+            let apart = (skeleton.phase(u, index) - phase).rem_euclid(skeleton.length);
+            let near = apart.min(skeleton.length - apart) < SAME;
+            told && (switch.contact, switch.level) == place && near
+        });
+        if watched {
+            return false;
+        }
+        let motion = Motion::of(&self.equations);
+        let at = |phase: f64, state: &mut [f64]| {
+            let (interval, phase) = motion.interval(phase);
+            motion.state(interval, phase, state);
+        };
+        let gaps = self.gaps(&at);
+        let square = -above / gaps.bend(place.0, phase);
+        (plan::NEAR..=0.0).contains(&square)
+    }
+}

@@ -1,0 +1,173 @@
+//! The gaps of a motion that is given at any phase: where they cross levels, and their extremes.
+
+use super::motion::GapExtreme;
+use super::skeleton::{Placed, Switch, Told};
+use super::values::{Values, dot};
+use crate::numeric::roots::{self, Place};
+
+/// Samples in a period of the declaration.
+const SAMPLES: f64 = 400.0;
+/// Where a period begins, in parts of the way between two switches, or of the period where there are none: not where a motion that is
+/// symmetric in time turns.
+const ASIDE: f64 = 0.46;
+const ANYWHERE: f64 = 0.0217;
+/// Phase over which a gap is differentiated twice.
+pub(super) const BEND: f64 = 1e-3;
+
+/// Positions and velocities at a phase.
+pub(super) type At<'a> = &'a dyn Fn(f64, &mut [f64]);
+
+/// Gaps of a motion that is given by samples.
+pub(super) struct Gaps<'a> {
+    pub(super) values: &'a Values,
+    pub(super) at: At<'a>,
+    pub(super) coordinates: usize,
+}
+
+impl Gaps<'_> {
+    /// Positions and velocities at a phase.
+    pub(super) fn state(&self, phase: f64) -> Vec<f64> {
+        let mut state = vec![0.0; 2 * self.coordinates];
+        (self.at)(phase, &mut state);
+        state
+    }
+
+    /// States of the linear part at a phase.
+    fn states(&self, phase: f64) -> Vec<f64> {
+        self.values.linear.states(&self.state(phase))
+    }
+
+    /// Gap and rate by the time.
+    pub(super) fn gap(&self, contact: usize, phase: f64) -> [f64; 2] {
+        let states = self.states(phase);
+        let of = &self.values.contacts[contact];
+        let mut row = vec![0.0; states.len()];
+        of.gap.write(phase, 0, &mut row);
+        let gap = dot(&row, &states) - of.offset.value(phase, 0);
+        of.gap.write(phase, 1, &mut row);
+        let turning = dot(&row, &states) - of.offset.value(phase, 1);
+        of.rate.write(phase, 0, &mut row);
+        [gap, dot(&row, &states) + self.values.base * turning]
+    }
+
+    /// Half of the second derivative by the phase, beside a phase on both sides.
+    pub(super) fn bend(&self, contact: usize, phase: f64) -> f64 {
+        let rate = |phase: f64| self.gap(contact, phase)[1];
+        (rate(phase + BEND) - rate(phase - BEND)) / (4.0 * BEND * self.values.base)
+    }
+}
+
+/// Crossings of levels and extremes of a gap, from samples.
+pub(super) fn look(
+    gaps: &Gaps<'_>,
+    contact: usize,
+    length: f64,
+    crossings: &mut Vec<Placed>,
+    extremes: &mut Vec<GapExtreme>,
+) {
+    let levels = &gaps.values.contacts[contact].levels;
+    let samples = (SAMPLES * length / std::f64::consts::TAU).ceil() as usize;
+    let at = |index: usize| {
+        let phase = length * (index as f64 / samples as f64);
+        (phase, gaps.gap(contact, phase))
+    };
+    let mut before = at(0);
+    for index in 1..=samples {
+        let next = at(index);
+        let within = 1e-12 * length;
+        // Between two samples the gap is followed to its extreme and from there.
+        let mut ends = vec![before];
+        if before.1[1] * next.1[1] < 0.0 {
+            let [a, b] = [before, next].map(|(x, gap)| Place { x, value: gap[1] });
+            if let Some(phase) = roots::root(a, b, within, |x| gaps.gap(contact, x)[1]) {
+                let gap = gaps.gap(contact, phase);
+                extremes.push(GapExtreme {
+                    contact,
+                    interval: 0,
+                    phase,
+                    gap: gap[0],
+                    maximum: a.value > 0.0,
+                });
+                ends.push((phase, gap));
+            }
+        }
+        ends.push(next);
+        for pair in ends.windows(2) {
+            for (level, value) in levels.iter().enumerate() {
+                let [a, b] = [pair[0], pair[1]].map(|(x, gap)| Place {
+                    x,
+                    value: gap[0] - value,
+                });
+                if (a.value > 0.0) == (b.value > 0.0) {
+                    continue;
+                }
+                let root = roots::root(a, b, within, |x| gaps.gap(contact, x)[0] - value);
+                crossings.push(Placed {
+                    switch: Switch {
+                        contact,
+                        level,
+                        rises: b.value > 0.0,
+                        told: Told::Alone,
+                    },
+                    phase: root.unwrap_or(b.x),
+                });
+            }
+        }
+        before = next;
+    }
+}
+
+/// Whether an extreme is away from those of the other kind of its gap. Two that meet are none any more.
+pub(super) fn is_lonely(
+    extreme: &GapExtreme,
+    extremes: &[GapExtreme],
+    length: f64,
+    distance: f64,
+) -> bool {
+    extremes.iter().all(|other| {
+        other.contact != extreme.contact
+            || other.maximum == extreme.maximum
+            || apart(other.phase, extreme.phase, length).abs() > distance
+    })
+}
+
+/// The piece that a gap is on.
+pub(super) fn piece(gaps: &Gaps<'_>, contact: usize, phase: f64) -> usize {
+    let gap = gaps.gap(contact, phase)[0];
+    let levels = gaps.values.contacts[contact].levels.iter();
+    levels.filter(|level| gap > **level).count()
+}
+
+/// In the middle of the longest way between two of these phases, of those where all gaps are at their lowest if there are any.
+pub(super) fn beginning(gaps: &Gaps<'_>, length: f64, phases: impl Iterator<Item = f64>) -> f64 {
+    let mut phases: Vec<f64> = phases.map(|phase| phase.rem_euclid(length)).collect();
+    phases.sort_by(f64::total_cmp);
+    let Some(last) = phases.last() else {
+        return ANYWHERE * length;
+    };
+    let mut from = last - length;
+    let mut best = (0.0, 0.0);
+    for phase in phases {
+        let way = phase - from;
+        let middle = from + ASIDE * way;
+        let open = (0..gaps.values.contacts.len()).all(|contact| {
+            gaps.values.contacts[contact].levels.is_empty() || piece(gaps, contact, middle) == 0
+        });
+        let worth = if open { 2.0 * way } else { way };
+        if worth > best.0 {
+            best = (worth, middle);
+        }
+        from = phase;
+    }
+    best.1.rem_euclid(length)
+}
+
+/// How far a phase is from another one, around a period of this length.
+pub(super) fn apart(phase: f64, from: f64, length: f64) -> f64 {
+    let ahead = (phase - from).rem_euclid(length);
+    if ahead > 0.5 * length {
+        ahead - length
+    } else {
+        ahead
+    }
+}

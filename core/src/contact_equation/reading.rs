@@ -1,0 +1,342 @@
+//! What is read off an orbit, with its errors: one step from it to a solution with more nodes tells what the nodes leave out.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::equations::Equations;
+use super::motion::{Motion, Within};
+use super::run::{DIFFERENCE, Run};
+use crate::branches::observed::{Motion as Extent, Observed};
+use crate::branches::orbit::Orbit;
+use crate::branches::point::Point;
+use crate::branches::recurrence::Recurrence;
+use crate::branches::stability::{Stability, Verdict};
+use crate::continuation::follow::CurvePoint;
+use crate::numeric::roots::Place;
+use crate::numeric::spectrum::{distance, eigenvalues};
+use crate::shooting::reading::Reader;
+
+/// What one step from a finer solution says of the error is multiplied by this.
+const SAFETY: f64 = 2.0;
+/// As many orbits are compared with one whose errors a finer solution has shown.
+const SCREENED: usize = 7;
+/// What their forces leave out may be so many times as much.
+const ALIKE: f64 = 4.0;
+/// Phases at which two motions are compared.
+const COMPARED: usize = 24;
+/// Where the branch is steeper than this part, as before a fold, what is varied moves the orbit by more.
+const STEEPER: f64 = 0.5;
+/// They must be known to this part of the tolerance.
+const LITTLE: f64 = 0.1;
+
+/// Errors that a finer solution has shown.
+pub(super) struct Screened {
+    /// What forces left out there.
+    tail: f64,
+    /// Of the motion across the tangent at any phase, and of what is varied. One number, as peak-to-peak, may be right by chance where
+    /// its error changes sign.
+    apart: f64,
+    shift: f64,
+    /// How what is varied changes along the branch.
+    slope: f64,
+    /// Of peak-to-peak where what is varied has its value, and of the multipliers or the map that has them.
+    error: f64,
+    spread: f64,
+    /// As many orbits may still be compared with it.
+    left: usize,
+}
+
+/// An orbit that was read.
+pub(super) struct ReadOrbit {
+    pub(super) point: Point,
+    pub(super) map: Option<DMatrix<f64>>,
+    /// What one step to a finer solution changes in what is varied.
+    pub(super) shift: f64,
+    /// The map of that finer solution.
+    pub(super) finer: Option<DMatrix<f64>>,
+}
+
+impl Run<'_> {
+    /// The orbit at unknowns of the last pass, without its stability and error.
+    pub(super) fn observed(&self, equations: &Equations, value: f64) -> Point {
+        let problem = &self.problem.asked;
+        let motion = Motion::of(equations);
+        let coordinates = equations.values.linear.positions.nrows();
+        let rate = equations.values.base;
+        let found = motion.extremes().coordinates.iter();
+        let motions = found.map(|[minimum, maximum]| Extent {
+            minimum: minimum.value,
+            maximum: maximum.value,
+            ..Extent::NONE
+        });
+        let recurrence = Recurrence::whole(problem.period);
+        let mut outputs = problem.output_reader(value, &recurrence);
+        if let Some(outputs) = &mut outputs {
+            for interval in 0..motion.intervals() {
+                let [from, to] = motion.phases(interval);
+                if to > from {
+                    outputs.include(&Within {
+                        motion: &motion,
+                        interval,
+                    });
+                }
+            }
+        }
+        let mut states = vec![0.0; 2 * coordinates * problem.period];
+        for (period, state) in states.chunks_exact_mut(2 * coordinates).enumerate() {
+            let (interval, phase) = motion.interval(TAU * period as f64);
+            motion.state(interval, phase, state);
+        }
+        let switches = switches(equations);
+        Point {
+            value,
+            parameters: problem.parameters_at(value),
+            orbit: Orbit {
+                series: Vec::new(),
+                states,
+                coordinates,
+                omega: problem.omega_at(value),
+                base: rate / problem.period as f64,
+                period: problem.period,
+                parts: recurrence.parts,
+                symmetric: false,
+                image: recurrence.image,
+            },
+            stability: Stability::unknown(),
+            observed: Observed {
+                outputs: outputs.map_or_else(Vec::new, Reader::motions),
+                ..Observed::extremes(motions.collect(), switches)
+            },
+            error: None,
+        }
+    }
+
+    /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them.
+    pub(super) fn read(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
+        let (mut point, map) = self.read_plainly(at)?;
+        let Some(Finer { u: other, shift }) = self.corrected(at) else {
+            point.error = Some(f64::INFINITY);
+            return Some(ReadOrbit {
+                point,
+                map,
+                shift: f64::INFINITY,
+                finer: None,
+            });
+        };
+        let mut finer = self.finer.take()?;
+        let finer_map = if map.is_some() {
+            finer.map(&other)
+        } else {
+            finer.compute(&other, false);
+            None
+        };
+        let motions = self.equations.extremes.get();
+        let extremes = motions.map_or(&[][..], |found| &found.coordinates);
+        let apart = apart(&finer, extremes);
+        let everywhere = everywhere([&self.equations, &finer]);
+        self.finer = Some(finer);
+        let size = point.observed.motions.iter().map(Extent::peak_to_peak);
+        let size = size.fold(0.0, f64::max);
+        let steepness = self.steepness(at).unwrap_or_else(|| self.rise(&point));
+        let error = SAFETY * (apart + steepness * shift.abs()) / size;
+        point.error = Some(error + 100.0 * f64::EPSILON);
+        let mut spread = 0.0;
+        if let Some(map) = &map {
+            let found = eigenvalues(map);
+            let known = finer_map.as_ref();
+            let moved = known.map_or(f64::INFINITY, |finer| distance(&found, &eigenvalues(finer)));
+            point.stability = Stability::of(found, SAFETY * moved);
+            spread = known.map_or(f64::INFINITY, |finer| moved.max((map - finer).norm()));
+        }
+        self.screened = Some(Screened {
+            tail: self.tail(&at.u),
+            apart: everywhere,
+            shift: shift.abs(),
+            slope: at.parameter_slope().abs(),
+            error: error.max(SAFETY * everywhere / size),
+            spread: SAFETY * spread,
+            left: SCREENED,
+        });
+        Some(ReadOrbit {
+            point,
+            map,
+            shift,
+            finer: finer_map,
+        })
+    }
+
+    /// Reads an orbit of the walk. Where forces are resolved as well as at the last orbit whose errors a finer solution has shown, it has
+    /// those, and a safety.
+    pub(super) fn read_on(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
+        let tail = self.tail(&at.u);
+        let enough = LITTLE * self.problem.tolerance;
+        let slope = at.parameter_slope().abs();
+        let known = self.screened.as_mut().filter(|known| {
+            let alike = tail <= ALIKE * known.tail && slope >= STEEPER * known.slope;
+            known.left > 0 && alike && known.error <= enough
+        });
+        let Some(known) = known else {
+            return self.read(at);
+        };
+        known.left -= 1;
+        let ratio = SAFETY * (tail / known.tail).max(1.0);
+        let (apart, shift) = (ratio * known.apart, ratio * known.shift);
+        let spread = ratio * known.spread;
+        let (mut point, map) = self.read_plainly(at)?;
+        let size = point.observed.motions.iter().map(Extent::peak_to_peak);
+        let size = size.fold(0.0, f64::max);
+        let error = SAFETY * (apart + self.rise(&point) * shift) / size;
+        point.error = Some(error + 100.0 * f64::EPSILON);
+        if let Some(map) = &map {
+            point.stability = Stability::of(eigenvalues(map), spread);
+            if point.stability.verdict == Verdict::Undecided {
+                return self.read(at);
+            }
+        }
+        Some(ReadOrbit {
+            point,
+            map,
+            shift: f64::NAN,
+            finer: None,
+        })
+    }
+
+    /// An orbit without its errors, and the map of its states if stability is asked for.
+    fn read_plainly(&mut self, at: &CurvePoint) -> Option<(Point, Option<DMatrix<f64>>)> {
+        let map = if self.problem.asked.stability {
+            self.statistics.monodromies += 1;
+            Some(self.equations.map(&at.u)?)
+        } else {
+            self.equations.compute(&at.u, false);
+            None
+        };
+        Some((self.observed(&self.equations, at.parameter()), map))
+    }
+
+    /// How peak-to-peak changes with what is varied, along the tangent.
+    fn steepness(&mut self, at: &CurvePoint) -> Option<f64> {
+        let extremes = self.equations.extremes.get()?.coordinates.clone();
+        let slope = at.parameter_slope();
+        let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
+        let moved = at.u.iter().zip(&at.tangent);
+        let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
+        self.equations.compute(&moved, false);
+        let known = !self.equations.failed && slope != 0.0;
+        let steepness = known.then(|| apart(&self.equations, &extremes) / (step * slope).abs());
+        self.equations.compute(&at.u, false);
+        steepness
+    }
+
+    /// The same, since the last point.
+    fn rise(&self, point: &Point) -> f64 {
+        self.record.points.last().map_or(0.0, |last| {
+            let by = (point.value - last.value).abs();
+            if by > 0.0 {
+                (point.peak_to_peak() - last.peak_to_peak()).abs() / by
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// What the forces at the nodes leave out, by the size of their last coefficients.
+    fn tail(&self, u: &[f64]) -> f64 {
+        let mut sum = f64::MIN_POSITIVE;
+        for interval in &self.equations.skeleton.intervals {
+            for active in &interval.active {
+                let forces = &u[active.first..][..interval.nodes.count()];
+                sum += interval.nodes.tail(forces);
+            }
+        }
+        sum
+    }
+
+    /// The orbit with more nodes, by one step of Newton's method in the plane across the tangent.
+    fn corrected(&mut self, at: &CurvePoint) -> Option<Finer> {
+        if self.finer.is_none() {
+            self.finer = self.equations.finer_equations(at.parameter());
+        }
+        let finer = self.finer.as_mut()?;
+        let mut u = self.equations.skeleton.interpolated(&finer.skeleton, &at.u);
+        let tangent = self
+            .equations
+            .skeleton
+            .interpolated(&finer.skeleton, &at.tangent);
+        finer.compute(&u, true);
+        if finer.failed {
+            return None;
+        }
+        let n = finer.skeleton.unknowns();
+        let told = finer.skeleton.order + finer.skeleton.switches.len();
+        let mut matrix = DMatrix::from_row_iterator(
+            n + 1,
+            n + 1,
+            finer
+                .matrix()
+                .iter()
+                .copied()
+                .chain(std::iter::repeat_n(0.0, n + 1)),
+        );
+        for column in (0..told).chain([n]) {
+            matrix[(n, column)] = tangent[column];
+        }
+        let mut residual = DVector::zeros(n + 1);
+        residual.rows_mut(0, n).copy_from_slice(finer.residual());
+        let update = matrix.lu().solve(&residual)?;
+        for (x, by) in u.iter_mut().zip(update.iter()) {
+            *x -= by;
+        }
+        let shift = update[n];
+        u.iter()
+            .all(|x| x.is_finite())
+            .then_some(Finer { u, shift })
+    }
+}
+
+/// An orbit with more nodes.
+struct Finer {
+    u: Vec<f64>,
+    /// What it changes in what is varied.
+    shift: f64,
+}
+
+/// How far a finer orbit is from where the coordinates of another one are smallest and largest: the error of these values, to first order.
+fn apart(finer: &Equations, extremes: &[[Place; 2]]) -> f64 {
+    let motion = Motion::of(finer);
+    let off = |coordinate: usize, place: &Place| {
+        let (interval, phase) = motion.interval(place.x);
+        motion.coordinate(coordinate, interval, phase)[0] - place.value
+    };
+    let pairs = extremes.iter().enumerate();
+    let apart = pairs.map(|(coordinate, [low, high])| off(coordinate, high) - off(coordinate, low));
+    apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
+}
+
+/// The largest difference of a coordinate between two motions.
+fn everywhere(equations: [&Equations; 2]) -> f64 {
+    let motions = equations.map(Motion::of);
+    let skeleton = &equations[0].skeleton;
+    let coordinates = equations[0].values.linear.positions.nrows();
+    let mut states = [vec![0.0; 2 * coordinates], vec![0.0; 2 * coordinates]];
+    let mut most = 0.0_f64;
+    for sample in 0..COMPARED {
+        let phase = skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
+        for (motion, state) in motions.iter().zip(&mut states) {
+            let (interval, phase) = motion.interval(phase);
+            motion.state(interval, phase, state);
+        }
+        let pairs = states[0].iter().zip(&states[1]).take(coordinates);
+        most = pairs.fold(most, |most, (a, b)| most.max((a - b).abs()));
+    }
+    most
+}
+
+/// How often gaps cross levels.
+fn switches(equations: &Equations) -> usize {
+    let passed = equations.skeleton.intervals.iter().zip(&equations.passed);
+    let ghosts = passed.filter(|(interval, passed)| {
+        interval.ends.is_some() && passed.phases[1] <= passed.phases[0]
+    });
+    equations.skeleton.switches.len() - 2 * ghosts.count()
+}

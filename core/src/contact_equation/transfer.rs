@@ -1,0 +1,162 @@
+//! An orbit of other equations: its unknowns in these, and the plan of equations that fit it.
+
+use super::equations::Equations;
+use super::gaps::{Gaps, apart};
+use super::motion::{GapExtreme, Motion};
+use super::plan::{Plan, write_forces};
+use super::skeleton::{Placed, Skeleton, Switch, Told};
+
+/// A switch of an orbit near another one has moved by less than this phase.
+const MOVED: f64 = 0.7;
+
+/// The unknowns of an orbit of other equations, from the motion of their last pass, or `None` where these have no place for it. An orbit
+/// near it has the unknowns `near` here.
+pub(super) fn transferred(
+    motion: &Motion<'_>,
+    u: &[f64],
+    gaps: &Gaps<'_>,
+    equations: &Equations,
+    near: &[f64],
+) -> Option<Vec<f64>> {
+    let (old, new) = (&motion.equations.skeleton, &equations.skeleton);
+    let mut to = near.to_vec();
+    to[near.len() - 1] = u[u.len() - 1];
+    let state = gaps.state(new.begin);
+    for ((x, state), origin) in to.iter_mut().zip(&state).zip(&equations.reference) {
+        *x = state - origin;
+    }
+    let known = crossings(old, u);
+    for (index, switch) in new.switches.iter().enumerate() {
+        let slot = new.slot(index);
+        match switch.told {
+            Told::Alone => {
+                let from = new.begin + near[slot];
+                to[slot] = near[slot] + nearest(&known, switch, from, new.length)?;
+            }
+            Told::First { other, bend } => {
+                let from = new.begin + near[slot];
+                let pair = [switch, &new.switches[other]];
+                let ends = pair.map(|switch| nearest(&known, switch, from, new.length));
+                let [by, square] = match ends {
+                    [Some(a), Some(b)] if a < b => [0.5 * (a + b), 0.25 * (b - a) * (b - a)],
+                    _ => short_of(motion, gaps, switch, [from, bend])?,
+                };
+                to[slot] = near[slot] + by;
+                to[new.slot(other)] = square;
+            }
+            Told::Second { .. } => {}
+        }
+    }
+    write_forces(equations, gaps, &mut to);
+    Some(to)
+}
+
+/// How far the nearest crossing of the same kind is from a phase.
+fn nearest(known: &[Placed], switch: &Switch, from: f64, length: f64) -> Option<f64> {
+    let place = |switch: &Switch| (switch.contact, switch.level, switch.rises);
+    known
+        .iter()
+        .filter(|placed| place(&placed.switch) == place(switch))
+        .map(|placed| apart(placed.phase, from, length))
+        .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+        .filter(|apart| apart.abs() < MOVED)
+}
+
+/// How far the extreme that is short of a level is from a phase, and its `H`.
+fn short_of(
+    motion: &Motion<'_>,
+    gaps: &Gaps<'_>,
+    switch: &Switch,
+    [from, bend]: [f64; 2],
+) -> Option<[f64; 2]> {
+    let extremes = &motion.extremes().gaps[switch.contact];
+    let length = motion.equations.skeleton.length;
+    let level = gaps.values.contacts[switch.contact].levels[switch.level];
+    let found = extremes
+        .iter()
+        .filter(|extreme| extreme.maximum == switch.rises)
+        .map(|extreme| {
+            [
+                apart(extreme.phase, from, length),
+                -(extreme.gap - level) / bend,
+            ]
+        })
+        .min_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))?;
+    (found[0].abs() < MOVED && found[1] <= 0.0).then_some(found)
+}
+
+/// The crossings of an orbit.
+fn crossings(skeleton: &Skeleton, u: &[f64]) -> Vec<Placed> {
+    let mut crossings = Vec::new();
+    for (index, switch) in skeleton.switches.iter().enumerate() {
+        let square = match switch.told {
+            Told::Alone => f64::INFINITY,
+            Told::First { other, .. } => u[skeleton.slot(other)],
+            Told::Second { .. } => u[skeleton.slot(index)],
+        };
+        if square > 0.0 {
+            crossings.push(Placed {
+                switch: Switch {
+                    told: Told::Alone,
+                    ..*switch
+                },
+                phase: skeleton.phase(u, index),
+            });
+        }
+    }
+    crossings
+}
+
+/// The plan of an orbit of other equations, from the motion of their last pass.
+pub(super) fn replanned(motion: &Motion<'_>, u: &[f64], gaps: &Gaps<'_>) -> Plan {
+    let skeleton = &motion.equations.skeleton;
+    let mut crossings = crossings(skeleton, u);
+    let extremes = motion.extremes().gaps.concat();
+    for extreme in &extremes {
+        add_beyond(gaps, skeleton, extreme, &mut crossings);
+    }
+    Plan::of(gaps, skeleton.length, crossings, &extremes)
+}
+
+/// Adds the switches around an extreme that is beyond the levels of its piece, where the parabola of the gap has them.
+fn add_beyond(
+    gaps: &Gaps<'_>,
+    skeleton: &Skeleton,
+    extreme: &GapExtreme,
+    crossings: &mut Vec<Placed>,
+) {
+    let GapExtreme {
+        contact,
+        interval,
+        phase,
+        gap,
+        maximum,
+    } = *extreme;
+    let piece = skeleton.intervals[interval].pieces[contact];
+    for (level, value) in gaps.values.contacts[contact].levels.iter().enumerate() {
+        let beyond = if level < piece {
+            gap < *value
+        } else {
+            gap > *value
+        };
+        if !beyond || maximum != (level >= piece) {
+            continue;
+        }
+        let square = (value - gap) / gaps.bend(contact, phase);
+        if square.is_nan() || square <= 0.0 {
+            continue;
+        }
+        let half = square.sqrt();
+        for (rises, phase) in [(maximum, phase - half), (!maximum, phase + half)] {
+            crossings.push(Placed {
+                switch: Switch {
+                    contact,
+                    level,
+                    rises,
+                    told: Told::Alone,
+                },
+                phase,
+            });
+        }
+    }
+}
