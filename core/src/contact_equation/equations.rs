@@ -30,8 +30,7 @@
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use nalgebra::DMatrix;
-
+use super::eliminated::Eliminated;
 use super::extremes::Extremes;
 use super::place::half_way;
 use super::room::Room;
@@ -125,8 +124,9 @@ pub(super) struct Equations {
     /// Weight of a phase, and of velocities, in the norm.
     pub(super) size: f64,
     /// Residuals, and their derivatives by the extended unknowns row by row.
-    residual: Vec<f64>,
-    matrix: Vec<f64>,
+    pub(super) residual: Vec<f64>,
+    pub(super) matrix: Vec<f64>,
+    pub(super) eliminated: Eliminated,
     pub(super) passed: Vec<Passed>,
     /// Of the last pass, when they are asked for.
     pub(super) extremes: OnceCell<Extremes>,
@@ -162,6 +162,7 @@ impl Equations {
             size,
             residual: Vec::new(),
             matrix: Vec::new(),
+            eliminated: Eliminated::new(0, 0),
             passed: Vec::new(),
             extremes: OnceCell::new(),
             known: [Vec::new(), Vec::new()],
@@ -186,6 +187,7 @@ impl Equations {
         let n = self.skeleton.unknowns();
         self.residual = vec![0.0; n];
         self.matrix = vec![0.0; n * (n + 1)];
+        self.eliminated = Eliminated::new(n, self.skeleton.order);
         self.column = vec![0.0; n];
         self.passed = vec![Passed::default(); self.skeleton.intervals.len()];
         self.room = Room::new(&self.skeleton, self.values.contacts.len());
@@ -210,7 +212,7 @@ impl Equations {
     }
 
     /// Residuals, and their derivatives by the unknowns if asked for. What the last pass has is not computed again.
-    fn pass(&mut self, u: &[f64], derivatives: bool) {
+    pub(super) fn pass(&mut self, u: &[f64], derivatives: bool) {
         if self.last == u && (self.derived || !derivatives) {
             return;
         }
@@ -339,32 +341,8 @@ impl Equations {
         self.by_parameter = true;
     }
 
-    /// The map (4) of the states over the period, in the units of [`states`](Self::unit).
-    pub(super) fn map(&mut self, u: &[f64]) -> Option<DMatrix<f64>> {
-        self.pass(u, true);
-        if self.failed {
-            return None;
-        }
-        let (n, order) = (self.skeleton.unknowns(), self.skeleton.order);
-        let entry = |row: usize, column: usize| self.matrix[row * (n + 1) + column];
-        let others = n - order;
-        let inner = DMatrix::from_fn(others, others, |i, j| entry(order + i, order + j));
-        let by_states = DMatrix::from_fn(others, order, |i, j| entry(order + i, j));
-        let end = DMatrix::from_fn(order, others, |i, j| entry(i, order + j));
-        let mut map = DMatrix::from_fn(order, order, |i, j| {
-            entry(i, j) + f64::from(u8::from(i == j))
-        });
-        if others > 0 {
-            map -= end * inner.lu().solve(&by_states)?;
-        }
-        let scaled = DMatrix::from_fn(order, order, |i, j| {
-            map[(i, j)] * self.unit(j) / self.unit(i)
-        });
-        scaled.iter().all(|x| x.is_finite()).then_some(scaled)
-    }
-
     /// What counts as one in a position or velocity: velocities count by the frequency.
-    fn unit(&self, state: usize) -> f64 {
+    pub(super) fn unit(&self, state: usize) -> f64 {
         if 2 * state < self.skeleton.order {
             1.0
         } else {
@@ -376,16 +354,6 @@ impl Equations {
     fn defect(&mut self, u: &[f64]) -> f64 {
         self.compute(u, false);
         self.residual.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
-    }
-
-    /// Residuals at the last unknowns.
-    pub(super) fn residual(&self) -> &[f64] {
-        &self.residual
-    }
-
-    /// Derivatives of residuals at the last unknowns, row by row, the parameter last.
-    pub(super) fn matrix(&self) -> &[f64] {
-        &self.matrix
     }
 }
 

@@ -47,29 +47,6 @@ pub(super) fn integrate(
     }
 }
 
-/// (3) of a pair whose exponents are zero: `X f = s S1 f + s^2 D S2 f`.
-pub(super) fn by_time_of_free(
-    block: &Block,
-    nodes: &Nodes,
-    time: f64,
-    load: impl Fn(usize) -> [f64; 2],
-    to: &mut [[f64; 2]],
-) {
-    let n = nodes.count();
-    for (index, to) in to.iter_mut().enumerate() {
-        let (mut once, mut twice) = ([0.0; 2], [0.0; 2]);
-        for l in 0..n {
-            let load = load(l);
-            for i in 0..2 {
-                once[i] += nodes.once[index * n + l] * load[i];
-                twice[i] += nodes.twice[index * n + l] * load[i];
-            }
-        }
-        let turned = times(block.deviation, twice);
-        *to = [0, 1].map(|i| once[i] + 2.0 * time * turned[i]);
-    }
-}
-
 /// (3) from target to target: with `X_(j+1) = e^(A h) X_j + s sum_q w_q e^(A d_q s) f_q`, where `h` and `d_q s` are times,
 /// `dX_(j+1)/ds = e^(A h) (dX_j/ds + (h / s) A X_j) + sum_q w_q (1 + d_q s A) e^(A d_q s) f_q`.
 pub(super) fn by_time(

@@ -1,8 +1,8 @@
 //! Periodic orbits by the contact equation: unknown are the forces at a few nodes of each stretch in contact, where stretches begin and
 //! end, and the state at one phase. Between contacts the system is linear, and its motion known in closed form.
 //!
-//! `linear` and `block` have the motion of the linear part, `nodes` and `integrals` the integrals over a stretch, `skeleton` and `place`
-//! which pieces gaps are on and where the unknowns stand, `pass` and `equations` residuals and derivatives, `motion` and `extremes` the
+//! `linear` and `block` have the motion of the linear part, `nodes`, `grading` and `integrals` the integrals over a stretch, `skeleton` and `place`
+//! which pieces gaps are on and where the unknowns stand, `pass`, `equations` and `eliminated` residuals and derivatives, `motion` and `extremes` the
 //! motion at any phase. `gaps`, `plan` and `transfer` tell which skeleton an orbit has, `fits` whether it still is right, `reading` what is
 //! read off an orbit, with its errors. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
 //!
@@ -11,11 +11,13 @@
 
 mod block;
 pub(crate) mod compute;
+mod eliminated;
 mod equations;
 mod events;
 mod extremes;
 mod fits;
 mod gaps;
+mod grading;
 mod integrals;
 mod linear;
 mod method;

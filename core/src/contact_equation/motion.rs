@@ -29,7 +29,7 @@ struct Room {
     states: Vec<f64>,
     row: Vec<f64>,
     weights: Vec<f64>,
-    steady: [Vec<f64>; 3],
+    steady: Vec<f64>,
     resonant: [Vec<f64>; 4],
 }
 
@@ -40,7 +40,7 @@ impl<'e> Motion<'e> {
             states: states(),
             row: states(),
             weights: Vec::new(),
-            steady: std::array::from_fn(|_| states()),
+            steady: states(),
             resonant: std::array::from_fn(|_| states()),
         };
         Self {
@@ -92,7 +92,7 @@ impl<'e> Motion<'e> {
         } else {
             0.0
         };
-        values.write_steady(phase, &mut room.steady);
+        values.write_steady(phase, &mut room.steady, None);
         let resonant = values.write_resonant(from, time, &mut room.resonant);
         let forced = !of.active.is_empty() && !passed.forced.is_empty();
         if forced {
@@ -102,7 +102,7 @@ impl<'e> Motion<'e> {
             let free = times(block.exponential(time), pair(&passed.free, r));
             for i in 0..2 {
                 let at = 2 * r + i;
-                room.states[at] = free[i] + room.steady[0][at];
+                room.states[at] = free[i] + room.steady[at];
                 if resonant {
                     room.states[at] += room.resonant[0][at];
                 }

@@ -15,12 +15,11 @@
 
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use super::grading::Grading;
 use crate::numeric::fourier::gauss;
 
 /// Numbers of nodes of a stretch.
 pub(super) const COUNTS: [usize; 6] = [8, 12, 16, 20, 24, 32];
-/// The largest power of (1).
-pub(super) const STEEPEST: usize = 4;
 /// Points of the rules between two targets: of one that serves slow kernels, and of finer ones.
 const POINTS: [usize; 3] = [12, 24, 48];
 
@@ -29,6 +28,7 @@ const POINTS: [usize; 3] = [12, 24, 48];
 pub(super) struct Nodes {
     /// `p` and `q` of (1).
     pub(super) grading: [usize; 2],
+    map: Grading,
     /// The nodes in `y`, and their barycentric weights.
     y: Vec<f64>,
     barycentric: Vec<f64>,
@@ -99,10 +99,11 @@ impl Nodes {
             let row = pairs.map(|(y, w)| (2 * degree + 1) as f64 * w * legendre(degree, *y));
             row.collect()
         };
-        let map = Map { grading };
+        let map = Grading::new(grading);
         let psi: Vec<f64> = y.iter().map(|y| map.psi(*y)).collect();
         let mut nodes = Self {
             grading,
+            map,
             inner: inner.collect(),
             last: [n_less(1), n_less(2)],
             next: OnceLock::new(),
@@ -145,9 +146,7 @@ impl Nodes {
 
     fn rule_between(&self, points: usize) -> Between {
         let n = self.count();
-        let map = Map {
-            grading: self.grading,
-        };
+        let map = &self.map;
         let gauss = gauss::rule(points);
         let ends: Vec<f64> = [-1.0]
             .iter()
@@ -187,10 +186,7 @@ impl Nodes {
 
     /// Writes every polynomial `l_l` at a `psi` of the stretch.
     pub(super) fn polynomials(&self, psi: f64, values: &mut [f64]) {
-        let map = Map {
-            grading: self.grading,
-        };
-        self.polynomials_at(map.inverse(psi), values);
+        self.polynomials_at(self.map.inverse(psi), values);
     }
 
     /// Writes the weights of the targets in the value at a `psi` of what is known at all of them, and is zero at the beginning: of the
@@ -206,14 +202,7 @@ impl Nodes {
         if psi <= 0.0 {
             return;
         }
-        let map = Map {
-            grading: self.grading,
-        };
-        let y = map.inverse(psi);
-        if let Some(node) = self.y.iter().position(|node| *node == y) {
-            weights[node] = 1.0;
-            return;
-        }
+        let y = self.map.inverse(psi);
         let sign = if n.is_multiple_of(2) { -1.0 } else { 1.0 };
         // P_n(-1) = (-1)^n, and the derivative of y^2 - 1 is -2 there.
         let mut sum = 1.0 / (2.0 * (y + 1.0));
@@ -223,8 +212,18 @@ impl Nodes {
         }
         weights[n] = sign / (2.0 * (y - 1.0));
         sum += weights[n];
+        let per = 1.0 / sum;
+        if per == 0.0 || per.is_nan() {
+            // At a node, or so near that its weight is no number.
+            let near = |node: &&f64| (**node - y).abs() <= f64::MIN_POSITIVE;
+            for (weight, node) in weights.iter_mut().zip(&self.y) {
+                *weight = f64::from(u8::from(near(&node)));
+            }
+            weights[n] = 0.0;
+            return;
+        }
         for weight in weights {
-            *weight /= sum;
+            *weight *= per;
         }
     }
 
@@ -270,64 +269,6 @@ impl Nodes {
     }
 }
 
-/// The map (1).
-#[derive(Clone, Copy)]
-struct Map {
-    grading: [usize; 2],
-}
-
-impl Map {
-    /// `int_0^t u^(p - 1) (1 - u)^(q - 1) du / B(p, q)` with `t = (1 + y) / 2`: a sum over binomials (Abramowitz and Stegun (1964),
-    /// equation 26.5.6), from the nearer end.
-    fn psi(self, y: f64) -> f64 {
-        let [p, q] = self.grading;
-        if y <= 0.0 {
-            incomplete_beta(p, q, 0.5 * (1.0 + y))
-        } else {
-            1.0 - incomplete_beta(q, p, 0.5 * (1.0 - y))
-        }
-    }
-
-    /// `d psi / dy`
-    fn slope(self, y: f64) -> f64 {
-        let [p, q] = self.grading;
-        let (t, s) = (0.5 * (1.0 + y), 0.5 * (1.0 - y));
-        0.5 * t.powi(p as i32 - 1) * s.powi(q as i32 - 1) / beta(p, q)
-    }
-
-    /// By Newton's method between bounds.
-    fn inverse(self, psi: f64) -> f64 {
-        if self.grading == [1, 1] {
-            return 2.0 * psi - 1.0;
-        }
-        let psi = psi.clamp(0.0, 1.0);
-        let (mut below, mut above) = (-1.0, 1.0);
-        let mut y = 2.0 * psi - 1.0;
-        for _ in 0..60 {
-            let excess = self.psi(y) - psi;
-            if excess == 0.0 {
-                break;
-            }
-            if excess > 0.0 {
-                above = y;
-            } else {
-                below = y;
-            }
-            let next = y - excess / self.slope(y);
-            let next = if next > below && next < above {
-                next
-            } else {
-                0.5 * (below + above)
-            };
-            if (next - y).abs() <= f64::EPSILON {
-                return next;
-            }
-            y = next;
-        }
-        y
-    }
-}
-
 /// `P_n(y)` by its recurrence (Abramowitz and Stegun (1964), equation 22.7.10).
 fn legendre(n: usize, y: f64) -> f64 {
     let (mut before, mut p) = (0.0, 1.0);
@@ -336,24 +277,6 @@ fn legendre(n: usize, y: f64) -> f64 {
         (before, p) = (p, next);
     }
     p
-}
-
-fn beta(p: usize, q: usize) -> f64 {
-    let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
-    factorial(p - 1) * factorial(q - 1) / factorial(p + q - 1)
-}
-
-fn incomplete_beta(p: usize, q: usize, t: f64) -> f64 {
-    let n = p + q - 1;
-    let mut binomial = 1.0;
-    let mut sum = 0.0;
-    for j in 0..=n {
-        if j >= p {
-            sum += binomial * t.powi(j as i32) * (1.0 - t).powi((n - j) as i32);
-        }
-        binomial *= (n - j) as f64 / (j + 1) as f64;
-    }
-    sum
 }
 
 #[cfg(test)]

@@ -2,13 +2,13 @@
 //!
 //! Numbers of equations are those of [`equations`](super::equations).
 
-use super::block::{Block, product, row_times, times};
+use super::block::{Block, Pair, product, row_times, times};
 use super::equations::Passed;
-use super::integrals::{add, by_time, by_time_of_free, integrate};
+use super::integrals::{add, by_time, integrate};
 use super::place::Place;
 use super::room::Room;
 use super::skeleton::{Active, Interval, Skeleton};
-use super::values::{Values, dot, pair};
+use super::values::{Instant, Values, dot, dot_lanes, pair};
 use crate::law::{Derivatives, On};
 use crate::system::System;
 
@@ -40,10 +40,6 @@ struct Stretch<'i> {
 impl Pass<'_> {
     fn columns(&self) -> usize {
         self.u.len()
-    }
-
-    fn pairs(&self) -> usize {
-        self.values.linear.blocks.len()
     }
 
     /// The states where the period begins. Unknown there are positions and velocities, whatever the modes are.
@@ -103,9 +99,10 @@ impl Pass<'_> {
             moves: moving.any(|active| !self.values.contacts[active.contact].input.is_constant()),
         };
         passed.phases = [from.phase, to.phase];
+        let [steady, by_phase, by_base] = &mut self.room.steady_from;
         self.values
-            .write_steady(from.phase, &mut self.room.steady_from);
-        let free = self.room.y.iter().zip(&self.room.steady_from[0]);
+            .write_steady(from.phase, steady, Some([by_phase, by_base]));
+        let free = self.room.y.iter().zip(&*steady);
         passed.free.clear();
         passed.free.extend(free.map(|(y, steady)| y - steady));
         passed.forced.clear();
@@ -136,23 +133,21 @@ impl Pass<'_> {
 
     /// Nodes of an interval, and the states at its end.
     fn interior(&mut self, stretch: &Stretch<'_>, passed: &mut Passed) {
-        let nodes = stretch.interval.nodes;
         if stretch.interval.active.is_empty() {
-            self.target(stretch, passed, nodes.count());
+            self.target(stretch, passed, 0);
         } else {
             self.integrals(stretch);
-            self.inputs(stretch);
+            self.loads(stretch);
             if self.derivatives {
                 self.by_time(stretch);
             }
-            for node in 0..nodes.count() {
-                self.target(stretch, passed, node);
-                for place in 0..stretch.interval.active.len() {
-                    self.node(stretch, place, node);
-                }
+            for index in 0..=stretch.interval.nodes.count() {
+                self.target(stretch, passed, index);
             }
-            self.laws(stretch);
-            self.target(stretch, passed, nodes.count());
+            self.outputs(stretch);
+            for (place, active) in stretch.interval.active.iter().enumerate() {
+                self.law(stretch, place, active);
+            }
         }
         self.end(stretch);
     }
@@ -180,24 +175,33 @@ impl Pass<'_> {
     }
 
     /// What the forces at the nodes do to the states.
-    fn inputs(&mut self, stretch: &Stretch<'_>) {
+    fn loads(&mut self, stretch: &Stretch<'_>) {
         let (order, nodes) = (self.skeleton.order, stretch.interval.nodes);
         let n = nodes.count();
-        self.room.load.fill(0.0);
-        self.room.load_by.fill(0.0);
+        let Room {
+            input, load, rows, ..
+        } = &mut *self.room;
+        for load in &mut *load {
+            load.fill(0.0);
+        }
         let length = stretch.to.phase - stretch.from.phase;
         for (place, active) in stretch.interval.active.iter().enumerate() {
             let contact = &self.values.contacts[active.contact];
             for node in 0..n {
-                let phase = stretch.from.phase + nodes.targets[node] * length;
-                let input = &mut self.room.input[(place * n + node) * order..][..order];
+                let psi = nodes.targets[node];
+                let phase = stretch.from.phase + psi * length;
+                let input = &mut input[(place * n + node) * order..][..order];
                 contact.input.write(phase, 0, input);
                 let force = self.u[active.first + node];
-                add(&mut self.room.load[node * order..][..order], force, input);
+                for (state, input) in input.iter().enumerate() {
+                    load[0][state * n + node] += force * input;
+                }
                 if stretch.moves {
-                    let by = &mut self.room.target.by_from;
-                    contact.input.write(phase, 1, by);
-                    add(&mut self.room.load_by[node * order..][..order], force, by);
+                    contact.input.write(phase, 1, &mut rows[0]);
+                    for (state, by) in rows[0].iter().enumerate() {
+                        load[1][state * n + node] += (1.0 - psi) * force * by;
+                        load[2][state * n + node] += psi * force * by;
+                    }
                 }
             }
         }
@@ -206,207 +210,159 @@ impl Pass<'_> {
     /// How what the forces do changes with the time, (3): the integrals of both factors of every way between targets are derived.
     fn by_time(&mut self, stretch: &Stretch<'_>) {
         let (nodes, time) = (stretch.interval.nodes, stretch.time);
-        let (order, n) = (self.skeleton.order, nodes.count());
+        let n = nodes.count();
         let room = &mut *self.room;
         for (r, block) in self.values.linear.blocks.iter().enumerate() {
             let to = &mut room.by_time[r * (n + 1)..][..=n];
-            let load = |l: usize| pair(&room.load[l * order..], r);
+            let loads = &room.load[0][2 * r * n..][..2 * n];
             if block.is_free() {
-                by_time_of_free(block, nodes, time, load, to);
+                // X f = s S1 f + s^2 D S2 f
+                for (index, to) in to.iter_mut().enumerate() {
+                    let [once, twice] =
+                        [&nodes.once, &nodes.twice].map(|table| &table[index * n..][..n]);
+                    let of = |table: &[f64]| [0, 1].map(|i| dot_lanes(table, &loads[i * n..][..n]));
+                    let (once, turned) = (of(once), times(block.deviation, of(twice)));
+                    *to = [0, 1].map(|i| once[i] + 2.0 * time * turned[i]);
+                }
             } else {
-                by_time(block, nodes, time, load, to);
+                by_time(block, nodes, time, |l| [loads[l], loads[n + l]], to);
             }
         }
     }
 
-    /// The states at a target.
+    /// The states at a target; at the end where there are no nodes.
     fn target(&mut self, stretch: &Stretch<'_>, passed: &mut Passed, index: usize) {
         let nodes = stretch.interval.nodes;
-        let psi = nodes.targets[index];
-        let length = stretch.to.phase - stretch.from.phase;
-        let phase = if index == nodes.count() {
+        let active = !stretch.interval.active.is_empty();
+        let last = !active || index == nodes.count();
+        let psi = if last { 1.0 } else { nodes.targets[index] };
+        let phase = if last {
             stretch.to.phase
         } else {
-            stretch.from.phase + psi * length
+            stretch.from.phase + psi * (stretch.to.phase - stretch.from.phase)
         };
-        let (time, base) = (stretch.time, self.values.base);
+        let (time, order) = (stretch.time, self.skeleton.order);
         let room = &mut *self.room;
-        self.values.write_steady(phase, &mut room.steady);
+        let [steady, by_phase, by_base] = &mut room.steady;
+        let by = self.derivatives.then_some([&mut by_phase[..], by_base]);
+        self.values.write_steady(phase, steady, by);
         let resonant =
             self.values
                 .write_resonant(stretch.from.phase, psi * time, &mut room.resonant);
-        (room.target.psi, room.target.phase) = (psi, phase);
-        for r in 0..self.values.linear.blocks.len() {
-            let block = self.values.linear.blocks[r];
+        let pairs = order / 2;
+        for (r, block) in self.values.linear.blocks.iter().enumerate() {
+            let room = &mut *self.room;
             let e = block.exponential(psi * time);
-            room.exponentials[r] = e;
+            room.targets.exponentials[index * pairs + r] = e;
             let free = times(e, pair(&passed.free, r));
-            let forced = forced(room, stretch, &block, [r, index]);
-            let moved = times(block.matrix, free);
-            let driven = if stretch.interval.active.is_empty() {
-                [0.0; 2]
+            let forced = if active {
+                forced(room, stretch, block, [r, index], 0)
             } else {
-                room.by_time[r * (nodes.count() + 1) + index]
+                [0.0; 2]
             };
-            let begun = [1, 2].map(|which| times(e, pair(&room.steady_from[which], r)));
             for i in 0..2 {
                 let at = 2 * r + i;
-                let mut by_time = psi * moved[i] + driven[i];
-                let target = &mut room.target;
-                target.state[at] = free[i] + room.steady[0][at] + forced[0][i];
-                target.by_from[at] = (1.0 - psi) * room.steady[1][at] - begun[0][i] + forced[1][i];
-                target.by_to[at] = psi * room.steady[1][at] + forced[2][i];
-                target.by_omega[at] = room.steady[2][at] - begun[1][i];
+                let mut state = free[i] + room.steady[0][at] + forced[i];
                 if resonant {
-                    target.state[at] += room.resonant[0][at];
-                    by_time += psi * room.resonant[1][at];
-                    target.by_from[at] += room.resonant[2][at];
-                    target.by_omega[at] += room.resonant[3][at];
+                    state += room.resonant[0][at];
                 }
-                target.by_from[at] -= by_time / base;
-                target.by_to[at] += by_time / base;
-                // The base frequency is a part of the one that is varied, and the time is as long as that is short.
-                if let Some(omega) = self.omega {
-                    target.by_omega[at] *= base / omega;
-                    target.by_omega[at] -= by_time * time / omega;
-                }
-                passed.forced.push(forced[0][i]);
+                room.targets.states[index * order + at] = state;
+            }
+            passed.forced.extend(forced);
+            if self.derivatives {
+                let slope = times(block.matrix, free).map(|by| psi * by);
+                self.slopes(stretch, [r, index], psi, slope, resonant);
             }
         }
-        passed.states.extend_from_slice(&room.target.state);
+        let states = &self.room.targets.states[index * order..][..order];
+        passed.states.extend_from_slice(states);
     }
 
-    /// Writes gap or rate of a contact at the target, less what it is in the equations of motion, and returns it with its explicit
-    /// derivatives by the phase and by the varied frequency.
-    fn output(&mut self, contact: usize, rate: bool) -> [f64; 3] {
-        let contact = &self.values.contacts[contact];
-        let (room, base) = (&mut *self.room, self.values.base);
-        let tau = room.target.phase;
-        let state = &room.target.state;
-        let per = self.omega.map_or(0.0, |omega| base / omega);
-        let [gap, other] = &mut room.output;
-        let [gap_by, other_by] = &mut room.output_by;
-        if !rate {
-            contact.gap.write(tau, 0, gap);
-            contact.gap.write(tau, 1, gap_by);
-            let value = dot(gap, state) - contact.offset.value(tau, 0);
-            let by_phase = dot(gap_by, state) - contact.offset.value(tau, 1);
-            return [value, by_phase, 0.0];
-        }
-        // g' = d . q' + (d' . q - delta') tau'
-        contact.rate.write(tau, 0, other);
-        contact.rate.write(tau, 1, other_by);
-        contact.gap.write(tau, 1, gap_by);
-        let turning = dot(gap_by, state) - contact.offset.value(tau, 1);
-        let value = dot(other, state) + base * turning;
-        add(other, base, gap_by);
-        let mut by_phase = dot(other_by, state) - base * contact.offset.value(tau, 2);
-        contact.gap.write(tau, 2, gap_by);
-        by_phase += base * dot(gap_by, state);
-        gap.copy_from_slice(other);
-        [value, by_phase, turning * per]
-    }
-
-    /// Gap or rate at the target, and its derivatives by the extended unknowns, but for those of the forces in the interval.
-    fn output_row(
+    /// How the states of a pair at a target change with where the interval begins and ends, and with the frequency. What is free changes
+    /// so with the time.
+    fn slopes(
         &mut self,
         stretch: &Stretch<'_>,
-        contact: usize,
-        rate: bool,
-        row: &mut [f64],
-    ) -> f64 {
-        let [value, by_phase, by_omega] = self.output(contact, rate);
-        if !self.derivatives {
-            return value;
-        }
-        let columns = self.columns();
-        row.fill(0.0);
-        let room = &*self.room;
-        let output = &room.output[0];
-        for (r, e) in room.exponentials.iter().enumerate() {
-            let through = row_times(pair(output, r), *e);
-            for i in 0..2 {
-                if through[i] != 0.0 {
-                    add(
-                        row,
-                        through[i],
-                        &room.by[(2 * r + i) * columns..][..columns],
-                    );
-                }
+        [r, index]: [usize; 2],
+        psi: f64,
+        free: Pair,
+        resonant: bool,
+    ) {
+        let (time, base, order) = (stretch.time, self.values.base, self.skeleton.order);
+        let count = stretch.interval.nodes.count();
+        let block = &self.values.linear.blocks[r];
+        let room = &mut *self.room;
+        let active = !stretch.interval.active.is_empty();
+        let driven = if active {
+            room.by_time[r * (count + 1) + index]
+        } else {
+            [0.0; 2]
+        };
+        let moved = [1, 2].map(|which| {
+            if stretch.moves {
+                forced(room, stretch, block, [r, index], which)
+            } else {
+                [0.0; 2]
             }
+        });
+        let e = room.targets.exponentials[index * (order / 2) + r];
+        let begun = [1, 2].map(|which| times(e, pair(&room.steady_from[which], r)));
+        for i in 0..2 {
+            let at = 2 * r + i;
+            let mut by_time = free[i] + driven[i];
+            let mut by_from = (1.0 - psi) * room.steady[1][at] - begun[0][i] + moved[0][i];
+            let by_to = psi * room.steady[1][at] + moved[1][i];
+            let mut by_omega = room.steady[2][at] - begun[1][i];
+            if resonant {
+                by_time += psi * room.resonant[1][at];
+                by_from += room.resonant[2][at];
+                by_omega += room.resonant[3][at];
+            }
+            // The base frequency is a part of the one that is varied, and the time is as long as that is short.
+            if let Some(omega) = self.omega {
+                by_omega = (by_omega * base - by_time * time) / omega;
+            }
+            let targets = &mut room.targets;
+            targets.by_from[index * order + at] = by_from - by_time / base;
+            targets.by_to[index * order + at] = by_to + by_time / base;
+            targets.by_omega[index * order + at] = by_omega;
         }
-        let target = &room.target;
-        let from = dot(output, &target.by_from) + (1.0 - target.psi) * by_phase;
-        let to = dot(output, &target.by_to) + target.psi * by_phase;
-        for (unknown, slope) in stretch.from.slopes() {
-            row[unknown] += from * slope;
-        }
-        for (unknown, slope) in stretch.to.slopes() {
-            row[unknown] += to * slope;
-        }
-        if self.omega.is_some() {
-            row[columns - 1] += dot(output, &target.by_omega) + by_omega;
-        }
-        value
     }
 
-    /// Adds the derivatives by the forces in the interval, up to a target.
-    fn add_own(&self, stretch: &Stretch<'_>, index: usize, row: &mut [f64]) {
-        let (order, n) = (self.skeleton.order, stretch.interval.nodes.count());
-        let size = (n + 1) * n;
-        let room = &*self.room;
+    fn instant(&self, tau: f64) -> Instant {
+        let base = self.values.base;
+        Instant {
+            tau,
+            base,
+            by_omega: self.omega.map_or(0.0, |omega| base / omega),
+        }
+    }
+
+    /// Gaps and rates at the nodes.
+    fn outputs(&mut self, stretch: &Stretch<'_>) {
+        let (order, nodes) = (self.skeleton.order, stretch.interval.nodes);
+        let n = nodes.count();
+        let length = stretch.to.phase - stretch.from.phase;
         for (place, active) in stretch.interval.active.iter().enumerate() {
-            let row = &mut row[active.first..active.first + n];
-            for (r, block) in self.values.linear.blocks.iter().enumerate() {
-                let output = pair(&room.output[0], r);
-                let turned = row_times(output, block.deviation);
-                let once = &room.once[r * size + index * n..][..n];
-                let twice = &room.twice[r * size + index * n..][..n];
-                for (l, entry) in row.iter_mut().enumerate() {
-                    let input = pair(&room.input[(place * n + l) * order..], r);
-                    *entry += once[l] * product(output, input) + twice[l] * product(turned, input);
-                }
+            let contact = &self.values.contacts[active.contact];
+            for node in 0..n {
+                let at = place * n + node;
+                let instant = self.instant(stretch.from.phase + nodes.targets[node] * length);
+                let room = &mut *self.room;
+                let rows = [&mut room.gap_rows, &mut room.rate_rows];
+                let rows = rows.map(|rows| &mut rows[at * order..][..order]);
+                let states = &room.targets.states[node * order..][..order];
+                let output = contact.output(instant, states, rows, &mut room.rows[0]);
+                (room.gaps[at], room.rates[at]) = (output.gap, output.rate);
+                room.outputs[at] = output;
             }
         }
     }
 
-    /// Gap and rate of an active contact at a node.
-    fn node(&mut self, stretch: &Stretch<'_>, place: usize, node: usize) {
-        let columns = self.columns();
-        let at = place * stretch.interval.nodes.count() + node;
-        let contact = stretch.interval.active[place].contact;
-        for rate in [false, true] {
-            let rows = if rate {
-                &mut self.room.rate_rows
-            } else {
-                &mut self.room.gap_rows
-            };
-            let mut rows = std::mem::take(rows);
-            let row = &mut rows[at * columns..][..columns];
-            let value = self.output_row(stretch, contact, rate, row);
-            if self.derivatives {
-                self.add_own(stretch, node, row);
-            }
-            if rate {
-                self.room.rates[at] = value;
-                self.room.rate_rows = rows;
-            } else {
-                self.room.gaps[at] = value;
-                self.room.gap_rows = rows;
-            }
-        }
-    }
-
-    /// Residuals at the nodes.
-    fn laws(&mut self, stretch: &Stretch<'_>) {
+    /// Residuals at the nodes of a contact.
+    fn law(&mut self, stretch: &Stretch<'_>, place: usize, active: &Active) {
         let n = stretch.interval.nodes.count();
-        for (place, active) in stretch.interval.active.iter().enumerate() {
-            self.law(active, place * n..(place + 1) * n);
-        }
-    }
-
-    fn law(&mut self, active: &Active, nodes: std::ops::Range<usize>) {
-        let columns = self.columns();
+        let nodes = place * n..(place + 1) * n;
         let contact = &self.values.contacts[active.contact];
         let room = &mut *self.room;
         let out = Derivatives {
@@ -423,60 +379,99 @@ impl Pass<'_> {
             rates,
             out,
         );
-        for (l, at) in nodes.enumerate() {
-            let row = active.first + l;
-            self.residual[row] = self.u[row] - room.forces[at];
-            if !self.derivatives {
-                continue;
+        for (node, at) in nodes.enumerate() {
+            let row = active.first + node;
+            self.residual[row] = self.u[row] - self.room.forces[at];
+            if self.derivatives {
+                self.row(stretch, at, node, row);
             }
-            let (by_gap, by_rate) = (room.by_gap[at], room.by_rate[at]);
-            let entries = &mut self.matrix[row * columns..][..columns];
-            let gap = &room.gap_rows[at * columns..][..columns];
-            for (entry, gap) in entries.iter_mut().zip(gap) {
-                *entry = -by_gap * gap;
-            }
-            if by_rate != 0.0 {
-                add(
-                    entries,
-                    -by_rate,
-                    &room.rate_rows[at * columns..][..columns],
-                );
-            }
-            entries[row] += 1.0;
         }
+    }
+
+    /// Derivatives of a residual at a node.
+    fn row(&mut self, stretch: &Stretch<'_>, at: usize, node: usize, row: usize) {
+        let (order, columns) = (self.skeleton.order, self.columns());
+        let psi = stretch.interval.nodes.targets[node];
+        let known = stretch.interval.active[0].first;
+        let room = &mut *self.room;
+        let by = [-room.by_gap[at], -room.by_rate[at]];
+        let [output, turned, _] = &mut room.rows;
+        let rows = [&room.gap_rows, &room.rate_rows].map(|rows| &rows[at * order..][..order]);
+        for ((output, gap), rate) in output.iter_mut().zip(rows[0]).zip(rows[1]) {
+            *output = by[0] * gap + by[1] * rate;
+        }
+        let of = &room.outputs[at];
+        let by_phase = by[0] * of.by_phase[0] + by[1] * of.by_phase[1];
+        let entries = &mut self.matrix[row * columns..][..columns];
+        let exponentials = &room.targets.exponentials[node * (order / 2)..][..order / 2];
+        for (r, (e, block)) in exponentials
+            .iter()
+            .zip(&self.values.linear.blocks)
+            .enumerate()
+        {
+            let output = pair(output, r);
+            let through = row_times(output, *e);
+            for i in 0..2 {
+                let by = &room.by[(2 * r + i) * columns..][..columns];
+                add(&mut entries[..known], through[i], &by[..known]);
+                entries[columns - 1] += through[i] * by[columns - 1];
+            }
+            let of = row_times(output, block.deviation);
+            turned[2 * r..2 * r + 2].copy_from_slice(&of);
+        }
+        let at_node = |of: &[f64]| dot(output, &of[node * order..][..order]);
+        let from = at_node(&room.targets.by_from) + (1.0 - psi) * by_phase;
+        let to = at_node(&room.targets.by_to) + psi * by_phase;
+        for (unknown, slope) in stretch.from.slopes() {
+            entries[unknown] += from * slope;
+        }
+        for (unknown, slope) in stretch.to.slopes() {
+            entries[unknown] += to * slope;
+        }
+        if self.omega.is_some() {
+            let by_omega = at_node(&room.targets.by_omega) + by[1] * of.by_omega;
+            entries[columns - 1] += by_omega;
+        }
+        add_own(self.values, room, stretch, node, entries);
+        entries[row] += 1.0;
     }
 
     /// Goes over to the states at the end.
     fn end(&mut self, stretch: &Stretch<'_>) {
-        self.room.y.copy_from_slice(&self.room.target.state);
+        let (order, columns) = (self.skeleton.order, self.columns());
+        let n = stretch.interval.nodes.count();
+        let index = if stretch.interval.active.is_empty() {
+            0
+        } else {
+            n
+        };
+        let room = &mut *self.room;
+        let states = &room.targets.states[index * order..][..order];
+        room.y.copy_from_slice(states);
         if !self.derivatives {
             return;
         }
-        let (order, columns) = (self.skeleton.order, self.columns());
-        for r in 0..self.pairs() {
-            let e = self.room.exponentials[r];
-            let room = &mut *self.room;
+        let size = (n + 1) * n;
+        for (r, block) in self.values.linear.blocks.iter().enumerate() {
+            let e = room.targets.exponentials[index * (order / 2) + r];
+            let (one, other) = room.by[2 * r * columns..][..2 * columns].split_at(columns);
             for i in 0..2 {
                 let row = &mut room.by_next[(2 * r + i) * columns..][..columns];
-                row.fill(0.0);
-                add(row, e[i][0], &room.by[2 * r * columns..][..columns]);
-                add(row, e[i][1], &room.by[(2 * r + 1) * columns..][..columns]);
+                for ((to, one), other) in row.iter_mut().zip(one).zip(other) {
+                    *to = e[i][0] * one + e[i][1] * other;
+                }
+                let at = index * order + 2 * r + i;
                 for (unknown, slope) in stretch.from.slopes() {
-                    row[unknown] += room.target.by_from[2 * r + i] * slope;
+                    row[unknown] += room.targets.by_from[at] * slope;
                 }
                 for (unknown, slope) in stretch.to.slopes() {
-                    row[unknown] += room.target.by_to[2 * r + i] * slope;
+                    row[unknown] += room.targets.by_to[at] * slope;
                 }
                 if self.omega.is_some() {
-                    row[columns - 1] += room.target.by_omega[2 * r + i];
+                    row[columns - 1] += room.targets.by_omega[at];
                 }
             }
-        }
-        let n = stretch.interval.nodes.count();
-        let size = (n + 1) * n;
-        let room = &mut *self.room;
-        for (place, active) in stretch.interval.active.iter().enumerate() {
-            for (r, block) in self.values.linear.blocks.iter().enumerate() {
+            for (place, active) in stretch.interval.active.iter().enumerate() {
                 let once = &room.once[r * size + n * n..][..n];
                 let twice = &room.twice[r * size + n * n..][..n];
                 for l in 0..n {
@@ -492,89 +487,87 @@ impl Pass<'_> {
         std::mem::swap(&mut room.by, &mut room.by_next);
     }
 
-    /// Gap less level where an interval ends.
+    /// Gap less level where an interval ends, and its slope. Everything that they depend on is in the states there.
     fn at_switch(&mut self, stretch: &Stretch<'_>, switch: usize) {
-        let columns = self.columns();
+        let (columns, base) = (self.columns(), self.values.base);
         let of = self.skeleton.switches[switch];
-        let level = self.values.contacts[of.contact].levels[of.level];
-        // Everything that an output depends on is in the states there.
+        let contact = &self.values.contacts[of.contact];
+        let instant = self.instant(stretch.to.phase);
         let room = &mut *self.room;
-        room.exponentials.fill([[1.0, 0.0], [0.0, 1.0]]);
-        room.target.psi = 1.0;
-        room.target.phase = stretch.to.phase;
-        room.target.state.copy_from_slice(&room.y);
-        for by in [
-            &mut room.target.by_from,
-            &mut room.target.by_to,
-            &mut room.target.by_omega,
-        ] {
-            by.fill(0.0);
+        let [gap, rate, another] = &mut room.rows;
+        let output = contact.output(instant, &room.y, [gap, rate], another);
+        room.at_switch[switch] = [output.gap - contact.levels[of.level], output.rate / base];
+        if !self.derivatives {
+            return;
         }
-        let mut rows = std::mem::take(&mut self.room.switch_rows);
-        let row = &mut rows[switch * columns..][..columns];
-        let gap = self.output_row(stretch, of.contact, false, row);
-        self.room.switch_rows = rows;
-        let mut rows = std::mem::take(&mut self.room.slope_rows);
-        let row = &mut rows[switch * columns..][..columns];
-        let rate = self.output_row(stretch, of.contact, true, row);
-        let base = self.values.base;
-        for entry in &mut rows[switch * columns..][..columns] {
-            *entry /= base;
+        let by_omega = |omega: f64| (output.by_omega - output.rate / omega) / base;
+        let sides = [
+            (&*gap, &mut room.switch_rows, 1.0, 0.0),
+            (
+                &*rate,
+                &mut room.slope_rows,
+                1.0 / base,
+                self.omega.map_or(0.0, by_omega),
+            ),
+        ];
+        for ((of, rows, factor, by_omega), by_phase) in sides.into_iter().zip(output.by_phase) {
+            let row = &mut rows[switch * columns..][..columns];
+            row.fill(0.0);
+            for (x, by) in of.iter().zip(room.by.chunks_exact(columns)) {
+                if *x != 0.0 {
+                    add(row, factor * x, by);
+                }
+            }
+            for (unknown, slope) in stretch.to.slopes() {
+                row[unknown] += factor * by_phase * slope;
+            }
+            row[columns - 1] += by_omega;
         }
-        if let Some(omega) = self.omega {
-            rows[(switch + 1) * columns - 1] -= rate / (base * omega);
-        }
-        self.room.slope_rows = rows;
-        self.room.at_switch[switch] = [gap - level, rate / base];
     }
 }
 
-/// What forces have done to a pair of states up to a target, and how it changes with where the interval begins and ends, if directions
-/// move.
+/// What forces, or one of their changes, have done to a pair of states up to a target.
 fn forced(
     room: &Room,
     stretch: &Stretch<'_>,
     block: &Block,
     [r, index]: [usize; 2],
-) -> [[f64; 2]; 3] {
-    let mut sums = [[0.0; 2]; 3];
-    if stretch.interval.active.is_empty() {
-        return sums;
-    }
-    let nodes = stretch.interval.nodes;
-    let n = nodes.count();
+    which: usize,
+) -> Pair {
+    let n = stretch.interval.nodes.count();
     let size = (n + 1) * n;
-    let order = room.y.len();
-    let once = &room.once[r * size + index * n..][..n];
-    let twice = &room.twice[r * size + index * n..][..n];
-    let (mut plain, mut turned) = (sums, sums);
-    if !stretch.moves {
-        for l in 0..n {
-            let load = pair(&room.load[l * order..], r);
-            for i in 0..2 {
-                plain[0][i] += once[l] * load[i];
-                turned[0][i] += twice[l] * load[i];
+    let of = |table: &[f64]| {
+        let row = &table[r * size + index * n..][..n];
+        [0, 1].map(|i| dot_lanes(row, &room.load[which][(2 * r + i) * n..][..n]))
+    };
+    let (plain, turned) = (of(&room.once), times(block.deviation, of(&room.twice)));
+    [0, 1].map(|i| plain[i] + turned[i])
+}
+
+/// Adds the derivatives of what depends like a row on the states at a node by the forces in the interval.
+fn add_own(values: &Values, room: &Room, stretch: &Stretch<'_>, node: usize, entries: &mut [f64]) {
+    let [output, turned, _] = &room.rows;
+    let (order, n) = (output.len(), stretch.interval.nodes.count());
+    let size = (n + 1) * n;
+    for (place, active) in stretch.interval.active.iter().enumerate() {
+        let moves = !values.contacts[active.contact].input.is_constant();
+        let entries = &mut entries[active.first..active.first + n];
+        for r in 0..order / 2 {
+            let [output, turned] = [output, turned].map(|of| pair(of, r));
+            let once = &room.once[r * size + node * n..][..n];
+            let twice = &room.twice[r * size + node * n..][..n];
+            let input = |l: usize| pair(&room.input[(place * n + l) * order..], r);
+            if moves {
+                for (l, entry) in entries.iter_mut().enumerate() {
+                    let input = input(l);
+                    *entry += once[l] * product(output, input) + twice[l] * product(turned, input);
+                }
+            } else {
+                let [x, y] = [output, turned].map(|of| product(of, input(0)));
+                for ((entry, once), twice) in entries.iter_mut().zip(once).zip(twice) {
+                    *entry += once * x + twice * y;
+                }
             }
         }
-        let through = times(block.deviation, turned[0]);
-        sums[0] = [0, 1].map(|i| plain[0][i] + through[i]);
-        return sums;
     }
-    for l in 0..n {
-        let psi = nodes.targets[l];
-        let load = pair(&room.load[l * order..], r);
-        let by = pair(&room.load_by[l * order..], r);
-        for i in 0..2 {
-            let of = [load[i], (1.0 - psi) * by[i], psi * by[i]];
-            for (which, of) in of.into_iter().enumerate() {
-                plain[which][i] += once[l] * of;
-                turned[which][i] += twice[l] * of;
-            }
-        }
-    }
-    for which in 0..3 {
-        let through = times(block.deviation, turned[which]);
-        sums[which] = [0, 1].map(|i| plain[which][i] + through[i]);
-    }
-    sums
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::equations::Equations;
 use super::motion::{Motion, Within};
@@ -20,9 +20,7 @@ use crate::shooting::reading::Reader;
 /// What one step from a finer solution says of the error is multiplied by this.
 const SAFETY: f64 = 2.0;
 /// As many orbits are compared with one whose errors a finer solution has shown.
-const SCREENED: usize = 7;
-/// What their forces leave out may be so many times as much.
-const ALIKE: f64 = 4.0;
+const SCREENED: usize = 31;
 /// Phases at which two motions are compared.
 const COMPARED: usize = 24;
 /// Where the branch is steeper than this part, as before a fold, what is varied moves the orbit by more.
@@ -45,6 +43,15 @@ pub(super) struct Screened {
     spread: f64,
     /// As many orbits may still be compared with it.
     left: usize,
+}
+
+impl Screened {
+    /// How many times as large errors may be where forces leave so much out: they are products of what the forces and what the rule of
+    /// integration leave out.
+    fn grown(&self, tail: f64) -> f64 {
+        let ratio = (tail / self.tail).max(1.0);
+        SAFETY * ratio * ratio
+    }
 }
 
 /// An orbit that was read.
@@ -173,14 +180,14 @@ impl Run<'_> {
         let enough = LITTLE * self.problem.tolerance;
         let slope = at.parameter_slope().abs();
         let known = self.screened.as_mut().filter(|known| {
-            let alike = tail <= ALIKE * known.tail && slope >= STEEPER * known.slope;
-            known.left > 0 && alike && known.error <= enough
+            let alike = slope >= STEEPER * known.slope;
+            known.left > 0 && alike && known.grown(tail) * known.error <= enough
         });
         let Some(known) = known else {
             return self.read(at);
         };
         known.left -= 1;
-        let ratio = SAFETY * (tail / known.tail).max(1.0);
+        let ratio = known.grown(tail);
         let (apart, shift) = (ratio * known.apart, ratio * known.shift);
         let spread = ratio * known.spread;
         let (mut point, map) = self.read_plainly(at)?;
@@ -263,34 +270,12 @@ impl Run<'_> {
             .equations
             .skeleton
             .interpolated(&finer.skeleton, &at.tangent);
-        finer.compute(&u, true);
-        if finer.failed {
-            return None;
-        }
-        let n = finer.skeleton.unknowns();
-        let told = finer.skeleton.order + finer.skeleton.switches.len();
-        let mut matrix = DMatrix::from_row_iterator(
-            n + 1,
-            n + 1,
-            finer
-                .matrix()
-                .iter()
-                .copied()
-                .chain(std::iter::repeat_n(0.0, n + 1)),
-        );
-        for column in (0..told).chain([n]) {
-            matrix[(n, column)] = tangent[column];
-        }
-        let mut residual = DVector::zeros(n + 1);
-        residual.rows_mut(0, n).copy_from_slice(finer.residual());
-        let update = matrix.lu().solve(&residual)?;
-        for (x, by) in u.iter_mut().zip(update.iter()) {
+        let step = finer.across(&u, &tangent)?;
+        for (x, by) in u.iter_mut().zip(&step) {
             *x -= by;
         }
-        let shift = update[n];
-        u.iter()
-            .all(|x| x.is_finite())
-            .then_some(Finer { u, shift })
+        let shift = step[step.len() - 1];
+        Some(Finer { u, shift })
     }
 }
 

@@ -20,7 +20,8 @@
 //! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing: the time in
 //! contact grows as the root of the penetration).
 
-use super::nodes::{COUNTS, Nodes, STEEPEST};
+use super::grading::STEEPEST;
+use super::nodes::{COUNTS, Nodes};
 use super::place::{Place, half_way};
 use super::values::Contact;
 use crate::law::{Law, Quantity, Variation};

@@ -90,12 +90,12 @@ fn derivatives_are_those_of_differences(system: &dyn System, vary: Option<&str>,
     let (mut equations, u) = first(system, vary, omega, 12);
     equations.compute(&u, true);
     let n = u.len() - 1;
-    let matrix = equations.matrix().to_vec();
+    let matrix = equations.matrix.clone();
     let mut at = |column: usize, step: f64| {
         let mut u = u.clone();
         u[column] += step;
         equations.compute(&u, false);
-        equations.residual().to_vec()
+        equations.residual.clone()
     };
     for column in 0..=n {
         // A force of exponent 3/2 is not smooth beside its level.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::block::Pair;
+use super::block::{Pair, times};
 use super::linear::Linear;
 use crate::model::layout::{Layout, Term, constant};
 use crate::system::{Part, System};
@@ -115,6 +115,49 @@ impl Contact {
     pub(super) fn harmonic(&self) -> f64 {
         self.gap.harmonic().max(self.offset.harmonic())
     }
+
+    /// Gap and rate in these states, and what they are of the states as rows. There is room for `another` row.
+    ///
+    /// ```text
+    /// g = d . q - delta,    g' = d . q' + (d' . q - delta') tau'
+    /// ```
+    pub(super) fn output(
+        &self,
+        at: Instant,
+        states: &[f64],
+        [gap, rate]: [&mut [f64]; 2],
+        another: &mut [f64],
+    ) -> Output {
+        let Instant {
+            tau,
+            base,
+            by_omega,
+        } = at;
+        self.gap.write(tau, 0, gap);
+        self.rate.write(tau, 0, rate);
+        let mut output = Output {
+            gap: dot(gap, states) - self.offset.value(tau, 0),
+            rate: dot(rate, states),
+            ..Output::default()
+        };
+        if !self.gap.is_constant() {
+            self.rate.write(tau, 1, another);
+            output.by_phase[1] = dot(another, states);
+            self.gap.write(tau, 2, another);
+            output.by_phase[1] += base * dot(another, states);
+            self.gap.write(tau, 1, another);
+            output.by_phase[0] = dot(another, states);
+            for (rate, turning) in rate.iter_mut().zip(&*another) {
+                *rate += base * turning;
+            }
+        }
+        output.by_phase[0] -= self.offset.value(tau, 1);
+        output.by_phase[1] -= base * self.offset.value(tau, 2);
+        let turning = output.by_phase[0];
+        output.rate += base * turning;
+        output.by_omega = turning * by_omega;
+        output
+    }
 }
 
 /// A wave of the load.
@@ -123,8 +166,27 @@ pub(super) struct Wave {
     pub(super) harmonic: f64,
     /// Per pair, the complex amplitude of what it does to the states.
     pub(super) input: Vec<[Complex<f64>; 2]>,
-    /// Per pair, the steady response and its derivative by the base frequency; none in resonance.
-    pub(super) steady: Vec<Option<[[Complex<f64>; 2]; 2]>>,
+    /// Per state, the steady response and its derivative by the base frequency; zero in resonance.
+    steady: Vec<[Complex<f64>; 2]>,
+    /// The pairs in resonance with it.
+    resonant: Vec<usize>,
+}
+
+/// Where a contact is looked at: the phase, how fast it moves, and how that changes with the frequency that is varied.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Instant {
+    pub(super) tau: f64,
+    pub(super) base: f64,
+    pub(super) by_omega: f64,
+}
+
+/// Gap and rate of a contact, and their explicit derivatives by the phase; that of the rate by the varied frequency.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Output {
+    pub(super) gap: f64,
+    pub(super) rate: f64,
+    pub(super) by_phase: [f64; 2],
+    pub(super) by_omega: f64,
 }
 
 /// Everything of a system at values of its parameters and its frequency.
@@ -171,10 +233,16 @@ impl Values {
         for wave in &mut self.load {
             let frequency = wave.harmonic * self.base;
             let pairs = wave.input.iter().zip(&self.linear.blocks);
-            for ((input, block), steady) in pairs.zip(&mut wave.steady) {
-                *steady = block
-                    .steady(frequency, *input)
-                    .map(|[response, by]| [response, by.map(|x| x * wave.harmonic)]);
+            wave.resonant.clear();
+            for (r, (input, block)) in pairs.enumerate() {
+                let steady = block.steady(frequency, *input);
+                if steady.is_none() {
+                    wave.resonant.push(r);
+                }
+                let [response, by] = steady.unwrap_or_default();
+                for i in 0..2 {
+                    wave.steady[2 * r + i] = [response[i], by[i] * wave.harmonic];
+                }
             }
         }
     }
@@ -184,23 +252,31 @@ impl Values {
         2 * self.linear.blocks.len()
     }
 
-    /// Writes the steady response at a phase, its derivatives by the phase, and by the base frequency.
-    pub(super) fn write_steady(&self, tau: f64, to: &mut [Vec<f64>; 3]) {
-        for to in to.iter_mut() {
-            to.fill(0.0);
-        }
+    /// Writes the steady response at a phase; and its derivatives by the phase, and by the base frequency.
+    pub(super) fn write_steady(
+        &self,
+        tau: f64,
+        value: &mut [f64],
+        derivatives: Option<[&mut [f64]; 2]>,
+    ) {
+        value.fill(0.0);
         for wave in &self.load {
             let turn = turn(wave.harmonic * tau);
-            let slope = turn * Complex::new(0.0, wave.harmonic);
-            for (r, steady) in wave.steady.iter().enumerate() {
-                let Some([response, by]) = steady else {
-                    continue;
-                };
-                for i in 0..2 {
-                    to[0][2 * r + i] += (turn * response[i]).re;
-                    to[1][2 * r + i] += (slope * response[i]).re;
-                    to[2][2 * r + i] += (turn * by[i]).re;
-                }
+            for (value, [response, _]) in value.iter_mut().zip(&wave.steady) {
+                *value += turn.re * response.re - turn.im * response.im;
+            }
+        }
+        let Some([by_phase, by_base]) = derivatives else {
+            return;
+        };
+        by_phase.fill(0.0);
+        by_base.fill(0.0);
+        for wave in &self.load {
+            let turn = turn(wave.harmonic * tau);
+            for (i, [response, by]) in wave.steady.iter().enumerate() {
+                let slope = turn.re * response.im + turn.im * response.re;
+                by_phase[i] -= wave.harmonic * slope;
+                by_base[i] += turn.re * by.re - turn.im * by.im;
             }
         }
     }
@@ -208,40 +284,48 @@ impl Values {
     /// What waves in resonance do within a time from rest at a phase: states, and their derivatives by the time, by the phase where it
     /// begins, and by the base frequency. Says whether there are such waves.
     pub(super) fn write_resonant(&self, tau: f64, time: f64, to: &mut [Vec<f64>; 4]) -> bool {
-        let resonant = |wave: &Wave| wave.steady.iter().any(Option::is_none);
-        if !self.load.iter().any(resonant) {
+        if self.load.iter().all(|wave| wave.resonant.is_empty()) {
             return false;
         }
         for to in to.iter_mut() {
             to.fill(0.0);
         }
         for wave in &self.load {
-            if wave.steady.iter().all(Option::is_some) {
-                continue;
-            }
-            let begun = wave.harmonic * tau;
-            let later = turn(begun + wave.harmonic * self.base * time);
-            let turn = turn(begun);
-            for (r, block) in self.linear.blocks.iter().enumerate() {
-                if wave.steady[r].is_some() {
-                    continue;
-                }
-                let input = wave.input[r];
-                let [p, k, p_by, k_by] = block.response_at_rest(wave.harmonic * self.base, time);
-                let d = block.deviation;
-                let turned = |i: usize| input[0] * d[i][0] + input[1] * d[i][1];
-                let state = [0, 1].map(|i| turn * (p * input[i] + k * turned(i)));
-                for i in 0..2 {
-                    let a = block.matrix[i];
-                    let by = turn * wave.harmonic * (p_by * input[i] + k_by * turned(i));
-                    to[0][2 * r + i] += state[i].re;
-                    to[1][2 * r + i] += (state[0] * a[0] + state[1] * a[1] + later * input[i]).re;
-                    to[2][2 * r + i] += (state[i] * Complex::new(0.0, wave.harmonic)).re;
-                    to[3][2 * r + i] += by.re;
+            for &r in &wave.resonant {
+                let block = &self.linear.blocks[r];
+                if block.is_free() && wave.harmonic == 0.0 {
+                    let input = wave.input[r].map(|x| x.re);
+                    let moved = times(block.deviation, input);
+                    for i in 0..2 {
+                        to[0][2 * r + i] += time * (input[i] + 0.5 * time * moved[i]);
+                        to[1][2 * r + i] += input[i] + time * moved[i];
+                    }
+                } else {
+                    self.add_resonance(wave, r, [tau, time], to);
                 }
             }
         }
         true
+    }
+
+    /// Of one wave and pair.
+    fn add_resonance(&self, wave: &Wave, r: usize, [tau, time]: [f64; 2], to: &mut [Vec<f64>; 4]) {
+        let begun = wave.harmonic * tau;
+        let later = turn(begun + wave.harmonic * self.base * time);
+        let turn = turn(begun);
+        let (block, input) = (&self.linear.blocks[r], wave.input[r]);
+        let [p, k, p_by, k_by] = block.response_at_rest(wave.harmonic * self.base, time);
+        let d = block.deviation;
+        let turned = |i: usize| input[0] * d[i][0] + input[1] * d[i][1];
+        let state = [0, 1].map(|i| turn * (p * input[i] + k * turned(i)));
+        for i in 0..2 {
+            let a = block.matrix[i];
+            let by = turn * wave.harmonic * (p_by * input[i] + k_by * turned(i));
+            to[0][2 * r + i] += state[i].re;
+            to[1][2 * r + i] += (state[0] * a[0] + state[1] * a[1] + later * input[i]).re;
+            to[2][2 * r + i] += (state[i] * Complex::new(0.0, wave.harmonic)).re;
+            to[3][2 * r + i] += by.re;
+        }
     }
 }
 
@@ -312,7 +396,8 @@ fn load(layout: &Layout, coefficients: &[f64], linear: &Linear) -> Vec<Wave> {
             input: (0..pairs)
                 .map(|r| [input[2 * r], input[2 * r + 1]])
                 .collect(),
-            steady: vec![None; pairs],
+            steady: vec![[Complex::new(0.0, 0.0); 2]; 2 * pairs],
+            resonant: Vec::new(),
         }
     });
     waves.collect()
@@ -330,6 +415,18 @@ fn turn(angle: f64) -> Complex<f64> {
 /// The product of a row and states, which are few.
 pub(super) fn dot(row: &[f64], states: &[f64]) -> f64 {
     row.iter().zip(states).map(|(a, y)| a * y).sum()
+}
+
+/// The product of two rows over nodes, in lanes.
+pub(super) fn dot_lanes(a: &[f64], b: &[f64]) -> f64 {
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (a, b) in a.iter().zip(b) {
+        for l in 0..4 {
+            sums[l] += a[l] * b[l];
+        }
+    }
+    (sums[0] + sums[2]) + (sums[1] + sums[3]) + dot(a_rest, b_rest)
 }
 
 /// Two of the states.
