@@ -65,10 +65,6 @@ pub(super) fn row_times(x: Pair, a: Square) -> Pair {
     ]
 }
 
-pub(super) fn product(x: Pair, y: Pair) -> f64 {
-    x[0] * y[0] + x[1] * y[1]
-}
-
 impl Block {
     pub(super) fn new(matrix: Square) -> Self {
         let mean = 0.5 * (matrix[0][0] + matrix[1][1]);
@@ -139,6 +135,12 @@ impl Block {
             [c + k * d[0][0], k * d[0][1]],
             [k * d[1][0], c + k * d[1][1]],
         ]
+    }
+
+    /// `(c I + k D) x`
+    pub(super) fn carried(&self, Kernel { c, k }: Kernel, x: Pair) -> Pair {
+        let turned = times(self.deviation, x);
+        [0, 1].map(|i| c * x[i] + k * turned[i])
     }
 
     /// `(c I + k D)(a I + b D)`, of a kernel and the coefficients of another such matrix.

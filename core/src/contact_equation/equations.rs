@@ -190,7 +190,7 @@ impl Equations {
         self.eliminated = Eliminated::new(n, self.skeleton.order);
         self.column = vec![0.0; n];
         self.passed = vec![Passed::default(); self.skeleton.intervals.len()];
-        self.room = Room::new(&self.skeleton, self.values.contacts.len());
+        self.room = Room::new(&self.skeleton);
     }
 
     /// Goes over to a value of what is varied. Says whether the system has one there.

@@ -1,10 +1,282 @@
-//! Rules of integration over an interval, from one target to the next: what forces at nodes do to a pair of states, and how that changes
-//! with the length of the interval.
+//! What the forces at the nodes of an interval do to the states, up to every target, and how that changes with where it begins and ends.
 //!
-//! Numbers of equations are those of [`equations`](super::equations).
+//! Integrals go from target to target, over the ways of a [rule](super::nodes::Between) between them:
+//!
+//! ```text
+//! X(t + h) = e^(A h) X(t) + s sum_q w_q e^(A d_q s) f_q                                                       (1)
+//! dX(t + h)/ds = e^(A h) (dX(t)/ds + (h / s) A X(t)) + sum_q w_q (1 + d_q s A) e^(A d_q s) f_q                (2)
+//! ```
+//!
+//! Other numbers of equations are those of [`equations`](super::equations), of whose (3) the second one is made.
 
-use super::block::{Block, times};
+use multiversion::multiversion;
+
+use super::block::{Block, Kernel, times};
 use super::nodes::Nodes;
+use super::skeleton::Active;
+use super::values::Values;
+
+/// Of one interval. Forced states stand state by state, target by target.
+#[derive(Debug, Default)]
+pub(super) struct Integrals {
+    nodes: usize,
+    /// Per pair, row by row of targets, node by node: coefficients of `I` and of `D`.
+    once: Vec<f64>,
+    twice: Vec<f64>,
+    /// Per active contact and node: what a unit force does to the states.
+    input: Vec<f64>,
+    /// What all forces together do to a state, node by node; and, where directions move, how that changes with where the interval begins,
+    /// and with where it ends.
+    load: [Vec<f64>; 3],
+    /// The integrals of these.
+    forced: [Vec<f64>; 3],
+    /// How the first of them changes with the time.
+    by_time: Vec<f64>,
+    /// Directions move with the phase.
+    moves: bool,
+    /// Kernels at the points of the rule.
+    kernels: Vec<Kernel>,
+    /// Sums over nodes for the states of a pair.
+    sums: [Vec<f64>; 4],
+    row: Vec<f64>,
+}
+
+/// An interval whose forces are these.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Loaded<'l> {
+    pub(super) values: &'l Values,
+    pub(super) nodes: &'static Nodes,
+    pub(super) active: &'l [Active],
+    pub(super) phases: [f64; 2],
+    pub(super) time: f64,
+    /// Unknowns, which the forces are some of.
+    pub(super) u: &'l [f64],
+    pub(super) derivatives: bool,
+}
+
+impl Integrals {
+    /// Room for so many states, nodes, and forces.
+    pub(super) fn new(order: usize, nodes: usize, forces: usize) -> Self {
+        let targets = nodes + 1;
+        let tables = || vec![0.0; order / 2 * targets * nodes];
+        Self {
+            nodes: 0,
+            once: tables(),
+            twice: tables(),
+            input: vec![0.0; forces * order],
+            load: std::array::from_fn(|_| vec![0.0; nodes * order]),
+            forced: std::array::from_fn(|_| vec![0.0; targets * order]),
+            by_time: vec![0.0; targets * order],
+            moves: false,
+            kernels: Vec::new(),
+            sums: std::array::from_fn(|_| vec![0.0; targets]),
+            row: vec![0.0; order],
+        }
+    }
+
+    fn targets(&self) -> usize {
+        self.nodes + 1
+    }
+
+    /// Everything of an interval.
+    pub(super) fn fill(&mut self, of: &Loaded<'_>) {
+        self.nodes = of.nodes.count();
+        let contacts = of.active.iter();
+        self.moves = contacts
+            .map(|active| &of.values.contacts[active.contact])
+            .any(|contact| !contact.input.is_constant());
+        self.loads(of);
+        let size = self.targets() * self.nodes;
+        for (r, block) in of.values.linear.blocks.iter().enumerate() {
+            if block.is_free() {
+                let tables = [&mut self.once, &mut self.twice];
+                let known = [&of.nodes.once, &of.nodes.twice];
+                let factors = [of.time, of.time * of.time];
+                for ((table, known), factor) in tables.into_iter().zip(known).zip(factors) {
+                    let table = &mut table[r * size..][..size];
+                    for (to, of) in table.iter_mut().zip(known) {
+                        *to = factor * of;
+                    }
+                }
+            } else {
+                self.tables(of, r, block);
+            }
+            self.force(of, r, block);
+        }
+    }
+
+    /// What the forces at the nodes do to the states.
+    fn loads(&mut self, of: &Loaded<'_>) {
+        let (n, order) = (self.nodes, self.row.len());
+        let Self {
+            input, load, row, ..
+        } = self;
+        for load in load.iter_mut() {
+            load[..n * order].fill(0.0);
+        }
+        let [from, to] = of.phases;
+        for (place, active) in of.active.iter().enumerate() {
+            let contact = &of.values.contacts[active.contact];
+            for node in 0..n {
+                let psi = of.nodes.targets[node];
+                let phase = from + psi * (to - from);
+                let input = &mut input[(place * n + node) * order..][..order];
+                contact.input.write(phase, 0, input);
+                let force = of.u[active.first + node];
+                for (state, input) in input.iter().enumerate() {
+                    load[0][state * n + node] += force * input;
+                }
+                if self.moves {
+                    contact.input.write(phase, 1, row);
+                    for (state, by) in row.iter().enumerate() {
+                        load[1][state * n + node] += (1.0 - psi) * force * by;
+                        load[2][state * n + node] += psi * force * by;
+                    }
+                }
+            }
+        }
+    }
+
+    /// (1) for every polynomial.
+    fn tables(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
+        let (n, time) = (self.nodes, of.time);
+        let size = self.targets() * n;
+        let once = &mut self.once[r * size..][..size];
+        let twice = &mut self.twice[r * size..][..size];
+        let rule = of.nodes.between(block.rate() * time);
+        self.kernels.clear();
+        let left = rule.left.iter();
+        self.kernels
+            .extend(left.map(|left| block.kernel(left * time)));
+        let mut before = 0.0;
+        for (way, &psi) in of.nodes.targets.iter().enumerate() {
+            let step = block.kernel((psi - before) * time);
+            before = psi;
+            let (done, to) = (way * n, (way + 1) * n);
+            if way == 0 {
+                once[..n].fill(0.0);
+                twice[..n].fill(0.0);
+            } else {
+                for l in 0..n {
+                    let [a, b] = [once[done - n + l], twice[done - n + l]];
+                    (once[done + l], twice[done + l]) = block.compose(step, a, b);
+                }
+            }
+            let points = way * rule.points..(way + 1) * rule.points;
+            let weighted = &rule.weighted[points.start * n..points.end * n];
+            let tables = [&mut once[done..to], &mut twice[done..to]];
+            add_kernels(&self.kernels[points], time, weighted, tables);
+        }
+    }
+
+    /// The forced states of a pair.
+    fn force(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
+        let (n, targets) = (self.nodes, self.targets());
+        let tables = [&self.once, &self.twice].map(|of| &of[r * targets * n..][..targets * n]);
+        let d = block.deviation;
+        for which in 0..if self.moves { 3 } else { 1 } {
+            let loads = [0, 1].map(|i| &self.load[which][(2 * r + i) * n..][..n]);
+            let sums = self.sums.each_mut().map(|of| &mut of[..targets]);
+            products(tables, loads, sums);
+            let [a, b, c, e] = self.sums.each_ref();
+            let forced = &mut self.forced[which][2 * r * targets..][..2 * targets];
+            for t in 0..targets {
+                forced[t] = a[t] + d[0][0] * c[t] + d[0][1] * e[t];
+                forced[targets + t] = b[t] + d[1][0] * c[t] + d[1][1] * e[t];
+            }
+            if which == 0 && of.derivatives && block.is_free() {
+                // X f = s S1 f + s^2 D S2 f
+                let by_time = &mut self.by_time[2 * r * targets..][..2 * targets];
+                let per = 1.0 / of.time;
+                for t in 0..targets {
+                    by_time[t] = per * (a[t] + 2.0 * (d[0][0] * c[t] + d[0][1] * e[t]));
+                    by_time[targets + t] = per * (b[t] + 2.0 * (d[1][0] * c[t] + d[1][1] * e[t]));
+                }
+            }
+        }
+        if of.derivatives && !block.is_free() {
+            self.by_time(of, r, block);
+        }
+    }
+
+    /// (2) of a pair, whose kernels are known.
+    fn by_time(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
+        let (n, targets, time) = (self.nodes, self.targets(), of.time);
+        let rule = of.nodes.between(block.rate() * time);
+        let loads = [0, 1].map(|i| &self.load[0][(2 * r + i) * n..][..n]);
+        let (mut integral, mut slope) = ([0.0; 2], [0.0; 2]);
+        let mut before = 0.0;
+        for (way, &psi) in of.nodes.targets.iter().enumerate() {
+            let step = psi - before;
+            before = psi;
+            let e = block.exponential(step * time);
+            let driven = times(block.matrix, integral);
+            slope = times(e, [0, 1].map(|i| slope[i] + step * driven[i]));
+            integral = times(e, integral);
+            for place in way * rule.points..(way + 1) * rule.points {
+                let sum = two_products(&rule.weighted[place * n..][..n], loads);
+                let left = rule.left[place] * time;
+                let carried = block.carried(self.kernels[place], sum);
+                let driven = times(block.matrix, carried);
+                for i in 0..2 {
+                    integral[i] += time * carried[i];
+                    slope[i] += carried[i] + left * driven[i];
+                }
+            }
+            for i in 0..2 {
+                self.by_time[(2 * r + i) * targets + way] = slope[i];
+            }
+        }
+    }
+
+    /// What the forces have done to a state, at all targets; or how that changes with where the interval begins, or with where it ends.
+    pub(super) fn forced(&self, which: usize, state: usize) -> &[f64] {
+        &self.forced[which][state * self.targets()..][..self.targets()]
+    }
+
+    /// How that changes with the time.
+    pub(super) fn driven(&self, state: usize) -> &[f64] {
+        &self.by_time[state * self.targets()..][..self.targets()]
+    }
+
+    /// Whether directions move.
+    pub(super) fn moves(&self) -> bool {
+        self.moves
+    }
+
+    /// Adds the derivatives of what depends like a row on the states at a target, by the forces of the interval. The same row times `D`
+    /// stands beside it.
+    pub(super) fn add_own(
+        &self,
+        of: &Loaded<'_>,
+        [row, turned]: [&[f64]; 2],
+        target: usize,
+        entries: &mut [f64],
+    ) {
+        let (n, order) = (self.nodes, self.row.len());
+        let size = self.targets() * n;
+        for (place, active) in of.active.iter().enumerate() {
+            let moves = !of.values.contacts[active.contact].input.is_constant();
+            let entries = &mut entries[active.first..active.first + n];
+            for r in 0..order / 2 {
+                let tables = [&self.once, &self.twice];
+                let tables = tables.map(|of| &of[r * size + target * n..][..n]);
+                let through = |l: usize| {
+                    let input = &self.input[(place * n + l) * order + 2 * r..][..2];
+                    [row, turned].map(|row| row[2 * r] * input[0] + row[2 * r + 1] * input[1])
+                };
+                if moves {
+                    for (l, entry) in entries.iter_mut().enumerate() {
+                        let [x, y] = through(l);
+                        *entry += tables[0][l] * x + tables[1][l] * y;
+                    }
+                } else {
+                    add_both(tables, through(0), entries);
+                }
+            }
+        }
+    }
+}
 
 /// Adds a multiple.
 pub(super) fn add(to: &mut [f64], factor: f64, of: &[f64]) {
@@ -13,75 +285,59 @@ pub(super) fn add(to: &mut [f64], factor: f64, of: &[f64]) {
     }
 }
 
-/// Integrals of both parts of the kernel times every polynomial, up to every target.
-pub(super) fn integrate(
-    block: &Block,
-    nodes: &Nodes,
-    time: f64,
-    once: &mut [f64],
-    twice: &mut [f64],
-) {
-    let n = nodes.count();
-    let rule = nodes.between(block.rate() * time);
-    let mut before = 0.0;
-    for (way, &psi) in nodes.targets.iter().enumerate() {
-        let step = block.kernel((psi - before) * time);
-        before = psi;
-        let (done, to) = (way * n, (way + 1) * n);
-        if way == 0 {
-            once[..n].fill(0.0);
-            twice[..n].fill(0.0);
-        } else {
-            for l in 0..n {
-                let [a, b] = [once[done - n + l], twice[done - n + l]];
-                (once[done + l], twice[done + l]) = block.compose(step, a, b);
-            }
-        }
-        for point in 0..rule.points {
-            let place = way * rule.points + point;
-            let kernel = block.kernel(rule.left[place] * time);
-            let weighted = &rule.weighted[place * n..][..n];
-            add(&mut once[done..to], kernel.c * time, weighted);
-            add(&mut twice[done..to], kernel.k * time, weighted);
+/// Adds two multiples.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+pub(super) fn add_both([a, b]: [&[f64]; 2], [x, y]: [f64; 2], to: &mut [f64]) {
+    for ((to, a), b) in to.iter_mut().zip(a).zip(b) {
+        *to += x * a + y * b;
+    }
+}
+
+/// Adds kernels times weighted polynomials.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn add_kernels(kernels: &[Kernel], time: f64, weighted: &[f64], [once, twice]: [&mut [f64]; 2]) {
+    for (kernel, weighted) in kernels.iter().zip(weighted.chunks_exact(once.len())) {
+        let [c, k] = [kernel.c * time, kernel.k * time];
+        for ((once, twice), weighted) in once.iter_mut().zip(&mut *twice).zip(weighted) {
+            *once += c * weighted;
+            *twice += k * weighted;
         }
     }
 }
 
-/// (3) from target to target: with `X_(j+1) = e^(A h) X_j + s sum_q w_q e^(A d_q s) f_q`, where `h` and `d_q s` are times,
-/// `dX_(j+1)/ds = e^(A h) (dX_j/ds + (h / s) A X_j) + sum_q w_q (1 + d_q s A) e^(A d_q s) f_q`.
-pub(super) fn by_time(
-    block: &Block,
-    nodes: &Nodes,
-    time: f64,
-    load: impl Fn(usize) -> [f64; 2],
-    to: &mut [[f64; 2]],
-) {
-    let n = nodes.count();
-    let rule = nodes.between(block.rate() * time);
-    let (mut integral, mut slope) = ([0.0; 2], [0.0; 2]);
-    let mut before = 0.0;
-    for (way, &psi) in nodes.targets.iter().enumerate() {
-        let step = psi - before;
-        before = psi;
-        let e = block.exponential(step * time);
-        let driven = times(block.matrix, integral);
-        slope = times(e, [0, 1].map(|i| slope[i] + step * driven[i]));
-        integral = times(e, integral);
-        for point in 0..rule.points {
-            let place = way * rule.points + point;
-            let mut sum = [0.0; 2];
-            for (l, weight) in rule.weighted[place * n..][..n].iter().enumerate() {
-                let load = load(l);
-                sum = [sum[0] + weight * load[0], sum[1] + weight * load[1]];
-            }
-            let left = rule.left[place] * time;
-            let carried = times(block.exponential(left), sum);
-            let driven = times(block.matrix, carried);
-            for i in 0..2 {
-                integral[i] += time * carried[i];
-                slope[i] += carried[i] + left * driven[i];
+/// Products of the rows of both tables with both loads: of the first one, then of the second. Nodes are a multiple of four.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn products(tables: [&[f64]; 2], loads: [&[f64]; 2], sums: [&mut [f64]; 4]) {
+    let n = loads[0].len();
+    let loads = loads.map(|load| load.as_chunks::<4>().0);
+    let [a, b, c, d] = sums;
+    let rows = tables[0].chunks_exact(n).zip(tables[1].chunks_exact(n));
+    for (t, (once, twice)) in rows.enumerate() {
+        let (once, twice) = (once.as_chunks::<4>().0, twice.as_chunks::<4>().0);
+        let mut lanes = [[0.0; 4]; 4];
+        for ((once, twice), (x, y)) in once.iter().zip(twice).zip(loads[0].iter().zip(loads[1])) {
+            for l in 0..4 {
+                lanes[0][l] += once[l] * x[l];
+                lanes[1][l] += once[l] * y[l];
+                lanes[2][l] += twice[l] * x[l];
+                lanes[3][l] += twice[l] * y[l];
             }
         }
-        to[way] = slope;
+        let total = lanes.map(|lane| (lane[0] + lane[2]) + (lane[1] + lane[3]));
+        (a[t], b[t], c[t], d[t]) = (total[0], total[1], total[2], total[3]);
     }
+}
+
+/// Products of a row with both loads. Nodes are a multiple of four.
+fn two_products(row: &[f64], loads: [&[f64]; 2]) -> [f64; 2] {
+    loads.map(|load| {
+        let pairs = row.as_chunks::<4>().0.iter().zip(load.as_chunks::<4>().0);
+        let mut lanes = [0.0; 4];
+        for (a, b) in pairs {
+            for l in 0..4 {
+                lanes[l] += a[l] * b[l];
+            }
+        }
+        (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])
+    })
 }

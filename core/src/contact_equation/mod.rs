@@ -2,7 +2,7 @@
 //! end, and the state at one phase. Between contacts the system is linear, and its motion known in closed form.
 //!
 //! `linear` and `block` have the motion of the linear part, `nodes`, `grading` and `integrals` the integrals over a stretch, `skeleton` and `place`
-//! which pieces gaps are on and where the unknowns stand, `pass`, `equations` and `eliminated` residuals and derivatives, `motion` and `extremes` the
+//! which pieces gaps are on and where the unknowns stand, `targets`, `pass`, `equations` and `eliminated` residuals and derivatives, `motion` and `extremes` the
 //! motion at any phase. `gaps`, `plan` and `transfer` tell which skeleton an orbit has, `fits` whether it still is right, `reading` what is
 //! read off an orbit, with its errors. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
 //!
@@ -32,6 +32,7 @@ mod reading;
 mod room;
 mod run;
 mod skeleton;
+mod targets;
 #[cfg(test)]
 mod tests;
 mod touches;

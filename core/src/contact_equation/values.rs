@@ -167,9 +167,16 @@ pub(super) struct Wave {
     /// Per pair, the complex amplitude of what it does to the states.
     pub(super) input: Vec<[Complex<f64>; 2]>,
     /// Per state, the steady response and its derivative by the base frequency; zero in resonance.
-    steady: Vec<[Complex<f64>; 2]>,
+    pub(super) steady: Vec<[Complex<f64>; 2]>,
     /// The pairs in resonance with it.
     resonant: Vec<usize>,
+}
+
+impl Wave {
+    /// All pairs are in resonance with it.
+    pub(super) fn is_resonant(&self) -> bool {
+        2 * self.resonant.len() == self.steady.len()
+    }
 }
 
 /// Where a contact is looked at: the phase, how fast it moves, and how that changes with the frequency that is varied.
@@ -260,31 +267,34 @@ impl Values {
         derivatives: Option<[&mut [f64]; 2]>,
     ) {
         value.fill(0.0);
-        for wave in &self.load {
-            let turn = turn(wave.harmonic * tau);
-            for (value, [response, _]) in value.iter_mut().zip(&wave.steady) {
-                *value += turn.re * response.re - turn.im * response.im;
-            }
+        let mut derivatives = derivatives;
+        if let Some(derivatives) = &mut derivatives {
+            derivatives.iter_mut().for_each(|of| of.fill(0.0));
         }
-        let Some([by_phase, by_base]) = derivatives else {
-            return;
-        };
-        by_phase.fill(0.0);
-        by_base.fill(0.0);
         for wave in &self.load {
+            if wave.is_resonant() {
+                continue;
+            }
             let turn = turn(wave.harmonic * tau);
             for (i, [response, by]) in wave.steady.iter().enumerate() {
-                let slope = turn.re * response.im + turn.im * response.re;
-                by_phase[i] -= wave.harmonic * slope;
-                by_base[i] += turn.re * by.re - turn.im * by.im;
+                value[i] += turn.re * response.re - turn.im * response.im;
+                if let Some([by_phase, by_base]) = &mut derivatives {
+                    by_phase[i] -= wave.harmonic * (turn.re * response.im + turn.im * response.re);
+                    by_base[i] += turn.re * by.re - turn.im * by.im;
+                }
             }
         }
+    }
+
+    /// Whether there are waves in resonance.
+    pub(super) fn has_resonance(&self) -> bool {
+        self.load.iter().any(|wave| !wave.resonant.is_empty())
     }
 
     /// What waves in resonance do within a time from rest at a phase: states, and their derivatives by the time, by the phase where it
     /// begins, and by the base frequency. Says whether there are such waves.
     pub(super) fn write_resonant(&self, tau: f64, time: f64, to: &mut [Vec<f64>; 4]) -> bool {
-        if self.load.iter().all(|wave| wave.resonant.is_empty()) {
+        if !self.has_resonance() {
             return false;
         }
         for to in to.iter_mut() {
@@ -404,7 +414,7 @@ fn load(layout: &Layout, coefficients: &[f64], linear: &Linear) -> Vec<Wave> {
 }
 
 /// `e^(i angle)`
-fn turn(angle: f64) -> Complex<f64> {
+pub(super) fn turn(angle: f64) -> Complex<f64> {
     if angle == 0.0 {
         return Complex::new(1.0, 0.0);
     }
@@ -415,18 +425,6 @@ fn turn(angle: f64) -> Complex<f64> {
 /// The product of a row and states, which are few.
 pub(super) fn dot(row: &[f64], states: &[f64]) -> f64 {
     row.iter().zip(states).map(|(a, y)| a * y).sum()
-}
-
-/// The product of two rows over nodes, in lanes.
-pub(super) fn dot_lanes(a: &[f64], b: &[f64]) -> f64 {
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-    let mut sums = [0.0; 4];
-    for (a, b) in a.iter().zip(b) {
-        for l in 0..4 {
-            sums[l] += a[l] * b[l];
-        }
-    }
-    (sums[0] + sums[2]) + (sums[1] + sums[3]) + dot(a_rest, b_rest)
 }
 
 /// Two of the states.
