@@ -14,6 +14,7 @@ pub mod model;
 pub mod multipliers;
 pub mod paper;
 pub mod program;
+pub mod range;
 pub mod response;
 pub mod show;
 pub mod values;

@@ -12,6 +12,7 @@ use hertzian::{Cancel, FrequencyResponse, Shooting, Stage, System, export};
 use crate::misplaced::{Given, count};
 use crate::model::{FREQUENCY_VARIES, ModelOptions};
 use crate::program::{self, Ended, Failed};
+use crate::range::RangeOptions;
 use crate::response::files;
 use crate::response::model_file::Varied;
 use crate::response::models::model;
@@ -42,27 +43,9 @@ pub struct Options {
     #[command(flatten)]
     pub model: ModelOptions,
 
-    /// What varies along a row: `omega`, the frequency of the excitation, or any parameter of the oscillator
-    #[arg(long, value_name = "NAME", default_value = "omega")]
-    pub sweep: String,
-
-    /// Where its range begins
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 0.6,
-        allow_hyphen_values = true
-    )]
-    pub from: f64,
-
-    /// Where it ends
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 1.6,
-        allow_hyphen_values = true
-    )]
-    pub to: f64,
+    /// What varies, and how far
+    #[command(flatten)]
+    pub range: RangeOptions,
 
     /// So many values of it, evenly, with both ends; one is in the middle
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = count)]
@@ -133,7 +116,7 @@ impl Options {
             return Some(fault);
         }
         for (option, name, ends) in [
-            ("sweep", &self.sweep, "--from and --to"),
+            ("sweep", &self.range.sweep, "--from and --to"),
             ("over", &self.over, "--low and --high"),
         ] {
             let short = ["alpha", "zeta", "load", "drive"].contains(&name.as_str());
@@ -149,7 +132,7 @@ impl Options {
 
     /// Whether the frequency is not held.
     fn over_frequency(&self) -> bool {
-        self.sweep == "omega" || self.over == "omega"
+        self.range.over_frequency() || self.over == "omega"
     }
 
     /// The files that are written.
@@ -181,14 +164,14 @@ impl Options {
         if self.over_frequency() && self.model.omega.is_some() {
             return Err(FREQUENCY_VARIES.to_owned());
         }
-        if self.sweep == self.over {
+        if self.range.sweep == self.over {
             return Err(format!(
                 "--over {}: it varies along a row, by --sweep; two different ones make a map",
                 self.over
             ));
         }
-        values::finite("--from", self.from)?;
-        values::finite("--to", self.to)?;
+        values::finite("--from", self.range.from)?;
+        values::finite("--to", self.range.to)?;
         values::interval("--low and --high", &[self.low, self.high])?;
         values::counted("--count", self.count, 1..=MOST)?;
         values::counted("--rows", self.rows, 1..=MOST)?;
@@ -201,7 +184,7 @@ impl Options {
     /// If it is at fault.
     fn system(&self) -> Result<Box<dyn System>, Failure> {
         let mut options = self.model.clone();
-        let (mut varied, mut value) = (&self.sweep, self.from);
+        let (mut varied, mut value) = (&self.range.sweep, self.range.from);
         if options.file.is_none() && self.over == "alpha" {
             (varied, value) = (&self.over, self.low);
         } else if options.file.is_some() && self.over != "omega" {
@@ -258,16 +241,16 @@ pub fn run(options: &Options, cancel: &Cancel, progress: &mut Progress) -> Resul
     let system = options.system()?;
     let mut request = FrequencyResponse::of(&*system)
         .by(Shooting::new())
-        .from(options.from)
-        .to(options.to)
+        .from(options.range.from)
+        .to(options.range.to)
         .cancel(cancel);
-    if options.sweep != "omega" {
-        request = request.vary(&options.sweep);
+    if !options.range.over_frequency() {
+        request = request.vary(&options.range.sweep);
         if !options.over_frequency() {
             request = request.omega(options.model.frequency());
         }
     }
-    let along = evenly([options.from, options.to], options.count);
+    let along = evenly([options.range.from, options.range.to], options.count);
     let others = evenly([options.low, options.high], options.rows);
     let (mut rows, mut orbits) = (0, 0);
     let map = request.map_with(&along, &options.over, &others, |done| {

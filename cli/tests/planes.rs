@@ -125,8 +125,8 @@ fn a_grid_is_as_large_as_flights_under_the_force_there() {
     let grid = |command: &str, value: f64| {
         let options = options(command);
         let varied = Varied {
-            name: &options.sweep,
-            value: options.from,
+            name: &options.range.sweep,
+            value: options.range.from,
         };
         let model = model(&options.model, varied).expect("a model");
         let grid = search::grid(&options, &*model, value);

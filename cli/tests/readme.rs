@@ -109,7 +109,8 @@ fn the_table_is_true() {
         let command = command.trim_matches('`');
         let (_, folds) = response(&format!("{index}"), command);
         let words = std::iter::once("response").chain(command.split_whitespace());
-        let Options { from, to, .. } = Options::try_parse_from(words).expect("a command");
+        let options = Options::try_parse_from(words).expect("a command");
+        let (from, to) = (options.range.from, options.range.to);
         let exact = exact::frequencies(figure).iter();
         let exact = exact
             .filter(|(kind, omega)| *kind == EventKind::Fold && from <= *omega && *omega <= to);

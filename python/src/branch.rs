@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use hertzian::chart::{Frequency, Line, Scale, View};
-use hertzian::{Branch, Complex, Error, EventKind, Point};
+use hertzian::chart::Line;
+use hertzian::{Branch, Complex, Error, Point};
 use numpy::{PyArray1, PyArray2};
 use pyo3::IntoPyObjectExt;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -19,6 +18,7 @@ use crate::event::{self, PyEvent, PyTurn, PyWinding};
 use crate::facts::Facts;
 use crate::given::Given;
 use crate::held::{BranchRef, EventRef, Owner, PointRef};
+use crate::look::{Look, view};
 use crate::model::PyModel;
 use crate::point::{PyPoint, wanted};
 use crate::reading::PyReading;
@@ -85,60 +85,6 @@ fn points<'py>(
     let points = points.into_iter();
     let points = points.map(|point| Py::new(py, PyPoint(PointRef::own(point, owner()))));
     PyList::new(py, points.collect::<PyResult<Vec<_>>>()?)
-}
-
-/// What a chart shows.
-pub fn view(of: Option<&str>, frequency: &str) -> PyResult<View> {
-    let frequency = match frequency {
-        "omega" => Frequency::Omega,
-        "hertz" => Frequency::Hertz,
-        "rpm" => Frequency::Rpm,
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "{frequency} is no frequency: omega, hertz or rpm"
-            )));
-        }
-    };
-    let view = View::new().frequency(frequency);
-    Ok(match of {
-        Some(text) => view.of(wanted(text)?),
-        None => view,
-    })
-}
-
-/// How the chart of a branch looks.
-pub struct Look {
-    scale: Scale,
-    stack: usize,
-    events: Option<Vec<EventKind>>,
-}
-
-impl Look {
-    pub fn new(scale: &str, stack: usize, events: Option<Vec<String>>) -> PyResult<Self> {
-        let scale = match scale {
-            "linear" => Scale::Linear,
-            "log" => Scale::Logarithmic,
-            "db" => Scale::Decibel,
-            _ => {
-                let text = format!("{scale} is no scale: linear, log or db");
-                return Err(PyValueError::new_err(text));
-            }
-        };
-        let kinds = events.map(|names| names.iter().map(|name| event::kind(name)).collect());
-        Ok(Self {
-            scale,
-            stack,
-            events: kinds.transpose()?,
-        })
-    }
-
-    pub fn on(self, view: View) -> View {
-        let view = view.scale(self.scale).harmonics(self.stack);
-        match self.events {
-            Some(kinds) => view.events(kinds),
-            None => view,
-        }
-    }
 }
 
 #[pymethods]

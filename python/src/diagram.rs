@@ -12,10 +12,11 @@ use pyo3::prelude::*;
 use serde::Serialize;
 
 use crate::arrays::matrix;
-use crate::branch::{PyBranch, view};
+use crate::branch::PyBranch;
 use crate::errors::exception;
 use crate::event::{PyEvent, kind};
 use crate::held::{BranchRef, DiagramRef, EventRef};
+use crate::look::view;
 use crate::model::PyModel;
 use crate::solutions::PySolutionsAt;
 use crate::stop::{object, variant};

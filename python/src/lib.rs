@@ -14,6 +14,7 @@ mod event;
 mod facts;
 mod given;
 mod held;
+mod look;
 mod map;
 mod methods;
 mod model;

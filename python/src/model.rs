@@ -59,25 +59,62 @@ impl PyModel {
         Ok(model)
     }
 
-    /// What was asked for of branches, and who is told of progress.
+    /// What was asked for of orbits, by the balance unless another method is named, in a range if there is one: with all of its options.
     fn asked(
-        given: &Given<'_>,
-        system: &Arc<dyn System>,
-        default: Method,
-    ) -> PyResult<(Request, Watch)> {
-        let request = Request::of(system, given, default)?;
-        let owner = Owner::request(system, &request);
-        Ok((request, Watch::new(given.progress()?, owner)))
+        &self,
+        py: Python<'_>,
+        function: &'static str,
+        options: Option<&Bound<'_, PyDict>>,
+        range: Option<[f64; 2]>,
+    ) -> PyResult<Asked> {
+        let given = Given::new(py, function, options)?;
+        let asked = self.asked_of(&given, Method::Balance(HarmonicBalance::new()), range)?;
+        given.end()?;
+        Ok(asked)
     }
 
-    /// Who is told of progress where there are no orbits to show.
-    fn watch(given: &Given<'_>, system: &Arc<dyn System>) -> PyResult<Watch> {
-        let request = Request::Balance(FrequencyResponse::of(system));
-        Ok(Watch::new(
-            given.progress()?,
-            Owner::request(system, &request),
-        ))
+    /// The same with the options that every method takes, and of others.
+    fn asked_of(
+        &self,
+        given: &Given<'_>,
+        default: Method,
+        range: Option<[f64; 2]>,
+    ) -> PyResult<Asked> {
+        let system = self.system();
+        let request = Request::of(&system, given, default)?;
+        let owner = Owner::request(&system, &request);
+        let request = match range {
+            Some([from, to]) => request.between(from, to),
+            None => request,
+        };
+        Ok(Asked {
+            request,
+            watch: Watch::new(given.progress()?, owner.clone()),
+            owner,
+        })
     }
+
+    /// What was asked for of motions: its options, the system, and who is told of progress, where there are no orbits to show.
+    fn asked_of_motions<'py>(
+        &self,
+        py: Python<'py>,
+        function: &'static str,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<(Given<'py>, Arc<dyn System>, Watch)> {
+        let given = Given::new(py, function, options)?;
+        let system = self.system();
+        let request = Request::Balance(FrequencyResponse::of(&system));
+        let owner = Owner::request(&system, &request);
+        let watch = Watch::new(given.progress()?, owner);
+        Ok((given, system, watch))
+    }
+}
+
+/// What was asked for of orbits, who is told of progress, and what orbits belong to that are on no branch.
+struct Asked {
+    request: Request,
+    watch: Watch,
+    owner: Owner,
 }
 
 #[pymethods]
@@ -165,12 +202,8 @@ impl PyModel {
         to: f64,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = Given::new(py, "response", options)?;
-        let system = self.system();
-        let (request, watch) =
-            Self::asked(&given, &system, Method::Balance(HarmonicBalance::new()))?;
-        let request = request.between(from_, to);
-        given.end()?;
+        let Asked { request, watch, .. } =
+            self.asked(py, "response", options, Some([from_, to]))?;
         compute(
             py,
             watch,
@@ -190,12 +223,11 @@ impl PyModel {
         value: f64,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = Given::new(py, "orbit", options)?;
-        let system = self.system();
-        let (request, watch) =
-            Self::asked(&given, &system, Method::Balance(HarmonicBalance::new()))?;
-        given.end()?;
-        let owner = Owner::request(&system, &request);
+        let Asked {
+            request,
+            watch,
+            owner,
+        } = self.asked(py, "orbit", options, None)?;
         compute(
             py,
             watch,
@@ -217,12 +249,7 @@ impl PyModel {
         to: f64,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = Given::new(py, "through", options)?;
-        let system = self.system();
-        let (request, watch) =
-            Self::asked(&given, &system, Method::Balance(HarmonicBalance::new()))?;
-        let request = request.between(from_, to);
-        given.end()?;
+        let Asked { request, watch, .. } = self.asked(py, "through", options, Some([from_, to]))?;
         compute(
             py,
             watch,
@@ -245,12 +272,7 @@ impl PyModel {
         to: f64,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = Given::new(py, "cover", options)?;
-        let system = self.system();
-        let (request, watch) =
-            Self::asked(&given, &system, Method::Balance(HarmonicBalance::new()))?;
-        let request = request.between(from_, to);
-        given.end()?;
+        let Asked { request, watch, .. } = self.asked(py, "cover", options, Some([from_, to]))?;
         compute(
             py,
             watch,
@@ -273,12 +295,9 @@ impl PyModel {
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = values.py();
-        let given = Given::new(py, "solutions", options)?;
-        let system = self.system();
-        let (request, watch) =
-            Self::asked(&given, &system, Method::Balance(HarmonicBalance::new()))?;
-        let (request, values) = (request.between(from_, to), crate::arrays::numbers(values)?);
-        given.end()?;
+        let Asked { request, watch, .. } =
+            self.asked(py, "solutions", options, Some([from_, to]))?;
+        let values = crate::arrays::numbers(values)?;
         compute(
             py,
             watch,
@@ -304,14 +323,9 @@ impl PyModel {
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = values.py();
-        let given = Given::new(py, "map", options)?;
-        let system = self.system();
-        let (request, watch) =
-            Self::asked(&given, &system, Method::Balance(HarmonicBalance::new()))?;
-        let request = request.between(from_, to);
+        let Asked { request, watch, .. } = self.asked(py, "map", options, Some([from_, to]))?;
         let [values, others] = [values, others].map(crate::arrays::numbers);
         let (values, others) = (values?, others?);
-        given.end()?;
         compute(
             py,
             watch,
@@ -339,10 +353,9 @@ impl PyModel {
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let given = Given::new(py, "bifurcations", options)?;
-        let system = self.system();
         let points = given.take("max_points")?.unwrap_or(50_000);
-        let (request, watch) = Self::asked(&given, &system, Method::Shooting(Shooting::new()))?;
-        let request = request.between(from_, to);
+        let default = Method::Shooting(Shooting::new());
+        let Asked { request, watch, .. } = self.asked_of(&given, default, Some([from_, to]))?;
         let search = DiagramOptions::of(&given)?;
         given.end()?;
         compute(
@@ -384,9 +397,7 @@ impl PyModel {
         starts: &Bound<'py, PyAny>,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = Given::new(starts.py(), "settle", options)?;
-        let system = self.system();
-        let watch = Self::watch(&given, &system)?;
+        let (given, system, watch) = self.asked_of_motions(starts.py(), "settle", options)?;
         attractors::settle(starts, &system, watch, given)
     }
 
@@ -405,9 +416,7 @@ impl PyModel {
         rows: PyRef<'py, attractors::PyAxis>,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = Given::new(py, "basin", options)?;
-        let system = self.system();
-        let watch = Self::watch(&given, &system)?;
+        let (given, system, watch) = self.asked_of_motions(py, "basin", options)?;
         attractors::basin(py, [&columns, &rows], &system, watch, given)
     }
 
@@ -427,9 +436,7 @@ impl PyModel {
         to: f64,
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = Given::new(py, "sweep", options)?;
-        let system = self.system();
-        let watch = Self::watch(&given, &system)?;
+        let (given, system, watch) = self.asked_of_motions(py, "sweep", options)?;
         sweep::sweep(py, [from_, to], &system, watch, given)
     }
 
@@ -455,8 +462,7 @@ impl PyModel {
             samples,
             tolerance,
         };
-        let system = self.system();
-        let watch = Self::watch(&Given::new(py, "history", None)?, &system)?;
+        let (_, system, watch) = self.asked_of_motions(py, "history", None)?;
         sweep::history(py, state, &system, watch, asked)
     }
 

@@ -68,7 +68,7 @@ fn resonance(
 ) -> Result<Curve<ResonancePoint>, Error> {
     let to = LEAST_DRIVE * options.model.drive;
     let request = PhaseResonance::of(model).vary("drive").to(to);
-    let request = request.between(options.from, options.to);
+    let request = request.between(options.range.from, options.range.to);
     request.cancel(cancel).run()
 }
 

@@ -15,7 +15,7 @@ use hertzian::{
 use super::covered;
 use super::options::{Options, Tracked};
 use super::progress::Seen;
-use super::run::Failure;
+use super::run::{Failure, in_range};
 use super::search::basin;
 use super::summary;
 
@@ -48,14 +48,16 @@ pub fn find(
         return Ok(None);
     }
     let mut request = Bifurcations::of(model)
-        .from(options.from)
-        .to(options.to)
+        .from(options.range.from)
+        .to(options.range.to)
         .period(options.period)
         .depth(options.follow.unwrap_or(0));
     if let Some(points) = options.max_points {
         request = request.max_points(points);
     }
-    if let Some(settling) = covered::settling(options).filter(|_| options.bifurcations) {
+    if options.bifurcations
+        && let Some(settling) = covered::settling(options, &in_range(options, model))?
+    {
         request = request.cover(settling);
     }
     if !options.over_frequency() {
@@ -349,22 +351,15 @@ pub fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt
 
 /// Shooting over the range of the branch, and a part of it beyond.
 fn shooting(options: &Options, model: &dyn System) -> FrequencyResponse<Shooting> {
-    let margin = 0.1 * (options.to - options.from);
+    let margin = 0.1 * (options.range.to - options.range.from);
     let mut parameters = model.facts().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == options.varied());
     let admitted = |value: f64| parameter.map_or(value > 0.0, |p| p.admits(value));
     let widened = |end: f64, by: f64| if admitted(end + by) { end + by } else { end };
-    let request = FrequencyResponse::of(model)
+    in_range(options, model)
         .by(Shooting::new())
-        .from(widened(options.from, -margin))
-        .to(widened(options.to, margin));
-    if options.over_frequency() {
-        request
-    } else {
-        request
-            .vary(options.varied())
-            .omega(options.model.frequency())
-    }
+        .from(widened(options.range.from, -margin))
+        .to(widened(options.range.to, margin))
 }
 
 /// The parameter of `--in` that is not what varies along the branch.

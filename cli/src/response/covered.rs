@@ -11,13 +11,25 @@ use hertzian::{Error, FrequencyResponse, OrbitMethod, Progress, Stop};
 use super::bifurcations::describe;
 use super::options::Options;
 
-/// How the range is searched, unless one branch alone is wanted.
-pub fn settling(options: &Options) -> Option<Settling> {
+/// How the range of a request is searched, unless one branch alone is wanted.
+///
+/// # Errors
+/// If the request is not usable.
+pub fn settling<M: OrbitMethod>(
+    options: &Options,
+    request: &FrequencyResponse<M>,
+) -> Result<Option<Settling>, Error> {
+    if options.one_branch {
+        return Ok(None);
+    }
+    let patience = match options.patience {
+        Some(periods) => periods,
+        None => request.transient_periods()?,
+    };
     let settling = Settling::new()
         .values(options.values)
-        .starts(options.starts)
-        .patience(options.patience);
-    (!options.one_branch).then_some(settling)
+        .starts(options.starts);
+    Ok(Some(settling.patience(patience)))
 }
 
 /// The branches of a request that cover its range; the first is the one that was asked for, and alone where that is wanted, or where
@@ -30,10 +42,11 @@ pub fn find<M: OrbitMethod>(
     request: FrequencyResponse<M>,
     visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Diagram, Error> {
+    let settling = settling(options, &request)?;
     let all = Bifurcations::starting_with(request);
     let all = all.depth(0).margin(0.0);
     let elsewhere = options.bifurcations || options.track.is_some();
-    match settling(options).filter(|_| !elsewhere) {
+    match settling.filter(|_| !elsewhere) {
         Some(settling) => all.cover(settling).run_with(visit),
         None => all.run_with(visit),
     }

@@ -69,7 +69,7 @@ impl Asked {
         values.push(options.model.frequency());
         let swept = names.iter().position(|name| name == options.varied());
         if let Some(place) = swept {
-            values[place] = options.from;
+            values[place] = options.range.from;
         }
         Self {
             swept,

@@ -10,6 +10,7 @@ use hertzian::stability::{Method, Projection, Sorting};
 use crate::look::{Axis, Look};
 use crate::misplaced::{Given, count};
 use crate::model::{ModelOptions, setting};
+use crate::range::RangeOptions;
 
 /// Traces the periodic response of a mass on a power-law contact, or of a declared oscillator, says what is stable, and draws it.
 ///
@@ -48,27 +49,9 @@ pub struct Options {
     #[command(flatten)]
     pub model: ModelOptions,
 
-    /// What varies along the branch: `omega`, the frequency of the excitation, or any parameter of the oscillator
-    #[arg(long, value_name = "NAME", default_value = "omega")]
-    pub sweep: String,
-
-    /// Where the branch starts
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 0.6,
-        allow_hyphen_values = true
-    )]
-    pub from: f64,
-
-    /// Where it ends; may be below the start
-    #[arg(
-        long,
-        value_name = "VALUE",
-        default_value_t = 1.6,
-        allow_hyphen_values = true
-    )]
-    pub to: f64,
+    /// What varies, and how far
+    #[command(flatten)]
+    pub range: RangeOptions,
 
     /// Period of the orbit, in periods of the excitation
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count)]
@@ -120,9 +103,10 @@ pub struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 4, conflicts_with = "one_branch", value_parser = count)]
     pub starts: usize,
 
-    /// Follow each of these motions for at most so many periods of the excitation; where there is little damping it takes more of them
-    #[arg(long, value_name = "COUNT", default_value_t = 500, conflicts_with = "one_branch", value_parser = count)]
-    pub patience: usize,
+    /// Follow each of these motions for at most so many periods of the excitation; by default until the slowest linear oscillation has
+    /// fallen to a millionth, from 500 to 20000
+    #[arg(long, value_name = "COUNT", conflicts_with = "one_branch", value_parser = count)]
+    pub patience: Option<usize>,
 
     /// Also compute every orbit of the branches at exactly these values of what varies
     #[arg(long, value_name = "VALUE", num_args = 1..)]
@@ -388,7 +372,7 @@ impl Options {
 
     /// Name of what varies, as the models call it.
     pub fn varied(&self) -> &str {
-        &self.sweep
+        &self.range.sweep
     }
 
     /// What the charts show: one for each.
@@ -398,6 +382,6 @@ impl Options {
 
     /// Whether that is the frequency.
     pub fn over_frequency(&self) -> bool {
-        self.sweep == "omega"
+        self.range.over_frequency()
     }
 }

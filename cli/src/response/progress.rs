@@ -80,7 +80,7 @@ pub struct Seen<'p> {
 impl<'p> Seen<'p> {
     /// Nothing seen.
     pub fn new(progress: &'p mut Progress, options: &Options) -> Self {
-        let (varied, from) = (options.varied().to_owned(), options.from);
+        let (varied, from) = (options.varied().to_owned(), options.range.from);
         Self {
             progress,
             points: 0,

@@ -6,6 +6,7 @@ use hertzian::{Branch, Cancel, System};
 use super::options::Options;
 use super::progress::Seen;
 use super::run::Failure;
+use crate::range::RangeOptions;
 
 /// The branch in the file, if one is resumed, and the options with what varies there, and from where to where.
 ///
@@ -20,9 +21,11 @@ pub fn of(options: &Options) -> Result<(Options, Option<Branch>), Failure> {
     let [from, to] = ends.map(|point| point.map(|point| point.value));
     let omega = branch.points.first().map(hertzian::Point::omega);
     let mut options = Options {
-        sweep: branch.varied.clone(),
-        from: from.unwrap_or(options.from),
-        to: to.unwrap_or(options.to),
+        range: RangeOptions {
+            sweep: branch.varied.clone(),
+            from: from.unwrap_or(options.range.from),
+            to: to.unwrap_or(options.range.to),
+        },
         one_branch: true,
         ..options.clone()
     };

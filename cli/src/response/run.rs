@@ -214,7 +214,7 @@ fn checked(options: &Options) -> Result<Box<dyn System>, Failure> {
     check(options)?;
     let varied = Varied {
         name: options.varied(),
-        value: options.from,
+        value: options.range.from,
     };
     let model = model(&options.model, varied).map_err(|error| {
         let path = options.model.file.clone().unwrap_or_default();
@@ -315,22 +315,27 @@ fn paths(options: &Options) -> impl Iterator<Item = &Path> {
         .map(PathBuf::as_path)
 }
 
+/// What varies, and how far, in the library's terms.
+pub fn in_range(options: &Options, model: &dyn System) -> FrequencyResponse {
+    let request = FrequencyResponse::of(model)
+        .from(options.range.from)
+        .to(options.range.to)
+        .period(options.period);
+    if options.over_frequency() {
+        return request;
+    }
+    let request = request.vary(options.varied());
+    request.omega(options.model.frequency())
+}
+
 /// The options in the library's terms.
 fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
-    let mut request = FrequencyResponse::of(model)
-        .from(options.from)
-        .to(options.to)
-        .period(options.period)
+    let mut request = in_range(options, model)
         .tolerance(options.tolerance)
         .aft(options.aft.into())
         .multipliers(options.multipliers.into());
     if let Some(points) = options.max_points {
         request = request.max_points(points);
-    }
-    if !options.over_frequency() {
-        request = request
-            .vary(options.varied())
-            .omega(options.model.frequency());
     }
     if let Some(harmonics) = options.harmonics {
         request = request.harmonics(harmonics);

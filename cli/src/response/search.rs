@@ -23,7 +23,7 @@ pub fn check(options: &Options, model: &dyn System) -> Result<(), Failure> {
         let message = format!("--search is for one coordinate, and there are {coordinates}");
         return Err(Failure::Option(message));
     }
-    let (from, to) = (options.from, options.to);
+    let (from, to) = (options.range.from, options.range.to);
     // Whether the range can be used, the library says.
     let range = from.min(to)..=from.max(to);
     let usable = from.is_finite() && to.is_finite();

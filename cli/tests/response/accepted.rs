@@ -19,8 +19,8 @@ fn without_arguments_it_is_figure_5b() {
         options.model.zeta,
         options.model.load,
         options.model.drive,
-        options.from,
-        options.to,
+        options.range.from,
+        options.range.to,
     ];
     assert_eq!(values, [1.5, 0.032, 1.0, 0.1, 0.6, 1.6]);
     assert!(options.over_frequency());

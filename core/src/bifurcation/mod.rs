@@ -10,6 +10,7 @@ mod request;
 mod settle;
 mod solutions;
 mod stretches;
+mod transient;
 
 pub use cover::{Searched, SettledTo, Settling};
 pub use diagram::{Diagram, DiagramBranch, Omitted, Origin, Reason};

@@ -75,7 +75,7 @@ impl Reading {
 /// A coordinate of an orbit whose series are known; `None` of others.
 pub(crate) fn of_coordinate(point: &Point, index: usize) -> Option<Reading> {
     let series = point.orbit.series(index)?.to_vec();
-    let stored = point.observed.motions.get(index).copied();
+    let stored = read_off(&point.observed, Source::Coordinate(index), point.orbit.base);
     Some(Reading {
         motion: stored.unwrap_or_else(|| Motion::of(&series)),
         series,
@@ -99,11 +99,34 @@ pub(crate) fn of_series(
         return Err(RequestError::State { entries, expected }.into());
     };
     let waveform = Waveform::new(&motions, sum_of(&motions, source));
+    // What was read off with the orbit is not found a second time, by another search that would differ in the last digit.
+    let motion = match read_off(&point.observed, source, orbit.base) {
+        Some(known) if known.rms.is_some() => known,
+        Some(known) => Motion {
+            rms: waveform.motion(&mut Sampler::default()).rms,
+            ..known
+        },
+        None => waveform.motion(&mut Sampler::default()),
+    };
     Ok(Reading {
-        motion: waveform.motion(&mut Sampler::default()),
+        motion,
         series: waveform.series(orbit.harmonics()),
         base: orbit.base,
     })
+}
+
+/// What was read off a signal with the orbit: of the force of a contact all but the root of its mean square.
+fn read_off(observed: &Observed, source: Source, base: f64) -> Option<Motion> {
+    match source {
+        Source::Output(index) => observed.outputs.get(index).copied(),
+        Source::Coordinate(index) => observed.motions.get(index).copied(),
+        Source::Contact(index) => observed.contacts.get(index).map(|contact| Motion {
+            maximum: contact.maximum_force,
+            minimum: contact.minimum_force,
+            mean: contact.impulse.map(|impulse| impulse / (TAU / base)),
+            rms: None,
+        }),
+    }
 }
 
 /// A signal of an orbit whose series are known, as times and values over its period: enough of them to be drawn, and both sides of every
@@ -195,29 +218,19 @@ pub(crate) fn stored(
     measure: Measure,
     base: f64,
 ) -> Option<f64> {
-    match source {
-        Source::Output(index) => measure.of(observed.outputs.get(index)?),
-        Source::Coordinate(index) => measure.of(observed.motions.get(index)?),
-        Source::Contact(index) => {
-            let contact = observed.contacts.get(index)?;
-            match measure {
-                Measure::PeakToPeak => Some(contact.maximum_force - contact.minimum_force),
-                Measure::Maximum => Some(contact.maximum_force),
-                Measure::Minimum => Some(contact.minimum_force),
-                Measure::Impulse => contact.impulse,
-                Measure::Mean => {
-                    let period = std::f64::consts::TAU / base;
-                    contact.impulse.map(|impulse| impulse / period)
-                }
-                Measure::Impacts => Some(contact.impacts() as f64),
-                Measure::OnPiece(piece) => {
-                    let parts = observed.on_pieces.get(index)?;
-                    parts.get(piece.checked_sub(1)?).copied()
-                }
-                _ => None,
+    if let (true, Source::Contact(index)) = (measure.is_of_contact(), source) {
+        let contact = observed.contacts.get(index)?;
+        return match measure {
+            Measure::Impulse => contact.impulse,
+            Measure::Impacts => Some(contact.impacts() as f64),
+            Measure::OnPiece(piece) => {
+                let parts = observed.on_pieces.get(index)?;
+                parts.get(piece.checked_sub(1)?).copied()
             }
-        }
+            _ => None,
+        };
     }
+    measure.of(&read_off(observed, source, base)?)
 }
 
 impl Model {
