@@ -308,23 +308,28 @@ fn add_kernels(kernels: &[Kernel], time: f64, weighted: &[f64], [once, twice]: [
 /// Products of the rows of both tables with both loads: of the first one, then of the second. Nodes are a multiple of four.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn products(tables: [&[f64]; 2], loads: [&[f64]; 2], sums: [&mut [f64]; 4]) {
-    let n = loads[0].len();
-    let loads = loads.map(|load| load.as_chunks::<4>().0);
-    let [a, b, c, d] = sums;
-    let rows = tables[0].chunks_exact(n).zip(tables[1].chunks_exact(n));
-    for (t, (once, twice)) in rows.enumerate() {
-        let (once, twice) = (once.as_chunks::<4>().0, twice.as_chunks::<4>().0);
-        let mut lanes = [[0.0; 4]; 4];
-        for ((once, twice), (x, y)) in once.iter().zip(twice).zip(loads[0].iter().zip(loads[1])) {
+    let groups = loads[0].len() / 4;
+    let [x, y] = loads.map(|load| load.as_chunks::<4>().0);
+    let [once, twice] = tables.map(|table| table.as_chunks::<4>().0);
+    let (x, y) = (&x[..groups], &y[..groups]);
+    for t in 0..sums[0].len() {
+        let (once, twice) = (
+            &once[t * groups..][..groups],
+            &twice[t * groups..][..groups],
+        );
+        let (mut a, mut b, mut c, mut d) = ([0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4]);
+        for g in 0..groups {
             for l in 0..4 {
-                lanes[0][l] += once[l] * x[l];
-                lanes[1][l] += once[l] * y[l];
-                lanes[2][l] += twice[l] * x[l];
-                lanes[3][l] += twice[l] * y[l];
+                a[l] += once[g][l] * x[g][l];
+                b[l] += once[g][l] * y[g][l];
+                c[l] += twice[g][l] * x[g][l];
+                d[l] += twice[g][l] * y[g][l];
             }
         }
-        let total = lanes.map(|lane| (lane[0] + lane[2]) + (lane[1] + lane[3]));
-        (a[t], b[t], c[t], d[t]) = (total[0], total[1], total[2], total[3]);
+        sums[0][t] = (a[0] + a[2]) + (a[1] + a[3]);
+        sums[1][t] = (b[0] + b[2]) + (b[1] + b[3]);
+        sums[2][t] = (c[0] + c[2]) + (c[1] + c[3]);
+        sums[3][t] = (d[0] + d[2]) + (d[1] + d[3]);
     }
 }
 

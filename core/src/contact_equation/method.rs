@@ -32,8 +32,10 @@ const COARSE: f64 = 1e-3;
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
 /// events are seen that are none.
 const MULTIPLIERS: f64 = 100.0;
-/// Parts of the tolerance below which fewer nodes do.
+/// Parts of the tolerance below which fewer nodes do, and how many points are followed with more of them before fewer are tried: a number
+/// of nodes that was not enough is not tried again at once.
 const PLENTY: f64 = 1e-4;
+const HELD: usize = 12;
 
 /// A branch by the contact equation.
 pub(super) struct ContactBranch<'b, 'r> {
@@ -49,6 +51,8 @@ pub(super) struct ContactBranch<'b, 'r> {
     stuck: bool,
     /// How often the last point was refused.
     refused: usize,
+    /// Points that are followed before fewer nodes are tried.
+    held: usize,
     /// The branch was lost where a gap reached a level, and not why.
     pub(super) lost: bool,
     visit: See<'b>,
@@ -76,6 +80,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             before: None,
             stuck: false,
             refused: 0,
+            held: 0,
             lost: false,
             visit,
         }
@@ -130,7 +135,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let error = error[0].max(error[1]);
         if error > 1.0 && now + 1 < RESOLUTIONS.len() {
             now + 1
-        } else if error < PLENTY && now > FIRST {
+        } else if error < PLENTY && now > FIRST && self.held == 0 {
             now - 1
         } else {
             now
@@ -223,10 +228,12 @@ impl BranchProblem for ContactBranch<'_, '_> {
         }
         let coarse = wanted > self.run.resolution;
         if coarse && again && self.prepare(&at.u, wanted) {
+            self.held = HELD;
             self.refused += 1;
             return Read::Refused;
         }
         self.refused = 0;
+        self.held = self.held.saturating_sub(1);
         self.run.equations.known[0].clone_from(&at.u);
         if !self.keep_point(at, read) {
             return Read::Stop;

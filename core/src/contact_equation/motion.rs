@@ -30,7 +30,6 @@ struct Room {
     row: Vec<f64>,
     weights: Vec<f64>,
     steady: Vec<f64>,
-    resonant: [Vec<f64>; 4],
 }
 
 impl<'e> Motion<'e> {
@@ -41,7 +40,6 @@ impl<'e> Motion<'e> {
             row: states(),
             weights: Vec::new(),
             steady: states(),
-            resonant: std::array::from_fn(|_| states()),
         };
         Self {
             equations,
@@ -93,7 +91,6 @@ impl<'e> Motion<'e> {
             0.0
         };
         values.write_steady(phase, &mut room.steady, None);
-        let resonant = values.write_resonant(from, time, &mut room.resonant);
         let forced = !of.active.is_empty() && !passed.forced.is_empty();
         if forced {
             of.nodes.through_ends(psi, &mut room.weights);
@@ -103,9 +100,6 @@ impl<'e> Motion<'e> {
             for i in 0..2 {
                 let at = 2 * r + i;
                 room.states[at] = free[i] + room.steady[at];
-                if resonant {
-                    room.states[at] += room.resonant[0][at];
-                }
                 if forced {
                     let targets = passed.forced.chunks_exact(skeleton.order);
                     let pairs = room.weights.iter().zip(targets);
@@ -115,6 +109,7 @@ impl<'e> Motion<'e> {
                 }
             }
         }
+        values.add_resonant(from, time, &mut room.states);
     }
 
     /// Gap of a contact and its slope by the phase, within an interval.

@@ -25,8 +25,6 @@ const SCREENED: usize = 31;
 const COMPARED: usize = 24;
 /// Where the branch is steeper than this part, as before a fold, what is varied moves the orbit by more.
 const STEEPER: f64 = 0.5;
-/// They must be known to this part of the tolerance.
-const LITTLE: f64 = 0.1;
 
 /// Errors that a finer solution has shown.
 pub(super) struct Screened {
@@ -177,7 +175,7 @@ impl Run<'_> {
     /// those, and a safety.
     pub(super) fn read_on(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
         let tail = self.tail(&at.u);
-        let enough = LITTLE * self.problem.tolerance;
+        let enough = self.problem.tolerance;
         let slope = at.parameter_slope().abs();
         let known = self.screened.as_mut().filter(|known| {
             let alike = slope >= STEEPER * known.slope;

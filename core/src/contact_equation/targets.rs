@@ -50,8 +50,6 @@ pub(super) struct Targets {
     /// Of one wave.
     cosine: Vec<f64>,
     sine: Vec<f64>,
-    /// At one target.
-    room: [Vec<f64>; 4],
 }
 
 impl Targets {
@@ -71,7 +69,6 @@ impl Targets {
             resonant: std::array::from_fn(|_| all()),
             cosine: one(),
             sine: one(),
-            room: std::array::from_fn(|_| vec![0.0; order]),
         }
     }
 
@@ -116,9 +113,15 @@ impl Targets {
             let place = r * self.count..(r + 1) * self.count;
             let kernels = self.kernels.each_mut().map(|of| &mut of[place.clone()]);
             let [c, k] = kernels;
+            let free = block.is_free();
             for ((c, k), psi) in c.iter_mut().zip(k).zip(way.psi) {
-                let kernel = block.kernel(psi * way.time);
-                (*c, *k) = (kernel.c, kernel.k);
+                let time = psi * way.time;
+                (*c, *k) = if free {
+                    (1.0, time)
+                } else {
+                    let kernel = block.kernel(time);
+                    (kernel.c, kernel.k)
+                };
             }
             self.compose(way, r, resonant);
         }
@@ -165,16 +168,43 @@ impl Targets {
         if !way.values.has_resonance() {
             return false;
         }
-        for (target, psi) in way.psi.iter().enumerate() {
-            way.values
-                .write_resonant(way.phases[0], psi * way.time, &mut self.room);
-            for (to, of) in self.resonant.iter_mut().zip(&self.room) {
-                for state in 0..order {
-                    to[state * count + target] = of[state];
+        for resonant in &mut self.resonant {
+            resonant[..order * count].fill(0.0);
+        }
+        for wave in &way.values.load {
+            for &r in &wave.resonant {
+                if wave.is_constant_on(&way.values.linear.blocks[r]) {
+                    self.add_parabola(way, wave.input[r].map(|x| x.re), r);
+                    continue;
+                }
+                for (target, psi) in way.psi.iter().enumerate() {
+                    let resonance = way
+                        .values
+                        .resonance(wave, r, [way.phases[0], psi * way.time]);
+                    for (to, of) in self.resonant.iter_mut().zip(resonance) {
+                        for i in 0..2 {
+                            to[(2 * r + i) * count + target] += of[i];
+                        }
+                    }
                 }
             }
         }
         true
+    }
+
+    /// A constant load on a pair that nothing holds.
+    fn add_parabola(&mut self, way: &Way<'_>, input: Pair, r: usize) {
+        let moved = times(way.values.linear.blocks[r].deviation, input);
+        for i in 0..2 {
+            let place = (2 * r + i) * self.count..(2 * r + i + 1) * self.count;
+            let [state, by_time, ..] = &mut self.resonant;
+            let places = state[place.clone()].iter_mut().zip(&mut by_time[place]);
+            for ((state, by_time), psi) in places.zip(way.psi) {
+                let time = psi * way.time;
+                *state += time * (input[i] + 0.5 * time * moved[i]);
+                *by_time += input[i] + time * moved[i];
+            }
+        }
     }
 
     /// (1) of a pair, and its derivatives.

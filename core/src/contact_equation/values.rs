@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::block::{Pair, times};
+use super::block::{Block, Pair, times};
 use super::linear::Linear;
 use crate::model::layout::{Layout, Term, constant};
 use crate::system::{Part, System};
@@ -169,13 +169,18 @@ pub(super) struct Wave {
     /// Per state, the steady response and its derivative by the base frequency; zero in resonance.
     pub(super) steady: Vec<[Complex<f64>; 2]>,
     /// The pairs in resonance with it.
-    resonant: Vec<usize>,
+    pub(super) resonant: Vec<usize>,
 }
 
 impl Wave {
     /// All pairs are in resonance with it.
     pub(super) fn is_resonant(&self) -> bool {
         2 * self.resonant.len() == self.steady.len()
+    }
+
+    /// It does not change, on a pair that nothing holds: states are a parabola.
+    pub(super) fn is_constant_on(&self, block: &Block) -> bool {
+        self.harmonic == 0.0 && block.is_free()
     }
 }
 
@@ -291,35 +296,28 @@ impl Values {
         self.load.iter().any(|wave| !wave.resonant.is_empty())
     }
 
-    /// What waves in resonance do within a time from rest at a phase: states, and their derivatives by the time, by the phase where it
-    /// begins, and by the base frequency. Says whether there are such waves.
-    pub(super) fn write_resonant(&self, tau: f64, time: f64, to: &mut [Vec<f64>; 4]) -> bool {
-        if !self.has_resonance() {
-            return false;
-        }
-        for to in to.iter_mut() {
-            to.fill(0.0);
-        }
+    /// Adds what waves in resonance do to the states within a time from rest at a phase.
+    pub(super) fn add_resonant(&self, tau: f64, time: f64, states: &mut [f64]) {
         for wave in &self.load {
             for &r in &wave.resonant {
                 let block = &self.linear.blocks[r];
-                if block.is_free() && wave.harmonic == 0.0 {
+                let state = if wave.is_constant_on(block) {
                     let input = wave.input[r].map(|x| x.re);
                     let moved = times(block.deviation, input);
-                    for i in 0..2 {
-                        to[0][2 * r + i] += time * (input[i] + 0.5 * time * moved[i]);
-                        to[1][2 * r + i] += input[i] + time * moved[i];
-                    }
+                    [0, 1].map(|i| time * (input[i] + 0.5 * time * moved[i]))
                 } else {
-                    self.add_resonance(wave, r, [tau, time], to);
+                    self.resonance(wave, r, [tau, time])[0]
+                };
+                for i in 0..2 {
+                    states[2 * r + i] += state[i];
                 }
             }
         }
-        true
     }
 
-    /// Of one wave and pair.
-    fn add_resonance(&self, wave: &Wave, r: usize, [tau, time]: [f64; 2], to: &mut [Vec<f64>; 4]) {
+    /// What a wave in resonance does to a pair within a time from rest at a phase: states, and their derivatives by the time, by the phase
+    /// where it begins, and by the base frequency.
+    pub(super) fn resonance(&self, wave: &Wave, r: usize, [tau, time]: [f64; 2]) -> [Pair; 4] {
         let begun = wave.harmonic * tau;
         let later = turn(begun + wave.harmonic * self.base * time);
         let turn = turn(begun);
@@ -328,14 +326,17 @@ impl Values {
         let d = block.deviation;
         let turned = |i: usize| input[0] * d[i][0] + input[1] * d[i][1];
         let state = [0, 1].map(|i| turn * (p * input[i] + k * turned(i)));
-        for i in 0..2 {
+        let by_time = [0, 1].map(|i| {
             let a = block.matrix[i];
-            let by = turn * wave.harmonic * (p_by * input[i] + k_by * turned(i));
-            to[0][2 * r + i] += state[i].re;
-            to[1][2 * r + i] += (state[0] * a[0] + state[1] * a[1] + later * input[i]).re;
-            to[2][2 * r + i] += (state[i] * Complex::new(0.0, wave.harmonic)).re;
-            to[3][2 * r + i] += by.re;
-        }
+            (state[0] * a[0] + state[1] * a[1] + later * input[i]).re
+        });
+        let by_base = |i: usize| turn * wave.harmonic * (p_by * input[i] + k_by * turned(i));
+        [
+            state.map(|x| x.re),
+            by_time,
+            state.map(|x| (x * Complex::new(0.0, wave.harmonic)).re),
+            [0, 1].map(|i| by_base(i).re),
+        ]
     }
 }
 
