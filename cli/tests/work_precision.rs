@@ -58,6 +58,7 @@ fn every_method_is_measured_against_what_is_known() {
         }
     }
     assert!(error(Family::Shooting, Setting::Tolerance(1e-10)) < 1e-13);
+    assert!(error(Family::ContactEquation, Setting::Tolerance(1e-6)) < 1e-9);
     for file in [
         "index.html",
         "work_precision.csv",

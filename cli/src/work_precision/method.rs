@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use cpu_time::ThreadTime;
 use hertzian::system::System;
-use hertzian::{Aft, Branch, Complex, EventKind, FrequencyResponse, Shooting};
+use hertzian::{
+    Aft, Branch, Complex, ContactEquation, EventKind, FrequencyResponse, OrbitMethod, Shooting,
+};
 
 use super::problem::Problem;
 
@@ -26,11 +28,13 @@ pub enum Family {
     Shooting,
     /// Shooting by integration, on problems of which shooting has closed forms.
     Integrated,
+    /// The contact equation, nodes by a tolerance.
+    ContactEquation,
 }
 
 impl Family {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Classical,
         Self::Primitive,
         Self::Switched,
@@ -38,6 +42,7 @@ impl Family {
         Self::Adaptive,
         Self::Shooting,
         Self::Integrated,
+        Self::ContactEquation,
     ];
 
     /// Its name in legends and tables.
@@ -50,6 +55,7 @@ impl Family {
             Self::Adaptive => "switched, by tolerance",
             Self::Shooting => "shooting",
             Self::Integrated => "shooting, integrated",
+            Self::ContactEquation => "contact equation",
         }
     }
 
@@ -73,6 +79,7 @@ impl Family {
             Self::Adaptive => [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
                 .map(Setting::Tolerance)
                 .to_vec(),
+            Self::ContactEquation => [1e-4, 1e-6, 1e-8, 1e-10].map(Setting::Tolerance).to_vec(),
             Self::Shooting | Self::Integrated => [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
                 .map(Setting::Tolerance)
                 .to_vec(),
@@ -94,6 +101,16 @@ pub enum Setting {
     Harmonics(usize),
     /// A tolerance.
     Tolerance(f64),
+}
+
+impl Setting {
+    /// The tolerance, if that is swept; a small one otherwise.
+    fn tolerance(self) -> f64 {
+        match self {
+            Self::Tolerance(tolerance) => tolerance,
+            Self::Samples { .. } | Self::Harmonics(_) => 1e-10,
+        }
+    }
 }
 
 impl std::fmt::Display for Setting {
@@ -130,11 +147,16 @@ pub fn run(
     patience: f64,
 ) -> Result<Run, hertzian::Error> {
     match family {
-        Family::Shooting => shoot(problem, &*problem.compiled, setting, patience),
-        Family::Integrated => match &problem.integrated {
-            Some(system) => shoot(problem, &**system, setting, patience),
-            None => shoot(problem, &*problem.compiled, setting, patience),
-        },
+        Family::Shooting => cycles(problem, shoot(&*problem.compiled, setting), patience),
+        Family::Integrated => {
+            let system = problem.integrated.as_deref();
+            let system = system.unwrap_or(&*problem.compiled);
+            cycles(problem, shoot(system, setting), patience)
+        }
+        Family::ContactEquation => {
+            let request = FrequencyResponse::of(&*problem.compiled).by(ContactEquation::new());
+            cycles(problem, request.tolerance(setting.tolerance()), patience)
+        }
         _ => balance(problem, family, setting, patience),
     }
 }
@@ -174,22 +196,20 @@ fn balance(
     })
 }
 
-fn shoot(
+fn shoot(system: &dyn System, setting: Setting) -> FrequencyResponse<Shooting> {
+    FrequencyResponse::of(system).by(Shooting::new().tolerance(setting.tolerance()))
+}
+
+/// The curve as a request asks for it, whose orbits are known by their states.
+fn cycles<M: OrbitMethod>(
     problem: &Problem,
-    system: &dyn System,
-    setting: Setting,
+    asked: FrequencyResponse<M>,
     patience: f64,
 ) -> Result<Run, hertzian::Error> {
-    let tolerance = match setting {
-        Setting::Tolerance(tolerance) => tolerance,
-        Setting::Samples { .. } | Setting::Harmonics(_) => 1e-10,
-    };
     let [from, to] = problem.range;
-    let shooting = FrequencyResponse::of(system)
-        .by(Shooting::new().tolerance(tolerance))
-        .stability(false);
+    let asked = asked.stability(false);
     let (clock, started) = (ThreadTime::now(), Instant::now());
-    let request = shooting.clone().from(from).to(to);
+    let request = asked.clone().from(from).to(to);
     let branch = request.run_with(|_| within(started, patience))?;
     let seconds = clock.elapsed().as_secs_f64();
     let folds = branch.folds().map(|fold| fold.point.value);
@@ -203,7 +223,7 @@ fn shoot(
     Ok(Run {
         seconds,
         folds: folds.chain(others).collect(),
-        peak_to_peak: largest_cycle(&shooting, &branch, problem.at),
+        peak_to_peak: largest_cycle(&asked, &branch, problem.at),
         fault: (!reached).then(|| ended(&branch.stopped, started, patience)),
     })
 }
@@ -248,13 +268,17 @@ fn largest(branch: &Branch, at: f64) -> Option<f64> {
 }
 
 /// The largest orbit of a branch at a frequency, from the nearest one of those that are larger than the others beside it.
-fn largest_cycle(shooting: &FrequencyResponse<Shooting>, branch: &Branch, at: f64) -> Option<f64> {
+fn largest_cycle<M: OrbitMethod>(
+    asked: &FrequencyResponse<M>,
+    branch: &Branch,
+    at: f64,
+) -> Option<f64> {
     let passes = branch
         .points
         .windows(2)
         .filter(|pair| (pair[0].value - at) * (pair[1].value - at) <= 0.0);
     let largest = passes.max_by(|a, b| a[0].peak_to_peak().total_cmp(&b[0].peak_to_peak()))?;
-    let request = shooting.clone().near_orbit(&largest[0].orbit);
+    let request = asked.clone().near_orbit(&largest[0].orbit);
     Some(request.orbit(at).ok()?.peak_to_peak())
 }
 

@@ -375,13 +375,11 @@ impl Problem for Equations {
         self.compute(u, jacobian.is_some());
         residual.copy_from_slice(&self.residual);
         let Some(jacobian) = jacobian else { return };
+        // The parameter stands last in a row here as there.
         let n = self.skeleton.unknowns();
-        let mut column = vec![0.0; n];
         for (row, entries) in self.matrix.chunks_exact(n + 1).enumerate() {
-            jacobian.core_mut().row_mut(row)[..n].copy_from_slice(&entries[..n]);
-            column[row] = entries[n];
+            jacobian.core_mut().row_mut(row).copy_from_slice(entries);
         }
-        jacobian.set_column(&column);
     }
 
     fn prepare(&mut self, u: &mut [f64]) {

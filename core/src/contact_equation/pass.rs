@@ -292,10 +292,9 @@ impl Pass<'_> {
             entries[columns - 1] += through[0] * one[columns - 1] + through[1] * other[columns - 1];
             for i in 0..2 {
                 let by = room.targets.slopes(node, 2 * r + i);
-                slopes
-                    .iter_mut()
-                    .zip(by)
-                    .for_each(|(to, by)| *to += output[i] * by);
+                for (to, by) in slopes.iter_mut().zip(by) {
+                    *to += output[i] * by;
+                }
             }
         }
         stretch.add_slopes(slopes, entries);

@@ -274,7 +274,9 @@ impl Values {
         value.fill(0.0);
         let mut derivatives = derivatives;
         if let Some(derivatives) = &mut derivatives {
-            derivatives.iter_mut().for_each(|of| of.fill(0.0));
+            for of in derivatives.iter_mut() {
+                of.fill(0.0);
+            }
         }
         for wave in &self.load {
             if wave.is_resonant() {
