@@ -1,4 +1,4 @@
-//! What a branch is made of: residual, Jacobian and multipliers of one orbit, a whole curve by either method, and flows.
+//! What a branch is made of: residual, Jacobian and multipliers of one orbit, a whole curve by every method, and flows.
 //!
 //! Figures 5a and 5b of Wang et al. (2021), the orbit at omega = 0.9.
 
@@ -10,7 +10,7 @@ use hertzian::stability::Method;
 use hertzian::stages::Stages;
 use hertzian::time::affine::Affine;
 use hertzian::time::{Flow, Integrated, Tangent};
-use hertzian::{Error, FrequencyResponse, Shooting, System, oscillator};
+use hertzian::{ContactEquation, Error, FrequencyResponse, Shooting, System, oscillator};
 
 oscillator! {
     /// One-sided contact with a linear spring.
@@ -87,10 +87,17 @@ fn branch(
             },
         );
     }
-    let shooting = request.by(Shooting::new()).max_points(2000);
+    let shooting = request.clone().by(Shooting::new()).max_points(2000);
     count(&format!("{name}\tcurve by shooting"), &mut || {
         black_box(shooting.run().is_ok());
     });
+    let contact = request.by(ContactEquation::new());
+    count(
+        &format!("{name}\tcurve by the contact equation"),
+        &mut || {
+            black_box(contact.run().is_ok());
+        },
+    );
     Ok(())
 }
 

@@ -68,6 +68,7 @@ pub fn verdict(section: &Section) -> String {
             ("switched", fastest(&[Family::Switched, Family::Adaptive])),
             ("sampled", fastest(&[Family::Classical, Family::Primitive])),
             ("shooting", fastest(&[Family::Shooting])),
+            ("contact equation", fastest(&[Family::ContactEquation])),
         ];
         let parts = groups.map(|(name, found)| match found {
             Some((time, one)) => format!("{name} {time:.2} ms ({})", one.setting),

@@ -23,6 +23,9 @@ use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;
 use crate::time::Work;
 
+/// An update of Newton's method that is as small a part of the tolerance is the last one.
+const UPDATE: f64 = 1e-2;
+const COARSEST: f64 = 1e-6;
 /// Resolutions that a first orbit is looked for with.
 const TRIED: [usize; 3] = [FIRST, 5, 7];
 
@@ -81,7 +84,10 @@ pub(crate) fn branch(
         frame,
         resolution,
     } = first(problem, guess, from)?;
-    let options = problem.asked.follow(from, to, 1.0);
+    let mut options = problem.asked.follow(from, to, 1.0);
+    // What is left after the last update is far less.
+    let enough = (UPDATE * problem.tolerance).min(COARSEST);
+    options.newton.tolerance = options.newton.tolerance.max(enough);
     let mut run = Run::new(problem, frame, resolution, equations);
     let mut branch = ContactBranch::new(&mut run, visit);
     let stopped = engine::run(&mut branch, Start::Near(u), options);

@@ -8,49 +8,44 @@ use nalgebra::DMatrix;
 use super::equations::Equations;
 use crate::numeric::linear::{Lu, Matrix};
 
-/// Room for both, of one number of unknowns.
-#[derive(Debug)]
+/// Room for both, made when it is first asked for.
+#[derive(Debug, Default)]
 pub(super) struct Eliminated {
-    inner: Matrix,
-    inner_lu: Lu,
-    whole: Matrix,
-    whole_lu: Lu,
+    inner: Option<Solver>,
+    whole: Option<Solver>,
+}
+
+#[derive(Debug)]
+struct Solver {
+    matrix: Matrix,
+    lu: Lu,
     column: Vec<f64>,
 }
 
-impl Eliminated {
-    /// Of so many unknowns, some of them states.
-    pub(super) fn new(unknowns: usize, order: usize) -> Self {
-        let others = unknowns - order;
+impl Solver {
+    fn of(order: usize) -> Self {
         Self {
-            inner: Matrix::zeros(others),
-            inner_lu: Lu::new(others),
-            whole: Matrix::zeros(unknowns + 1),
-            whole_lu: Lu::new(unknowns + 1),
-            column: vec![0.0; others],
+            matrix: Matrix::zeros(order),
+            lu: Lu::new(order),
+            column: vec![0.0; order],
         }
     }
 
     /// (4), from the derivatives of residuals row by row.
     fn map(&mut self, derivatives: &[f64], unknowns: usize, order: usize) -> Option<DMatrix<f64>> {
         let row = |row: usize| &derivatives[row * (unknowns + 1)..][..unknowns];
-        let mut map =
-            DMatrix::from_fn(order, order, |i, j| row(i)[j] + f64::from(u8::from(i == j)));
-        let others = unknowns - order;
-        if others == 0 {
-            return Some(map);
+        let unit = |i: usize, j: usize| f64::from(u8::from(i == j));
+        let mut map = DMatrix::from_fn(order, order, |i, j| row(i)[j] + unit(i, j));
+        for i in 0..unknowns - order {
+            let entries = &row(order + i)[order..];
+            self.matrix.row_mut(i).copy_from_slice(entries);
         }
-        for i in 0..others {
-            self.inner
-                .row_mut(i)
-                .copy_from_slice(&row(order + i)[order..]);
-        }
-        self.inner_lu.factorise(&mut self.inner).ok()?;
+        self.lu.factorise(&mut self.matrix).ok()?;
         for j in 0..order {
             for (i, x) in self.column.iter_mut().enumerate() {
                 *x = row(order + i)[j];
             }
-            self.inner_lu.solve(&self.inner, &mut self.column);
+            self.lu.solve(&self.matrix, &mut self.column);
             for i in 0..order {
                 let through = row(i)[order..].iter().zip(&self.column);
                 map[(i, j)] -= through.map(|(a, x)| a * x).sum::<f64>();
@@ -68,7 +63,9 @@ impl Equations {
             return None;
         }
         let (n, order) = (self.skeleton.unknowns(), self.skeleton.order);
-        let mut map = self.eliminated.map(&self.matrix, n, order)?;
+        let inner = &mut self.eliminated.inner;
+        let inner = inner.get_or_insert_with(|| Solver::of(n - order));
+        let mut map = inner.map(&self.matrix, n, order)?;
         for i in 0..order {
             for j in 0..order {
                 map[(i, j)] *= self.unit(j) / self.unit(i);
@@ -85,22 +82,21 @@ impl Equations {
             return None;
         }
         let n = self.skeleton.unknowns();
-        let told = self.skeleton.order + self.skeleton.switches.len();
-        let Eliminated {
-            whole, whole_lu, ..
-        } = &mut self.eliminated;
+        let counts = self.skeleton.order + self.skeleton.switches.len();
+        let whole = &mut self.eliminated.whole;
+        let Solver { matrix, lu, .. } = whole.get_or_insert_with(|| Solver::of(n + 1));
         for (row, entries) in self.matrix.chunks_exact(n + 1).enumerate() {
-            whole.row_mut(row).copy_from_slice(entries);
+            matrix.row_mut(row).copy_from_slice(entries);
         }
-        let last = whole.row_mut(n);
+        let last = matrix.row_mut(n);
         last.fill(0.0);
-        for column in (0..told).chain([n]) {
+        for column in (0..counts).chain([n]) {
             last[column] = tangent[column];
         }
-        whole_lu.factorise(whole).ok()?;
+        lu.factorise(matrix).ok()?;
         let mut step = self.residual.clone();
         step.push(0.0);
-        whole_lu.solve(whole, &mut step);
+        lu.solve(matrix, &mut step);
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
 }

@@ -162,7 +162,7 @@ impl Equations {
             size,
             residual: Vec::new(),
             matrix: Vec::new(),
-            eliminated: Eliminated::new(0, 0),
+            eliminated: Eliminated::default(),
             passed: Vec::new(),
             extremes: OnceCell::new(),
             known: [Vec::new(), Vec::new()],
@@ -187,7 +187,7 @@ impl Equations {
         let n = self.skeleton.unknowns();
         self.residual = vec![0.0; n];
         self.matrix = vec![0.0; n * (n + 1)];
-        self.eliminated = Eliminated::new(n, self.skeleton.order);
+        self.eliminated = Eliminated::default();
         self.column = vec![0.0; n];
         self.passed = vec![Passed::default(); self.skeleton.intervals.len()];
         self.room = Room::new(&self.skeleton);

@@ -7,7 +7,9 @@
 //! dX(t + h)/ds = e^(A h) (dX(t)/ds + (h / s) A X(t)) + sum_q w_q (1 + d_q s A) e^(A d_q s) f_q                (2)
 //! ```
 //!
-//! Other numbers of equations are those of [`equations`](super::equations), of whose (3) the second one is made.
+//! The derivative of (3) of [`equations`](super::equations) is the sum of (2) over the ways.
+
+use std::ops::Range;
 
 use multiversion::multiversion;
 
@@ -244,11 +246,12 @@ impl Integrals {
         self.moves
     }
 
-    /// Adds the derivatives of what depends like a row on the states at a target, by the forces of the interval. The same row times `D`
-    /// stands beside it.
+    /// Adds the derivatives of what depends like a row on the states of some pairs at a target, by the forces of the interval. The same row
+    /// times `D` stands beside it.
     pub(super) fn add_own(
         &self,
         of: &Loaded<'_>,
+        pairs: Range<usize>,
         [row, turned]: [&[f64]; 2],
         target: usize,
         entries: &mut [f64],
@@ -258,7 +261,7 @@ impl Integrals {
         for (place, active) in of.active.iter().enumerate() {
             let moves = !of.values.contacts[active.contact].input.is_constant();
             let entries = &mut entries[active.first..active.first + n];
-            for r in 0..order / 2 {
+            for r in pairs.clone() {
                 let tables = [&self.once, &self.twice];
                 let tables = tables.map(|of| &of[r * size + target * n..][..n]);
                 let through = |l: usize| {

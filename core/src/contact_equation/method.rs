@@ -73,6 +73,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             Vec::new()
         };
         Self {
+            held: if run.resolution > FIRST { HELD } else { 0 },
             run,
             watched,
             tested: None,
@@ -80,7 +81,6 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             before: None,
             stuck: false,
             refused: 0,
-            held: 0,
             lost: false,
             visit,
         }
@@ -102,12 +102,12 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
 
     /// What happens at a zero, if anything does.
     fn kind(&mut self, zero: &Zero) -> Option<EventKind> {
-        let error = self.last_error();
-        let doubling = self
-            .watched
-            .get(1)
-            .map_or(zero.change.kind, |watched| watched.kind);
-        tested::kind(zero, self.tests(&zero.root.located.point), error, doubling)
+        let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) else {
+            return Some(zero.change.kind);
+        };
+        let tells = zero.told || zero.least <= self.last_error();
+        let multipliers = &self.tests(&zero.root.located.point).multipliers;
+        moduli::seen_by_moduli(multipliers, place, tells)
     }
 
     /// Prepares the equations that fit an orbit. Says whether there are any.
@@ -115,6 +115,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let former = std::mem::replace(&mut self.run.resolution, resolution);
         let planned = self.run.replanned(u);
         self.run.resolution = former;
+        if resolution > former {
+            self.held = HELD;
+        }
         self.next = planned.map(|(equations, u)| Next {
             equations,
             u,
@@ -228,7 +231,6 @@ impl BranchProblem for ContactBranch<'_, '_> {
         }
         let coarse = wanted > self.run.resolution;
         if coarse && again && self.prepare(&at.u, wanted) {
-            self.held = HELD;
             self.refused += 1;
             return Read::Refused;
         }

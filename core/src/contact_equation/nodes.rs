@@ -20,6 +20,14 @@ use crate::numeric::fourier::gauss;
 
 /// Numbers of nodes of a stretch.
 pub(super) const COUNTS: [usize; 6] = [8, 12, 16, 20, 24, 32];
+// Sums over nodes go over groups of four.
+const _: () = {
+    let mut place = 0;
+    while place < COUNTS.len() {
+        assert!(COUNTS[place].is_multiple_of(4));
+        place += 1;
+    }
+};
 /// Points of the rules between two targets: of one that serves slow kernels, and of finer ones.
 const POINTS: [usize; 3] = [12, 24, 48];
 

@@ -1,6 +1,4 @@
 //! One pass over an orbit: the states from cut to cut, residuals, and derivatives by all unknowns.
-//!
-//! Numbers of equations are those of [`equations`](super::equations).
 
 use super::block::row_times;
 use super::equations::Passed;
@@ -302,7 +300,7 @@ impl Pass<'_> {
             entries[columns - 1] += slopes[2];
         }
         room.integrals
-            .add_own(&loaded, [output, turned], node, entries);
+            .add_own(&loaded, 0..order / 2, [output, turned], node, entries);
         entries[row] += 1.0;
     }
 
@@ -344,7 +342,7 @@ impl Pass<'_> {
                     turned.fill(0.0);
                     turned[2 * r..2 * r + 2].copy_from_slice(&d[i]);
                     room.integrals
-                        .add_own(&loaded, [unit_row, turned], target, row);
+                        .add_own(&loaded, r..r + 1, [unit_row, turned], target, row);
                 }
             }
         }

@@ -21,6 +21,10 @@ use crate::shooting::reading::Reader;
 const SAFETY: f64 = 2.0;
 /// As many orbits are compared with one whose errors a finer solution has shown.
 const SCREENED: usize = 31;
+/// What their forces leave out may be so many times as much.
+const MOST: f64 = 30.0;
+/// Roundings in the last coefficients of forces.
+const ROUNDED: f64 = 16.0;
 /// Phases at which two motions are compared.
 const COMPARED: usize = 24;
 /// Where the branch is steeper than this part, as before a fold, what is varied moves the orbit by more.
@@ -28,8 +32,9 @@ const STEEPER: f64 = 0.5;
 
 /// Errors that a finer solution has shown.
 pub(super) struct Screened {
-    /// What forces left out there.
-    tail: f64,
+    /// What the forces of every contact on every interval left out there, and how often gaps crossed levels.
+    tails: Vec<f64>,
+    switches: usize,
     /// Of the motion across the tangent at any phase, and of what is varied. One number, as peak-to-peak, may be right by chance where
     /// its error changes sign.
     apart: f64,
@@ -45,10 +50,11 @@ pub(super) struct Screened {
 
 impl Screened {
     /// How many times as large errors may be where forces leave so much out: they are products of what the forces and what the rule of
-    /// integration leave out.
-    fn grown(&self, tail: f64) -> f64 {
-        let ratio = (tail / self.tail).max(1.0);
-        SAFETY * ratio * ratio
+    /// integration leave out. `None` if they leave out so much more that this says nothing.
+    fn grown(&self, tails: &[f64]) -> Option<f64> {
+        let pairs = tails.iter().zip(&self.tails);
+        let ratio = pairs.fold(1.0, |most: f64, (now, then)| most.max(now / then));
+        (ratio <= MOST && tails.len() == self.tails.len()).then_some(SAFETY * ratio * ratio)
     }
 }
 
@@ -122,12 +128,7 @@ impl Run<'_> {
         let (mut point, map) = self.read_plainly(at)?;
         let Some(Finer { u: other, shift }) = self.corrected(at) else {
             point.error = Some(f64::INFINITY);
-            return Some(ReadOrbit {
-                point,
-                map,
-                shift: f64::INFINITY,
-                finer: None,
-            });
+            return Some(unknown(point, map));
         };
         let mut finer = self.finer.take()?;
         let finer_map = if map.is_some() {
@@ -136,6 +137,10 @@ impl Run<'_> {
             finer.compute(&other, false);
             None
         };
+        if finer.failed {
+            point.error = Some(f64::INFINITY);
+            return Some(unknown(point, map));
+        }
         let motions = self.equations.extremes.get();
         let extremes = motions.map_or(&[][..], |found| &found.coordinates);
         let apart = apart(&finer, extremes);
@@ -155,8 +160,9 @@ impl Run<'_> {
             spread = known.map_or(f64::INFINITY, |finer| moved.max((map - finer).norm()));
         }
         self.screened = Some(Screened {
-            tail: self.tail(&at.u),
-            apart: everywhere,
+            tails: self.tails(&at.u),
+            switches: switches(&self.equations),
+            apart: everywhere.max(apart),
             shift: shift.abs(),
             slope: at.parameter_slope().abs(),
             error: error.max(SAFETY * everywhere / size),
@@ -171,27 +177,32 @@ impl Run<'_> {
         })
     }
 
-    /// Reads an orbit of the walk. Where forces are resolved as well as at the last orbit whose errors a finer solution has shown, it has
-    /// those, and a safety.
+    /// Reads an orbit of the walk. Near one whose errors a finer solution has shown it has those, as many times as large as what its forces
+    /// leave out tells. Where that is more than is asked for, and every so often, a finer solution is asked again.
     pub(super) fn read_on(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
-        let tail = self.tail(&at.u);
-        let enough = self.problem.tolerance;
         let slope = at.parameter_slope().abs();
-        let known = self.screened.as_mut().filter(|known| {
-            let alike = slope >= STEEPER * known.slope;
-            known.left > 0 && alike && known.grown(tail) * known.error <= enough
-        });
-        let Some(known) = known else {
+        let alike = |known: &Screened| known.left > 0 && slope >= STEEPER * known.slope;
+        if !self.screened.as_ref().is_some_and(alike) {
+            return self.read(at);
+        }
+        let (mut point, map) = self.read_plainly(at)?;
+        let tails = self.tails(&at.u);
+        let rise = self.rise(&point);
+        let same = |known: &&mut Screened| known.switches == switches(&self.equations);
+        let known = self.screened.as_mut().filter(same);
+        let grown = known.and_then(|known| known.grown(&tails).map(|grown| (known, grown)));
+        let Some((known, grown)) = grown else {
             return self.read(at);
         };
         known.left -= 1;
-        let ratio = known.grown(tail);
-        let (apart, shift) = (ratio * known.apart, ratio * known.shift);
-        let spread = ratio * known.spread;
-        let (mut point, map) = self.read_plainly(at)?;
         let size = point.observed.motions.iter().map(Extent::peak_to_peak);
         let size = size.fold(0.0, f64::max);
-        let error = SAFETY * (apart + self.rise(&point) * shift) / size;
+        let error = SAFETY * (known.apart + rise * known.shift) / size;
+        let error = grown * error.max(known.error);
+        let spread = grown * known.spread;
+        if error > self.problem.tolerance {
+            return self.read(at);
+        }
         point.error = Some(error + 100.0 * f64::EPSILON);
         if let Some(map) = &map {
             point.stability = Stability::of(eigenvalues(map), spread);
@@ -245,16 +256,21 @@ impl Run<'_> {
         })
     }
 
-    /// What the forces at the nodes leave out, by the size of their last coefficients.
-    fn tail(&self, u: &[f64]) -> f64 {
-        let mut sum = f64::MIN_POSITIVE;
+    /// What the forces at the nodes leave out on every interval, by the size of their last coefficients. What is less than their rounding is
+    /// as large as that.
+    fn tails(&self, u: &[f64]) -> Vec<f64> {
+        let forces = &u[..u.len() - 1];
+        let first = forces.len() - self.equations.skeleton.forces;
+        let largest = forces[first..].iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+        let least = (ROUNDED * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
+        let mut tails = Vec::new();
         for interval in &self.equations.skeleton.intervals {
             for active in &interval.active {
                 let forces = &u[active.first..][..interval.nodes.count()];
-                sum += interval.nodes.tail(forces);
+                tails.push(interval.nodes.tail(forces).max(least));
             }
         }
-        sum
+        tails
     }
 
     /// The orbit with more nodes, by one step of Newton's method in the plane across the tangent.
@@ -274,6 +290,16 @@ impl Run<'_> {
         }
         let shift = step[step.len() - 1];
         Some(Finer { u, shift })
+    }
+}
+
+/// An orbit that no finer solution was found for.
+fn unknown(point: Point, map: Option<DMatrix<f64>>) -> ReadOrbit {
+    ReadOrbit {
+        point,
+        map,
+        shift: f64::INFINITY,
+        finer: None,
     }
 }
 

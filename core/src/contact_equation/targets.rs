@@ -3,11 +3,11 @@
 //! With (1) of [`block`](super::block), `c` and `k` at a target, a pair is
 //!
 //! ```text
-//! y = c f + k D f + y_p + P + D T,    f = y_a - y_p(tau_a)                                                      (1)
+//! y = c z + k D z + y_p + P + D Q + y_r,    z = y_a - y_p(tau_a)                                                (1)
 //! ```
 //!
-//! where `P` and `T` are the integrals of both factors times the forces. Numbers stand target by target, so that plain loops go over many
-//! of them.
+//! where `P` and `Q` are the integrals of both factors times what the forces do, and `y_r` is what waves in resonance do. Numbers stand
+//! target by target, so that plain loops go over many of them.
 
 use super::block::{Pair, times};
 use super::integrals::{Integrals, add, add_both};

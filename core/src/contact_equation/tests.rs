@@ -40,11 +40,32 @@ crate::oscillator! {
     }
 }
 
+crate::oscillator! {
+    /// A contact whose direction turns. Its force is smooth beside the level too, where a guess has nodes.
+    Turning(x, y) {
+        param load;
+        law ball(g) { g > 0 => 2*g + 0.1*g*dot(g), else => 0 }
+        let angle = omega*t;
+        let force = ball(x*cos(angle) + y*sin(angle) - 0.1);
+        ddot(x) + 0.1*dot(x) + x + force*cos(angle) = load;
+        ddot(y) + 0.1*dot(y) + 2*y + force*sin(angle) = 0;
+    }
+}
+
+crate::oscillator! {
+    /// Without the contact an undamped oscillator, which its load drives in resonance at one.
+    Resonant(x) {
+        param drive;
+        law stop(g) { g > 0 => 4*g + 0.4*dot(g), else => 0 }
+        ddot(x) + x + stop(x - 0.1) = drive*cos(omega*t);
+    }
+}
+
 fn first(
     system: &dyn System,
     vary: Option<&str>,
     omega: f64,
-    nodes: usize,
+    [nodes, panels]: [usize; 2],
 ) -> (Equations, Vec<f64>) {
     let request = FrequencyResponse::of(system);
     let point = request.orbit(omega).unwrap();
@@ -81,13 +102,18 @@ fn first(
     let frame = Frame {
         reference: vec![0.0; 2 * coordinates],
         size: point.size(),
-        resolution: Resolution { nodes, panels: 1 },
+        resolution: Resolution { nodes, panels },
     };
     plan.equations(&setting, value, &gaps, &frame).unwrap()
 }
 
-fn derivatives_are_those_of_differences(system: &dyn System, vary: Option<&str>, omega: f64) {
-    let (mut equations, u) = first(system, vary, omega, 12);
+fn derivatives_are_those_of_differences(
+    system: &dyn System,
+    vary: Option<&str>,
+    omega: f64,
+    panels: usize,
+) {
+    let (mut equations, u) = first(system, vary, omega, [12, panels]);
     equations.compute(&u, true);
     let n = u.len() - 1;
     let matrix = equations.matrix.clone();
@@ -119,16 +145,21 @@ fn matrices_are_those_of_differences() {
         load: 1.0,
         drive: 0.5,
     };
-    derivatives_are_those_of_differences(&one, None, 0.7);
-    derivatives_are_those_of_differences(&one, Some("drive"), 0.7);
+    derivatives_are_those_of_differences(&one, None, 0.7, 1);
+    derivatives_are_those_of_differences(&one, Some("drive"), 0.7, 4);
     let two = TwoMasses { gap: 0.2 };
-    derivatives_are_those_of_differences(&two, None, 0.9);
-    derivatives_are_those_of_differences(&two, Some("gap"), 0.9);
-    derivatives_are_those_of_differences(&Coupled { coupling: 1.0 }, Some("coupling"), 0.9);
+    derivatives_are_those_of_differences(&two, None, 0.9, 4);
+    derivatives_are_those_of_differences(&two, Some("gap"), 0.9, 1);
+    derivatives_are_those_of_differences(&Coupled { coupling: 1.0 }, Some("coupling"), 0.9, 1);
+    let turning = Turning { load: 0.3 };
+    derivatives_are_those_of_differences(&turning, None, 0.7, 1);
+    derivatives_are_those_of_differences(&turning, Some("load"), 0.7, 2);
+    derivatives_are_those_of_differences(&Resonant { drive: 0.2 }, None, 1.0, 1);
+    derivatives_are_those_of_differences(&Resonant { drive: 0.2 }, Some("drive"), 1.0, 2);
 }
 
 fn solved(system: &dyn System, omega: f64, nodes: usize) -> (Equations, Vec<f64>) {
-    let (mut equations, mut u) = first(system, None, omega, nodes);
+    let (mut equations, mut u) = first(system, None, omega, [nodes, 1]);
     let mut newton = Newton::new(&equations);
     let options = NewtonOptions {
         tolerance: 1e-11,
@@ -206,7 +237,7 @@ fn a_touch_is_passed_smoothly() {
         load: 1.0,
         drive: 0.1,
     };
-    let (mut equations, mut u) = first(&one, None, 1.2005, 16);
+    let (mut equations, mut u) = first(&one, None, 1.2005, [16, 1]);
     let mut newton = Newton::new(&equations);
     let options = NewtonOptions {
         tolerance: 1e-11,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::block::{Block, Pair, times};
+use super::block::{Block, Pair};
 use super::linear::Linear;
 use crate::model::layout::{Layout, Term, constant};
 use crate::system::{Part, System};
@@ -302,14 +302,7 @@ impl Values {
     pub(super) fn add_resonant(&self, tau: f64, time: f64, states: &mut [f64]) {
         for wave in &self.load {
             for &r in &wave.resonant {
-                let block = &self.linear.blocks[r];
-                let state = if wave.is_constant_on(block) {
-                    let input = wave.input[r].map(|x| x.re);
-                    let moved = times(block.deviation, input);
-                    [0, 1].map(|i| time * (input[i] + 0.5 * time * moved[i]))
-                } else {
-                    self.resonance(wave, r, [tau, time])[0]
-                };
+                let [state, ..] = self.resonance(wave, r, [tau, time]);
                 for i in 0..2 {
                     states[2 * r + i] += state[i];
                 }

@@ -86,7 +86,7 @@ impl Branch {
         }
     }
 
-    // A request has `track` and `track_with` as well, for who has an event and no branch.
+    // A request has `track` and `track_with` as well, for whoever has an event and no branch.
     /// The curve of bifurcations through one of its events, as a second parameter (or `"omega"`) varies between two values: see
     /// [`FrequencyResponse::track`](crate::FrequencyResponse::track).
     ///

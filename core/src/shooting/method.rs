@@ -111,12 +111,17 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
 
     /// What happens at a zero, if anything does.
     fn kind(&mut self, zero: &Zero) -> Option<EventKind> {
-        let error = self.last_error();
-        let doubling = self
-            .watched
-            .get(1)
-            .map_or(zero.change.kind, |watched| watched.kind);
-        tested::kind(zero, self.tests(&zero.root.located.point), error, doubling)
+        let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) else {
+            return Some(zero.change.kind);
+        };
+        let tells = zero.told || zero.least <= self.last_error();
+        let multipliers = &self.tests(&zero.root.located.point).multipliers;
+        let seen = moduli::seen_by_moduli(multipliers, place, tells)?;
+        Some(if seen == EventKind::PeriodDoubling {
+            self.watched[1].kind
+        } else {
+            seen
+        })
     }
 
     fn recurrence(&mut self, at: &CurvePoint) -> Result<Option<Recurrence>, FlowError> {

@@ -19,7 +19,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use crate::branches::moduli;
-use crate::branches::problem::{self as engine, Watched, Zero};
+use crate::branches::problem::{self as engine, Watched};
 use crate::event::EventKind;
 use crate::numeric::spectrum::eigenvalues;
 
@@ -107,26 +107,6 @@ impl Tests {
             Test::Modulus(place) => moduli::logarithm(&self.multipliers, place),
         }
     }
-}
-
-/// What happens at a zero of a test function, as multipliers there tell that are known along the step to this `error`. `None` where it is
-/// a modulus that passes one because another one does.
-pub(crate) fn kind(
-    zero: &Zero,
-    tests: &Tests,
-    error: f64,
-    doubling: EventKind,
-) -> Option<EventKind> {
-    let Test::Modulus(place) = Test::of(zero.change.test) else {
-        return Some(zero.change.kind);
-    };
-    let tells = zero.told || zero.least <= error;
-    let seen = moduli::seen_by_moduli(&tests.multipliers, place, tells)?;
-    Some(if seen == EventKind::PeriodDoubling {
-        doubling
-    } else {
-        seen
-    })
 }
 
 #[cfg(test)]
