@@ -8,6 +8,7 @@ use super::gaps::Gaps;
 use super::method::ContactBranch;
 use super::plan::{Frame, Plan};
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
+use super::rest::Rest;
 use super::run::Run;
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::engine;
@@ -15,12 +16,14 @@ use crate::branches::error::OrbitError;
 use crate::branches::observed::Motion;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
+use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
 use crate::branches::record::Record;
 use crate::branches::solve;
-use crate::continuation::follow::{CurvePoint, Start, Stop};
+use crate::continuation::follow::{CurvePoint, FollowOptions, Start, Stop};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;
+use crate::model::request::RequestError;
 use crate::time::Work;
 
 /// An update of Newton's method that is as small a part of the tolerance is the last one.
@@ -28,6 +31,12 @@ const UPDATE: f64 = 1e-2;
 const COARSEST: f64 = 1e-6;
 /// Resolutions that a first orbit is looked for with.
 const TRIED: [usize; 3] = [FIRST, 5, 7];
+
+/// A branch, and what it goes on from, where it was interrupted.
+pub(crate) struct Followed {
+    pub(crate) branch: Branch,
+    pub(crate) rest: Option<Box<Rest>>,
+}
 
 /// A first orbit.
 struct First {
@@ -76,7 +85,7 @@ pub(crate) fn branch(
     guess: &Point,
     [from, to]: [f64; 2],
     visit: See<'_>,
-) -> Result<Branch, Error> {
+) -> Result<Followed, Error> {
     let started = Instant::now();
     let First {
         equations,
@@ -90,35 +99,80 @@ pub(crate) fn branch(
     options.newton.tolerance = options.newton.tolerance.max(enough);
     let mut run = Run::new(problem, frame, resolution, equations);
     let mut branch = ContactBranch::new(&mut run, visit);
-    let stopped = engine::run(&mut branch, Start::Near(u), options);
+    let outcome = engine::run(&mut branch, Start::Near(u), options);
     let lost = branch.lost;
-    let stopped = match stopped {
+    let stopped = stopped(&run, outcome, lost, options)?;
+    Ok(as_branch(problem, run, stopped, started))
+}
+
+/// Goes on with a branch that was interrupted.
+///
+/// # Errors
+/// If what it goes on from does not belong to it.
+pub(crate) fn resume(
+    problem: &ContactProblem,
+    branch: &Branch,
+    rest: &Rest,
+    [from, to]: [f64; 2],
+    visit: See<'_>,
+) -> Result<Followed, Error> {
+    let started = Instant::now();
+    let mut run = rest.run(problem, branch).ok_or(RequestError::Rest)?;
+    let options = problem.asked.follow(from, to, 1.0);
+    let mut branch = ContactBranch::new(&mut run, visit);
+    if !rest.walk.tests(branch.watched().len()) {
+        return Err(RequestError::Rest.into());
+    }
+    branch.take_up(rest);
+    let outcome = engine::resume(&mut branch, rest.walk.clone(), options);
+    let lost = branch.lost;
+    let stopped = stopped(&run, outcome, lost, options)?;
+    Ok(as_branch(problem, run, stopped, started))
+}
+
+/// Why a branch ended, as the engine has, and whether it was lost where a gap reached a level.
+///
+/// # Errors
+/// If there is no first orbit.
+fn stopped(
+    run: &Run<'_>,
+    outcome: Result<Stop, NewtonError>,
+    lost: bool,
+    options: FollowOptions,
+) -> Result<Stop, Error> {
+    let from = options.from;
+    match outcome {
         Ok(Stop::Interrupted) if lost => {
             let value = run.record.points.last().map_or(from, |point| point.value);
-            Stop::StepTooShort {
+            Ok(Stop::StepTooShort {
                 step: options.steps.smallest,
                 value,
                 reason: NewtonError::NotFinite { iterations: 0 },
-            }
+            })
         }
-        Ok(stopped) => stopped,
-        Err(reason) => {
-            return Err(OrbitError::NoStart {
-                value: from,
-                reason,
-            }
-            .into());
+        Ok(stopped) => Ok(stopped),
+        Err(reason) => Err(OrbitError::NoStart {
+            value: from,
+            reason,
         }
-    };
+        .into()),
+    }
+}
+
+/// The branch that a run has gathered.
+fn as_branch(problem: &ContactProblem, run: Run<'_>, stopped: Stop, started: Instant) -> Followed {
     let Run {
-        record, statistics, ..
+        record,
+        statistics,
+        rest,
+        ..
     } = run;
     let Record {
         points,
         events,
         turns,
     } = record;
-    Ok(Branch {
+    let branch = Branch {
         model: Model::of(problem.asked.system.as_ref()),
         varied: problem.asked.varied.clone(),
         points,
@@ -130,7 +184,9 @@ pub(crate) fn branch(
         work: Work::default(),
         elapsed: started.elapsed(),
         further: Further::default(),
-    })
+    };
+    let rest = rest.filter(|_| stopped.can_be_resumed());
+    Followed { branch, rest }
 }
 
 /// A solution near an orbit that is given by its series.

@@ -116,8 +116,9 @@ pub(super) struct Passed {
 pub(super) struct Equations {
     pub(super) setting: Setting,
     pub(super) values: Values,
-    /// What is varied where `values` were made.
+    /// What is varied where `values` are, and where they were made.
     at: f64,
+    pub(super) made: f64,
     pub(super) skeleton: Skeleton,
     /// Positions and velocities that the unknowns count from.
     pub(super) reference: Vec<f64>,
@@ -156,6 +157,7 @@ impl Equations {
         let mut equations = Self {
             values,
             at: value,
+            made: value,
             setting,
             skeleton,
             reference,

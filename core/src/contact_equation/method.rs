@@ -6,7 +6,9 @@ use super::fits::Fits;
 use super::problem::{FIRST, RESOLUTIONS};
 use super::reading::ReadOrbit;
 use super::run::Run;
+use crate::branches::engine::Walk;
 use crate::branches::extreme::Extreme;
+use crate::branches::keep::keep;
 use crate::branches::moduli;
 use crate::branches::point::Point;
 use crate::branches::problem::{
@@ -14,7 +16,7 @@ use crate::branches::problem::{
 };
 use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
-use crate::continuation::follow::{CurvePoint, Halted, Step};
+use crate::continuation::follow::{Continue, CurvePoint, Halted, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
@@ -48,11 +50,11 @@ pub(super) struct ContactBranch<'b, 'r> {
     /// The equations before, while others are tried.
     before: Option<(Equations, usize)>,
     /// Other equations lead nowhere from the last point.
-    stuck: bool,
+    pub(super) stuck: bool,
     /// How often the last point was refused.
-    refused: usize,
+    pub(super) refused: usize,
     /// Points that are followed before fewer nodes are tried.
-    held: usize,
+    pub(super) held: usize,
     /// The branch was lost where a gap reached a level, and not why.
     pub(super) lost: bool,
     visit: See<'b>,
@@ -289,11 +291,18 @@ impl BranchProblem for ContactBranch<'_, '_> {
         };
         let length = u.len();
         let nowhere = |scale| CurvePoint {
-            u: vec![f64::NAN; length],
-            tangent: vec![f64::NAN; length],
+            u: vec![0.0; length],
+            tangent: vec![0.0; length],
             scale,
         };
-        let mut point = |of: &CurvePoint| self.run.point_in(of, &equations, &u);
+        let is_finite = |point: &CurvePoint| {
+            let mut numbers = point.u.iter().chain(&point.tangent);
+            numbers.all(|x| x.is_finite())
+        };
+        let mut point = |of: &CurvePoint| {
+            let found = self.run.point_in(of, &equations, &u);
+            found.filter(is_finite)
+        };
         if let Some(known) = point(&halted.point) {
             halted.point.tangent = known.tangent;
         } else {
@@ -320,6 +329,17 @@ impl BranchProblem for ContactBranch<'_, '_> {
             self.tested = None;
             self.stuck = true;
         }
+    }
+
+    fn onward(&mut self, walk: Walk) -> Continue {
+        let rest = self.rest(walk);
+        let answer = keep(
+            self.run.problem.asked.keep.as_ref(),
+            self.run.record.kept(),
+            &rest,
+        );
+        self.run.rest = Some(Box::new(rest));
+        answer
     }
 
     fn count(&mut self, newton: &Newton) {

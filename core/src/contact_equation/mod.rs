@@ -29,6 +29,7 @@ mod place;
 mod plan;
 pub(crate) mod problem;
 mod reading;
+mod rest;
 mod room;
 mod run;
 mod skeleton;
@@ -40,3 +41,4 @@ mod transfer;
 mod values;
 
 pub use options::ContactEquation;
+pub(crate) use rest::Rest;

@@ -6,7 +6,7 @@
 use super::equations::{Equations, Setting};
 use super::gaps::{BEND, Gaps, beginning, is_lonely, look, piece};
 use super::motion::GapExtreme;
-use super::skeleton::{Beginning, Placed, Resolution, Skeleton, Switch, Told};
+use super::skeleton::{Beginning, Placed, Placement, Resolution, Skeleton, Switch, Told};
 use crate::law::{Derivatives, Law, On};
 
 /// Two switches of a gap at one level with a shorter way between them are a pair; pairs part beyond the other length.
@@ -117,9 +117,11 @@ impl Plan {
             setting.system.as_ref(),
             &gaps.values.contacts,
             gaps.values.order(),
-            &self.beginning,
-            &placed,
-            frame.resolution,
+            Placement {
+                beginning: self.beginning.clone(),
+                placed,
+                resolution: frame.resolution,
+            },
         );
         let reference = frame.reference.clone();
         let equations = Equations::new(setting.clone(), value, skeleton, reference, frame.size)?;

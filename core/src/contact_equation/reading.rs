@@ -31,18 +31,26 @@ const COMPARED: usize = 24;
 const STEEPER: f64 = 0.5;
 
 /// Errors that a finer solution has shown.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Screened {
     /// What the forces of every contact on every interval left out there, and how often gaps crossed levels.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     tails: Vec<f64>,
     switches: usize,
     /// Of the motion across the tangent at any phase, and of what is varied. One number, as peak-to-peak, may be right by chance where
     /// its error changes sign.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     apart: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     shift: f64,
     /// How what is varied changes along the branch.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     slope: f64,
     /// Of peak-to-peak where what is varied has its value, and of the multipliers or the map that has them.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     error: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     spread: f64,
     /// As many orbits may still be compared with it.
     left: usize,

@@ -8,6 +8,7 @@ use super::motion::Motion;
 use super::plan::{Frame, Plan};
 use super::problem::{ContactProblem, RESOLUTIONS};
 use super::reading::Screened;
+use super::rest::Rest;
 use super::transfer;
 use crate::branches::record::Record;
 use crate::continuation::follow::CurvePoint;
@@ -33,6 +34,8 @@ pub(super) struct Run<'r> {
     pub(super) screened: Option<Screened>,
     pub(super) record: Record,
     pub(super) statistics: Statistics,
+    /// Where it was before the last step.
+    pub(super) rest: Option<Box<Rest>>,
 }
 
 impl<'r> Run<'r> {
@@ -51,7 +54,20 @@ impl<'r> Run<'r> {
             screened: None,
             record: Record::default(),
             statistics: Statistics::default(),
+            rest: None,
         }
+    }
+
+    /// What it remembers beside its equations: what was varied where finer ones were made, and what these have said.
+    pub(super) fn memory(&self) -> (Option<f64>, Option<Screened>) {
+        let finer = self.finer.as_ref().map(|finer| finer.made);
+        (finer, self.screened.clone())
+    }
+
+    /// Remembers that.
+    pub(super) fn remember(&mut self, finer: Option<f64>, screened: Option<Screened>) {
+        self.finer = finer.and_then(|made| self.equations.finer_equations(made));
+        self.screened = screened;
     }
 
     /// Forgets the finer equations, since there are others.

@@ -62,17 +62,24 @@ impl Mark {
 
 /// How a switch is told by its unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub(super) enum Told {
     /// By its phase.
     Alone,
     /// It is the first of two: its unknown is the middle, and half of `g''` of (3) belongs to it, by the phase.
-    First { other: usize, bend: f64 },
+    First {
+        other: usize,
+        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+        bend: f64,
+    },
     /// It is the second of two: its unknown is `H`.
     Second { other: usize },
 }
 
 /// A gap at a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Switch {
     pub(super) contact: usize,
     pub(super) level: usize,
@@ -132,8 +139,10 @@ impl Interval {
 
 /// A switch with the phase where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Placed {
     pub(super) switch: Switch,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) phase: f64,
 }
 
@@ -150,11 +159,12 @@ pub(super) struct Skeleton {
     pub(super) intervals: Vec<Interval>,
     /// Number of forces.
     pub(super) forces: usize,
-    pub(super) resolution: Resolution,
+    pub(super) placement: Placement,
 }
 
 /// Nodes of a stretch and panels of a stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Resolution {
     pub(super) nodes: usize,
     /// Nodes, with finer panels the longer the stretch: so many panels in a whole period.
@@ -162,11 +172,55 @@ pub(super) struct Resolution {
 }
 
 /// Where a period begins, how long it is, and on which pieces the gaps are there.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Beginning {
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) phase: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) length: f64,
     pub(super) pieces: Vec<usize>,
+}
+
+/// What a skeleton is made from: its beginning, and the switches in the order of time.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Placement {
+    pub(super) beginning: Beginning,
+    pub(super) placed: Vec<Placed>,
+    pub(super) resolution: Resolution,
+}
+
+impl Placement {
+    /// Whether it is one of these contacts: it may have been read from a file.
+    pub(super) fn fits(&self, contacts: &[Contact]) -> bool {
+        let Beginning {
+            phase,
+            length,
+            pieces,
+        } = &self.beginning;
+        let mut levels = contacts.iter().map(|contact| contact.levels.len());
+        let on_pieces = pieces.len() == contacts.len()
+            && pieces.iter().all(|piece| levels.next() >= Some(*piece));
+        let possible = |placed: &Placed| {
+            let Switch {
+                contact,
+                level,
+                told,
+                ..
+            } = placed.switch;
+            let other = match told {
+                Told::Alone => 0,
+                Told::First { other, .. } | Told::Second { other } => other,
+            };
+            let level = contacts.get(contact).map(|of| level < of.levels.len());
+            level == Some(true)
+                && other < self.placed.len()
+                && (*phase..=phase + length).contains(&placed.phase)
+        };
+        let whole = phase.is_finite() && length.is_finite() && *length > 0.0;
+        on_pieces && whole && self.placed.iter().all(possible)
+    }
 }
 
 impl Skeleton {
@@ -175,10 +229,11 @@ impl Skeleton {
         system: &dyn System,
         contacts: &[Contact],
         order: usize,
-        beginning: &Beginning,
-        placed: &[Placed],
-        resolution: Resolution,
+        placement: Placement,
     ) -> Self {
+        let Placement {
+            beginning, placed, ..
+        } = placement.clone();
         let mut skeleton = Self {
             begin: beginning.phase,
             length: beginning.length,
@@ -186,9 +241,9 @@ impl Skeleton {
             switches: placed.iter().map(|placed| placed.switch).collect(),
             intervals: Vec::new(),
             forces: 0,
-            resolution,
+            placement,
         };
-        let mut pieces = beginning.pieces.clone();
+        let mut pieces = beginning.pieces;
         let end = beginning.phase + beginning.length;
         let (mut from, mut phase) = (Cut::Begin, beginning.phase);
         let ends = placed
@@ -323,7 +378,7 @@ impl Skeleton {
         let panels = if active.is_empty() {
             1
         } else {
-            let asked = self.resolution.panels as f64 * way.length / self.length;
+            let asked = self.placement.resolution.panels as f64 * way.length / self.length;
             asked.ceil().max(1.0) as usize
         };
         let [first, last] = way.cuts.map(|cut| self.steepness(system, contacts, cut));
@@ -342,7 +397,7 @@ impl Skeleton {
                 if panel == 0 { first } else { 1 },
                 if panel + 1 == panels { last } else { 1 },
             ];
-            let nodes = Nodes::of(self.resolution.nodes, grading);
+            let nodes = Nodes::of(self.placement.resolution.nodes, grading);
             let unknown = self.order + self.switches.len() + self.forces;
             let of = |(place, contact): (usize, &usize)| Active {
                 contact: *contact,

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::by_shooting::{self, Second};
-use super::following::Following;
+use super::following::{Following, Left};
 use super::sealed::Follow;
 use crate::balance::symmetry::is_broken;
 use crate::balance_branch::check::Asked;
@@ -40,20 +40,16 @@ impl Branch {
         if !(low..=high).contains(&value) {
             return Ok(Vec::new());
         }
-        match following {
-            Following::Balance { context, .. } => context.at(self, value),
-            Following::Shooting {
-                request, shooting, ..
-            } => {
-                let Some(point) = self.points.first() else {
-                    return Ok(Vec::new());
-                };
-                let period = point.orbit.period;
-                let (shooting, request) = by_shooting::of_period(*shooting, request, period);
-                let asked = shooting::Asked::of(&request, &shooting);
-                at::at(&asked.problem(value, value)?, self, value)
-            }
+        if let Following::Balance { context, .. } = following {
+            return context.at(self, value);
         }
+        let Some(point) = self.points.first() else {
+            return Ok(Vec::new());
+        };
+        let (shooting, request) = (following.shooting(), following.request());
+        let (shooting, request) = by_shooting::of_period(shooting, request, point.orbit.period);
+        let asked = shooting::Asked::of(&request, &shooting);
+        at::at(&asked.problem(value, value)?, self, value)
     }
 
     /// The branch that begins at one of the events of this one, in the same range, by the same method: see
@@ -76,13 +72,16 @@ impl Branch {
         side: Side,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Self, Error> {
-        match self.following()? {
-            Following::Balance {
-                request, balance, ..
-            } => balance.switch(request, event, side, &mut visit),
-            Following::Shooting {
-                request, shooting, ..
-            } => shooting.switch(request, event, side, &mut visit),
+        let following = self.following()?;
+        let request = following.request();
+        match following {
+            Following::Balance { balance, .. } => balance.switch(request, event, side, &mut visit),
+            Following::Shooting { shooting, .. } => {
+                shooting.switch(request, event, side, &mut visit)
+            }
+            Following::ContactEquation { equation, .. } => {
+                equation.switch(request, event, side, &mut visit)
+            }
         }
     }
 
@@ -114,15 +113,12 @@ impl Branch {
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<BifurcationCurve, Error> {
         let following = self.following()?;
-        let shooting = match following {
-            Following::Balance { .. } => Shooting::new(),
-            Following::Shooting { shooting, .. } => *shooting,
-        };
+        let (shooting, request) = (following.shooting(), following.request());
         let second = Second {
             name: second,
             range,
         };
-        by_shooting::track(following.request(), shooting, event, second, &mut visit)
+        by_shooting::track(request, shooting, event, second, &mut visit)
     }
 
     /// An orbit of this branch with its Fourier series, and everything that is read off. By the balance it has that already; by shooting
@@ -135,14 +131,8 @@ impl Branch {
         if point.orbit.has_series() {
             return Ok(point.clone());
         }
-        match self.following()? {
-            Following::Balance { request, .. } => {
-                by_shooting::completed(request, Shooting::new(), point)
-            }
-            Following::Shooting {
-                request, shooting, ..
-            } => by_shooting::completed(request, *shooting, point),
-        }
+        let following = self.following()?;
+        by_shooting::completed(following.request(), following.shooting(), point)
     }
 
     /// Gives a branch that was read from a file its model back, so that it can compute further orbits: by the method that followed it,
@@ -164,7 +154,7 @@ impl Branch {
             None => Following::Shooting {
                 request: Request::of(model),
                 shooting: Shooting::new(),
-                rest: None,
+                rest: Left::Nothing,
             },
         };
         self.further = Further::of(model.shared(), Arc::new(following));
@@ -218,7 +208,7 @@ impl Branch {
             return Ok(Following::Shooting {
                 request,
                 shooting,
-                rest: None,
+                rest: Left::Nothing,
             });
         }
         // A branch may pass from orbits with a symmetry to others.
@@ -237,16 +227,17 @@ impl Branch {
             context: Box::new(context),
             request,
             balance,
-            rest: None,
+            rest: Left::Nothing,
         })
     }
 
     /// A balance of orbits like this one of the branch, whatever method found it.
     pub(super) fn context(&self, point: &Point) -> Result<BranchContext, Error> {
-        let request = match self.following()? {
-            Following::Balance { context, .. } => return Ok(context.as_ref().clone()),
-            Following::Shooting { request, .. } => request,
-        };
+        let following = self.following()?;
+        if let Following::Balance { context, .. } = following {
+            return Ok(context.as_ref().clone());
+        }
+        let request = following.request();
         let balance = HarmonicBalance::new();
         // With the symmetry that this orbit has, and no other.
         let mut request = Request {

@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::both_ways::{BothWays, Part, Way};
 use super::by_shooting;
-use super::following::Following;
+use super::following::{Following, Left};
 use super::sealed::Follow;
 use crate::balance::Parity;
 use crate::balance::start::{Moving, start, without_symmetry};
@@ -22,7 +23,7 @@ use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::record::Record;
 use crate::branches::request::{Guess, Request};
-use crate::continuation::follow::{FollowOptions, Start, Stop};
+use crate::continuation::follow::{FollowOptions, Start};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::{EventKind, Side};
@@ -104,39 +105,55 @@ impl Follow for HarmonicBalance {
             from.min(to)..=from.max(to),
             "must be between from and to",
         )?;
-        let started = Instant::now();
         let request = &with_series(request, self, Some(value))?;
-        let asked = Asked::of(request, self);
-        let (context, mut options) = asked.check()?;
-        let mut statistics = Statistics::default();
-        options.from = value;
-        let first = first(asked, &context, options, &mut statistics)?;
-        // Each part ends where the range does.
-        let mut part = |[from, to]: [f64; 2]| {
-            let point = context.along(&first, (to - from).signum(), value)?;
-            let options = FollowOptions {
-                from,
-                to,
-                ..options
-            };
-            let run = Run::new(&context, options, &first);
-            let followed = run.follow(Start::Along(Box::new(point)), &mut *visit)?;
-            // The other side would be missing.
-            let followed = Followed {
-                rest: None,
-                ..followed
-            };
-            Ok::<_, Error>(as_branch(asked, context.clone(), followed))
-        };
-        let forth = part([from, to])?;
-        // Once around, or interrupted: there is no other side.
-        let whole = matches!(forth.stopped, Stop::Closed | Stop::Interrupted);
-        let back = if whole { None } else { Some(part([to, from])) };
-        let mut branch = Branch::with_back(forth, back, &asked.request.cancel)?;
-        branch.statistics += statistics;
-        branch.elapsed = started.elapsed();
-        Ok(branch)
+        let both = BothWays::from(value);
+        both_ways(Asked::of(request, self), None, &both, visit)
     }
+}
+
+/// The branch through the orbit at a value, or what is left of it.
+///
+/// # Errors
+/// If there is no such orbit, or what it goes on from does not belong to it.
+pub(super) fn both_ways(
+    asked: Asked<'_>,
+    known: Option<&Branch>,
+    both: &BothWays<Rest>,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let started = Instant::now();
+    let range = asked.request.range()?;
+    let (context, mut options) = asked.check()?;
+    options.from = both.value;
+    let mut statistics = Statistics::default();
+    let mut found = None;
+    let follow = |way: Way, known: Option<(&Branch, &Rest)>| {
+        // Each part ends where the range does.
+        let [from, to] = way.of(range);
+        let ends = FollowOptions {
+            from,
+            to,
+            ..options
+        };
+        if let Some((branch, rest)) = known {
+            let followed = go_on(&context, ends, branch, rest, &mut *visit)?;
+            return Ok(gathered(asked, followed));
+        }
+        let begun = match found.take() {
+            Some(begun) => begun,
+            None => first(asked, &context, options, &mut statistics)?,
+        };
+        let point = context.along(&begun, (to - from).signum(), both.value)?;
+        let run = Run::new(&context, ends, &begun);
+        found = Some(begun);
+        let followed = run.follow(Start::Along(Box::new(point)), &mut *visit)?;
+        Ok(gathered(asked, followed))
+    };
+    let (mut branch, left) = both.follow(known, &asked.request.cancel, follow)?;
+    branch.statistics += statistics;
+    branch.elapsed = started.elapsed();
+    branch.further = further(asked, context, Left::BothWays(Box::new(left)));
+    Ok(branch)
 }
 
 /// Goes on with a branch that was interrupted; its context has the resolution that it was followed with.
@@ -158,14 +175,27 @@ pub(super) fn resume(
         ..context
     };
     begin(asked, &context)?;
-    let first = branch.points.first().ok_or(RequestError::Rest)?;
-    let first = context.unknowns_of(&first.orbit, first.value);
-    let run = Run::new(&context, options, &first);
-    let run = run.resumed(rest, branch.kept());
-    let followed = run.ok_or(RequestError::Rest)?.resume(rest, visit)?;
+    let followed = go_on(&context, options, branch, rest, visit)?;
     let mut resumed = as_branch(asked, context.clone(), followed);
     resumed.elapsed = started.elapsed();
     Ok(resumed)
+}
+
+/// Follows what is left of a branch.
+///
+/// # Errors
+/// If what it goes on from does not belong to it.
+fn go_on(
+    context: &BranchContext,
+    options: FollowOptions,
+    branch: &Branch,
+    rest: &Rest,
+    visit: See<'_>,
+) -> Result<Followed, Error> {
+    let first = branch.points.first().ok_or(RequestError::Rest)?;
+    let first = context.unknowns_of(&first.orbit, first.value);
+    let run = Run::new(context, options, &first).resumed(rest, branch.kept());
+    run.ok_or(RequestError::Rest)?.resume(rest, visit)
 }
 
 /// Tells what keeps the branch what it is.
@@ -174,7 +204,7 @@ fn begin(asked: Asked<'_>, context: &BranchContext) -> Result<(), Error> {
         return Ok(());
     };
     let model = Model::of(asked.request.system.as_ref());
-    let further = further(asked, context.clone(), None);
+    let further = further(asked, context.clone(), Left::Nothing);
     keep.begin(&model, &asked.request.varied(), &further)
 }
 
@@ -220,6 +250,15 @@ fn with_resolution_of(context: &mut BranchContext, event: &Event, period: usize)
 
 /// The branch that a run gives.
 fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Branch {
+    let Part { branch, rest } = gathered(asked, followed);
+    Branch {
+        further: further(asked, context, Left::one_way(rest)),
+        ..branch
+    }
+}
+
+/// What a run has gathered.
+fn gathered(asked: Asked<'_>, followed: Followed) -> Part<Rest> {
     let Followed {
         stopped,
         record,
@@ -241,7 +280,7 @@ fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Br
     // What a step hid is found one step later.
     events.sort_by_key(|event| event.after);
     turns.sort_by_key(|turn| turn.after);
-    Branch {
+    let branch = Branch {
         model: Model::of(asked.request.system.as_ref()),
         varied: asked.request.varied(),
         points,
@@ -252,12 +291,13 @@ fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Br
         statistics,
         work: crate::time::Work::default(),
         elapsed: std::time::Duration::default(),
-        further: further(asked, context, rest),
-    }
+        further: Further::default(),
+    };
+    Part { branch, rest }
 }
 
 /// What it takes to go on with a branch.
-fn further(asked: Asked<'_>, context: BranchContext, rest: Option<Box<Rest>>) -> Further {
+fn further(asked: Asked<'_>, context: BranchContext, rest: Left<Rest>) -> Further {
     // What is asked of the branch later is not part of this run.
     let request = asked.request.afterwards();
     let context = BranchContext {

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::following::Following;
+use super::both_ways::{BothWays, Part, Way};
+use super::following::{Following, Left};
 use super::sealed::Follow;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::branches::branch::{Branch, Further, Model, Source};
@@ -54,18 +55,51 @@ impl Follow for Shooting {
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        let ([from, to], problem) = Asked::of(request, self).ranged()?;
+        let [from, to] = request.range()?;
         validate::option(
             "through",
             value,
             from.min(to)..=from.max(to),
             "must be between from and to",
         )?;
-        let guess = guess(request, value)?;
-        let branch = compute::branch_through(&problem, &guess, value, [from, to], visit)?;
-        let followed = Followed { branch, rest: None };
-        Ok(with_request(followed, request, *self))
+        both_ways(request, *self, None, &BothWays::from(value), visit)
     }
+}
+
+/// The branch through the orbit at a value, or what is left of it.
+///
+/// # Errors
+/// If there is no such orbit, or what it goes on from does not belong to it.
+pub(super) fn both_ways(
+    request: &Request,
+    shooting: Shooting,
+    known: Option<&Branch>,
+    both: &BothWays<Rest>,
+    visit: See<'_>,
+) -> Result<Branch, Error> {
+    let (range, problem) = Asked::of(request, &shooting).ranged()?;
+    let mut found = None;
+    let follow = |way: Way, known: Option<(&Branch, &Rest)>| {
+        // Each part ends where the range does.
+        let range = way.of(range);
+        let Followed { branch, rest } = if let Some((branch, rest)) = known {
+            compute::resume(&problem, branch, rest, range, &mut *visit)?
+        } else {
+            let begun = match found.take() {
+                Some(guess) => guess,
+                None => guess(request, both.value)?,
+            };
+            let begun = found.insert(begun);
+            compute::branch_from(&problem, begun, both.value, range, &mut *visit)?
+        };
+        Ok(Part { branch, rest })
+    };
+    let (branch, left) = both.follow(known, &request.cancel, follow)?;
+    let left = Left::BothWays(Box::new(left));
+    Ok(Branch {
+        further: further(request, shooting, left),
+        ..branch
+    })
 }
 
 /// Goes on with a branch that was interrupted.
@@ -91,7 +125,8 @@ fn begin(request: &Request, shooting: Shooting) -> Result<(), Error> {
         return Ok(());
     };
     let model = Model::of(request.system.as_ref());
-    keep.begin(&model, &request.varied(), &further(request, shooting, None))
+    let further = further(request, shooting, Left::Nothing);
+    keep.begin(&model, &request.varied(), &further)
 }
 
 /// The second parameter of a curve, and its range.
@@ -233,15 +268,16 @@ fn balanced(request: &Request, value: f64) -> Result<Point, Error> {
 /// Accuracy of a first orbit that is corrected afterwards.
 const GUESSED: f64 = 1e-6;
 
-pub(super) fn with_request(followed: Followed, request: &Request, shooting: Shooting) -> Branch {
+fn with_request(followed: Followed, request: &Request, shooting: Shooting) -> Branch {
+    let Followed { branch, rest } = followed;
     Branch {
-        further: further(request, shooting, followed.rest),
-        ..followed.branch
+        further: further(request, shooting, Left::one_way(rest)),
+        ..branch
     }
 }
 
 /// What it takes to go on with a branch.
-fn further(request: &Request, shooting: Shooting, rest: Option<Box<Rest>>) -> Further {
+fn further(request: &Request, shooting: Shooting, rest: Left<Rest>) -> Further {
     let following = Following::Shooting {
         request: request.afterwards(),
         shooting,

@@ -2,11 +2,13 @@
 
 use std::fmt;
 
+use super::both_ways::BothWays;
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::balance_branch::run;
 use crate::branches::branch;
 use crate::branches::request::Request;
+use crate::contact_equation::{self, ContactEquation};
 use crate::shooting::{self, Shooting};
 
 /// What a branch was asked for by.
@@ -16,13 +18,36 @@ pub(super) enum Following {
         context: Box<BranchContext>,
         request: Request,
         balance: HarmonicBalance,
-        rest: Option<Box<run::Rest>>,
+        rest: Left<run::Rest>,
     },
     Shooting {
         request: Request,
         shooting: Shooting,
-        rest: Option<Box<shooting::Rest>>,
+        rest: Left<shooting::Rest>,
     },
+    ContactEquation {
+        request: Request,
+        equation: ContactEquation,
+        rest: Option<Box<contact_equation::Rest>>,
+    },
+}
+
+/// What a branch goes on from.
+#[derive(Debug, Clone)]
+pub(super) enum Left<R> {
+    /// It was not interrupted.
+    Nothing,
+    /// It was, on the way to the end of its range.
+    OneWay(Box<R>),
+    /// It was followed both ways, whether it was interrupted or not.
+    BothWays(Box<BothWays<R>>),
+}
+
+impl<R> Left<R> {
+    /// Of a branch that was followed one way.
+    pub(super) fn one_way(rest: Option<Box<R>>) -> Self {
+        rest.map_or(Self::Nothing, Self::OneWay)
+    }
 }
 
 impl fmt::Debug for Following {
@@ -41,7 +66,32 @@ impl branch::Asked for Following {
 impl Following {
     pub(super) fn request(&self) -> &Request {
         match self {
-            Self::Balance { request, .. } | Self::Shooting { request, .. } => request,
+            Self::Balance { request, .. }
+            | Self::Shooting { request, .. }
+            | Self::ContactEquation { request, .. } => request,
+        }
+    }
+
+    /// By which motions in time are computed.
+    pub(super) fn shooting(&self) -> Shooting {
+        match self {
+            Self::Shooting { shooting, .. } => *shooting,
+            Self::Balance { .. } | Self::ContactEquation { .. } => Shooting::new(),
+        }
+    }
+
+    /// Of a branch that was followed both ways the value from which it was, and the place of the orbit there.
+    pub(super) fn both_ways(&self) -> Option<(f64, usize)> {
+        match self {
+            Self::Balance {
+                rest: Left::BothWays(both),
+                ..
+            } => Some((both.value, both.middle())),
+            Self::Shooting {
+                rest: Left::BothWays(both),
+                ..
+            } => Some((both.value, both.middle())),
+            _ => None,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a user asks of a branch: the system, what is varied and how far, and the method.
 
+mod both_ways;
 mod branch;
 mod by_balance;
 mod by_contact_equation;

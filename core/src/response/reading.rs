@@ -1,6 +1,5 @@
 //! Signals of orbits by their names, whatever method found them.
 
-use super::following::Following;
 use super::{FrequencyResponse, OrbitMethod, by_shooting};
 use crate::branches::branch::{Branch, Model, Source};
 use crate::branches::point::Point;
@@ -9,7 +8,6 @@ use crate::model::request::RequestError;
 use crate::orbit::observe::{
     Measure, Reading, Wanted, of_coordinate, of_series, over_period, series_over_period, stored,
 };
-use crate::shooting::Shooting;
 
 impl Branch {
     /// An output, a coordinate or the force of a contact over the period of an orbit, by its name. A contact has the name of its law, with
@@ -98,14 +96,8 @@ impl Branch {
         if point.orbit.has_series() {
             return of_series(system, point, source);
         }
-        match self.following()? {
-            Following::Balance { request, .. } => {
-                by_shooting::reading(request, Shooting::new(), point, source)
-            }
-            Following::Shooting {
-                request, shooting, ..
-            } => by_shooting::reading(request, *shooting, point, source),
-        }
+        let following = self.following()?;
+        by_shooting::reading(following.request(), following.shooting(), point, source)
     }
 }
 

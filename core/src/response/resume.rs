@@ -3,9 +3,10 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::following::Following;
+use super::both_ways::is_left;
+use super::following::{Following, Left};
 use super::sealed::Follow;
-use super::{by_balance, by_shooting};
+use super::{by_balance, by_contact_equation, by_shooting};
 use crate::balance_branch::check::Asked;
 use crate::branches::branch::Branch;
 use crate::branches::keep::Keep;
@@ -103,7 +104,8 @@ impl Resume<'_> {
         to(value: f64) { self.to = Some(value) }
 
         /// The branch has no more points than this, those that it has included. Default: as many more as it was asked for where it met
-        /// that limit, and otherwise as it was asked for.
+        /// that limit, and otherwise as it was asked for. Where it was followed both ways, as by
+        /// [`through`](crate::FrequencyResponse::through), each way may have as many.
         max_points(points: usize) { self.max_points = Some(points) }
 
         /// Follows the branch once more from its first orbit, with another accuracy of the output.
@@ -147,9 +149,12 @@ impl Resume<'_> {
     ) -> Result<Branch, Error> {
         let following = self.branch.following()?;
         let asked = following.request();
-        let more = match self.branch.stopped {
-            Stop::PointLimit { .. } => self.branch.points.len(),
-            _ => 0,
+        let ends = [Some(self.branch.stopped), self.branch.begin];
+        let limited = |end: &Option<Stop>| matches!(end, Some(Stop::PointLimit { .. }));
+        let more = if ends.iter().any(limited) {
+            self.branch.points.len()
+        } else {
+            0
         };
         let most = asked.max_points.saturating_add(more);
         let request = Request {
@@ -195,17 +200,39 @@ impl Resume<'_> {
             Following::Balance {
                 context,
                 balance,
-                rest: Some(rest),
+                rest: Left::OneWay(rest),
                 ..
             } => {
                 let asked = Asked::of(request, balance);
                 by_balance::resume(asked, context.as_ref().clone(), branch, rest, visit)?
             }
+            Following::Balance {
+                balance,
+                rest: Left::BothWays(both),
+                ..
+            } if is_left(branch) => {
+                self.unkept()?;
+                let asked = Asked::of(request, balance);
+                by_balance::both_ways(asked, Some(branch), both, visit)?
+            }
             Following::Shooting {
                 shooting,
-                rest: Some(rest),
+                rest: Left::OneWay(rest),
                 ..
             } => by_shooting::resume(request, *shooting, branch, rest, visit)?,
+            Following::Shooting {
+                shooting,
+                rest: Left::BothWays(both),
+                ..
+            } if is_left(branch) => {
+                self.unkept()?;
+                by_shooting::both_ways(request, *shooting, Some(branch), both, visit)?
+            }
+            Following::ContactEquation {
+                equation,
+                rest: Some(rest),
+                ..
+            } => by_contact_equation::resume(request, *equation, branch, rest, visit)?,
             _ => return self.beyond(following, request, visit),
         };
         resumed.statistics += branch.statistics;
@@ -221,10 +248,7 @@ impl Resume<'_> {
         request: &Request,
         visit: See<'_>,
     ) -> Result<Branch, Error> {
-        let nothing = |must| RequestError::Varied {
-            name: self.branch.varied.clone(),
-            must,
-        };
+        let nothing = |must| self.nothing(must);
         let points = &self.branch.points;
         let ends = matches!(
             self.branch.stopped,
@@ -233,11 +257,7 @@ impl Resume<'_> {
         let [.., before, last] = &points[..] else {
             return self.again(following, request, visit);
         };
-        if self.keep.is_some() {
-            let must =
-                "goes on beyond what is kept in its file: write the longer branch when it is there";
-            return Err(nothing(must).into());
-        }
+        self.unkept()?;
         let to = self.to.or(request.to).unwrap_or(last.value);
         if !ends {
             return Err(
@@ -265,8 +285,28 @@ impl Resume<'_> {
             max_points: request.max_points.saturating_sub(points.len() - 1).max(2),
             ..request.clone()
         };
-        let on = run(following, &request, None, visit)?;
+        let run = |method: &dyn Follow| method.run(&request, &mut *visit);
+        let on = by_any(following, None, run)?;
         Ok(self.branch.with(on))
+    }
+
+    /// Why there is nothing to go on to.
+    fn nothing(&self, must: &'static str) -> RequestError {
+        RequestError::Varied {
+            name: self.branch.varied.clone(),
+            must,
+        }
+    }
+
+    /// # Errors
+    /// If it is to be kept in a file: what is new does not lie behind what a file has.
+    fn unkept(&self) -> Result<(), Error> {
+        if self.keep.is_none() {
+            return Ok(());
+        }
+        let must =
+            "goes on beyond what is kept in its file: write the longer branch when it is there";
+        Err(self.nothing(must).into())
     }
 
     /// The branch once more.
@@ -281,6 +321,18 @@ impl Resume<'_> {
             return Err(RequestError::Rest.into());
         };
         let to = self.to.unwrap_or(to);
+        if let Some((value, middle)) = following.both_ways() {
+            let middle = points.get(middle).ok_or(RequestError::Rest)?;
+            let request = Request {
+                to: Some(to),
+                near: Some(Guess::Orbit(middle.orbit.clone())),
+                period: Some(middle.orbit.period),
+                ..request.clone()
+            };
+            self.unkept()?;
+            let through = |method: &dyn Follow| method.through(&request, value, &mut *visit);
+            return by_any(following, self.bifurcations, through);
+        }
         let second = points.get(1).map_or(to, |second| second.value);
         let upwards = second > first.value;
         let ahead = (to > first.value) == upwards && to != first.value;
@@ -301,22 +353,23 @@ impl Resume<'_> {
             period: Some(first.orbit.period),
             ..request.clone()
         };
-        run(following, &request, self.bifurcations, visit)
+        let run = |method: &dyn Follow| method.run(&request, &mut *visit);
+        by_any(following, self.bifurcations, run)
     }
 }
 
-/// The branch that a request gives, by the method that followed another one.
-fn run(
+/// What the method gives that followed a branch.
+fn by_any(
     following: &Following,
-    request: &Request,
     bifurcations: Option<bool>,
-    visit: See<'_>,
+    follow: impl FnOnce(&dyn Follow) -> Result<Branch, Error>,
 ) -> Result<Branch, Error> {
     match following {
         Following::Balance { balance, .. } => {
             let wanted = bifurcations.unwrap_or(balance.bifurcations);
-            balance.bifurcations(wanted).run(request, visit)
+            follow(&balance.bifurcations(wanted))
         }
-        Following::Shooting { shooting, .. } => shooting.run(request, visit),
+        Following::Shooting { shooting, .. } => follow(shooting),
+        Following::ContactEquation { equation, .. } => follow(equation),
     }
 }

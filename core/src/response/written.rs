@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::following::Following;
+use super::both_ways::BothWays;
+use super::by_contact_equation;
+use super::following::{Following, Left};
 use crate::balance::resolution::Chooser;
 use crate::balance::{Parity, Resolution};
 use crate::balance_branch::check::Asked;
@@ -10,6 +12,7 @@ use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::balance_branch::run;
 use crate::branches::request::{Options, Request};
+use crate::contact_equation::{self, ContactEquation};
 use crate::error::Error;
 use crate::model::request::RequestError;
 use crate::shooting::{self, Shooting};
@@ -31,11 +34,35 @@ enum Method {
         resolution: Resolution,
         asymmetric: bool,
         rest: Option<Box<run::Rest>>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        both_ways: Option<Box<BothWays<run::Rest>>>,
     },
     Shooting {
         options: Shooting,
         rest: Option<Box<shooting::Rest>>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        both_ways: Option<Box<BothWays<shooting::Rest>>>,
     },
+    ContactEquation {
+        options: ContactEquation,
+        rest: Option<Box<contact_equation::Rest>>,
+    },
+}
+
+impl<R: Clone> Left<R> {
+    /// What is left of a branch that was followed one way, or both ways.
+    fn apart(&self) -> (Option<Box<R>>, Option<Box<BothWays<R>>>) {
+        match self {
+            Self::Nothing => (None, None),
+            Self::OneWay(rest) => (Some(rest.clone()), None),
+            Self::BothWays(both) => (None, Some(both.clone())),
+        }
+    }
+
+    /// The same from both.
+    fn of(rest: Option<Box<R>>, both_ways: Option<Box<BothWays<R>>>) -> Self {
+        both_ways.map_or_else(|| Self::one_way(rest), Self::BothWays)
+    }
 }
 
 impl Following {
@@ -49,14 +76,26 @@ impl Following {
                     balance,
                     rest,
                     ..
-                } => Method::HarmonicBalance {
-                    options: *balance,
-                    resolution: context.resolution,
-                    asymmetric: context.asymmetric,
-                    rest: rest.clone(),
-                },
-                Self::Shooting { shooting, rest, .. } => Method::Shooting {
-                    options: *shooting,
+                } => {
+                    let (rest, both_ways) = rest.apart();
+                    Method::HarmonicBalance {
+                        options: *balance,
+                        resolution: context.resolution,
+                        asymmetric: context.asymmetric,
+                        rest,
+                        both_ways,
+                    }
+                }
+                Self::Shooting { shooting, rest, .. } => {
+                    let (rest, both_ways) = rest.apart();
+                    Method::Shooting {
+                        options: *shooting,
+                        rest,
+                        both_ways,
+                    }
+                }
+                Self::ContactEquation { equation, rest, .. } => Method::ContactEquation {
+                    options: *equation,
                     rest: rest.clone(),
                 },
             },
@@ -75,6 +114,7 @@ impl Following {
                 resolution,
                 asymmetric,
                 rest,
+                both_ways,
             } => {
                 let (mut context, _) = Asked::of(&request, &balance).check()?;
                 if !is_one_of(resolution, &context) {
@@ -85,17 +125,29 @@ impl Following {
                     context: Box::new(context),
                     request,
                     balance,
-                    rest,
+                    rest: Left::of(rest, both_ways),
                 })
             }
             Method::Shooting {
                 options: shooting,
                 rest,
+                both_ways,
             } => {
                 shooting::Asked::of(&request, &shooting).ranged()?;
                 Ok(Self::Shooting {
                     request,
                     shooting,
+                    rest: Left::of(rest, both_ways),
+                })
+            }
+            Method::ContactEquation {
+                options: equation,
+                rest,
+            } => {
+                by_contact_equation::problem(&request)?;
+                Ok(Self::ContactEquation {
+                    request,
+                    equation,
                     rest,
                 })
             }

@@ -78,34 +78,23 @@ pub(crate) fn branch_at(
     followed(problem, first, along, [from, to], visit, started)
 }
 
-/// The branch through the orbit near a guess at a value, both ways.
+/// The branch from the orbit near a guess at a value to the end of a range that the value is in.
 ///
 /// # Errors
 /// If there is no such orbit.
-pub(crate) fn branch_through(
+pub(crate) fn branch_from(
     problem: &ShootingProblem,
     guess: &Guess,
     value: f64,
     [from, to]: [f64; 2],
     visit: See<'_>,
-) -> Result<Branch, Error> {
-    // Each part ends where the range does.
-    let mut part = |[from, to]: [f64; 2]| {
-        let side = (to - from).signum();
-        let started = Instant::now();
-        let found = first(problem, guess, value, problem.omega_at(value))?;
-        let Begun { first, point } = switch::resume(problem, found, side, (to - from).abs())?;
-        let along = |_| Start::Along(Box::new(point));
-        let followed = followed(problem, first, along, [from, to], &mut *visit, started)?;
-        Ok(followed.branch)
-    };
-    let forth = part([from, to])?;
-    // Once around, or interrupted: there is no other side.
-    if matches!(forth.stopped, Stop::Closed | Stop::Interrupted) {
-        return Ok(forth);
-    }
-    let back = part([to, from]);
-    Branch::with_back(forth, Some(back), &problem.cancel)
+) -> Result<Followed, Error> {
+    let started = Instant::now();
+    let found = first(problem, guess, value, problem.omega_at(value))?;
+    let side = (to - from).signum();
+    let Begun { first, point } = switch::resume(problem, found, side, (to - from).abs())?;
+    let along = |_| Start::Along(Box::new(point));
+    followed(problem, first, along, [from, to], visit, started)
 }
 
 /// Goes on with a branch that was interrupted.

@@ -1,5 +1,7 @@
 //! What a user of the runtime alone meets: messages, results to keep, structures given as matrices, declarations read from text.
 
+#[cfg(feature = "serde")]
+mod both_ways;
 mod cancelled;
 mod either;
 #[cfg(feature = "serde")]

@@ -2,10 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use hertzian::{Branch, FrequencyResponse, OrbitMethod, Shooting, Stop};
+use hertzian::{Branch, ContactEquation, FrequencyResponse, OrbitMethod, Shooting, Stop};
 
 hertzian::oscillator! {
-    OneSided(x) {
+    pub OneSided(x) {
         param zeta in 0.0..;
         param drive;
         law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^1.5, else => 0 }
@@ -32,7 +32,7 @@ hertzian::oscillator! {
 }
 
 /// The texts of what a branch has: the same bits, and NaN is NaN.
-fn texts(branch: &Branch) -> [String; 4] {
+pub fn texts(branch: &Branch) -> [String; 4] {
     let stopped = format!("{:?} {:?}", branch.begin, branch.stopped);
     [
         serde_json::to_string(&branch.points).expect("text"),
@@ -42,7 +42,7 @@ fn texts(branch: &Branch) -> [String; 4] {
     ]
 }
 
-fn written_and_read(branch: &Branch, name: &str) -> Branch {
+pub fn written_and_read(branch: &Branch, name: &str) -> Branch {
     let name = format!("hertzian-resumed-{name}-{}.json", std::process::id());
     let path = std::env::temp_dir().join(name);
     branch.write(&path).expect("written");
@@ -89,7 +89,7 @@ fn resumes<M: OrbitMethod>(
     }
 }
 
-const ONE: OneSided = OneSided {
+pub const ONE: OneSided = OneSided {
     zeta: 0.032,
     drive: 0.1,
 };
@@ -129,6 +129,16 @@ fn by_shooting_in_closed_form() {
 fn by_shooting_with_integration() {
     let request = FrequencyResponse::of(&ONE).by(Shooting::new());
     resumes(&request.from(0.6).to(0.9), &ONE, "integrated", 29);
+}
+
+#[test]
+fn by_the_contact_equation() {
+    let model = Linear {
+        zeta: 0.032,
+        drive: 0.1,
+    };
+    let request = FrequencyResponse::of(&model).by(ContactEquation::new());
+    resumes(&request.from(0.6).to(1.2), &model, "contact", 17);
 }
 
 /// What is in the file at any moment is what a killed program leaves; a line that is not whole does not count.
@@ -172,6 +182,7 @@ fn what_cannot_be_gone_on_from_is_refused() {
     let parts = [
         part_of(&by_balance, 12),
         part_of(&by_balance.clone().by(Shooting::new()), 12),
+        part_of(&by_balance.clone().by(ContactEquation::new()), 12),
     ];
     for part in parts {
         part.write(&path).expect("written");
@@ -188,6 +199,8 @@ fn what_cannot_be_gone_on_from_is_refused() {
             ("\"tangent\":[", "\"tangent\":[1.0,"),
             ("\"mantissa\":", "\"mantissa\":[],\"was\":"),
             ("\"segments\":1}", "\"segments\":1000000000}"),
+            ("\"pieces\":[0]", "\"pieces\":[7]"),
+            ("\"nodes\":", "\"nodes\":1000000000,\"were\":"),
             ("\"reference\":[", "\"reference\":[1.0,"),
             ("\"kept\":{\"events\":[]", "\"kept\":{\"events\":[7]"),
         ] {

@@ -1,0 +1,111 @@
+//! Where a run by the contact equation is, as data: what is left of it follows from that.
+
+use super::equations::Equations;
+use super::method::ContactBranch;
+use super::plan::Frame;
+use super::problem::{ContactProblem, RESOLUTIONS};
+use super::reading::Screened;
+use super::run::Run;
+use super::skeleton::{Placement, Skeleton};
+use crate::branches::branch::Branch;
+use crate::branches::engine::Walk;
+
+/// What a run goes on from.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Rest {
+    pub(super) walk: Walk,
+    /// Of the equations: where switches are, and what was varied where they were made.
+    placement: Placement,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    made: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    reference: Vec<f64>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    size: f64,
+    /// Place among the resolutions.
+    resolution: usize,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    known: Vec<Vec<f64>>,
+    /// What was varied where the finer equations were made, if there are any.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    finer: Option<f64>,
+    screened: Option<Screened>,
+    /// Other equations lead nowhere from the last point.
+    stuck: bool,
+    /// How often the last point was refused.
+    refused: usize,
+    /// Points that are followed before fewer nodes are tried.
+    held: usize,
+}
+
+impl Rest {
+    /// The run that goes on with a branch. `None` where it is no rest of this branch: it may have been read from a file.
+    pub(super) fn run<'r>(&self, problem: &'r ContactProblem, branch: &Branch) -> Option<Run<'r>> {
+        let coordinates = problem.setting.layout.coordinates;
+        let resolution = *RESOLUTIONS.get(self.resolution)?;
+        let vectors = [&self.reference].into_iter().chain(&self.known);
+        let mut numbers = vectors.flatten().chain([&self.size, &self.made]);
+        let possible = numbers.all(|x| x.is_finite())
+            && self.size > 0.0
+            && self.reference.len() == 2 * coordinates
+            && self.placement.resolution == resolution;
+        if !possible {
+            return None;
+        }
+        let values = problem.setting.values(self.made)?;
+        if !self.placement.fits(&values.contacts) {
+            return None;
+        }
+        let skeleton = Skeleton::new(
+            problem.setting.system.as_ref(),
+            &values.contacts,
+            values.order(),
+            self.placement.clone(),
+        );
+        let frame = Frame {
+            reference: self.reference.clone(),
+            size: self.size,
+            resolution,
+        };
+        let (setting, reference) = (problem.setting.clone(), self.reference.clone());
+        let mut equations = Equations::new(setting, self.made, skeleton, reference, self.size)?;
+        if !self.walk.fits(equations.skeleton.unknowns()) {
+            return None;
+        }
+        let [before, last] = <&[Vec<f64>; 2]>::try_from(&self.known[..]).ok()?;
+        equations.known = [before.clone(), last.clone()];
+        let mut run = Run::new(problem, frame, self.resolution, equations);
+        run.record = branch.kept().at(&self.walk.kept)?;
+        run.remember(self.finer, self.screened.clone());
+        Some(run)
+    }
+}
+
+impl ContactBranch<'_, '_> {
+    /// Where it is.
+    pub(super) fn rest(&self, walk: Walk) -> Rest {
+        let run = &*self.run;
+        let equations = &run.equations;
+        let (finer, screened) = run.memory();
+        Rest {
+            walk,
+            placement: equations.skeleton.placement.clone(),
+            made: equations.made,
+            reference: equations.reference.clone(),
+            size: equations.size,
+            resolution: run.resolution,
+            known: equations.known.to_vec(),
+            finer,
+            screened,
+            stuck: self.stuck,
+            refused: self.refused,
+            held: self.held,
+        }
+    }
+
+    /// As it was there.
+    pub(super) fn take_up(&mut self, rest: &Rest) {
+        (self.stuck, self.refused, self.held) = (rest.stuck, rest.refused, rest.held);
+    }
+}
