@@ -194,7 +194,7 @@ fn write(options: &Options, branches: &[(usize, &Branch)]) -> Result<(), String>
             "--csv: one table has the columns of one oscillator",
             branches,
         )?;
-        let mut table = Table::of_model(&first.model);
+        let mut table = Table::of_model(&first.model).with_errors_of(first.accuracy_of());
         for (number, branch) in branches {
             for point in &branch.points {
                 table.add(number - 1, point);

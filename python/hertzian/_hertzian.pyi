@@ -41,6 +41,7 @@ class Model:
         omega: float | None = None,
         period: int | None = 1,
         tolerance: float | None = 1e-6,
+        accuracy_of: str | None = None,
         stability: bool | None = True,
         largest_step: float | None = 0.1,
         max_points: int | None = 20000,
@@ -62,6 +63,7 @@ class Model:
         omega: float | None = None,
         period: int | None = 1,
         tolerance: float | None = 1e-6,
+        accuracy_of: str | None = None,
         stability: bool | None = True,
         near_orbit: Orbit | Point | None = None,
         near_state: ArrayLike | None = None,
@@ -79,6 +81,7 @@ class Model:
         omega: float | None = None,
         period: int | None = 1,
         tolerance: float | None = 1e-6,
+        accuracy_of: str | None = None,
         stability: bool | None = True,
         largest_step: float | None = 0.1,
         max_points: int | None = 20000,
@@ -100,6 +103,7 @@ class Model:
         omega: float | None = None,
         period: int | None = 1,
         tolerance: float | None = 1e-6,
+        accuracy_of: str | None = None,
         stability: bool | None = True,
         largest_step: float | None = 0.1,
         max_points: int | None = 20000,
@@ -123,6 +127,7 @@ class Model:
         omega: float | None = None,
         period: int | None = 1,
         tolerance: float | None = 1e-6,
+        accuracy_of: str | None = None,
         stability: bool | None = True,
         largest_step: float | None = 0.1,
         max_points: int | None = 20000,
@@ -146,6 +151,7 @@ class Model:
         omega: float | None = None,
         period: int | None = 1,
         tolerance: float | None = 1e-6,
+        accuracy_of: str | None = None,
         stability: bool | None = True,
         largest_step: float | None = 0.1,
         max_points: int | None = 20000,
@@ -167,6 +173,7 @@ class Model:
         omega: float | None = None,
         period: int | None = 1,
         tolerance: float | None = 1e-6,
+        accuracy_of: str | None = None,
         largest_step: float | None = 0.1,
         by: _Method | None = None,
         depth: int | None = 3,
@@ -331,6 +338,8 @@ class Branch:
     def omega(self) -> _Floats: ...
     @property
     def verdicts(self) -> NDArray[np.str_]: ...
+    @property
+    def accuracy_of(self) -> str | None: ...
     @property
     def errors(self) -> _Floats: ...
     @property

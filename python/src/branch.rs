@@ -249,6 +249,12 @@ impl PyBranch {
             .call_method("array", (verdicts,), Some(&kind))
     }
 
+    /// Name of the output or coordinate that `errors` are of, or None where they are of all coordinates: str or None.
+    #[getter]
+    fn accuracy_of(&self) -> Option<String> {
+        self.held().accuracy_of().map(str::to_owned)
+    }
+
     /// Estimated error of peak-to-peak of each orbit, relative; not a number where it was not asked for: array of shape (orbits,).
     #[getter]
     fn errors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {

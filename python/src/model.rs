@@ -185,6 +185,7 @@ impl PyModel {
     ///
     /// ``from_``, ``to``: the range, of the excitation frequency in radians per unit of time, or of the parameter ``vary`` at the
     /// frequency ``omega``. ``period``: of the orbits, in periods of the declaration. ``tolerance``: relative accuracy of peak-to-peak.
+    /// ``accuracy_of``: the output or coordinate that the tolerance and the errors of orbits are of, all coordinates by default.
     /// ``stability``: whether Floquet multipliers are computed. ``near_orbit``, ``near_state``: the first orbit is near this one, or near
     /// the motion from this state. ``by``: a method, `HarmonicBalance`, `Shooting` or `ContactEquation`. ``harmonics``, ``doublings``,
     /// ``bifurcations``, ``symmetric``: options of the balance. ``keep``: a file in which the branch is kept while it is followed.
@@ -193,7 +194,7 @@ impl PyModel {
     /// A branch that ends early is not an error: `Branch.stopped` says why it ended. Raises an exception if no first orbit is found.
     #[pyo3(
         signature = (from_, to, **options),
-        text_signature = "($self, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, keep=None, progress=None)"
+        text_signature = "($self, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, accuracy_of=None, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, keep=None, progress=None)"
     )]
     fn response<'py>(
         &self,
@@ -215,7 +216,7 @@ impl PyModel {
     /// The one orbit at a value of what is varied: `Point`. Options are those of `response`.
     #[pyo3(
         signature = (value, **options),
-        text_signature = "($self, value, *, vary=None, omega=None, period=1, tolerance=1e-6, stability=True, near_orbit=None, near_state=None, by=None, harmonics=None, symmetric=True)"
+        text_signature = "($self, value, *, vary=None, omega=None, period=1, tolerance=1e-6, accuracy_of=None, stability=True, near_orbit=None, near_state=None, by=None, harmonics=None, symmetric=True)"
     )]
     fn orbit<'py>(
         &self,
@@ -239,7 +240,7 @@ impl PyModel {
     /// The branch through the orbit at a value inside a range, both ways as far as it goes: `Branch`. Options are those of `response`.
     #[pyo3(
         signature = (value, from_, to, **options),
-        text_signature = "($self, value, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, progress=None)"
+        text_signature = "($self, value, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, accuracy_of=None, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, progress=None)"
     )]
     fn through<'py>(
         &self,
@@ -263,7 +264,7 @@ impl PyModel {
     /// `Diagram.searched` says what was searched, `Diagram.uncovered` where there is no orbit. Options are those of `response`.
     #[pyo3(
         signature = (from_, to, **options),
-        text_signature = "($self, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, keep=None, progress=None)"
+        text_signature = "($self, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, accuracy_of=None, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, keep=None, progress=None)"
     )]
     fn cover<'py>(
         &self,
@@ -285,7 +286,7 @@ impl PyModel {
     /// what was searched. Options are those of `response`.
     #[pyo3(
         signature = (values, from_, to, **options),
-        text_signature = "($self, values, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True)"
+        text_signature = "($self, values, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, accuracy_of=None, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True)"
     )]
     fn solutions<'py>(
         &self,
@@ -311,7 +312,7 @@ impl PyModel {
     /// `Shooting` a map with many bifurcations takes a small part of the time.
     #[pyo3(
         signature = (values, from_, to, second, others, **options),
-        text_signature = "($self, values, from_, to, second, others, *, vary=None, omega=None, period=1, tolerance=1e-6, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, progress=None)"
+        text_signature = "($self, values, from_, to, second, others, *, vary=None, omega=None, period=1, tolerance=1e-6, accuracy_of=None, stability=True, largest_step=0.1, max_points=20000, near_orbit=None, near_state=None, by=None, harmonics=None, doublings=False, bifurcations=False, symmetric=True, progress=None)"
     )]
     fn map<'py>(
         &self,
@@ -343,7 +344,7 @@ impl PyModel {
     /// searched for what motions settle to; ``settled_at``: values at which motions are followed then too. ``progress``: as of `response`.
     #[pyo3(
         signature = (from_, to, **options),
-        text_signature = "($self, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, largest_step=0.1, by=None, depth=3, max_period=None, max_branches=64, max_points=50000, margin=0.1, cover=None, settled_at=None, near_orbit=None, near_state=None, keep=None, progress=None)"
+        text_signature = "($self, from_, to, *, vary=None, omega=None, period=1, tolerance=1e-6, accuracy_of=None, largest_step=0.1, by=None, depth=3, max_period=None, max_branches=64, max_points=50000, margin=0.1, cover=None, settled_at=None, near_orbit=None, near_state=None, keep=None, progress=None)"
     )]
     fn bifurcations<'py>(
         &self,

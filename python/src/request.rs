@@ -159,6 +159,9 @@ fn with<M: OrbitMethod>(
     if let Some(tolerance) = given.take("tolerance")? {
         request = request.tolerance(tolerance);
     }
+    if let Some(name) = given.take::<String>("accuracy_of")? {
+        request = request.accuracy_of(name);
+    }
     if let Some(wanted) = given.take("stability")? {
         request = request.stability(wanted);
     }

@@ -97,6 +97,17 @@ def test_a_linear_orbit_is_the_closed_form(linear, by):
     assert np.allclose(point.orbit.state, [response.real, -omega * response.imag], atol=1e-8)
 
 
+def test_accuracy_is_that_of_an_output(one_sided):
+    branch = one_sided.response(0.5, 0.6, tolerance=1e-4, accuracy_of="speed")
+    assert branch.accuracy_of == "speed"
+    assert np.all(branch.errors < 1e-4)
+    (point,) = branch.at(0.55)
+    exact = one_sided.orbit(0.55, by=hertzian.Shooting(), tolerance=1e-11)
+    assert abs(branch.measured("speed", point) / exact.measured("speed") - 1) < point.error
+    with pytest.raises(hertzian.RequestError, match="accuracy is that of an output or a coordinate"):
+        one_sided.response(0.5, 0.6, accuracy_of="contact")
+
+
 def test_series_spectrum_and_states_agree(linear):
     omega = 1.3
     response = 3.0 / (4.0 - omega**2 + 0.2j * omega)

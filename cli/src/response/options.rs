@@ -86,6 +86,10 @@ pub struct Options {
     )]
     pub tolerance: f64,
 
+    /// What that accuracy, and the error stated of every orbit, are of: an output or a coordinate [default: all coordinates]
+    #[arg(long, value_name = "NAME")]
+    pub accuracy_of: Option<String>,
+
     /// Stop after this many points, those of a branch that is resumed included [default: 20000]
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub max_points: Option<usize>,
@@ -326,6 +330,7 @@ impl Options {
             "aft",
             "multipliers",
             "tolerance",
+            "accuracy_of",
         ];
         if self.resume.is_some() && kept.iter().any(|option| given.has(option)) {
             let fault = "--resume takes range and options from the file: leave them out, but those of the oscillator";

@@ -337,6 +337,9 @@ fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
     if let Some(points) = options.max_points {
         request = request.max_points(points);
     }
+    if let Some(name) = &options.accuracy_of {
+        request = request.accuracy_of(name);
+    }
     if let Some(harmonics) = options.harmonics {
         request = request.harmonics(harmonics);
     }
@@ -424,7 +427,8 @@ fn write<'a>(
     let svg = &options.svg;
     export::write(svg, page(charts)).map_err(failed(svg))?;
     if let Some(path) = &options.csv {
-        let mut table = Table::of(model);
+        let of = record.branches.first().and_then(Branch::accuracy_of);
+        let mut table = Table::of(model).with_errors_of(of);
         for (number, branch) in record.branches.iter().enumerate() {
             branch
                 .points

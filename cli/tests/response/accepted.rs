@@ -85,6 +85,10 @@ fn bad_input_gives_one_message_and_exit_code_2() {
         (&["--period", "0"], "period"),
         (&["--max-points", "0"], "max_points"),
         (&["--tolerance", "0"], "tolerance"),
+        (
+            &["--accuracy-of", "tip"],
+            "accuracy is that of an output or a coordinate",
+        ),
         (&["--tolerance", "NaN"], "tolerance"),
         (&["--at", "1", "NaN"], "at"),
         (&["--csv", &nowhere], "cannot write"),

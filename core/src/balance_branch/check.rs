@@ -111,6 +111,7 @@ impl<'r> Asked<'r> {
                 stride: symmetries.stride,
                 permutations: symmetries.permutations,
                 stability: self.request.stability.then_some(self.balance.multipliers),
+                accuracy: self.balance.accuracy,
                 chooser,
                 from,
                 to,

@@ -23,6 +23,7 @@ use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::error::Error;
 use crate::numeric::fourier::series;
+use crate::orbit::observe::Accuracy;
 use crate::orbit::stability::Method;
 use crate::system::{System, Variable};
 
@@ -65,6 +66,8 @@ pub(crate) struct BranchContext {
     pub(crate) selection: EventSelection,
     /// How multipliers are computed, where they are.
     pub(crate) stability: Option<Method>,
+    /// What the tolerance is of.
+    pub(crate) accuracy: Accuracy,
     /// How harmonics follow the tolerance, where they do.
     pub(crate) chooser: Option<Chooser>,
     pub(crate) from: f64,
@@ -96,7 +99,7 @@ impl BranchContext {
             self.variable,
             resolution,
         );
-        PointEvaluator::new(finer, self.stability, self.chooser.is_some())
+        PointEvaluator::new(finer, self.stability, self.chooser.is_some(), self.accuracy)
     }
 
     /// What becomes singular at bifurcations of orbits of that resolution: the even harmonics where they have odd ones only, those

@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod context;
 pub(crate) mod motion;
 pub(crate) mod options;
+mod output_error;
 pub(crate) mod point_evaluator;
 pub(crate) mod run;
 pub(crate) mod switch;

@@ -2,6 +2,7 @@
 
 use crate::balance::aft::Aft;
 use crate::balance_branch::context::EventSelection;
+use crate::orbit::observe::Accuracy;
 use crate::orbit::stability::Method;
 
 /// Orbits as Fourier series whose residual vanishes in as many harmonics (harmonic balance): the method of a
@@ -34,6 +35,9 @@ pub struct HarmonicBalance {
     pub(crate) doublings: bool,
     pub(crate) bifurcations: bool,
     pub(crate) symmetric: bool,
+    /// What the accuracy is of.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) accuracy: Accuracy,
 }
 
 impl Default for HarmonicBalance {
@@ -46,6 +50,7 @@ impl Default for HarmonicBalance {
             doublings: false,
             bifurcations: false,
             symmetric: true,
+            accuracy: Accuracy::default(),
         }
     }
 }

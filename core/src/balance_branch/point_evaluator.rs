@@ -1,5 +1,6 @@
 //! Everything that is read off an orbit.
 
+use super::output_error::OfCoordinates;
 use crate::balance::Balance;
 use crate::balance::truncation::{BEYOND, RefinedBalance};
 use crate::branches::orbit::Orbit;
@@ -7,32 +8,34 @@ use crate::branches::point::Point;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
 use crate::numeric::fourier::series;
-use crate::orbit::observe::{Motion, Observed, Observer};
+use crate::orbit::observe::{Accuracy, Motion, Observed, Observer};
 use crate::orbit::stability::judge::Judge;
 use crate::orbit::stability::{Method, Stability};
 
 /// Relative error of peak-to-peak that rounding leaves.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 /// A first coordinate that moves by less than so many times what is left of the equations, and rounding, is at rest.
 const STILL: f64 = 10.0;
 /// A branch less steep than this is at a fold that was located.
 const FOLD: f64 = 1e-6;
 /// Roundings of the two extremes.
-const EXTREMES: f64 = 4.0;
+pub(super) const EXTREMES: f64 = 4.0;
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
 pub(crate) struct PointEvaluator<'a> {
     pub(crate) finer: RefinedBalance<'a>,
     pub(crate) judge: Option<Judge>,
-    observer: Observer,
+    pub(super) observer: Observer,
     /// What errors of the coordinates are measured by.
-    units: Vec<f64>,
-    tangent: Vec<f64>,
+    pub(super) units: Vec<f64>,
+    pub(super) tangent: Vec<f64>,
     /// The last error, without what lies along the branch: near a fold no harmonics take that away soon.
     pub(crate) across: f64,
     /// The error is wanted, whether or not the stability is.
     estimate: bool,
+    /// What it is of.
+    accuracy: Accuracy,
     /// What rounding of the equations makes of the last orbit, relative to its peak-to-peak, where that exceeds the tolerance of Newton's
     /// method; zero otherwise.
     pub(crate) rounding: f64,
@@ -43,6 +46,7 @@ impl<'a> PointEvaluator<'a> {
         finer: RefinedBalance<'a>,
         stability: Option<Method>,
         estimate: bool,
+        accuracy: Accuracy,
     ) -> Self {
         Self {
             finer,
@@ -52,6 +56,7 @@ impl<'a> PointEvaluator<'a> {
             tangent: Vec::new(),
             across: f64::INFINITY,
             estimate,
+            accuracy,
             rounding: 0.0,
         }
     }
@@ -107,11 +112,12 @@ impl<'a> PointEvaluator<'a> {
     }
 
     /// Largest change of a coordinate's peak-to-peak by the correction, by what Newton's method left, and by rounding of its extremes:
-    /// of the first coordinate relative to its own, of the others to the largest.
+    /// of the first coordinate relative to its own, of the others to the largest. The same of one signal alone, where accuracy is asked
+    /// of that.
     fn error(
         &mut self,
         observed: &Observed,
-        balance: &Balance<'_>,
+        balance: &mut Balance<'_>,
         u: &[f64],
         newton: &mut Newton,
     ) -> f64 {
@@ -130,39 +136,62 @@ impl<'a> PointEvaluator<'a> {
         let peak = 2.0 * (2.0 * observed.motions.len() as f64).sqrt();
         let farthest = largest(|motion| motion.maximum.abs().max(motion.minimum.abs()));
         let extremes = EXTREMES * f64::EPSILON * farthest;
-        let own = observed.motions[0].peak_to_peak();
-        if own > STILL * (peak * left + extremes) {
-            self.units[0] = own;
-        }
-        // An orbit closed by integration is at this very value.
-        let refined = self.judge.as_ref().and_then(|judge| judge.refined.as_ref());
-        let along = if refined.is_some() {
-            0.0
-        } else {
-            self.along(u, newton)
-        };
+        let unit = self.take_units(observed, size, STILL * (peak * left + extremes));
+        let shift = self.shift(u, newton);
         let truncation = self.truncation(balance, u, newton);
-        self.rounding = peak * rounding / self.units[0];
-        self.across = truncation + (peak * left + extremes) / self.units[0] + ROUNDING;
-        self.across + along
+        if let Accuracy::Output(output) = self.accuracy {
+            let of_coordinates = OfCoordinates {
+                truncation,
+                left: peak * left / unit,
+                rounding: peak * rounding / unit,
+                shift,
+            };
+            let motion = &observed.outputs[output];
+            return self.error_of_output(output, motion, balance, u, of_coordinates);
+        }
+        self.rounding = peak * rounding / unit;
+        self.across = truncation + (peak * left + extremes) / unit + ROUNDING;
+        self.across + self.along(shift, u.len() - 1)
     }
 
-    /// What the peak-to-peak of the orbit at this very value differs from that of the corrected one, which lies across the branch and so at
-    /// another value: to first order, by the slope of the branch. Not at a fold, where there is none; its own error says where it lies.
-    fn along(&mut self, u: &[f64], newton: &mut Newton) -> f64 {
+    /// Takes the units of the coordinates, of which the largest has this size, and returns that of what the error is of. What moves by no
+    /// more than `still` is at rest, and measured by the largest.
+    fn take_units(&mut self, observed: &Observed, size: f64, still: f64) -> f64 {
+        let (named, alone) = match self.accuracy {
+            Accuracy::Coordinates => (0, false),
+            Accuracy::Coordinate(index) => (index, true),
+            Accuracy::Output(_) => return size,
+        };
+        let own = observed.motions[named].peak_to_peak();
+        let unit = if own > still { own } else { size };
+        if alone {
+            // The others do not count.
+            self.units.fill(f64::INFINITY);
+        }
+        self.units[named] = unit;
+        unit
+    }
+
+    /// How far along the tangent of the branch the corrected orbit, which lies across the branch, is from this very value. Not at a fold,
+    /// where there is no such way; its own error says where it lies. An orbit closed by integration is at this very value.
+    fn shift(&mut self, u: &[f64], newton: &mut Newton) -> f64 {
+        let refined = self.judge.as_ref().and_then(|judge| judge.refined.as_ref());
         let n = u.len() - 1;
         self.tangent.resize(u.len(), 0.0);
-        let steepness = newton.direction(&mut self.tangent);
-        if steepness < FOLD {
+        if refined.is_some() || newton.direction(&mut self.tangent) < FOLD {
             return 0.0;
         }
-        let shift = self
-            .finer
-            .extended()
-            .last()
-            .map_or(0.0, |value| value - u[n])
-            / self.tangent[n];
-        let length = n / self.units.len();
+        let corrected = self.finer.extended().last();
+        corrected.map_or(0.0, |value| value - u[n]) / self.tangent[n]
+    }
+
+    /// What the peak-to-peak of the orbit at this very value differs from that of the corrected one: to first order, by the slope of the
+    /// branch with so many unknowns.
+    fn along(&self, shift: f64, unknowns: usize) -> f64 {
+        if shift == 0.0 {
+            return 0.0;
+        }
+        let length = unknowns / self.units.len();
         let moved = |coordinate: usize, phase: f64| {
             let series = &self.tangent[coordinate * length..][..length];
             series::value_and_derivatives(series, phase).0

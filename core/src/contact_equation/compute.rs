@@ -101,8 +101,7 @@ pub(crate) fn branch(
     let mut branch = ContactBranch::new(&mut run, visit);
     let outcome = engine::run(&mut branch, Start::Near(u), options);
     let lost = branch.lost;
-    let stopped = stopped(&run, outcome, lost, options)?;
-    Ok(as_branch(problem, run, stopped, started))
+    ended(problem, run, outcome, lost, options, started)
 }
 
 /// Goes on with a branch that was interrupted.
@@ -126,41 +125,37 @@ pub(crate) fn resume(
     branch.take_up(rest);
     let outcome = engine::resume(&mut branch, rest.walk.clone(), options);
     let lost = branch.lost;
-    let stopped = stopped(&run, outcome, lost, options)?;
-    Ok(as_branch(problem, run, stopped, started))
+    ended(problem, run, outcome, lost, options, started)
 }
 
-/// Why a branch ended, as the engine has, and whether it was lost where a gap reached a level.
+/// The branch that a run has gathered, as the engine has ended; it may have been lost where a gap reached a level.
 ///
 /// # Errors
 /// If there is no first orbit.
-fn stopped(
-    run: &Run<'_>,
+fn ended(
+    problem: &ContactProblem,
+    run: Run<'_>,
     outcome: Result<Stop, NewtonError>,
     lost: bool,
     options: FollowOptions,
-) -> Result<Stop, Error> {
+    started: Instant,
+) -> Result<Followed, Error> {
     let from = options.from;
-    match outcome {
-        Ok(Stop::Interrupted) if lost => {
-            let value = run.record.points.last().map_or(from, |point| point.value);
-            Ok(Stop::StepTooShort {
-                step: options.steps.smallest,
-                value,
-                reason: NewtonError::NotFinite { iterations: 0 },
-            })
+    let stopped = match outcome {
+        Ok(Stop::Interrupted) if lost => Stop::StepTooShort {
+            step: options.steps.smallest,
+            value: run.record.points.last().map_or(from, |point| point.value),
+            reason: NewtonError::NotFinite { iterations: 0 },
+        },
+        Ok(stopped) => stopped,
+        Err(reason) => {
+            return Err(OrbitError::NoStart {
+                value: from,
+                reason,
+            }
+            .into());
         }
-        Ok(stopped) => Ok(stopped),
-        Err(reason) => Err(OrbitError::NoStart {
-            value: from,
-            reason,
-        }
-        .into()),
-    }
-}
-
-/// The branch that a run has gathered.
-fn as_branch(problem: &ContactProblem, run: Run<'_>, stopped: Stop, started: Instant) -> Followed {
+    };
     let Run {
         record,
         statistics,
@@ -186,7 +181,7 @@ fn as_branch(problem: &ContactProblem, run: Run<'_>, stopped: Stop, started: Ins
         further: Further::default(),
     };
     let rest = rest.filter(|_| stopped.can_be_resumed());
-    Followed { branch, rest }
+    Ok(Followed { branch, rest })
 }
 
 /// A solution near an orbit that is given by its series.

@@ -1,5 +1,7 @@
 //! Options of the contact equation.
 
+use crate::orbit::observe::Accuracy;
+
 /// Orbits from the forces at a few nodes of each stretch in contact: nothing else is unknown but where stretches begin and end, and the
 /// state where the period begins. Between contacts the motion is known in closed form, so that no harmonic is cut off and nothing is
 /// sampled.
@@ -27,7 +29,11 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct ContactEquation {}
+pub struct ContactEquation {
+    /// What the accuracy is of.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) accuracy: Accuracy,
+}
 
 impl ContactEquation {
     /// With everything by default.

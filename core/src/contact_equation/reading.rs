@@ -15,6 +15,7 @@ use crate::branches::stability::{Stability, Verdict};
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
 use crate::numeric::spectrum::{distance, eigenvalues};
+use crate::orbit::observe::Accuracy;
 use crate::shooting::reading::Reader;
 
 /// What one step from a finer solution says of the error is multiplied by this.
@@ -149,13 +150,10 @@ impl Run<'_> {
             point.error = Some(f64::INFINITY);
             return Some(unknown(point, map));
         }
-        let motions = self.equations.extremes.get();
-        let extremes = motions.map_or(&[][..], |found| &found.coordinates);
-        let apart = apart(&finer, extremes);
+        let apart = self.apart(&finer, &point, other[other.len() - 1]);
         let everywhere = everywhere([&self.equations, &finer]);
         self.finer = Some(finer);
-        let size = point.observed.motions.iter().map(Extent::peak_to_peak);
-        let size = size.fold(0.0, f64::max);
+        let size = self.accuracy().peak_to_peak(&point.observed);
         let steepness = self.steepness(at).unwrap_or_else(|| self.rise(&point));
         let error = SAFETY * (apart + steepness * shift.abs()) / size;
         point.error = Some(error + 100.0 * f64::EPSILON);
@@ -188,6 +186,9 @@ impl Run<'_> {
     /// Reads an orbit of the walk. Near one whose errors a finer solution has shown it has those, as many times as large as what its forces
     /// leave out tells. Where that is more than is asked for, and every so often, a finer solution is asked again.
     pub(super) fn read_on(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
+        if matches!(self.accuracy(), Accuracy::Output(_)) {
+            return self.read(at);
+        }
         let slope = at.parameter_slope().abs();
         let alike = |known: &Screened| known.left > 0 && slope >= STEEPER * known.slope;
         if !self.screened.as_ref().is_some_and(alike) {
@@ -196,6 +197,7 @@ impl Run<'_> {
         let (mut point, map) = self.read_plainly(at)?;
         let tails = self.tails(&at.u);
         let rise = self.rise(&point);
+        let size = self.accuracy().peak_to_peak(&point.observed);
         let same = |known: &&mut Screened| known.switches == switches(&self.equations);
         let known = self.screened.as_mut().filter(same);
         let grown = known.and_then(|known| known.grown(&tails).map(|grown| (known, grown)));
@@ -203,8 +205,6 @@ impl Run<'_> {
             return self.read(at);
         };
         known.left -= 1;
-        let size = point.observed.motions.iter().map(Extent::peak_to_peak);
-        let size = size.fold(0.0, f64::max);
         let error = SAFETY * (known.apart + rise * known.shift) / size;
         let error = grown * error.max(known.error);
         let spread = grown * known.spread;
@@ -240,6 +240,9 @@ impl Run<'_> {
 
     /// How peak-to-peak changes with what is varied, along the tangent.
     fn steepness(&mut self, at: &CurvePoint) -> Option<f64> {
+        if matches!(self.accuracy(), Accuracy::Output(_)) {
+            return None;
+        }
         let extremes = self.equations.extremes.get()?.coordinates.clone();
         let slope = at.parameter_slope();
         let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
@@ -247,9 +250,31 @@ impl Run<'_> {
         let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
         self.equations.compute(&moved, false);
         let known = !self.equations.failed && slope != 0.0;
-        let steepness = known.then(|| apart(&self.equations, &extremes) / (step * slope).abs());
+        let steepness = known
+            .then(|| apart(&self.equations, &extremes, self.accuracy()) / (step * slope).abs());
         self.equations.compute(&at.u, false);
         steepness
+    }
+
+    /// What the error is of.
+    fn accuracy(&self) -> Accuracy {
+        self.problem.asked.accuracy
+    }
+
+    /// How far a finer orbit at a value is from this one in what the error is of.
+    fn apart(&self, finer: &Equations, point: &Point, value: f64) -> f64 {
+        let accuracy = self.accuracy();
+        if let Accuracy::Output(_) = accuracy {
+            let [own, other] = [point, &self.observed(finer, value)]
+                .map(|point| accuracy.peak_to_peak(&point.observed));
+            return (other - own).abs();
+        }
+        let motions = self.equations.extremes.get();
+        apart(
+            finer,
+            motions.map_or(&[][..], |found| &found.coordinates),
+            accuracy,
+        )
     }
 
     /// The same, since the last point.
@@ -257,7 +282,11 @@ impl Run<'_> {
         self.record.points.last().map_or(0.0, |last| {
             let by = (point.value - last.value).abs();
             if by > 0.0 {
-                (point.peak_to_peak() - last.peak_to_peak()).abs() / by
+                let of = |point: &Point| match self.accuracy() {
+                    Accuracy::Coordinates => point.peak_to_peak(),
+                    one => one.peak_to_peak(&point.observed),
+                };
+                (of(point) - of(last)).abs() / by
             } else {
                 0.0
             }
@@ -318,14 +347,20 @@ struct Finer {
     shift: f64,
 }
 
-/// How far a finer orbit is from where the coordinates of another one are smallest and largest: the error of these values, to first order.
-fn apart(finer: &Equations, extremes: &[[Place; 2]]) -> f64 {
+/// How far a finer orbit is from where the coordinates of another one, or the one that the error is of, are smallest and largest: the error
+/// of these values, to first order.
+fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 {
     let motion = Motion::of(finer);
     let off = |coordinate: usize, place: &Place| {
         let (interval, phase) = motion.interval(place.x);
         motion.coordinate(coordinate, interval, phase)[0] - place.value
     };
+    let counts = |index: usize| match accuracy {
+        Accuracy::Coordinate(one) => index == one,
+        Accuracy::Coordinates | Accuracy::Output(_) => true,
+    };
     let pairs = extremes.iter().enumerate();
+    let pairs = pairs.filter(|(index, _)| counts(*index));
     let apart = pairs.map(|(coordinate, [low, high])| off(coordinate, high) - off(coordinate, low));
     apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
 }

@@ -119,6 +119,14 @@ pub enum RequestError {
         /// The names of all of them.
         known: Vec<String>,
     },
+    /// Neither an output nor a coordinate has the name that accuracy is asked of.
+    #[error("accuracy is that of an output or a coordinate, and none is called {name}: there are {}", listed(.known))]
+    NoAccuracy {
+        /// The name.
+        name: String,
+        /// The names of all of them.
+        known: Vec<String>,
+    },
     /// What is asked of a signal is none of what can be.
     #[error(
         "nothing is measured by `{name}`: p2p, max, min, mean, rms, crest, h1 or phase1 with the number of a harmonic, and of contacts impulse, impacts and piece1"
@@ -191,6 +199,7 @@ crate::error::room_error! {
     Detached {}
     OtherModel { expected, found }
     UnknownSignal { name, known }
+    NoAccuracy { name, known }
     UnknownMeasure { name }
     NoContactMeasure { name, measure }
     NoPiece { name, piece, pieces }

@@ -11,7 +11,7 @@ use super::export::Table;
 impl Branch {
     /// The orbits as a table with names of the columns, one row for each: see [`COLUMNS`](super::export::COLUMNS).
     pub fn to_csv(&self) -> String {
-        let mut table = Table::of_model(&self.model);
+        let mut table = Table::of_model(&self.model).with_errors_of(self.accuracy_of());
         for point in &self.points {
             table.add(0, point);
         }

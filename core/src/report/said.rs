@@ -34,7 +34,8 @@ impl Branch {
         let (wanted, model) = (self.leading(), &self.model);
         let measured = self.measured(&wanted, point).ok().flatten();
         let size = measured.unwrap_or(f64::NAN);
-        let digits = match point.error {
+        let of_this = |_: &f64| self.accuracy_of().is_none_or(|name| name == wanted.name);
+        let digits = match point.error.filter(of_this) {
             Some(error) => Decimal::to_error(size, error * size),
             None => Decimal::rounded(size, DECIMALS),
         };

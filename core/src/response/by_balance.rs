@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::both_ways::{BothWays, Part, Way};
 use super::by_shooting;
-use super::following::{Following, Left};
+use super::following::{Following, Left, begin};
 use super::sealed::Follow;
 use crate::balance::Parity;
 use crate::balance::start::{Moving, start, without_symmetry};
@@ -29,11 +29,16 @@ use crate::error::Error;
 use crate::event::{EventKind, Side};
 use crate::model::request::RequestError;
 use crate::model::validate;
+use crate::orbit::observe::Accuracy;
 use crate::shooting::Shooting;
 
 impl Follow for HarmonicBalance {
     fn for_diagram(self) -> Self {
         self.bifurcations(true)
+    }
+
+    fn accurate_in(self, accuracy: Accuracy) -> Self {
+        Self { accuracy, ..self }
     }
 
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
@@ -60,7 +65,9 @@ impl Follow for HarmonicBalance {
         let (context, options) = asked.check()?;
         let mut statistics = Statistics::default();
         let first = first(asked, &context, options, &mut statistics)?;
-        begin(asked, &context)?;
+        begin(asked.request, || {
+            further(asked, context.clone(), Left::Nothing)
+        })?;
         let run = Run::new(&context, options, &first);
         let followed = run.follow(Start::Near(first), visit)?;
         let mut branch = as_branch(asked, context.clone(), followed);
@@ -89,7 +96,9 @@ impl Follow for HarmonicBalance {
         let (mut context, options) = asked.check()?;
         let stride = with_resolution_of(&mut context, event, request.period());
         let point = switch_branch(&context, event, stride, side.sign())?;
-        begin(asked, &context)?;
+        begin(asked.request, || {
+            further(asked, context.clone(), Left::Nothing)
+        })?;
         let run = Run::new(&context, options, &point.u);
         let followed = run.follow(Start::Along(Box::new(point)), visit)?;
         let mut branch = as_branch(asked, context.clone(), followed);
@@ -174,7 +183,9 @@ pub(super) fn resume(
         keep: asked.request.keep.clone(),
         ..context
     };
-    begin(asked, &context)?;
+    begin(asked.request, || {
+        further(asked, context.clone(), Left::Nothing)
+    })?;
     let followed = go_on(&context, options, branch, rest, visit)?;
     let mut resumed = as_branch(asked, context.clone(), followed);
     resumed.elapsed = started.elapsed();
@@ -196,16 +207,6 @@ fn go_on(
     let first = context.unknowns_of(&first.orbit, first.value);
     let run = Run::new(context, options, &first).resumed(rest, branch.kept());
     run.ok_or(RequestError::Rest)?.resume(rest, visit)
-}
-
-/// Tells what keeps the branch what it is.
-fn begin(asked: Asked<'_>, context: &BranchContext) -> Result<(), Error> {
-    let Some(keep) = &asked.request.keep else {
-        return Ok(());
-    };
-    let model = Model::of(asked.request.system.as_ref());
-    let further = further(asked, context.clone(), Left::Nothing);
-    keep.begin(&model, &asked.request.varied(), &further)
 }
 
 /// Unknowns of the first orbit.

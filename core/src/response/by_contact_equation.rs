@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::by_shooting;
-use super::following::Following;
+use super::following::{Following, begin};
 use super::sealed::Follow;
-use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::branch::{Branch, Further};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
 use crate::branches::request::Request;
@@ -14,20 +14,25 @@ use crate::contact_equation::problem::ContactProblem;
 use crate::contact_equation::{ContactEquation, Rest, compute};
 use crate::error::Error;
 use crate::event::Side;
+use crate::orbit::observe::Accuracy;
 use crate::shooting::{Asked, Shooting};
 
 impl Follow for ContactEquation {
+    fn accurate_in(self, accuracy: Accuracy) -> Self {
+        Self { accuracy }
+    }
+
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
-        let asked = Asked::of(request, &Shooting::new()).problem(value, value)?;
+        let asked = Asked::of(request, &self.shooting()).problem(value, value)?;
         let problem = ContactProblem::new(asked, request.tolerance)?;
         let guess = by_shooting::with_series(request, value)?;
         compute::orbit(&problem, &guess, value)
     }
 
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
-        let (range, problem) = problem(request)?;
+        let (range, problem) = self.problem(request)?;
         let guess = by_shooting::with_series(request, range[0])?;
-        begin(request, *self)?;
+        begin(request, || further(request, *self, None))?;
         let followed = compute::branch(&problem, &guess, range, visit)?;
         Ok(with_request(followed, request, *self))
     }
@@ -39,21 +44,31 @@ impl Follow for ContactEquation {
         side: Side,
         visit: See<'_>,
     ) -> Result<Branch, Error> {
-        Shooting::new().switch(request, event, side, visit)
+        self.shooting().switch(request, event, side, visit)
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        Shooting::new().through(request, value, visit)
+        self.shooting().through(request, value, visit)
     }
 }
 
-/// The range, and what is computed with in it.
-///
-/// # Errors
-/// If the request is not usable, or there is no contact equation of the system.
-pub(super) fn problem(request: &Request) -> Result<([f64; 2], ContactProblem), Error> {
-    let (range, asked) = Asked::of(request, &Shooting::new()).ranged()?;
-    Ok((range, ContactProblem::new(asked, request.tolerance)?))
+impl ContactEquation {
+    /// The range, and what is computed with in it.
+    ///
+    /// # Errors
+    /// If the request is not usable, or there is no contact equation of the system.
+    pub(super) fn problem(self, request: &Request) -> Result<([f64; 2], ContactProblem), Error> {
+        let (range, asked) = Asked::of(request, &self.shooting()).ranged()?;
+        Ok((range, ContactProblem::new(asked, request.tolerance)?))
+    }
+
+    /// Shooting with the accuracy of the same.
+    pub(super) fn shooting(self) -> Shooting {
+        Shooting {
+            accuracy: self.accuracy,
+            ..Shooting::new()
+        }
+    }
 }
 
 /// Goes on with a branch that was interrupted.
@@ -67,19 +82,10 @@ pub(super) fn resume(
     rest: &Rest,
     visit: See<'_>,
 ) -> Result<Branch, Error> {
-    let (range, problem) = problem(request)?;
-    begin(request, equation)?;
+    let (range, problem) = equation.problem(request)?;
+    begin(request, || further(request, equation, None))?;
     let followed = compute::resume(&problem, branch, rest, range, visit)?;
     Ok(with_request(followed, request, equation))
-}
-
-/// Tells what keeps the branch what it is.
-fn begin(request: &Request, equation: ContactEquation) -> Result<(), Error> {
-    let Some(keep) = &request.keep else {
-        return Ok(());
-    };
-    let model = Model::of(request.system.as_ref());
-    keep.begin(&model, &request.varied(), &further(request, equation, None))
 }
 
 fn with_request(followed: Followed, request: &Request, equation: ContactEquation) -> Branch {

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::both_ways::{BothWays, Part, Way};
-use super::following::{Following, Left};
+use super::following::{Following, Left, begin};
 use super::sealed::Follow;
 use crate::balance_branch::options::HarmonicBalance;
-use crate::branches::branch::{Branch, Further, Model, Source};
+use crate::branches::branch::{Branch, Further, Source};
 use crate::branches::observed::Motion;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::event::Side;
 use crate::model::request::RequestError;
 use crate::model::validate;
-use crate::orbit::observe::Reading;
+use crate::orbit::observe::{Accuracy, Reading};
 use crate::shooting::compute::{self, Followed};
 use crate::shooting::reading::Found;
 use crate::shooting::{
@@ -24,6 +24,10 @@ use crate::shooting::{
 use crate::time::signals::Asked as Signal;
 
 impl Follow for Shooting {
+    fn accurate_in(self, accuracy: Accuracy) -> Self {
+        Self { accuracy, ..self }
+    }
+
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
         let problem = Asked::of(request, self).problem(value, value)?;
         compute::orbit(&problem, &guess(request, value)?, value)
@@ -32,7 +36,7 @@ impl Follow for Shooting {
     fn run(&self, request: &Request, visit: See<'_>) -> Result<Branch, Error> {
         let (range, problem) = Asked::of(request, self).ranged()?;
         let guess = guess(request, range[0])?;
-        begin(request, *self)?;
+        begin(request, || further(request, *self, Left::Nothing))?;
         let followed = compute::branch(&problem, &guess, range, visit)?;
         Ok(with_request(followed, request, *self))
     }
@@ -49,7 +53,7 @@ impl Follow for Shooting {
         let (shooting, request) = of_period(*self, request, period);
         let (range, problem) = Asked::of(&request, &shooting).ranged()?;
         let event = with_states(&problem, event);
-        begin(&request, shooting)?;
+        begin(&request, || further(&request, shooting, Left::Nothing))?;
         let followed = compute::branch_at(&problem, &event, side.sign(), range, visit)?;
         Ok(with_request(followed, &request, shooting))
     }
@@ -114,19 +118,9 @@ pub(super) fn resume(
     visit: See<'_>,
 ) -> Result<Branch, Error> {
     let (range, problem) = Asked::of(request, &shooting).ranged()?;
-    begin(request, shooting)?;
+    begin(request, || further(request, shooting, Left::Nothing))?;
     let followed = compute::resume(&problem, branch, rest, range, visit)?;
     Ok(with_request(followed, request, shooting))
-}
-
-/// Tells what keeps the branch what it is.
-fn begin(request: &Request, shooting: Shooting) -> Result<(), Error> {
-    let Some(keep) = &request.keep else {
-        return Ok(());
-    };
-    let model = Model::of(request.system.as_ref());
-    let further = further(request, shooting, Left::Nothing);
-    keep.begin(&model, &request.varied(), &further)
 }
 
 /// The second parameter of a curve, and its range.

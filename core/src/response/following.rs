@@ -6,9 +6,10 @@ use super::both_ways::BothWays;
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::balance_branch::run;
-use crate::branches::branch;
+use crate::branches::branch::{self, Further, Model};
 use crate::branches::request::Request;
 use crate::contact_equation::{self, ContactEquation};
+use crate::error::Error;
 use crate::shooting::{self, Shooting};
 
 /// What a branch was asked for by.
@@ -50,6 +51,18 @@ impl<R> Left<R> {
     }
 }
 
+/// Tells what keeps a branch what it is.
+///
+/// # Errors
+/// If it cannot be kept.
+pub(super) fn begin(request: &Request, further: impl FnOnce() -> Further) -> Result<(), Error> {
+    let Some(keep) = &request.keep else {
+        return Ok(());
+    };
+    let model = Model::of(request.system.as_ref());
+    keep.begin(&model, &request.varied(), &further())
+}
+
 impl fmt::Debug for Following {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.request().fmt(f)
@@ -76,7 +89,11 @@ impl Following {
     pub(super) fn shooting(&self) -> Shooting {
         match self {
             Self::Shooting { shooting, .. } => *shooting,
-            Self::Balance { .. } | Self::ContactEquation { .. } => Shooting::new(),
+            Self::ContactEquation { equation, .. } => equation.shooting(),
+            Self::Balance { balance, .. } => Shooting {
+                accuracy: balance.accuracy,
+                ..Shooting::new()
+            },
         }
     }
 

@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 
 use crate::balance::aft::Aft;
 use crate::balance_branch::options::HarmonicBalance;
-use crate::branches::branch::Branch;
+use crate::branches::branch::{Branch, Model};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::{Progress, See};
@@ -30,12 +30,13 @@ use crate::contact_equation::ContactEquation;
 use crate::error::Error;
 use crate::event::Side;
 use crate::model::request::RequestError;
+use crate::orbit::observe::Accuracy;
 use crate::orbit::stability::Method;
 use crate::shooting::{BifurcationCurve, Shooting};
 use crate::system::System;
 
 mod sealed {
-    use super::{Branch, Error, Event, Point, Request, See, Side};
+    use super::{Accuracy, Branch, Error, Event, Point, Request, See, Side};
 
     /// What a method of computing periodic orbits does for a request.
     pub trait Follow {
@@ -46,6 +47,11 @@ mod sealed {
         {
             self
         }
+
+        /// The same method, with the accuracy of this.
+        fn accurate_in(self, accuracy: Accuracy) -> Self
+        where
+            Self: Sized;
 
         /// The one orbit at a value.
         fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error>;
@@ -100,6 +106,8 @@ impl OrbitMethod for ContactEquation {}
 pub struct FrequencyResponse<M = HarmonicBalance> {
     pub(crate) request: Request,
     pub(crate) method: M,
+    /// Name of what the accuracy is of.
+    accuracy: Option<String>,
 }
 
 impl FrequencyResponse {
@@ -108,6 +116,7 @@ impl FrequencyResponse {
         Self {
             request: Request::of(system),
             method: HarmonicBalance::default(),
+            accuracy: None,
         }
     }
 
@@ -161,6 +170,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         FrequencyResponse {
             request: self.request,
             method,
+            accuracy: self.accuracy,
         }
     }
 
@@ -185,6 +195,30 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         /// error, [`Point::error`], is below the tolerance, at most 150 for each period of the excitation. By shooting the
         /// [tolerance of the flow](Shooting::tolerance) follows from it, and a closed form has none; what came of it is in [`Point::error`].
         tolerance(tolerance: f64) { self.request.tolerance = tolerance }
+
+        /// What the [tolerance](Self::tolerance) and the error that is stated of every orbit, [`Point::error`], are of: peak-to-peak of an
+        /// output or a coordinate by its name, as a part of itself. Default: of all coordinates, of the first one as a part of its own, of
+        /// the others as a part of the largest. An output that is a small difference of large coordinates, a rate or a force takes more
+        /// harmonics, or nodes, than the coordinates do; by shooting the tolerance of the flow stays what it is, and the error is stated.
+        ///
+        /// ```
+        /// use hertzian::FrequencyResponse;
+        ///
+        /// hertzian::oscillator! {
+        ///     Stopped(x) {
+        ///         law stop(gap) { gap > 0 => 10*gap, else => 0 }
+        ///         ddot(x) + 0.1*dot(x) + x + stop(x - 1) = 0.3*cos(omega*t);
+        ///         output pushes = force(stop);
+        ///     }
+        /// }
+        ///
+        /// let request = FrequencyResponse::of(&Stopped {}).from(1.0).to(1.3).tolerance(1e-4);
+        /// let (plain, fine) = (request.orbit(1.2)?, request.accuracy_of("pushes").orbit(1.2)?);
+        /// assert!(fine.error.unwrap() < 1e-4);
+        /// assert!(fine.orbit.harmonics() > plain.orbit.harmonics());
+        /// # Ok::<(), hertzian::Error>(())
+        /// ```
+        accuracy_of(name: impl Into<String>) { self.accuracy = Some(name.into()) }
 
         /// Whether Floquet multipliers are computed. Default: yes; without them every verdict is
         /// [`Verdict::Undecided`](crate::orbit::stability::Verdict::Undecided), a branch takes a fraction of the time, and shooting finds
@@ -215,7 +249,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     /// If a parameter or an option is not usable, or no orbit is found; by shooting
     /// [`OrbitError::Beyond`](crate::OrbitError::Beyond) if the branch that comes near turns back before the value.
     pub fn orbit(&self, value: f64) -> Result<Point, Error> {
-        let found = self.method.orbit(&self.request.unkept(), value);
+        let found = self.accurate()?.orbit(&self.request.unkept(), value);
         self.request.unless_cancelled(value, found)
     }
 
@@ -236,7 +270,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         &self,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
-        let found = self.method.run(&self.request, &mut visit);
+        let found = self.accurate()?.run(&self.request, &mut visit);
         let from = self.request.from.unwrap_or(f64::NAN);
         self.request.unless_lost(from, found)
     }
@@ -286,7 +320,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         side: Side,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Branch, Error> {
-        let found = self.method.switch(&self.request, event, side, &mut visit);
+        let found = (self.accurate()?).switch(&self.request, event, side, &mut visit);
         self.request.unless_lost(event.point.value, found)
     }
 
@@ -318,7 +352,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
             }
             .into());
         }
-        let found = self.method.through(&self.request, value, &mut visit);
+        let found = (self.accurate()?).through(&self.request, value, &mut visit);
         self.request.unless_cancelled(value, found)
     }
 
@@ -332,6 +366,18 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         }
         let found = by_shooting::completed(&self.request, self.shooting(), point);
         self.request.unless_cancelled(point.value, found)
+    }
+
+    /// The method, which knows what the accuracy is of.
+    ///
+    /// # Errors
+    /// If neither an output nor a coordinate has the name that was given.
+    fn accurate(&self) -> Result<M, Error> {
+        let accuracy = match &self.accuracy {
+            Some(name) => Accuracy::of(&Model::of(self.request.system.as_ref()), name)?,
+            None => Accuracy::Coordinates,
+        };
+        Ok(self.method.clone().accurate_in(accuracy))
     }
 
     /// The options of shooting, where that is the method, or those by default.

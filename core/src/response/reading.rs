@@ -1,12 +1,16 @@
 //! Signals of orbits by their names, whatever method found them.
 
+#[cfg(feature = "serde")]
+use serde::Deserialize;
+
 use super::{FrequencyResponse, OrbitMethod, by_shooting};
-use crate::branches::branch::{Branch, Model, Source};
+use crate::branches::branch::{Branch, Further, Model, Source};
 use crate::branches::point::Point;
 use crate::error::Error;
 use crate::model::request::RequestError;
 use crate::orbit::observe::{
-    Measure, Reading, Wanted, of_coordinate, of_series, over_period, series_over_period, stored,
+    Accuracy, Measure, Reading, Wanted, of_coordinate, of_series, over_period, series_over_period,
+    stored,
 };
 
 impl Branch {
@@ -99,6 +103,33 @@ impl Branch {
         let following = self.following()?;
         by_shooting::reading(following.request(), following.shooting(), point, source)
     }
+}
+
+impl Branch {
+    /// Name of the output or the coordinate that the errors of its orbits are of, [`Point::error`]: what was
+    /// [asked for](FrequencyResponse::accuracy_of). `None` where they are of all coordinates.
+    pub fn accuracy_of(&self) -> Option<&str> {
+        let accuracy = match self.following() {
+            Ok(following) => following.shooting().accuracy,
+            Err(_) => written_accuracy(&self.further),
+        };
+        accuracy.name(&self.model)
+    }
+}
+
+/// What the accuracy is of as it was written, of a branch that was read from a file.
+fn written_accuracy(further: &Further) -> Accuracy {
+    #[cfg(not(feature = "serde"))]
+    let _ = further;
+    #[cfg(feature = "serde")]
+    if let Some(methods) = further.written["by"].as_object() {
+        let mut options = methods
+            .values()
+            .map(|method| &method["options"]["accuracy"]);
+        let accuracy = options.next().map(Accuracy::deserialize);
+        return accuracy.and_then(Result::ok).unwrap_or_default();
+    }
+    Accuracy::default()
 }
 
 impl<M: OrbitMethod> FrequencyResponse<M> {

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::both_ways::BothWays;
-use super::by_contact_equation;
 use super::following::{Following, Left};
 use crate::balance::resolution::Chooser;
 use crate::balance::{Parity, Resolution};
@@ -11,6 +10,7 @@ use crate::balance_branch::check::Asked;
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::balance_branch::run;
+use crate::branches::branch::Model;
 use crate::branches::request::{Options, Request};
 use crate::contact_equation::{self, ContactEquation};
 use crate::error::Error;
@@ -108,6 +108,14 @@ impl Following {
     /// If that is none of this system.
     pub(super) fn of(system: &dyn System, written: Written) -> Result<Self, Error> {
         let request = Request::with(system, written.asked)?;
+        let accuracy = match &written.by {
+            Method::HarmonicBalance { options, .. } => options.accuracy,
+            Method::Shooting { options, .. } => options.accuracy,
+            Method::ContactEquation { options, .. } => options.accuracy,
+        };
+        if !accuracy.is_of(&Model::of(system)) {
+            return Err(RequestError::Rest.into());
+        }
         match written.by {
             Method::HarmonicBalance {
                 options: balance,
@@ -144,7 +152,7 @@ impl Following {
                 options: equation,
                 rest,
             } => {
-                by_contact_equation::problem(&request)?;
+                equation.problem(&request)?;
                 Ok(Self::ContactEquation {
                     request,
                     equation,

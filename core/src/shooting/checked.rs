@@ -138,6 +138,7 @@ impl<'r> Asked<'r> {
             symmetries,
             at_once,
             stability: self.request.stability,
+            accuracy: self.shooting.accuracy,
             points: step::max_points(self.request.max_points)?,
             steps: step::largest_step(self.request.largest_step)?,
             cancel: self.request.cancel.clone(),

@@ -204,7 +204,8 @@ fn compared(
     let (mut read, map) = observe(problem, equations, u).ok()?;
     let by = (moved.located.point.parameter() - read.value).abs();
     let error = part * by + root.error + moved.error + ROUNDING * read.value.abs();
-    read.error = Some(relative(part * equations.apart(u, there), &read));
+    let apart = part * equations.apart(u, there);
+    read.error = Some(relative(apart, &read, problem.accuracy));
     if let Some(map) = map {
         let found = multipliers(&map, parts);
         let there = others.map(there, &mut |_| {}).ok()?;

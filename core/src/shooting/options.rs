@@ -1,5 +1,7 @@
 //! Options of shooting.
 
+use crate::orbit::observe::Accuracy;
+
 /// Orbits as states that return to themselves, found by Newton's method on motions in time (multiple shooting): nothing is left out of
 /// an orbit but the error of the flow. Systems of which every piece is affine have their motions in closed form; those of others are
 /// integrated.
@@ -32,6 +34,9 @@ pub struct Shooting {
     pub(crate) segments: Option<usize>,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(crate) tolerance: Option<f64>,
+    /// What the accuracy is of.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) accuracy: Accuracy,
 }
 
 /// Flows are so much more accurate than what is asked of the output.

@@ -9,6 +9,7 @@ use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
+use crate::orbit::observe::Accuracy;
 use crate::system::{System, Variable};
 use crate::time::Flow;
 
@@ -44,6 +45,8 @@ pub(crate) struct ShootingProblem {
     /// Coordinates that may be in each other's place at every time.
     pub(crate) at_once: Vec<SignedPermutation>,
     pub(crate) stability: bool,
+    /// What the error is of that is stated.
+    pub(crate) accuracy: Accuracy,
     pub(crate) points: usize,
     pub(crate) steps: StepControl,
     pub(crate) cancel: Cancel,

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
-use super::error_reference::{ErrorReference, multipliers};
+use super::error_reference::{Corrected, ErrorReference, multipliers};
 use super::extremes;
 use super::method::ShootingBranch;
 use super::minimal_period::{SameState, earlier, may_be_earlier};
@@ -25,6 +25,7 @@ use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::model::request::RequestError;
 use crate::numeric::spectrum::distance;
+use crate::orbit::observe::Accuracy;
 use crate::orbit::stability::Stability;
 use crate::time::MotionError;
 use crate::time::{FlowError, Stretch, Work};
@@ -204,7 +205,7 @@ impl<'r> Run<'r> {
         let finer = corrected.as_ref().filter(|_| reference.finer);
         let (at, known) = match finer {
             Some(finer) => (&mut reference.equations, &finer.u[..]),
-            None => (equations, u),
+            None => (&mut *equations, u),
         };
         let (mut point, map) = observe(problem, at, known)?;
         let Some(map) = map else {
@@ -222,13 +223,51 @@ impl<'r> Run<'r> {
             error = f64::INFINITY;
         }
         self.state_error = error;
-        point.error = Some(relative(error, &point));
+        let stated = match (problem.accuracy, &corrected) {
+            (Accuracy::Output(output), Some(corrected)) => {
+                let own = problem.accuracy.peak_to_peak(&point.observed);
+                let states = in_states * self.size;
+                self.error_of_output(equations, u, corrected, output, own, states)?
+            }
+            (accuracy, _) => relative(error, &point, accuracy),
+        };
+        point.error = Some(stated);
         point.stability = if found.is_empty() {
             Stability::unknown()
         } else {
             Stability::of(found, spread)
         };
         Ok((point, Some(map)))
+    }
+}
+
+impl Run<'_> {
+    /// The error of peak-to-peak of an output, as a part of itself, at an orbit that was corrected: what differs in the other orbit, which is
+    /// not the one that is reported, and what moves states by so much.
+    fn error_of_output(
+        &mut self,
+        equations: &mut Equations,
+        u: &[f64],
+        corrected: &Corrected,
+        output: usize,
+        own: f64,
+        states: f64,
+    ) -> Result<f64, FlowError> {
+        let Self {
+            problem,
+            reference,
+            size,
+            ..
+        } = self;
+        let apart = reference.equations.apart(u, &corrected.u);
+        let (other, known) = if reference.finer {
+            (equations, u)
+        } else {
+            (&mut reference.equations, &corrected.u[..])
+        };
+        let change = (peak_to_peak_of(problem, other, known, output)? - own).abs();
+        let times = f64::max(change / apart, own / (2.0 * *size));
+        Ok((reference.part * change + times * states) / own)
     }
 }
 
@@ -291,9 +330,29 @@ pub(super) fn no_orbit(value: f64, reason: NewtonError, failure: Option<FlowErro
     }
 }
 
-/// An error of states as a part of peak-to-peak: of the first coordinate's, unless it is at rest, else of the largest.
-pub(super) fn relative(error: f64, point: &Point) -> f64 {
-    let own = point.peak_to_peak();
+/// Peak-to-peak of an output of an orbit.
+fn peak_to_peak_of(
+    problem: &ShootingProblem,
+    equations: &mut Equations,
+    u: &[f64],
+    output: usize,
+) -> Result<f64, FlowError> {
+    let recurrence = equations.span.recurrence.clone();
+    let Some(mut outputs) = problem.output_reader(u[u.len() - 1], &recurrence) else {
+        return Ok(f64::NAN);
+    };
+    equations.trace(u, &mut |stretch| outputs.include(stretch))?;
+    let motion = outputs.motions().into_iter().nth(output);
+    Ok(motion.map_or(f64::NAN, |motion| motion.peak_to_peak()))
+}
+
+/// An error of states as a part of peak-to-peak: of the first coordinate's, or the one that accuracy is asked of, unless it is at rest, else
+/// of the largest.
+pub(super) fn relative(error: f64, point: &Point, accuracy: Accuracy) -> f64 {
+    let own = match accuracy {
+        Accuracy::Coordinate(_) => accuracy.peak_to_peak(&point.observed),
+        Accuracy::Coordinates | Accuracy::Output(_) => point.peak_to_peak(),
+    };
     error
         / if own > STILL * error {
             own

@@ -1,5 +1,6 @@
 //! What a user of the runtime alone meets: messages, results to keep, structures given as matrices, declarations read from text.
 
+mod accuracy;
 #[cfg(feature = "serde")]
 mod both_ways;
 mod cancelled;

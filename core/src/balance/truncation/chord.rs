@@ -59,7 +59,8 @@ impl RefinedBalance<'_> {
         error
     }
 
-    fn largest_change(&self, u: &[f64], phases: &[[f64; 2]], units: &[f64]) -> f64 {
+    /// The same by the last correction alone.
+    pub(crate) fn largest_change(&self, u: &[f64], phases: &[[f64; 2]], units: &[f64]) -> f64 {
         let coordinates = phases.iter().zip(units).enumerate();
         coordinates
             .map(|(coordinate, (&phases, unit))| {

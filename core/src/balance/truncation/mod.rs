@@ -32,6 +32,7 @@
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
 
+mod change;
 mod chord;
 mod modes;
 

@@ -1,5 +1,6 @@
 //! What a user reads off an orbit.
 
+mod accuracy;
 mod contact;
 mod instant;
 mod measure;
@@ -14,6 +15,7 @@ use std::f64::consts::TAU;
 use crate::balance::{Balance, gap_series, rate_series};
 pub use crate::branches::observed::{ContactMotion, Motion, Observed};
 use crate::numeric::fourier::series;
+pub(crate) use accuracy::Accuracy;
 use contact::ContactObserver;
 pub use instant::outputs_at;
 pub use measure::{Measure, Wanted};
@@ -146,6 +148,13 @@ impl Observer {
                 waveform.motion(&mut self.sampler)
             })
             .collect()
+    }
+
+    /// What is read off one output.
+    pub(crate) fn output(&mut self, balance: &Balance<'_>, u: &[f64], output: usize) -> Motion {
+        let motions = Motions::of_balance(balance, u);
+        let waveform = Waveform::new(&motions, motions.output(output));
+        waveform.motion(&mut self.sampler)
     }
 
     /// `<f . q'>` and `<(C q' + K q + sum e phi) . q'>`; the impulses of the contacts besides.

@@ -23,7 +23,7 @@ use crate::report::unit::in_unit;
 /// | `peak_force` | largest value of the law of the first contact, by size, without factors outside of it: see [`ContactMotion`](crate::orbit::observe::ContactMotion) |
 /// | `dissipated_power` | mean over the period |
 /// | `harmonics` | of the base frequency `omega/period` |
-/// | `error` | estimated error of `peak_to_peak`, relative |
+/// | `error` | estimated error of `peak_to_peak`, relative; `error_of_tip` where [accuracy was asked of](crate::FrequencyResponse::accuracy_of) one called `tip` |
 /// | `branch` | number of the branch; 0 is the one that was asked for |
 /// | `period` | periods of the declaration in the period of the orbit |
 /// | `value` | of what varies along the branch |
@@ -82,6 +82,8 @@ pub const COLUMNS: [&str; 20] = [
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
+    /// Names of the columns.
+    names: Vec<String>,
     text: String,
     parameters: usize,
     /// Pieces of the law of each contact.
@@ -128,14 +130,23 @@ impl Table {
             }));
         }
         with_units(model, &mut names);
-        let mut table = Self {
+        Self {
+            names,
             text: String::new(),
             parameters: model.parameters.len(),
             pieces,
             named,
-        };
-        table.line(names.iter().map(String::as_str));
-        table
+        }
+    }
+
+    /// The same where errors are of an output or a coordinate of this name, as of [`Branch::accuracy_of`](crate::Branch::accuracy_of).
+    #[must_use]
+    pub fn with_errors_of(mut self, name: Option<&str>) -> Self {
+        let error = self.names.iter_mut().find(|own| *own == "error");
+        if let (Some(error), Some(name)) = (error, name) {
+            *error = format!("error_of_{name}");
+        }
+        self
     }
 
     /// Adds a row: an orbit, and the number of its branch.
@@ -192,7 +203,9 @@ impl Table {
 
     /// The text of the table, with a line break after every row.
     pub fn to_csv(&self) -> String {
-        self.text.clone()
+        let mut text = String::new();
+        line(&mut text, self.names.iter().map(String::as_str));
+        text + &self.text
     }
 
     fn line<'c>(&mut self, cells: impl Iterator<Item = &'c str>) {
@@ -363,12 +376,13 @@ mod tests {
     #[test]
     fn a_cell_with_a_comma_is_quoted() {
         let mut table = Table {
+            names: vec!["a,b".to_owned()],
             text: String::new(),
             parameters: 0,
             pieces: Vec::new(),
             named: [0; 2],
         };
-        table.line(["a,b", "\"", "c"].into_iter());
-        assert_eq!(table.to_csv(), "\"a,b\",\"\"\"\",c\n");
+        table.line(["\"", "c"].into_iter());
+        assert_eq!(table.to_csv(), "\"a,b\"\n\"\"\"\",c\n");
     }
 }

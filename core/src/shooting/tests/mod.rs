@@ -19,6 +19,7 @@ use crate::continuation::problem::Problem;
 use crate::continuation::step::StepControl;
 use crate::error::Error;
 use crate::event::EventKind;
+use crate::orbit::observe::Accuracy;
 use crate::response::FrequencyResponse;
 use crate::system::Variable;
 use crate::time::MotionError;
@@ -71,6 +72,7 @@ fn problem(parameters: [f64; 4], variable: Variable, omega: f64) -> ShootingProb
         symmetries: vec![CyclicSymmetry::none()],
         at_once: Vec::new(),
         stability: true,
+        accuracy: Accuracy::default(),
         points: 2000,
         steps: StepControl::default(),
         cancel: crate::cancel::Cancel::new(),
