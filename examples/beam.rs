@@ -5,7 +5,7 @@
 //! units of the beam, time in units in which its first resonance is at 3.516 (Blevins: the square of 1.8751).
 
 use hertzian::FrequencyResponse;
-use hertzian::structure::{Contact, DMatrix, Structure, parameter};
+use hertzian::structure::{Contact, DMatrix, Structure, assemble, parameter};
 
 hertzian::law! {
     /// Elastic stop
@@ -35,21 +35,15 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
                 .offset(parameter("distance", 1e-3)),
         )
         .build()?;
-    let branch = FrequencyResponse::of(&structure)
-        .from(3.0)
-        .to(5.0)
-        .tolerance(1e-3)
-        .run()?;
+    let request = FrequencyResponse::of(&structure).from(3.0).to(5.0);
+    let branch = request.tolerance(1e-3).run()?;
     println!("{} points, {}", branch.points.len(), branch.stopped);
     for fold in branch.folds() {
         println!("{}", branch.describe(fold));
     }
-    let chart = branch
-        .chart()
-        .x("excitation frequency ω, in units of √(EI/ρA)/L²");
-    chart
-        .y("peak-to-peak of the tip / length")
-        .write("beam.svg")?;
+    let chart = branch.chart().y("peak-to-peak of the tip / length");
+    let chart = chart.x("excitation frequency ω, in units of √(EI/ρA)/L²");
+    chart.write("beam.svg")?;
     println!("written beam.svg");
     Ok(())
 }
@@ -57,31 +51,19 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// Mass and stiffness, clamped at the last node.
 fn beam() -> (DMatrix<f64>, DMatrix<f64>) {
     let h = 1.0 / ELEMENTS as f64;
+    // Of an element of length one, and what slopes are multiplied by in another one.
     let inertia = [
-        [156.0, 22.0 * h, 54.0, -13.0 * h],
-        [22.0 * h, 4.0 * h * h, 13.0 * h, -3.0 * h * h],
-        [54.0, 13.0 * h, 156.0, -22.0 * h],
-        [-13.0 * h, -3.0 * h * h, -22.0 * h, 4.0 * h * h],
+        156.0, 22.0, 54.0, -13.0, 22.0, 4.0, 13.0, -3.0, 54.0, 13.0, 156.0, -22.0, -13.0, -3.0,
+        -22.0, 4.0,
     ];
     let bending = [
-        [12.0, 6.0 * h, -12.0, 6.0 * h],
-        [6.0 * h, 4.0 * h * h, -6.0 * h, 2.0 * h * h],
-        [-12.0, -6.0 * h, 12.0, -6.0 * h],
-        [6.0 * h, 2.0 * h * h, -6.0 * h, 4.0 * h * h],
+        12.0, 6.0, -12.0, 6.0, 6.0, 4.0, -6.0, 2.0, -12.0, -6.0, 12.0, -6.0, 6.0, 2.0, -6.0, 4.0,
     ];
-    let mut mass = DMatrix::zeros(FREE, FREE);
-    let mut stiffness = DMatrix::zeros(FREE, FREE);
-    for element in 0..ELEMENTS {
-        for row in 0..4 {
-            for column in 0..4 {
-                let (i, j) = (2 * element + row, 2 * element + column);
-                // What belongs to the clamped node is left out.
-                if i < FREE && j < FREE {
-                    mass[(i, j)] += h / 420.0 * inertia[row][column];
-                    stiffness[(i, j)] += bending[row][column] / h.powi(3);
-                }
-            }
-        }
-    }
-    (mass, stiffness)
+    let slopes = |row: usize, column: usize| h.powi((row % 2 + column % 2) as i32);
+    let whole = |entries: [f64; 16], factor: f64| {
+        let entry = |row, column| factor * slopes(row, column) * entries[4 * row + column];
+        let element = DMatrix::from_fn(4, 4, entry);
+        assemble(FREE, (0..ELEMENTS).map(|number| (2 * number, &element)))
+    };
+    (whole(inertia, h / 420.0), whole(bending, h.powi(-3)))
 }

@@ -4,7 +4,7 @@
 //! and the resonance leans to lower frequencies. To make it your own, change the bolt, the preload, or the exponent of the joint.
 
 use hertzian::chart::{Frequency, Page, View};
-use hertzian::{Error, FrequencyResponse};
+use hertzian::{Error, FrequencyResponse, Point};
 
 hertzian::oscillator! {
     /// Bolted joint
@@ -34,31 +34,21 @@ hertzian::oscillator! {
 /// Traces the resonance, and draws the opening and the force between the faces.
 pub fn main() -> Result<(), Error> {
     let model = BoltedJoint::default();
-    let branch = FrequencyResponse::of(&model)
-        .from(1500.0)
-        .to(4500.0)
-        .run()?;
+    let request = FrequencyResponse::of(&model).from(1500.0).to(4500.0);
+    let branch = request.run()?;
     for fold in branch.folds() {
         println!("{}", branch.describe(fold));
     }
-    let opens = branch
-        .points
-        .iter()
-        .find(|point| point.observed.outputs[0].maximum > 0.0);
-    if let Some(point) = opens {
-        println!(
-            "opens at {:.1} Hz, {}",
-            Frequency::Hertz.of(point.value),
-            point.stability.verdict
-        );
+    let opens = |point: &&Point| point.observed.outputs[0].maximum > 0.0;
+    if let Some(point) = branch.points.iter().find(opens) {
+        let hertz = Frequency::Hertz.of(point.value);
+        println!("opens at {hertz:.1} Hz, {}", point.stability.verdict);
     }
     let view = View::new().frequency(Frequency::Hertz);
     let opening = branch.chart_of(&view.clone().of("opening:max".parse()?))?;
     let pressing = branch.chart_of(&view.of("pressing:max".parse()?))?;
-    Page::new(2)
-        .chart(opening)
-        .chart(pressing)
-        .write("bolted_joint.svg")?;
+    let page = Page::new(2).chart(opening).chart(pressing);
+    page.write("bolted_joint.svg")?;
     println!("written bolted_joint.svg");
     Ok(())
 }

@@ -4,18 +4,18 @@
 //! resonance. Where the motion exceeds the mean deformation of the teeth they part, and the resonance leans to lower frequencies.
 //! To make it your own, change the torque, the error of the profile, or the stiffness of one flank.
 
-use hertzian::chart::{Chart, Curve, Series};
+use hertzian::chart::View;
 use hertzian::{Error, EventKind, FrequencyResponse};
 
 hertzian::oscillator! {
     /// Gear pair with backlash
     pub GearPair(x) {
         /// damping ratio
-        param zeta in 0.0..;
+        param zeta = 0.05 in 0.0..;
         /// mean torque, as the deformation of the teeth that it makes
-        param torque > 0;
+        param torque = 0.1 > 0;
         /// amplitude of the error of the profile
-        param profile in 0.0..;
+        param profile = 0.05 in 0.0..;
 
         law mesh(gap) {
             gap > 1        => gap - 1,
@@ -28,36 +28,27 @@ hertzian::oscillator! {
 
 /// Traces a curve for each error of the profile, and marks where the teeth part.
 pub fn main() -> Result<(), Error> {
-    let mut chart = Chart::new("Gear pair with backlash, damping ratio 5 %, mean deformation 0.1")
-        .x("mesh frequency / linear resonance")
-        .y("peak-to-peak of the transmission error / half the backlash");
-    let mut parted = Vec::new();
+    let mut branches = Vec::new();
     for profile in [0.005, 0.02, 0.05, 0.1] {
         let model = GearPair {
-            zeta: 0.05,
-            torque: 0.1,
             profile,
+            ..GearPair::default()
         };
         let request = FrequencyResponse::of(&model).from(0.4).to(1.6);
         let branch = request.bifurcations(true).run()?;
         println!("error of the profile {profile}:");
         for event in &branch.events {
             println!("  {event}");
-            // The gap touches the level one, where the teeth are pressed together no more.
-            if matches!(event.kind, EventKind::Grazing { .. }) {
-                parted.push([event.point.value, event.point.peak_to_peak()]);
-            }
         }
-        chart = chart.curve(Curve {
-            label: format!("error of the profile {profile}"),
-            runs: branch.runs(),
-        });
+        branches.push(branch);
     }
-    let parted = Series {
-        label: "teeth begin to part".to_owned(),
-        points: parted,
-    };
-    chart.markers(parted).write("gear_pair.svg")?;
+    // The gap touches the level one, where the teeth are pressed together no more.
+    let view = View::new().events([EventKind::Grazing { turns: false }]);
+    let chart = view.together(&branches)?;
+    let chart = chart.title("Gear pair with backlash, damping ratio 5 %, mean deformation 0.1");
+    let chart = chart.x("mesh frequency / linear resonance");
+    let chart = chart.y("peak-to-peak of the transmission error / half the backlash");
+    chart.write("gear_pair.svg")?;
     println!("written gear_pair.svg");
     Ok(())
 }

@@ -378,7 +378,13 @@ fn describe_largest(text: &mut String, branch: &Branch, wanted: &Wanted) -> fmt:
     };
     let value = Decimal::rounded(point.value, 6);
     let unit = branch.model.unit_of_varied(&branch.varied);
-    let (what, varied) = (in_words(branch, wanted, size), &branch.varied);
+    // What leads has as many digits as its error bears.
+    let what = if *wanted == branch.leading() {
+        branch.describe_size(point)
+    } else {
+        in_words(branch, wanted, size)
+    };
+    let varied = &branch.varied;
     writeln!(
         text,
         "  largest {what} at {varied} = {}",

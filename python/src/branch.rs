@@ -416,20 +416,9 @@ impl PyBranch {
     #[pyo3(signature = (wanted=None))]
     fn runs(&self, py: Python<'_>, wanted: Option<&str>) -> PyResult<Vec<PyRun>> {
         let branch = self.held();
-        let wanted = match wanted {
-            Some(text) => self::wanted(text)?,
-            None => branch.leading(),
-        };
-        // What is wrong with one orbit is wrong with all.
-        if let Some(point) = branch.points.first() {
-            branch.measured(&wanted, point).map_err(exception)?;
-        }
-        let place = |point: &Point| {
-            let measured = branch.measured(&wanted, point).ok().flatten();
-            [point.value, measured.unwrap_or(f64::NAN)]
-        };
-        let runs = py.detach(|| branch.runs_of(place));
-        let runs = runs.into_iter().map(|run| {
+        let wanted = wanted.map_or_else(|| branch.leading().to_string(), str::to_owned);
+        let curve = py.detach(|| branch.curve(&wanted)).map_err(exception)?;
+        let runs = curve.runs.into_iter().map(|run| {
             let numbers: Vec<f64> = run.points.into_iter().flatten().collect();
             Ok(PyRun {
                 verdict: match run.line {

@@ -2,6 +2,8 @@
 
 mod branch;
 #[cfg(feature = "plot")]
+mod curve;
+#[cfg(feature = "plot")]
 pub(crate) mod diagram;
 #[cfg(feature = "plot")]
 mod drawn;

@@ -66,6 +66,38 @@ impl Branch {
         )
     }
 
+    /// The orbit at which what is asked of a signal is largest, as `"tip:rms"`; `None` where it is known of none.
+    ///
+    /// ```
+    /// use hertzian::FrequencyResponse;
+    ///
+    /// hertzian::oscillator! {
+    ///     Linear(x) { ddot(x) + 0.1*dot(x) + x = cos(omega*t); }
+    /// }
+    ///
+    /// let branch = FrequencyResponse::of(&Linear {}).from(0.5).to(1.5).largest_step(0.01).run()?;
+    /// let peak = branch.largest("x:rms")?.unwrap();
+    /// // At the root of 1 - 0.1^2 / 2.
+    /// assert!((peak.value - 0.9975).abs() < 0.02);
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`measured`](Self::measured), and if the text is not of that form.
+    pub fn largest(&self, of: &str) -> Result<Option<&Point>, Error> {
+        let wanted: Wanted = of.parse()?;
+        let mut largest: Option<(f64, &Point)> = None;
+        for point in &self.points {
+            let Some(measured) = self.measured(&wanted, point)? else {
+                continue;
+            };
+            if largest.is_none_or(|(known, _)| measured > known) {
+                largest = Some((measured, point));
+            }
+        }
+        Ok(largest.map(|(_, point)| point))
+    }
+
     /// A signal over the period of an orbit as times and values, by its name: enough of them to be drawn, and both sides of every switch, where
     /// a force may jump. An orbit that is known by its states is [completed](Self::complete) first.
     ///

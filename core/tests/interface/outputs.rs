@@ -530,8 +530,8 @@ fn tables_have_columns_by_name_and_unit() {
         ("shaking_p2p [mm/s^2]", "shaking:p2p"),
         ("carried_crest", "carried:crest"),
         ("x_min [mm]", "x:min"),
-        ("contact_1_impulse", "ground:impulse"),
-        ("contact_1_impacts", "ground:impacts"),
+        ("ground_impulse", "ground:impulse"),
+        ("ground_impacts", "ground:impacts"),
     ] {
         let expected = branch.measured(&wanted.parse().expect(wanted), &point);
         assert_eq!(Some(value(name)), expected.expect(wanted), "{name}");

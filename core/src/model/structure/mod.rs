@@ -56,6 +56,35 @@ pub struct Value {
     parameter: Option<(String, f64)>,
 }
 
+/// The matrix of a structure with so many coordinates, from the square matrices of its elements, each of which stands at the coordinates
+/// from one on. What would stand beyond the last coordinate is left out, as the node of an element that is clamped.
+///
+/// ```
+/// use hertzian::structure::{DMatrix, assemble};
+///
+/// // Three springs in a row between three masses and a wall.
+/// let spring = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.0]);
+/// let stiffness = assemble(3, (0..3).map(|first| (first, &spring)));
+/// let expected = [1.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 2.0];
+/// assert_eq!(stiffness, DMatrix::from_row_slice(3, 3, &expected));
+/// ```
+pub fn assemble<'m>(
+    coordinates: usize,
+    elements: impl IntoIterator<Item = (usize, &'m DMatrix<f64>)>,
+) -> DMatrix<f64> {
+    let mut whole = DMatrix::zeros(coordinates, coordinates);
+    for (first, element) in elements {
+        let size = element.nrows().min(element.ncols());
+        let held = size.min(coordinates.saturating_sub(first));
+        for row in 0..held {
+            for column in 0..held {
+                whole[(first + row, first + column)] += element[(row, column)];
+            }
+        }
+    }
+    whole
+}
+
 /// A named parameter and its present value. One name stands for one parameter wherever it is used.
 pub fn parameter(name: &str, value: f64) -> Value {
     Value {

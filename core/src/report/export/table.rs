@@ -9,8 +9,9 @@ use crate::orbit::observe::Measure;
 use crate::report::unit::in_unit;
 
 /// Names of the columns that every table begins with; after them come the parameters of the system, by name, and then for each
-/// contact, counted from one, `contact_1_min_force` and `contact_1_max_force`, the extremes of its law with their signs, and
-/// `contact_1_piece_1` and so on, the part of the period on each piece of its law, from the lowest gaps to the highest.
+/// contact by its name, that of its law with a number from one on where the law acts in several, as of one called `stop`, `stop_min_force`
+/// and `stop_max_force`, the extremes of its law with their signs, and `stop_piece_1` and so on, the part of the period on each piece of its
+/// law, from the lowest gaps to the highest.
 ///
 /// | column | what it is |
 /// |---|---|
@@ -30,7 +31,7 @@ use crate::report::unit::in_unit;
 ///
 /// Where a model has outputs or several coordinates, there follow for each output and each coordinate, by its name, as of one called `tip`,
 /// `tip_p2p`, `tip_max`, `tip_min`, `tip_mean`, `tip_rms` and `tip_crest`, the [measures](Measure) of these names; then for each contact
-/// `contact_1_impulse` and `contact_1_impacts`, over the period of the orbit.
+/// `stop_impulse` and `stop_impacts`, over the period of the orbit.
 ///
 /// In a model with units what has one says so: `omega [rad/s]`, `tip_rms [um]`.
 ///
@@ -77,7 +78,7 @@ pub const COLUMNS: [&str; 20] = [
 /// let mut table = Table::of(&model);
 /// branch.points.iter().for_each(|point| table.add(0, point));
 /// assert_eq!(table.to_csv(), branch.to_csv());
-/// assert!(table.to_csv().lines().next().unwrap().contains(",value,bend,contact_1_min_force,"));
+/// assert!(table.to_csv().lines().next().unwrap().contains(",value,bend,"));
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -112,7 +113,7 @@ impl Table {
     pub fn of_model(model: &Model) -> Self {
         let pieces = model.pieces.clone();
         let mut names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
-        let of_contacts = of_contacts(&pieces);
+        let of_contacts = of_contacts(model);
         for parameter in &model.parameters {
             let mut name = parameter.name.clone();
             while names.contains(&name) || of_contacts.contains(&name) {
@@ -124,9 +125,8 @@ impl Table {
         let named = named(model);
         if named != [0; 2] {
             names.extend(of_signals(model));
-            let contacts = 1..=pieces.len();
-            names.extend(contacts.flat_map(|contact| {
-                ["impulse", "impacts"].map(|what| format!("contact_{contact}_{what}"))
+            names.extend(contacts(model).flat_map(|(contact, _)| {
+                ["impulse", "impacts"].map(|what| format!("{contact}_{what}"))
             }));
         }
         with_units(model, &mut names);
@@ -258,7 +258,7 @@ fn with_units(model: &Model, names: &mut [String]) {
         .collect();
     let parameters = model.parameters.iter().enumerate();
     units.extend(parameters.map(|(index, own)| (COLUMNS.len() + index, own.unit.clone())));
-    let before = COLUMNS.len() + model.parameters.len() + of_contacts(&model.pieces).len();
+    let before = COLUMNS.len() + model.parameters.len() + of_contacts(model).len();
     if named(model) != [0; 2] {
         let outputs = model.outputs.iter().map(|output| &output.unit);
         let signals = outputs.chain(&model.units);
@@ -272,12 +272,21 @@ fn with_units(model: &Model, names: &mut [String]) {
     }
 }
 
-/// Names of the columns of contacts, whose laws have so many pieces.
-fn of_contacts(pieces: &[usize]) -> Vec<String> {
-    let contacts = pieces.iter().zip(1..);
-    let names = contacts.flat_map(|(&pieces, contact)| {
-        let forces = ["min", "max"].map(|which| format!("contact_{contact}_{which}_force"));
-        let pieces = (1..=pieces).map(move |piece| format!("contact_{contact}_piece_{piece}"));
+/// Names of the contacts, as [`Model::contacts`] has them, with the number of pieces of each law; numbers where a file has no names.
+fn contacts(model: &Model) -> impl Iterator<Item = (String, usize)> {
+    let pieces = model.pieces.iter().copied().enumerate();
+    pieces.map(|(index, pieces)| {
+        let name = model.contacts.get(index).cloned();
+        let name = name.unwrap_or_else(|| format!("contact_{}", index + 1));
+        (name, pieces)
+    })
+}
+
+/// Names of the columns of contacts.
+fn of_contacts(model: &Model) -> Vec<String> {
+    let names = contacts(model).flat_map(|(contact, pieces)| {
+        let forces = ["min", "max"].map(|which| format!("{contact}_{which}_force"));
+        let pieces = (1..=pieces).map(move |piece| format!("{contact}_piece_{piece}"));
         forces.into_iter().chain(pieces)
     });
     names.collect()
