@@ -93,10 +93,7 @@ pub(crate) fn branch(
         frame,
         resolution,
     } = first(problem, guess, from)?;
-    let mut options = problem.asked.follow(from, to, 1.0);
-    // What is left after the last update is far less.
-    let enough = (UPDATE * problem.tolerance).min(COARSEST);
-    options.newton.tolerance = options.newton.tolerance.max(enough);
+    let options = options(problem, from, to);
     let mut run = Run::new(problem, frame, resolution, equations);
     let mut branch = ContactBranch::new(&mut run, visit);
     let outcome = engine::run(&mut branch, Start::Near(u), options);
@@ -117,7 +114,7 @@ pub(crate) fn resume(
 ) -> Result<Followed, Error> {
     let started = Instant::now();
     let mut run = rest.run(problem, branch).ok_or(RequestError::Rest)?;
-    let options = problem.asked.follow(from, to, 1.0);
+    let options = options(problem, from, to);
     let mut branch = ContactBranch::new(&mut run, visit);
     if !rest.walk.tests(branch.watched().len()) {
         return Err(RequestError::Rest.into());
@@ -126,6 +123,15 @@ pub(crate) fn resume(
     let outcome = engine::resume(&mut branch, rest.walk.clone(), options);
     let lost = branch.lost;
     ended(problem, run, outcome, lost, options, started)
+}
+
+/// How a branch is followed from a value to another one.
+fn options(problem: &ContactProblem, from: f64, to: f64) -> FollowOptions {
+    let mut options = problem.asked.follow(from, to, 1.0);
+    // What is left after the last update is far less.
+    let enough = (UPDATE * problem.tolerance).min(COARSEST);
+    options.newton.tolerance = options.newton.tolerance.max(enough);
+    options
 }
 
 /// The branch that a run has gathered, as the engine has ended; it may have been lost where a gap reached a level.
