@@ -164,7 +164,7 @@ pub(crate) trait BranchProblem {
 
     /// What is smaller is rounding: of all test functions, and of the slope.
     fn vanishing(&self) -> f64 {
-        0.0
+        self.aim()
     }
 
     /// A function that is smaller at both ends of a step is rounding all along.

@@ -53,6 +53,17 @@ impl CurvePoint {
     pub(crate) fn parameter_slope(&self) -> f64 {
         self.tangent[self.tangent.len() - 1] / self.scale.parameter
     }
+
+    /// The same, unless it is rounding, which is as large as `vanishing` where the parameter is as large as its scale.
+    pub(crate) fn known_slope(&self, vanishing: f64) -> Option<f64> {
+        let slope = self.parameter_slope();
+        (slope.abs() > vanishing * self.narrowness()).then_some(slope)
+    }
+
+    /// How many times its scale the parameter is, if that is more than one: rounding of it is that much larger.
+    pub(crate) fn narrowness(&self) -> f64 {
+        (self.parameter().abs() / self.scale.parameter).max(1.0)
+    }
 }
 
 /// The way between two successive points of a curve, or a part of it.

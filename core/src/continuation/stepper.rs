@@ -181,7 +181,7 @@ impl Stepper {
                 let angle = cosine.clamp(-1.0, 1.0).acos();
                 let looks_wrong = steps.turns_too_far(angle)
                     || steps.is_too_far(distance)
-                    || passes_folds(norm, from, &point);
+                    || passes_folds(norm, from, &point, self.options.newton.tolerance);
                 let shorter = steps.after_doubt(self.step).filter(|_| looks_wrong);
                 let Some(shorter) = shorter else {
                     newton.statistics.accepted_steps += 1;
@@ -358,17 +358,19 @@ impl Stepper {
 }
 
 /// Whether a step seems to have passed a pair of folds, or nearly: the parameter has the same direction at both ends, but the
-/// cubic through both ends and slopes turns back in between.
+/// cubic through both ends and slopes turns back in between. A parameter that changes by no more than the tolerance of Newton's method
+/// does not tell: the curve is vertical.
 ///
 /// Source: Fritsch and Carlson (1980), Monotone piecewise cubic interpolation.
-fn passes_folds(norm: &Norm, from: &CurvePoint, to: &CurvePoint) -> bool {
+fn passes_folds(norm: &Norm, from: &CurvePoint, to: &CurvePoint, tolerance: f64) -> bool {
     let last = from.u.len() - 1;
     let difference: Vec<f64> = to.u.iter().zip(&from.u).map(|(x, y)| x - y).collect();
     let length = norm.length(from.scale, &difference);
     let change = difference[last];
     let a = length * from.tangent[last];
     let b = length * to.tangent[last] / norm.length(from.scale, &to.tangent);
-    if a * b <= 0.0 {
+    let largest = change.abs().max(a.abs()).max(b.abs());
+    if a * b <= 0.0 || largest <= tolerance * from.scale.parameter {
         return false;
     }
     // The slope is a + 2 c x + 3 d x^2 for x from 0 to 1; both ends have the sign of a.

@@ -96,7 +96,12 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
             .as_mut()
             .map(|other| other.map(&at.u, &mut |_| {}));
         let map = map.and_then(Result::ok);
-        Tests::of(map.as_ref(), at.parameter_slope())
+        Tests::of(map.as_ref(), self.divisor(at))
+    }
+
+    /// What the bordered determinant is divided by. Where the slope is rounding, nothing is known of the quotient.
+    fn divisor(&self, at: &CurvePoint) -> f64 {
+        at.known_slope(self.vanishing()).unwrap_or(f64::NAN)
     }
 
     /// How well multipliers are known along the last step.
@@ -178,9 +183,8 @@ impl BranchProblem for ShootingBranch<'_, '_> {
 
     fn vanishes(&mut self, change: Change, located: &Located) -> bool {
         let (point, equations) = (&located.point, &mut self.equations);
-        // A slope is relative to the range, and rounding to the value.
         let unit = match tested::Test::of(change.test) {
-            tested::Test::Slope => (point.parameter().abs() / point.scale.parameter).max(1.0),
+            tested::Test::Slope => point.narrowness(),
             tested::Test::Bordered => {
                 events::others(equations, &point.u, 1.0) / point.parameter_slope().abs()
             }
@@ -250,7 +254,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
                 return Read::Stop;
             }
         };
-        let tests = Tests::of(map.as_ref(), at.parameter_slope());
+        let tests = Tests::of(map.as_ref(), self.divisor(at));
         self.tested = Some((at.u.clone(), tests));
         let done = self.run.record.points.len() + 1;
         let answer = (self.visit)(Progress::orbit(done, &point));

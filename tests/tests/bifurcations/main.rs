@@ -22,3 +22,4 @@ mod symmetry;
 mod table;
 mod torus;
 mod units;
+mod vertical;

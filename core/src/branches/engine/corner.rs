@@ -247,6 +247,8 @@ impl Engine {
             problem.keep_touch(newton, step, &touch);
         }
         let known = problem.record().events.len();
+        // The branch may have turned there.
+        self.falls = None;
         self.events_between(*problem, newton, [begin, next], after);
         problem.record_mut().drop_beside(known, value, ERRORS);
     }
@@ -259,7 +261,11 @@ impl Engine {
         ends: [&CurvePoint; 2],
         after: usize,
     ) {
-        let [a, b] = ends.map(|point| Seen::at(problem, point));
+        let [a, b] = ends.map(|point| {
+            let seen = Seen::at(problem, point, self.falls);
+            self.falls = seen.falls;
+            seen
+        });
         if self.ended.is_none() {
             self.record_all(problem, newton, [&a, &b], after, |_| true);
         }

@@ -17,7 +17,7 @@
 //! Source: (1) is the error bound of linear interpolation, as Piyavskii (1972), An algorithm for finding the absolute extremum of a
 //! function, uses it with a bound on the first derivative.
 
-use super::{Engine, Seen, changes};
+use super::{Engine, Seen, changes, signs};
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{inside, locate};
@@ -49,9 +49,10 @@ impl Engine {
     ) -> Vec<Seen> {
         let mut parts = vec![a, b];
         if let Some(earlier) = earlier {
-            let watched = (0..problem.watched().len()).map(Test::Watched);
-            for test in [Test::Slope].into_iter().chain(watched) {
-                if is_hidden(&parts, test) || is_conjugate(problem, [earlier, &parts[0]], test) {
+            for test in tests(problem) {
+                if is_hidden(problem, &parts, test)
+                    || is_conjugate(problem, [earlier, &parts[0]], test)
+                {
                     continue;
                 }
                 let points = [earlier, &parts[0], &parts[parts.len() - 1]];
@@ -86,9 +87,8 @@ impl Engine {
 
     /// Notes for which test functions the parts of a step show what its ends do not.
     fn note_divided(&mut self, problem: &dyn BranchProblem, parts: &[Seen], after: usize) {
-        let watched = (0..problem.watched().len()).map(Test::Watched);
-        for test in [Test::Slope].into_iter().chain(watched) {
-            if is_hidden(parts, test) && !self.divided.contains(&(after, test)) {
+        for test in tests(problem) {
+            if is_hidden(problem, parts, test) && !self.divided.contains(&(after, test)) {
                 self.divided.push((after, test));
             }
         }
@@ -103,9 +103,10 @@ impl Engine {
         after: usize,
     ) {
         let known = self.divided.clone();
-        let wanted = |change: &Change| {
-            is_hidden(parts, change.test) && !known.contains(&(after, change.test))
-        };
+        let hidden: Vec<Test> = tests(problem)
+            .filter(|test| is_hidden(problem, parts, *test) && !known.contains(&(after, *test)))
+            .collect();
+        let wanted = |change: &Change| hidden.contains(&change.test);
         for pair in parts.windows(2) {
             self.record_all(problem, newton, [&pair[0], &pair[1]], after, wanted);
             if self.ended.is_some() {
@@ -139,10 +140,9 @@ impl Engine {
             height: heights[i],
         });
         let noise = match test {
-            Test::Slope => 0.0,
-            Test::Watched(index) => problem.noise(index),
+            Test::Slope => points[1].point.narrowness() * problem.vanishing(),
+            Test::Watched(index) => problem.noise(index).max(problem.vanishing()),
         };
-        let noise = noise.max(problem.vanishing());
         for first in [1, 0] {
             let descent = Descent {
                 between: [points[first], points[first + 1]],
@@ -187,7 +187,7 @@ impl Engine {
             let options = self.options.newton;
             let part = (place - from) / whole;
             let point = inside(problem.equations(), newton, ends, part, options)?;
-            let seen = Seen::at(problem, &point);
+            let seen = Seen::at(problem, &point, between[0].falls);
             let mut pairs = seen.values.iter().zip(&between[0].values);
             if pairs.any(|(here, there)| there.is_known() && !here.is_known()) {
                 // A part without a value would hide what changes its sign there.
@@ -222,7 +222,7 @@ impl Engine {
             .position(|watched| watched.bordered)?;
         let step = step_between(pair);
         let options = self.options.newton;
-        let wanted = problem.vanishing().max(problem.aim());
+        let wanted = problem.vanishing();
         let turn = locate(problem, newton, step, options, wanted, |_, at| {
             at.parameter_slope()
         })?;
@@ -230,7 +230,7 @@ impl Engine {
         let place = distance(newton, step.before, &turn.point) / length;
         let mut beside = |part: f64| {
             let point = inside(problem.equations(), newton, step, part, options)?;
-            Some(Seen::at(problem, &point))
+            Some(Seen::at(problem, &point, pair[0].falls))
         };
         for width in BESIDE {
             let width = width.min(0.5 * place).min(0.5 * (1.0 - place));
@@ -254,19 +254,20 @@ impl Engine {
     }
 }
 
+/// All test functions.
+fn tests(problem: &dyn BranchProblem) -> impl Iterator<Item = Test> + use<> {
+    let watched = (0..problem.watched().len()).map(Test::Watched);
+    [Test::Slope].into_iter().chain(watched)
+}
+
 /// Whether a test function has one sign at both ends of a step and the other one inside.
-fn is_hidden(parts: &[Seen], test: Test) -> bool {
-    let sign = |seen: &Seen| {
-        let value = seen.value(test);
-        value.is_known().then(|| value.is_negative())
-    };
+fn is_hidden(problem: &dyn BranchProblem, parts: &[Seen], test: Test) -> bool {
     let [first, inner @ .., last] = parts else {
         return false;
     };
-    let Some(outside) = sign(first).filter(|outside| sign(last) == Some(*outside)) else {
-        return false;
-    };
-    inner.iter().any(|seen| sign(seen) == Some(!outside))
+    let differ = |ends: [&Seen; 2]| signs(problem, ends, test).map(|[x, y]| x != y);
+    differ([first, last]) == Some(false)
+        && inner.iter().any(|seen| differ([first, seen]) == Some(true))
 }
 
 /// Whether it is the modulus of the second of a pair, which tells what that of the first does.

@@ -50,10 +50,6 @@ use crate::event::{EventKind, Turn};
 /// Points that are remembered: a parabola goes through them.
 const POINTS: usize = 3;
 
-/// A component of the unit tangent along the parameter that is smaller at both ends of a step is rounding: the branch is vertical there, as
-/// orbits of any size are at a parametric resonance as long as the stiffness that varies is linear.
-const VERTICAL: f64 = 1e-10;
-
 /// A point of the branch with its test functions.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -62,15 +58,23 @@ struct Seen {
     values: Vec<TestValue>,
     /// Complex multipliers outside of the unit circle.
     complex: Option<usize>,
+    /// Whether the parameter falls, as the last slope says that is no rounding: where a branch is vertical, as with orbits of any size at a
+    /// parametric resonance of a linear stretch, no sign of a slope means anything.
+    falls: Option<bool>,
 }
 
 impl Seen {
-    fn at(problem: &mut dyn BranchProblem, point: &CurvePoint) -> Self {
+    /// Whether the parameter `falls` is what is known from the way to it.
+    fn at(problem: &mut dyn BranchProblem, point: &CurvePoint, falls: Option<bool>) -> Self {
         let values = (0..problem.watched().len()).map(|index| problem.test(index, point));
+        let values = values.collect();
+        let complex = problem.complex_outside(point);
+        let slope = point.known_slope(problem.vanishing());
         Self {
-            values: values.collect(),
-            complex: problem.complex_outside(point),
             point: point.clone(),
+            values,
+            complex,
+            falls: slope.map(|slope| slope < 0.0).or(falls),
         }
     }
 
@@ -87,6 +91,8 @@ struct Engine {
     options: FollowOptions,
     /// The last three points, the newest last, in their present unknowns.
     seen: Vec<Seen>,
+    /// Whether the parameter falls, as far as the walk has come.
+    falls: Option<bool>,
     /// Number of points before a step that was divided when it was the last, and for what.
     divided: Vec<(usize, Test)>,
     /// The last point was refused.
@@ -207,6 +213,7 @@ impl Engine {
         Self {
             options,
             seen: Vec::new(),
+            falls: None,
             divided: Vec::new(),
             refused: false,
             resizes: false,
@@ -265,7 +272,7 @@ impl Engine {
             Read::ResizeBehind => self.resizes = true,
             Read::Kept => {}
         }
-        self.see(Seen::at(problem, at));
+        self.see(Seen::at(problem, at, self.falls));
         Continue::Continue(())
     }
 
@@ -274,6 +281,7 @@ impl Engine {
         if self.seen.len() == POINTS {
             self.seen.remove(0);
         }
+        self.falls = seen.falls;
         self.seen.push(seen);
     }
 
@@ -442,7 +450,9 @@ impl Engine {
         let earlier = earlier.map(|place| self.seen[place].clone());
         let ends = [before, next].map(|at| {
             let known = find(&self.seen, at).map(|place| self.seen[place].clone());
-            known.unwrap_or_else(|| Seen::at(problem, at))
+            let seen = known.unwrap_or_else(|| Seen::at(problem, at, self.falls));
+            self.falls = seen.falls;
+            seen
         });
         self.seen.clear();
         self.seen.extend(earlier.clone().into_iter().chain(ends));
@@ -455,15 +465,23 @@ fn is_modulus(change: &Change) -> bool {
     change.kind == EventKind::NeimarkSacker
 }
 
-/// What changes its sign from one point to the next, and what that means. Without the bordered determinant every turn counts as a
-/// fold, unless the branch is [vertical](VERTICAL).
-fn changes(problem: &dyn BranchProblem, a: &Seen, b: &Seen) -> Vec<Change> {
-    let differs = |test: Test| {
-        let [x, y] = [a, b].map(|seen| seen.value(test));
-        x.is_known() && y.is_known() && x.is_negative() != y.is_negative()
+/// Whether a test function is negative at two points of a branch, or the parameter falls; `None` where that is not known, or rounding.
+fn signs(problem: &dyn BranchProblem, ends: [&Seen; 2], test: Test) -> Option<[bool; 2]> {
+    let Test::Watched(index) = test else {
+        return Some([ends[0].falls?, ends[1].falls?]);
     };
-    let vertical = [a, b].map(|seen| seen.point.parameter_slope().abs() < VERTICAL);
-    let turned = differs(Test::Slope) && vertical != [true, true];
+    let values = ends.map(|seen| seen.values[index]);
+    let known = values.iter().all(|value| value.is_known());
+    let [a, b] = values.map(|value| value.mantissa.abs());
+    let tells = known && a.max(b) > problem.noise(index);
+    tells.then(|| values.map(TestValue::is_negative))
+}
+
+/// What changes its sign from one point to the next, and what that means. Without the bordered determinant every turn counts as a
+/// fold.
+fn changes(problem: &dyn BranchProblem, a: &Seen, b: &Seen) -> Vec<Change> {
+    let differs = |test: Test| signs(problem, [a, b], test).is_some_and(|[x, y]| x != y);
+    let turned = differs(Test::Slope);
     let watched = problem.watched();
     let bordered = watched.iter().position(|watched| watched.bordered);
     let crossed = bordered.filter(|index| differs(Test::Watched(*index)));
@@ -482,9 +500,7 @@ fn changes(problem: &dyn BranchProblem, a: &Seen, b: &Seen) -> Vec<Change> {
     let mut moduli = Vec::new();
     for (index, watched) in watched.iter().enumerate() {
         let test = Test::Watched(index);
-        let largest = [a, b].map(|seen| seen.value(test).mantissa.abs());
-        let noise = problem.noise(index);
-        if !watched.bordered && differs(test) && largest[0].max(largest[1]) > noise {
+        if !watched.bordered && differs(test) {
             let kind = watched.kind;
             let change = Change { test, kind };
             let found = if is_modulus(&change) {

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! On the branch `y = 0` there are folds at `x = -1` and `1`, and the branch `y^2 = x - 3/2` crosses at `x = 3/2`. A function that
-//! vanishes at `x = 1/2` plays a doubling, and one that vanishes at `x = 1.70` and `1.71` two of them within a step.
+//! vanishes at `x = 1/2` plays a doubling, and one that vanishes at `x = 1.70` and `1.71` two of them within a step. Other functions stand
+//! in the place of the cubic where the branch is to be vertical.
 
 use nalgebra::DMatrix;
 
@@ -44,14 +45,29 @@ const WATCHED: [Watched; 3] = [
     },
 ];
 
-#[derive(Default)]
+/// What the parameter is of `x`, and its slope.
+type Shape = fn(f64) -> (f64, f64);
+
+fn cubic(x: f64) -> (f64, f64) {
+    (x * x * x - 3.0 * x, 3.0 * x * x - 3.0)
+}
+
 struct Algebraic {
+    shape: Shape,
     /// Whether `z` is an unknown.
     three: bool,
     record: Record,
 }
 
 impl Algebraic {
+    fn of(shape: Shape) -> Self {
+        Self {
+            shape,
+            three: false,
+            record: Record::default(),
+        }
+    }
+
     fn solutions(&self) -> impl Iterator<Item = &Vec<f64>> {
         self.record.points.iter().map(|point| &point.parameters)
     }
@@ -72,13 +88,14 @@ impl Problem for Algebraic {
 
     fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
         let (x, y, parameter) = (u[0], u[1], u[u.len() - 1]);
-        residual[0] = x * x * x - 3.0 * x - parameter;
+        let (value, slope) = (self.shape)(x);
+        residual[0] = value - parameter;
         residual[1] = y * (x - 1.5) - y * y * y;
         if self.three {
             residual[2] = u[2] - x * x;
         }
         let Some(jacobian) = jacobian else { return };
-        jacobian.core_mut().row_mut(0)[0] = 3.0 * x * x - 3.0;
+        jacobian.core_mut().row_mut(0)[0] = slope;
         jacobian.core_mut().row_mut(1)[0] = y;
         jacobian.core_mut().row_mut(1)[1] = x - 1.5 - 3.0 * y * y;
         let mut column = vec![0.0; self.unknowns()];
@@ -120,7 +137,7 @@ impl BranchProblem for Algebraic {
                     t
                 };
                 let rows = [
-                    [3.0 * x * x - 3.0, 0.0, -1.0],
+                    [(self.shape)(x).1, 0.0, -1.0],
                     [y, x - 1.5 - 3.0 * y * y, 0.0],
                     [t, s, l],
                 ];
@@ -217,7 +234,11 @@ const NEWTON: NewtonOptions = NewtonOptions {
 };
 
 fn followed(from: f64, to: f64, start: Start) -> (Algebraic, Stop) {
-    let mut branch = Algebraic::default();
+    followed_of(cubic, from, to, start)
+}
+
+fn followed_of(shape: Shape, from: f64, to: f64, start: Start) -> (Algebraic, Stop) {
+    let mut branch = Algebraic::of(shape);
     let options = FollowOptions {
         from,
         to,
@@ -273,7 +294,7 @@ fn solutions_at_a_value_are_the_roots_of_the_cubic() {
         1.0,
         |u| u[2],
         |[a, b]| {
-            let mut problem = Algebraic::default();
+            let mut problem = Algebraic::of(cubic);
             let mut newton = Newton::new(&problem);
             let chord = Chord {
                 ends: [a.clone(), b.clone()],
@@ -300,7 +321,7 @@ fn the_branch_that_crosses_is_followed() {
     let from = [1.5, 0.0, 1.5_f64.powi(3) - 4.5];
     let along = [0.0, 1.0, 0.0];
     for side in [-1.0, 1.0] {
-        let mut problem = Algebraic::default();
+        let mut problem = Algebraic::of(cubic);
         let mut newton = Newton::new(&problem);
         let switch = BranchSwitch {
             from: &from,
@@ -342,5 +363,54 @@ fn a_branch_that_turns_where_another_crosses_has_one_event_there() {
             *kind == wanted && (at - exact).abs() < 1e-8,
             "{kind} at {at}"
         );
+    }
+}
+
+/// Distance from the stretch from -1 to 1, and a slope there that is nothing but rounding.
+fn from_stretch(x: f64) -> (f64, f64) {
+    (x - x.clamp(-1.0, 1.0), 1e-14 * (1e7 * x).sin())
+}
+
+/// A branch that is vertical over a stretch, and goes on as it came.
+#[test]
+fn a_vertical_stretch_has_no_folds() {
+    let shape = |x| {
+        let (d, rounding) = from_stretch(x);
+        (d * d * d, 3.0 * d * d + rounding)
+    };
+    for end in [-2.0, 2.0] {
+        let start = Start::Near(vec![1.0_f64.copysign(end) + end, 0.0, end * end * end]);
+        let (branch, stop) = followed_of(shape, end * end * end, -end * end * end, start);
+        assert_eq!(
+            (stop, &branch.record.turns[..]),
+            (Stop::ReachedEnd, &[][..])
+        );
+        let inside = branch.solutions().filter(|u| u[0].abs() < 1.0);
+        assert!(inside.count() > 3);
+        let mut events = branch.events().into_iter();
+        assert_eq!(events.find(|(kind, _)| *kind == EventKind::Fold), None);
+    }
+}
+
+/// A branch that is vertical over a stretch, and goes back as it came.
+#[test]
+fn a_branch_that_turns_at_a_vertical_stretch_has_one_fold_there() {
+    let shape = |x| {
+        let (d, rounding) = from_stretch(x);
+        (-d * d, -2.0 * d + rounding)
+    };
+    for end in [-2.0, 2.0] {
+        let start = Start::Near(vec![1.0_f64.copysign(end) + end, 0.0, -end * end]);
+        let (branch, stop) = followed_of(shape, -end * end, 8.0, start);
+        assert_eq!(
+            (stop, &branch.record.turns[..]),
+            (Stop::LeftAtStart, &[][..])
+        );
+        let mut folds = branch.events();
+        folds.retain(|(kind, _)| *kind == EventKind::Fold);
+        let [(_, x)] = folds[..] else {
+            panic!("{folds:?}");
+        };
+        assert!(x.abs() < 1.0 + 1e-9, "{x}");
     }
 }

@@ -17,6 +17,7 @@ pub(crate) struct Walk {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     contraction: f64,
     seen: Vec<Seen>,
+    falls: Option<bool>,
     divided: Vec<(usize, Test)>,
     decided: Option<usize>,
     looked: Option<Looked>,
@@ -113,6 +114,7 @@ impl Engine {
             halted,
             contraction,
             seen: self.seen.clone(),
+            falls: self.falls,
             divided: self.divided.clone(),
             decided: self.decided,
             looked: self.looked.clone(),
@@ -125,6 +127,7 @@ impl Engine {
     pub(super) fn resumed(walk: Walk, options: FollowOptions) -> (Self, Halted, f64) {
         let engine = Self {
             seen: walk.seen,
+            falls: walk.falls,
             divided: walk.divided,
             decided: walk.decided,
             looked: walk.looked,
