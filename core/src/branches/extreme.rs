@@ -7,6 +7,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::system::System;
 
 /// An extreme of a gap is followed from one orbit to the next as long as it moves by less than this phase.
@@ -73,6 +74,17 @@ impl Extreme {
 pub(crate) struct Passage {
     pub(crate) before: Extreme,
     pub(crate) next: Extreme,
+}
+
+impl Passage {
+    /// The end of a step at which it is clear of its level, and the extreme there.
+    pub(crate) fn clear_end<'s>(&self, step: Step<'s>) -> (&'s CurvePoint, Extreme) {
+        if self.before.is_clear() {
+            (step.before, self.before)
+        } else {
+            (step.next, self.next)
+        }
+    }
 }
 
 /// The extremes that have gone through their levels from one orbit to the next.

@@ -272,6 +272,15 @@ impl Halted {
         }
     }
 
+    /// To go on from the point before the last one again, which is none of the curve.
+    #[must_use]
+    pub(crate) fn back_to(self, point: CurvePoint, step: f64) -> Self {
+        Self {
+            count: self.count.saturating_sub(1),
+            ..self.moved_to(point, step)
+        }
+    }
+
     /// Whether its step and its scales are numbers that a walk can have: they may have been read from a file.
     pub(crate) fn is_possible(&self) -> bool {
         let positive = |x: f64| x.is_finite() && x > 0.0;

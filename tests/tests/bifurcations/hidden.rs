@@ -321,3 +321,37 @@ fn one_stop_is_reached_and_another_one_left_within_a_step() {
     // Each on one side of its resonance.
     assert_touches(&model, [0.85, 0.95], known);
 }
+
+hertzian::oscillator! {
+    /// Two masses with a joint that is stiffer in compression.
+    Joint(x, y) {
+        law joint(gap) { gap > 0 => 0.9*gap, else => 1.86*gap }
+        2*ddot(x) + 0.006*dot(x) + 0.45*x + 0.763*(x - y) + 0.0072*(dot(x) - dot(y)) - joint(y - x) = 0;
+        ddot(y) + 0.03*dot(y) + 1.33*y + 0.763*(y - x) + 0.0072*(dot(y) - dot(x)) + joint(y - x) = 0.04*cos(omega*t);
+    }
+}
+
+/// Two folds, between which the branch hardly leaves the line on which it goes before and behind them: a step that leads over them is one
+/// that any test at its ends would pass. But on the way the joint opens and closes twice more.
+#[test]
+fn a_step_over_two_folds_is_made_again() {
+    let joint = Joint {};
+    for [from, to] in [[0.49, 0.55], [0.55, 0.49]] {
+        let request = FrequencyResponse::of(&joint).from(from).to(to);
+        let by_shooting = request.clone().by(Shooting::new()).run().unwrap();
+        let by_balance = request.bifurcations(true).run().unwrap();
+        let folds = [&by_balance, &by_shooting].map(|branch| {
+            assert_eq!(
+                (branch.stopped, branch.folds().count()),
+                (Stop::ReachedEnd, 2)
+            );
+            let mut folds: Vec<&Event> = branch.folds().collect();
+            folds.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
+            folds
+        });
+        for (a, b) in folds[0].iter().zip(&folds[1]) {
+            let apart = (a.point.value - b.point.value).abs();
+            assert!(apart <= a.error + b.error && a.error < 1e-6, "{a} {b}");
+        }
+    }
+}

@@ -1,7 +1,9 @@
 //! First orbits where nothing stiff is near rest, of motions that are tiny beside their static state, and of whatever settles.
 
-use hertzian::time::Tangent;
+use std::f64::consts::TAU;
+
 use hertzian::time::stroboscope::Stroboscope;
+use hertzian::time::{self, Options, Tangent};
 use hertzian::{FrequencyResponse, Shooting, System};
 use hertzian_tests::random::Random;
 
@@ -396,4 +398,34 @@ fn a_residual_that_is_all_rounding_is_no_start() {
             );
         }
     }
+}
+
+hertzian::oscillator! {
+    /// Three masses in a row, the last beside a spring whose stiffness is unbounded at rest.
+    Steep(x, y, z) {
+        param drive;
+        law steep(gap) { sgn(gap)*(322*abs(gap)^0.52) }
+        law stop(gap) { gap > 0 => 5.03e4*gap^0.73 + 0.11*dot(gap), else => 0 }
+        0.0124*ddot(x) + 0.13*dot(x) + 6785*(x - y) + 0.043*(dot(x) - dot(y)) = 0;
+        0.0124*ddot(y) + 0.34*dot(y) + 3.76e10*y^3 - 1.87e4*y + 6785*(y - x) + 0.043*(dot(y) - dot(x))
+            + 20782*(y - z) + 0.37*(dot(y) - dot(z)) + stop(y) = drive*cos(omega*t);
+        0.0124*ddot(z) + 1.22*dot(z) + 20782*(z - y) + 0.37*(dot(z) - dot(y)) + steep(z) = 0;
+    }
+}
+
+/// Newton's method leads nowhere, and no motion can be computed from rest, but one that begins beside it settles.
+#[test]
+fn motions_that_cannot_begin_at_rest_begin_beside_it() {
+    let steep = Steep { drive: 0.687 };
+    let by_balance = FrequencyResponse::of(&steep).orbit(1467.0).unwrap();
+    let mut flow = time::of(&steep, 1467.0, Options::default()).unwrap();
+    let mut state = [1e-6, 1e-6, 1e-6, 0.0, 0.0, 0.0];
+    for _ in 0..600 {
+        flow.advance(0.0, TAU, &mut state, None, None).unwrap();
+    }
+    let request = FrequencyResponse::of(&steep).by(Shooting::new());
+    let settled = request.near_state(&state).orbit(1467.0).unwrap();
+    let [a, b] = [&by_balance, &settled].map(hertzian::Point::peak_to_peak);
+    assert!((a / b - 1.0).abs() < by_balance.error.unwrap(), "{a} {b}");
+    assert_eq!(by_balance.stability.verdict, settled.stability.verdict);
 }

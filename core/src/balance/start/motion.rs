@@ -4,6 +4,9 @@
 //! several: where a motion settles to an orbit of a longer period, or to none, the mean of its periods is near an unstable orbit of period
 //! one. Newton's method starts from there, and from some way before the motion has settled, since that may take long.
 //!
+//! From rest on a level beside which a stiffness is unbounded no motion can be computed, since it may leave in any way. Then it begins a little
+//! beside: what it settles to does not depend on that.
+//!
 //! How motions are computed this room does not know: it is given a function.
 //!
 //! Source: Nayfeh and Balachandran (1995), Applied Nonlinear Dynamics, section 6.3 (periodic solutions by long integration, and from there
@@ -11,10 +14,12 @@
 
 use super::effort::Effort;
 use super::fixed::Fixed;
-use super::{Moving, StartRequest};
+use super::{Motion, Moving, StartRequest};
 use crate::balance::Resolution;
 use crate::continuation::newton::NewtonOptions;
+use crate::model::layout::constant;
 use crate::numeric::fourier::sampled::SampledTransform;
+use crate::numeric::linear::dot;
 
 /// Periods of the declaration after which Newton's method is tried.
 const TRIED_AFTER: [usize; 5] = [12, 48, 192, 576, 1152];
@@ -41,33 +46,16 @@ pub(super) fn orbit(
         ..request
     };
     let mut fixed = Fixed::new(request, request.resolution.harmonics);
-    let samples = (OVERSAMPLED * request.resolution.harmonics)
-        .max(LEAST_SAMPLES)
-        .next_power_of_two();
+    let beside = beside(&mut fixed, effort);
     for positions in from {
-        let mut state = positions.clone();
-        state.resize(2 * positions.len(), 0.0);
-        let mut passed = 0;
-        for periods in TRIED_AFTER {
-            let moved = motion(Moving {
-                omega: request.omega,
-                variable: request.variable,
-                value: request.value,
-                state: &mut state,
-                skipped: periods - AVERAGED - passed,
-                recorded: AVERAGED,
-                samples,
-                most: effort.remaining(),
-            });
-            passed = periods;
-            effort.take_operations(moved.operations);
-            let Some(positions) = moved.positions else {
-                break;
-            };
-            for guess in guesses(&fixed, &positions, samples) {
-                if let Some(u) = solved(&mut fixed, &guess, request, effort) {
-                    return Some(u);
-                }
+        let aside = positions.iter().zip(&beside).map(|(x, d)| x + d).collect();
+        for positions in [positions.clone(), aside] {
+            let mut state = positions;
+            state.resize(2 * beside.len(), 0.0);
+            match settled(&mut fixed, request, motion, state, effort) {
+                Settled::Found(u) => return Some(u),
+                Settled::Not => break,
+                Settled::Unmoved => {}
             }
             if effort.is_spent() {
                 return None;
@@ -75,6 +63,78 @@ pub(super) fn orbit(
         }
     }
     None
+}
+
+/// What a motion comes to.
+enum Settled {
+    Found(Vec<f64>),
+    Not,
+    /// It cannot be computed from the first.
+    Unmoved,
+}
+
+/// The orbit near what the motion from a state comes to.
+fn settled(
+    fixed: &mut Fixed<'_>,
+    request: StartRequest<'_>,
+    motion: &Motion<'_>,
+    mut state: Vec<f64>,
+    effort: &mut Effort,
+) -> Settled {
+    let samples = (OVERSAMPLED * request.resolution.harmonics)
+        .max(LEAST_SAMPLES)
+        .next_power_of_two();
+    let mut passed = 0;
+    for periods in TRIED_AFTER {
+        let moved = motion(Moving {
+            omega: request.omega,
+            variable: request.variable,
+            value: request.value,
+            state: &mut state,
+            skipped: periods - AVERAGED - passed,
+            recorded: AVERAGED,
+            samples,
+            most: effort.remaining(),
+        });
+        effort.take_operations(moved.operations);
+        let Some(positions) = moved.positions else {
+            return if passed == 0 {
+                Settled::Unmoved
+            } else {
+                Settled::Not
+            };
+        };
+        passed = periods;
+        for guess in guesses(fixed, &positions, samples) {
+            if let Some(u) = solved(fixed, &guess, request, effort) {
+                return Settled::Found(u);
+            }
+        }
+        if effort.is_spent() {
+            break;
+        }
+    }
+    Settled::Not
+}
+
+/// As far as what drives the system moves a free mass; each coordinate a little farther than the one before, so that no gap between two
+/// stays as it was.
+fn beside(fixed: &mut Fixed<'_>, effort: &mut Effort) -> Vec<f64> {
+    let origin = fixed.zeros();
+    fixed.residual(&origin, effort);
+    let Fixed {
+        balance, residual, ..
+    } = fixed;
+    let force = residual
+        .chunks_exact(balance.length())
+        .map(|of| dot(&of[1..], &of[1..]).sqrt())
+        .fold(0.0, f64::max);
+    let coordinates = balance.layout().coordinates;
+    let mass = constant(&balance.layout().mass, balance.coefficients(), coordinates);
+    let size = force / (mass.amax() * balance.omega().powi(2));
+    let size = if size.is_finite() { size } else { 0.0 };
+    let farther = |i: usize| 1.0 + i as f64 / coordinates as f64;
+    (0..coordinates).map(|i| size * farther(i)).collect()
 }
 
 /// The last period as extended unknowns, and the mean of all recorded, from positions coordinate by coordinate.

@@ -12,8 +12,9 @@
 //!
 //! 1. A step is [divided](inside) where a function passes zero twice in it, as far as three points tell.
 //! 2. What changes its sign in a part is [located](zero) and read.
-//! 3. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
-//! 4. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located.
+//! 3. A step that [leaps](leap) over two folds is made again, shorter.
+//! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
+//! 5. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions); Keller
 //! (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (the bordered determinant).
@@ -23,6 +24,7 @@ mod corner;
 mod corner_search;
 mod inside;
 mod inside_touch;
+mod leap;
 #[cfg(test)]
 mod tests;
 mod touch;
@@ -109,6 +111,8 @@ struct Engine {
     looked: Option<Looked>,
     /// A point behind a corner, to go on from.
     passed: Option<CurvePoint>,
+    /// The point before the last one, to go on from in a step of this length, since the last one is not the next on the branch.
+    back: Option<(CurvePoint, f64)>,
     /// The last points with the extremes of their gaps.
     gaps: Vec<Gaps>,
     /// Where levels are touched in the last step.
@@ -187,6 +191,10 @@ fn go_on(
                     start = Start::At(Box::new(halted.moved_to(passed, options.steps.initial)));
                     continue;
                 }
+                if let Some((point, step)) = engine.back.take() {
+                    start = Start::At(Box::new(halted.back_to(point, step)));
+                    continue;
+                }
                 let mut resized = halted.clone();
                 problem.remap(&mut resized);
                 last = Some(halted);
@@ -222,6 +230,7 @@ impl Engine {
             decided: None,
             looked: None,
             passed: None,
+            back: None,
             gaps: Vec::new(),
             touched: Vec::new(),
         }
@@ -235,7 +244,9 @@ impl Engine {
     ) -> Continue {
         match seen {
             Visit::Again(_) if !self.refused => Continue::Continue(()),
-            Visit::Point(at) if self.corner_before(problem, at) => Continue::Break(Halt::Resize),
+            Visit::Point(at) if self.corner_before(problem, at) || self.leaps(problem, at) => {
+                Continue::Break(Halt::Resize)
+            }
             Visit::Point(at) | Visit::Again(at) => {
                 self.beyond = matches!(seen, Visit::Point(_)) && problem.is_beyond(at);
                 if self.beyond {

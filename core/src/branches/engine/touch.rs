@@ -232,12 +232,7 @@ impl TouchSearch<'_> {
         found: &[Passage],
         at_once: &mut Vec<Passage>,
     ) -> bool {
-        let Passage { before, next } = found[0];
-        let (from, extreme) = if before.is_clear() {
-            (step.before, before)
-        } else {
-            (step.next, next)
-        };
+        let (from, extreme) = found[0].clear_end(step);
         let farthest = FARTHEST * newton.norm().length(from.scale, &step.difference());
         let approach = Approach {
             from,
