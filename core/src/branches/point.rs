@@ -25,9 +25,12 @@ pub struct Point {
     pub stability: Stability,
     /// What is read off it.
     pub observed: Observed,
-    /// Estimated error of peak-to-peak, from the harmonics that were left out or from the tolerance of the flow, and from rounding: of the first coordinate relative to its own, of the others
-    /// relative to the largest of all, at this very value of what is varied. A first coordinate whose motion is not told from what is left
-    /// of the equations is at rest, and measured by the largest. `None` where neither the tolerance nor the stability asked for it. Infinite where it could not be estimated: nothing is known of the error then.
+    /// Estimated error of peak-to-peak, from the harmonics or nodes that were left out or from the tolerance of the flow, and from rounding:
+    /// of the first coordinate relative to its own, of the others relative to the largest of all, at this very value of what is varied. A
+    /// first coordinate whose motion is not told from what is left of the equations is at rest, and measured by the largest. Where
+    /// accuracy was asked of one output or coordinate, of that, as a part of itself ([`Branch::accuracy_of`](crate::Branch::accuracy_of)).
+    /// `None` where neither the tolerance nor the stability asked for it. Infinite where it could not be estimated: nothing is known of
+    /// the error then.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub error: Option<f64>,
 }
