@@ -50,7 +50,6 @@
 //! - `plot` (default): draws branches as SVG.
 //! - `serde`: results are serialised and read back; branches as JSON, `Branch::write` and `Branch::read`.
 //! - `text`: reads declarations from text at run time; brings the compiler in.
-//! - `serde`: results are written and read by serde.
 //!
 //! The matrices and complex numbers of [`nalgebra`] are part of this interface.
 //!

@@ -1,4 +1,4 @@
-//! Numbers through serde, with feature `serde`, so that they read back to the same bits.
+//! How numbers stand in files, with feature `serde`, so that they read back to the same bits. Files of branches are written in `report/export`.
 //!
 //! JSON has no infinity and no NaN: they are the texts `"inf"`, `"-inf"` and `"NaN"`, and `null` is a number that is not known. Complex
 //! numbers are pairs of real and imaginary part, times are seconds.

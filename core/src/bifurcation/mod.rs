@@ -1,4 +1,5 @@
-//! Bifurcations of periodic orbits: the branches that begin at them, and the curves that they lie on.
+//! Bifurcations of periodic orbits: the branches that begin at them, and the curves that they lie on. Where they are, the
+//! engine of branches (`branches/engine`) has found.
 
 pub mod backbone;
 mod cover;

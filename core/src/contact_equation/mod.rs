@@ -6,6 +6,8 @@
 //! motion at any phase. `gaps`, `plan` and `transfer` tell which skeleton an orbit has, `fits` whether it still is right, `reading` what is
 //! read off an orbit, with its errors. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
 //!
+//! Laws are called in `pass`; what their forces do to the motion is integrated in `integrals`.
+//!
 //! Source: Babitsky (1998), Theory of Vibro-Impact Systems and Applications, section 2.2 (integral equations of contact forces); Gauss
 //! collocation as in Hairer, Norsett and Wanner (1993), Solving Ordinary Differential Equations I, section II.7.
 

@@ -1,6 +1,6 @@
 //! Branches as JSON, with feature `serde`.
 //!
-//! A file is one object with a `version` and a list `branches`; what else it holds is of whoever wrote it.
+//! A file is one object with a `version` and a list `branches`; what else it holds is of whoever wrote it: the program adds a summary.
 
 use std::path::Path;
 
