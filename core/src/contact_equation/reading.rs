@@ -156,7 +156,7 @@ impl Run<'_> {
         let size = self.accuracy().peak_to_peak(&point.observed);
         let steepness = self.steepness(at).unwrap_or_else(|| self.rise(&point));
         let error = SAFETY * (apart + steepness * shift.abs()) / size;
-        point.error = Some(error + 100.0 * f64::EPSILON);
+        point.error = Some(stated(error));
         let mut spread = 0.0;
         if let Some(map) = &map {
             let found = eigenvalues(map);
@@ -208,10 +208,10 @@ impl Run<'_> {
         let error = SAFETY * (known.apart + rise * known.shift) / size;
         let error = grown * error.max(known.error);
         let spread = grown * known.spread;
-        if error > self.problem.tolerance {
+        if error.is_nan() || error > self.problem.tolerance {
             return self.read(at);
         }
-        point.error = Some(error + 100.0 * f64::EPSILON);
+        point.error = Some(stated(error));
         if let Some(map) = &map {
             point.stability = Stability::of(eigenvalues(map), spread);
             if point.stability.verdict == Verdict::Undecided {
@@ -327,6 +327,15 @@ impl Run<'_> {
         }
         let shift = step[step.len() - 1];
         Some(Finer { u, shift })
+    }
+}
+
+/// With what rounding adds; of what does not move, which has no part of itself, nothing is known.
+fn stated(error: f64) -> f64 {
+    if error.is_nan() {
+        f64::INFINITY
+    } else {
+        error + 100.0 * f64::EPSILON
     }
 }
 

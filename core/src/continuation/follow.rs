@@ -57,7 +57,8 @@ impl CurvePoint {
     /// The same, unless it is rounding, which is as large as `vanishing` where the parameter is as large as its scale.
     pub(crate) fn known_slope(&self, vanishing: f64) -> Option<f64> {
         let slope = self.parameter_slope();
-        (slope.abs() > vanishing * self.narrowness()).then_some(slope)
+        let rounding = (vanishing * self.narrowness()).min(ROUNDED);
+        (slope.abs() > rounding).then_some(slope)
     }
 
     /// How many times its scale the parameter is, if that is more than one: rounding of it is that much larger.
@@ -65,6 +66,9 @@ impl CurvePoint {
         (self.parameter().abs() / self.scale.parameter).max(1.0)
     }
 }
+
+/// A slope that is larger is none that rounding makes, whatever the unit of the parameter is.
+const ROUNDED: f64 = 1e-3;
 
 /// The way between two successive points of a curve, or a part of it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -114,9 +114,13 @@ impl<R: Clone> BothWays<R> {
             _ => part(way, None),
         };
         let forth = go_on(Way::Forth, forth)?;
-        // Once around, or interrupted: there is no other side.
-        let alone = matches!(forth.branch.stopped, Stop::Closed | Stop::Interrupted);
-        let back = (!alone).then(|| go_on(Way::Back, back));
+        // Once around, there is no other side.
+        let back = match (forth.branch.stopped, back) {
+            (Stop::Closed, _) => None,
+            // What there is of it stays.
+            (Stop::Interrupted, known) => known.map(Ok),
+            (_, known) => Some(go_on(Way::Back, known)),
+        };
         let left = Self {
             value: self.value,
             forth: forth.rest,

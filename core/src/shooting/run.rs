@@ -267,7 +267,9 @@ impl Run<'_> {
         };
         let change = (peak_to_peak_of(problem, other, known, output)? - own).abs();
         let times = f64::max(change / apart, own / (2.0 * *size));
-        Ok((reference.part * change + times * states) / own)
+        let error = (reference.part * change + times * states) / own;
+        // An output that does not move has no part of itself.
+        Ok(if error.is_nan() { f64::INFINITY } else { error })
     }
 }
 

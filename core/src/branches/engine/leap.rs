@@ -37,7 +37,9 @@ impl Engine {
         let Some(before) = last.filter(|last| last.u.len() == next.u.len()) else {
             return false;
         };
-        let same_way = before.parameter_slope() * next.parameter_slope() > 0.0;
+        let vanishing = problem.vanishing();
+        let slopes = [&before, next].map(|at| at.known_slope(vanishing));
+        let same_way = matches!(slopes, [Some(here), Some(there)] if here * there > 0.0);
         let gaps = [&before, next].map(|at| self.gaps_at(problem, at));
         let ([Some(here), Some(there)], true) = (gaps, same_way) else {
             return false;
