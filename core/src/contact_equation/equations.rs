@@ -251,6 +251,8 @@ impl Equations {
         }
         pass.close(&self.reference);
         self.switches(u, derivatives);
+        // Unknowns that belong to no motion, as of a frequency of zero.
+        self.failed = !self.residual.iter().all(|x| x.is_finite());
     }
 
     /// Equations (2) and (3) of [`skeleton`](super::skeleton).

@@ -12,6 +12,8 @@ use crate::numeric::roots::{self, Place};
 const SAMPLES: f64 = 8.0;
 /// The same at least.
 const FEWEST: f64 = 6.0;
+/// More are not taken, however fast the motion is.
+const MOST: f64 = 1e6;
 /// Accuracy of the phase of an extreme, in parts of the distance of two samples.
 const LOCATED: f64 = 1e-9;
 /// Two extremes of a gap as near as this are one.
@@ -112,7 +114,7 @@ impl Samples {
             self.states.extend_from_slice(&passed.states);
             return;
         }
-        let parts = parts.ceil() as usize;
+        let parts = parts.ceil().min(MOST) as usize;
         self.states.resize((parts + 1) * order, 0.0);
         for (part, states) in self.states.chunks_exact_mut(order).enumerate() {
             let phase = from + (to - from) * (part as f64 / parts as f64);

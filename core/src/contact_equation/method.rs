@@ -290,10 +290,15 @@ impl BranchProblem for ContactBranch<'_, '_> {
             return;
         };
         let length = u.len();
-        let nowhere = |scale| CurvePoint {
-            u: vec![0.0; length],
-            tangent: vec![0.0; length],
-            scale,
+        // Far beyond every range.
+        let nowhere = |scale| {
+            let mut u = vec![0.0; length];
+            u[length - 1] = f64::MAX;
+            CurvePoint {
+                u,
+                tangent: vec![0.0; length],
+                scale,
+            }
         };
         let is_finite = |point: &CurvePoint| {
             let mut numbers = point.u.iter().chain(&point.tangent);
