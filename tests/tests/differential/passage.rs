@@ -130,15 +130,13 @@ impl Passage {
     }
 }
 
-/// Two branches of which one was cut at so many points, or both, up to where the shorter one ends, which is an orbit of the longer one.
+/// Two branches that both were cut at so many points, up to where the shorter one ends, which is an orbit of the longer one.
 ///
 /// Rounding changes what an iteration leaves, the step control makes more of that from point to point, and after as many steps two
 /// walks along one curve are not equally far. What is compared is the curve: its orbits at a value, and its events as far as both go.
 /// `None` if neither ends on the other one.
 pub fn as_far(one: &Walked<'_>, other: &Walked<'_>) -> Option<[Passage; 2]> {
-    let passages = [&one.passage, &other.passage];
-    let goes_on = passages.iter().all(|passage| passage.cut || passage.whole);
-    if !goes_on || passages.iter().all(|passage| passage.whole) {
+    if !(one.passage.cut && other.passage.cut) {
         return None;
     }
     if let Some(shorter) = one.up_to(&other.passage) {
