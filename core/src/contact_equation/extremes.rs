@@ -5,7 +5,7 @@
 //! through positions and velocities on both sides tells.
 
 use super::motion::{GapExtreme, Motion};
-use super::skeleton::Told;
+use super::placement::Told;
 use crate::numeric::roots::{self, Place};
 
 /// Samples of a rate in the shortest period of what an interval without forces can do.

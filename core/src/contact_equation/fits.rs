@@ -2,9 +2,9 @@
 
 use super::gaps::is_lonely;
 use super::motion::{GapExtreme, Motion};
+use super::placement::Told;
 use super::plan;
 use super::run::{Run, SAME};
-use super::skeleton::Told;
 
 /// A gap that is beyond its level by this part of its size is elsewhere.
 const BEYOND: f64 = 1e-9;

@@ -1,8 +1,8 @@
 //! The gaps of a motion that is given at any phase: where they cross levels, and their extremes.
 
 use super::motion::GapExtreme;
-use super::skeleton::{Placed, Switch, Told};
-use super::values::{Values, dot};
+use super::placement::{Placed, Switch, Told};
+use super::values::{Instant, Values};
 use crate::numeric::roots::{self, Place};
 
 /// Samples in a period of the declaration.
@@ -40,14 +40,16 @@ impl Gaps<'_> {
     /// Gap and rate by the time.
     pub(super) fn gap(&self, contact: usize, phase: f64) -> [f64; 2] {
         let states = self.states(phase);
-        let of = &self.values.contacts[contact];
-        let mut row = vec![0.0; states.len()];
-        of.gap.write(phase, 0, &mut row);
-        let gap = dot(&row, &states) - of.offset.value(phase, 0);
-        of.gap.write(phase, 1, &mut row);
-        let turning = dot(&row, &states) - of.offset.value(phase, 1);
-        of.rate.write(phase, 0, &mut row);
-        [gap, dot(&row, &states) + self.values.base * turning]
+        let mut rows: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; states.len()]);
+        let instant = Instant {
+            tau: phase,
+            base: self.values.base,
+            by_omega: 0.0,
+        };
+        let [gap, rate, another] = &mut rows;
+        let contact = &self.values.contacts[contact];
+        let output = contact.output(instant, &states, [gap, rate], another);
+        [output.gap, output.rate]
     }
 
     /// Half of the second derivative by the phase, beside a phase on both sides.

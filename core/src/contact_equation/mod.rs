@@ -1,7 +1,7 @@
 //! Periodic orbits by the contact equation: unknown are the forces at a few nodes of each stretch in contact, where stretches begin and
 //! end, and the state at one phase. Between contacts the system is linear, and its motion known in closed form.
 //!
-//! `linear` and `block` have the motion of the linear part, `nodes`, `grading` and `integrals` the integrals over a stretch, `skeleton` and `place`
+//! `linear` and `block` have the motion of the linear part, `nodes`, `grading` and `integrals` the integrals over a stretch, `skeleton`, `placement` and `place`
 //! which pieces gaps are on and where the unknowns stand, `targets`, `pass`, `equations` and `eliminated` residuals and derivatives, `motion` and `extremes` the
 //! motion at any phase. `gaps`, `plan` and `transfer` tell which skeleton an orbit has, `fits` whether it still is right, `reading` what is
 //! read off an orbit, with its errors. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
@@ -28,6 +28,7 @@ mod nodes;
 mod options;
 mod pass;
 mod place;
+mod placement;
 mod plan;
 pub(crate) mod problem;
 mod reading;

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use super::block::times;
 use super::equations::Equations;
 use super::extremes::Extremes;
-use super::values::{Contact, dot, pair};
+use super::values::{Contact, Instant, pair};
 use crate::time;
 
 /// An extreme of a gap within an interval.
@@ -27,7 +27,7 @@ pub(super) struct Motion<'e> {
 /// Room for one instant.
 struct Room {
     states: Vec<f64>,
-    row: Vec<f64>,
+    rows: [Vec<f64>; 3],
     weights: Vec<f64>,
     steady: Vec<f64>,
 }
@@ -37,7 +37,7 @@ impl<'e> Motion<'e> {
         let states = || vec![0.0; equations.skeleton.order];
         let room = Room {
             states: states(),
-            row: states(),
+            rows: std::array::from_fn(|_| states()),
             weights: Vec::new(),
             steady: states(),
         };
@@ -116,27 +116,32 @@ impl<'e> Motion<'e> {
     pub(super) fn gap(&self, contact: usize, interval: usize, phase: f64) -> [f64; 2] {
         let room = &mut *self.room.borrow_mut();
         self.write(interval, phase, room);
-        self.gap_in(contact, phase, &room.states, &mut room.row)
+        self.gap_in(contact, phase, &room.states, &mut room.rows)
     }
 
     /// The same in these states.
     pub(super) fn gap_of(&self, contact: usize, phase: f64, states: &[f64]) -> [f64; 2] {
         let room = &mut *self.room.borrow_mut();
-        self.gap_in(contact, phase, states, &mut room.row)
+        self.gap_in(contact, phase, states, &mut room.rows)
     }
 
-    fn gap_in(&self, contact: usize, phase: f64, states: &[f64], row: &mut [f64]) -> [f64; 2] {
+    fn gap_in(
+        &self,
+        contact: usize,
+        tau: f64,
+        states: &[f64],
+        rows: &mut [Vec<f64>; 3],
+    ) -> [f64; 2] {
         let values = &self.equations.values;
-        let contact = &values.contacts[contact];
-        contact.gap.write(phase, 0, row);
-        let gap = dot(row, states) - contact.offset.value(phase, 0);
-        contact.rate.write(phase, 0, row);
-        let mut slope = dot(row, states) / values.base - contact.offset.value(phase, 1);
-        if !contact.gap.is_constant() {
-            contact.gap.write(phase, 1, row);
-            slope += dot(row, states);
-        }
-        [gap, slope]
+        let base = values.base;
+        let instant = Instant {
+            tau,
+            base,
+            by_omega: 0.0,
+        };
+        let [gap, rate, another] = rows;
+        let output = values.contacts[contact].output(instant, states, [gap, rate], another);
+        [output.gap, output.rate / base]
     }
 
     /// Writes positions and velocities at a phase within an interval.

@@ -6,7 +6,8 @@
 use super::equations::{Equations, Setting};
 use super::gaps::{BEND, Gaps, beginning, is_lonely, look, piece};
 use super::motion::GapExtreme;
-use super::skeleton::{Beginning, Placed, Placement, Resolution, Skeleton, Switch, Told};
+use super::placement::{Beginning, Placed, Placement, Resolution, Switch, Told};
+use super::skeleton::Skeleton;
 use crate::law::{Derivatives, Law, On};
 
 /// Two switches of a gap at one level with a shorter way between them are a pair; pairs part beyond the other length.

@@ -1,7 +1,7 @@
 //! What a computation by the contact equation works with: checked, and the same for all orbits of a branch.
 
 use super::equations::Setting;
-use super::skeleton::Resolution;
+use super::placement::Resolution;
 use crate::branches::extreme;
 use crate::error::Error;
 use crate::model::error::ModelError;

@@ -2,11 +2,12 @@
 
 use super::equations::Equations;
 use super::method::ContactBranch;
+use super::placement::Placement;
 use super::plan::Frame;
 use super::problem::{ContactProblem, RESOLUTIONS};
 use super::reading::Screened;
 use super::run::Run;
-use super::skeleton::{Placement, Skeleton};
+use super::skeleton::Skeleton;
 use crate::branches::branch::Branch;
 use crate::branches::engine::Walk;
 

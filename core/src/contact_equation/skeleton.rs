@@ -23,6 +23,7 @@
 use super::grading::STEEPEST;
 use super::nodes::{COUNTS, Nodes};
 use super::place::{Place, half_way};
+use super::placement::{Placement, Switch, Told};
 use super::values::Contact;
 use crate::law::{Law, Quantity, Variation};
 use crate::numeric::fourier::grading;
@@ -58,34 +59,6 @@ impl Mark {
             part: 0.0,
         }
     }
-}
-
-/// How a switch is told by its unknown.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-pub(super) enum Told {
-    /// By its phase.
-    Alone,
-    /// It is the first of two: its unknown is the middle, and half of `g''` of (3) belongs to it, by the phase.
-    First {
-        other: usize,
-        #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-        bend: f64,
-    },
-    /// It is the second of two: its unknown is `H`.
-    Second { other: usize },
-}
-
-/// A gap at a level.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Switch {
-    pub(super) contact: usize,
-    pub(super) level: usize,
-    /// The gap rises there.
-    pub(super) rises: bool,
-    pub(super) told: Told,
 }
 
 /// A contact whose force is unknown on an interval.
@@ -137,15 +110,6 @@ impl Interval {
     }
 }
 
-/// A switch with the phase where it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Placed {
-    pub(super) switch: Switch,
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub(super) phase: f64,
-}
-
 /// All of it.
 #[derive(Debug, Clone)]
 pub(super) struct Skeleton {
@@ -160,67 +124,6 @@ pub(super) struct Skeleton {
     /// Number of forces.
     pub(super) forces: usize,
     pub(super) placement: Placement,
-}
-
-/// Nodes of a stretch and panels of a stretch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Resolution {
-    pub(super) nodes: usize,
-    /// Nodes, with finer panels the longer the stretch: so many panels in a whole period.
-    pub(super) panels: usize,
-}
-
-/// Where a period begins, how long it is, and on which pieces the gaps are there.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Beginning {
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub(super) phase: f64,
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub(super) length: f64,
-    pub(super) pieces: Vec<usize>,
-}
-
-/// What a skeleton is made from: its beginning, and the switches in the order of time.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Placement {
-    pub(super) beginning: Beginning,
-    pub(super) placed: Vec<Placed>,
-    pub(super) resolution: Resolution,
-}
-
-impl Placement {
-    /// Whether it is one of these contacts: it may have been read from a file.
-    pub(super) fn fits(&self, contacts: &[Contact]) -> bool {
-        let Beginning {
-            phase,
-            length,
-            pieces,
-        } = &self.beginning;
-        let mut levels = contacts.iter().map(|contact| contact.levels.len());
-        let on_pieces = pieces.len() == contacts.len()
-            && pieces.iter().all(|piece| levels.next() >= Some(*piece));
-        let possible = |placed: &Placed| {
-            let Switch {
-                contact,
-                level,
-                told,
-                ..
-            } = placed.switch;
-            let other = match told {
-                Told::Alone => 0,
-                Told::First { other, .. } | Told::Second { other } => other,
-            };
-            let level = contacts.get(contact).map(|of| level < of.levels.len());
-            level == Some(true)
-                && other < self.placed.len()
-                && (*phase..=phase + length).contains(&placed.phase)
-        };
-        let whole = phase.is_finite() && length.is_finite() && *length > 0.0;
-        on_pieces && whole && self.placed.iter().all(possible)
-    }
 }
 
 impl Skeleton {

@@ -2,8 +2,8 @@
 
 use super::equations::{Equations, Setting};
 use super::gaps::Gaps;
+use super::placement::Resolution;
 use super::plan::{Frame, Plan};
-use super::skeleton::Resolution;
 use crate::branches::solve;
 use crate::cancel::Cancel;
 use crate::continuation::newton::{Newton, NewtonOptions};

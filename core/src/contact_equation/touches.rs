@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::motion::{GapExtreme, Motion};
+use super::placement::Told;
 use super::run::{Run, SAME};
-use super::skeleton::Told;
 use crate::branches::extreme::Extreme;
 
 /// What `H` of a pair may be where its gap touches the level.

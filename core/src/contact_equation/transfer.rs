@@ -3,8 +3,9 @@
 use super::equations::Equations;
 use super::gaps::{Gaps, apart};
 use super::motion::{GapExtreme, Motion};
+use super::placement::{Placed, Switch, Told};
 use super::plan::{Plan, write_forces};
-use super::skeleton::{Placed, Skeleton, Switch, Told};
+use super::skeleton::Skeleton;
 
 /// A switch of an orbit near another one has moved by less than this phase.
 const MOVED: f64 = 0.7;

@@ -30,8 +30,9 @@
 
 use super::approach::Approach;
 use super::corner_search::{Corner, CornerSearch};
+use super::seen::Seen;
 use super::touch::touching;
-use super::{Engine, Looked, Seen};
+use super::{Engine, Looked};
 use crate::branches::extreme::{Extreme, passed};
 use crate::branches::problem::{BranchProblem, Touch};
 use crate::continuation::follow::{CurvePoint, Step, Stop};

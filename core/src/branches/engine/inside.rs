@@ -17,7 +17,8 @@
 //! Source: (1) is the error bound of linear interpolation, as Piyavskii (1972), An algorithm for finding the absolute extremum of a
 //! function, uses it with a bound on the first derivative.
 
-use super::{Engine, Seen, changes, signs};
+use super::Engine;
+use super::seen::{Seen, changes, signs};
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{inside, locate};

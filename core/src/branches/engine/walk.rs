@@ -3,7 +3,8 @@
 //! It is taken before each step, and what a step finds follows from it and from the equations alone. A walk that is interrupted within a
 //! step makes that step again, and comes to the same points to the last bit.
 
-use super::{Engine, Seen};
+use super::Engine;
+use super::seen::Seen;
 use crate::branches::problem::Test;
 use crate::branches::record::Kept;
 use crate::continuation::follow::{CurvePoint, FollowOptions, Halted};

@@ -1,6 +1,7 @@
 //! Locates where a test function vanishes between two points, and has the orbit there read.
 
-use super::{Engine, Seen};
+use super::Engine;
+use super::seen::Seen;
 use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::{CurvePoint, Step, Stop};

@@ -1,0 +1,108 @@
+//! Points of a branch with their test functions, and what changes of sign between two of them mean.
+
+use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
+use crate::continuation::follow::CurvePoint;
+use crate::event::EventKind;
+
+/// A point of the branch with its test functions.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Seen {
+    pub(super) point: CurvePoint,
+    pub(super) values: Vec<TestValue>,
+    /// Complex multipliers outside of the unit circle.
+    pub(super) complex: Option<usize>,
+    /// Whether the parameter falls, as the last slope says that is no rounding: where a branch is vertical, as with orbits of any size at a
+    /// parametric resonance of a linear stretch, no sign of a slope means anything.
+    pub(super) falls: Option<bool>,
+}
+
+impl Seen {
+    /// Whether the parameter `falls` is what is known from the way to it.
+    pub(super) fn at(
+        problem: &mut dyn BranchProblem,
+        point: &CurvePoint,
+        falls: Option<bool>,
+    ) -> Self {
+        let values = (0..problem.watched().len()).map(|index| problem.test(index, point));
+        let values = values.collect();
+        let complex = problem.complex_outside(point);
+        let slope = point.known_slope(problem.vanishing());
+        Self {
+            point: point.clone(),
+            values,
+            complex,
+            falls: slope.map(|slope| slope < 0.0).or(falls),
+        }
+    }
+
+    pub(super) fn value(&self, test: Test) -> TestValue {
+        match test {
+            Test::Slope => TestValue::plain(self.point.parameter_slope()),
+            Test::Watched(index) => self.values[index],
+        }
+    }
+}
+
+/// Whether it is the modulus of a multiplier that changes its sign.
+pub(super) fn is_modulus(change: &Change) -> bool {
+    change.kind == EventKind::NeimarkSacker
+}
+
+/// Whether a test function is negative at two points of a branch, or the parameter falls; `None` where that is not known, or rounding.
+pub(super) fn signs(
+    problem: &dyn BranchProblem,
+    ends: [&Seen; 2],
+    test: Test,
+) -> Option<[bool; 2]> {
+    let Test::Watched(index) = test else {
+        return Some([ends[0].falls?, ends[1].falls?]);
+    };
+    let values = ends.map(|seen| seen.values[index]);
+    let known = values.iter().all(|value| value.is_known());
+    let [a, b] = values.map(|value| value.mantissa.abs());
+    let tells = known && a.max(b) > problem.noise(index);
+    tells.then(|| values.map(TestValue::is_negative))
+}
+
+/// What changes its sign from one point to the next, and what that means. Without the bordered determinant every turn counts as a
+/// fold.
+pub(super) fn changes(problem: &dyn BranchProblem, a: &Seen, b: &Seen) -> Vec<Change> {
+    let differs = |test: Test| signs(problem, [a, b], test).is_some_and(|[x, y]| x != y);
+    let turned = differs(Test::Slope);
+    let watched = problem.watched();
+    let bordered = watched.iter().position(|watched| watched.bordered);
+    let crossed = bordered.filter(|index| differs(Test::Watched(*index)));
+    let mut changes = Vec::new();
+    match (turned, crossed) {
+        (true, crossed) => changes.push(Change {
+            test: Test::Slope,
+            kind: crossed.map_or(EventKind::Fold, |_| EventKind::BranchPoint),
+        }),
+        (false, Some(index)) => changes.push(Change {
+            test: Test::Watched(index),
+            kind: EventKind::BranchPoint,
+        }),
+        (false, None) => {}
+    }
+    let mut moduli = Vec::new();
+    for (index, watched) in watched.iter().enumerate() {
+        let test = Test::Watched(index);
+        if !watched.bordered && differs(test) {
+            let kind = watched.kind;
+            let change = Change { test, kind };
+            let found = if is_modulus(&change) {
+                &mut moduli
+            } else {
+                &mut changes
+            };
+            found.push(change);
+        }
+    }
+    // Every other change of sign takes one multiplier across the unit circle, and none that is complex.
+    let explained = moduli.len() <= changes.len() && (changes.len() - moduli.len()) % 2 == 0;
+    if !explained || a.complex != b.complex {
+        changes.append(&mut moduli);
+    }
+    changes
+}
