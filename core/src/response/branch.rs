@@ -5,8 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::by_shooting::{self, Second};
-use super::following::{Following, Left};
-use super::sealed::Follow;
+use super::following::{Following, Left, by_any};
 use crate::balance::symmetry::is_broken;
 use crate::balance_branch::check::Asked;
 use crate::balance_branch::context::BranchContext;
@@ -74,15 +73,9 @@ impl Branch {
     ) -> Result<Self, Error> {
         let following = self.following()?;
         let request = following.request();
-        match following {
-            Following::Balance { balance, .. } => balance.switch(request, event, side, &mut visit),
-            Following::Shooting { shooting, .. } => {
-                shooting.switch(request, event, side, &mut visit)
-            }
-            Following::ContactEquation { equation, .. } => {
-                equation.switch(request, event, side, &mut visit)
-            }
-        }
+        by_any(following, None, |method| {
+            method.switch(request, event, side, &mut visit)
+        })
     }
 
     // A request has `track` and `track_with` as well, for whoever has an event and no branch.

@@ -3,10 +3,11 @@
 use std::fmt;
 
 use super::both_ways::BothWays;
+use super::sealed::Follow;
 use crate::balance_branch::context::BranchContext;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::balance_branch::run;
-use crate::branches::branch::{self, Further, Model};
+use crate::branches::branch::{self, Branch, Further, Model};
 use crate::branches::request::Request;
 use crate::contact_equation::{self, ContactEquation};
 use crate::error::Error;
@@ -31,6 +32,22 @@ pub(super) enum Following {
         equation: ContactEquation,
         rest: Option<Box<contact_equation::Rest>>,
     },
+}
+
+/// What the method gives that followed a branch.
+pub(super) fn by_any(
+    following: &Following,
+    bifurcations: Option<bool>,
+    follow: impl FnOnce(&dyn Follow) -> Result<Branch, Error>,
+) -> Result<Branch, Error> {
+    match following {
+        Following::Balance { balance, .. } => {
+            let wanted = bifurcations.unwrap_or(balance.bifurcations);
+            follow(&balance.bifurcations(wanted))
+        }
+        Following::Shooting { shooting, .. } => follow(shooting),
+        Following::ContactEquation { equation, .. } => follow(equation),
+    }
 }
 
 /// What a branch goes on from.

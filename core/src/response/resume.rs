@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::both_ways::is_left;
-use super::following::{Following, Left};
+use super::following::{Following, Left, by_any};
 use super::sealed::Follow;
 use super::{by_balance, by_contact_equation, by_shooting};
 use crate::balance_branch::check::Asked;
@@ -355,21 +355,5 @@ impl Resume<'_> {
         };
         let run = |method: &dyn Follow| method.run(&request, &mut *visit);
         by_any(following, self.bifurcations, run)
-    }
-}
-
-/// What the method gives that followed a branch.
-fn by_any(
-    following: &Following,
-    bifurcations: Option<bool>,
-    follow: impl FnOnce(&dyn Follow) -> Result<Branch, Error>,
-) -> Result<Branch, Error> {
-    match following {
-        Following::Balance { balance, .. } => {
-            let wanted = bifurcations.unwrap_or(balance.bifurcations);
-            follow(&balance.bifurcations(wanted))
-        }
-        Following::Shooting { shooting, .. } => follow(shooting),
-        Following::ContactEquation { equation, .. } => follow(equation),
     }
 }

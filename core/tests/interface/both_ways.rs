@@ -70,6 +70,21 @@ fn a_limit_is_that_of_each_part() {
     assert_eq!(texts(&resumed.expect("a branch")), texts(&whole));
 }
 
+/// Resumed and interrupted again in its first part, a branch still has what was known of the other one.
+#[test]
+fn what_was_known_of_a_part_stays() {
+    let request = FrequencyResponse::of(&ONE).from(0.66).to(0.73).harmonics(9);
+    let whole = request.through(VALUE).expect("a branch");
+    let limited = request.max_points(4).through(VALUE).expect("a branch");
+    let resume = limited.resume().max_points(20_000);
+    let again = resume.run_with(|_| ControlFlow::Break(()));
+    let again = again.expect("a branch");
+    assert_eq!(again.stopped, Stop::Interrupted);
+    assert!(again.points.len() >= limited.points.len());
+    let resumed = again.resume().max_points(20_000).run();
+    assert_eq!(texts(&resumed.expect("a branch")), texts(&whole));
+}
+
 /// With another tolerance both parts are followed once more, from the same orbit.
 #[test]
 fn once_more_is_both_ways_too() {
@@ -81,6 +96,16 @@ fn once_more_is_both_ways_too() {
     let ends = [finer.points.first(), finer.points.last()].map(|end| end.map(|end| end.value));
     assert_eq!(ends, [Some(0.66), Some(0.73)]);
     assert!(finer.points.iter().all(|point| point.error < Some(1e-8)));
+}
+
+/// Folds of both parts are found again with another tolerance.
+#[test]
+fn once_more_has_the_same_folds() {
+    let request = FrequencyResponse::of(&ONE).from(0.6).to(1.2);
+    let branch = request.tolerance(1e-4).through(VALUE).expect("a branch");
+    let finer = branch.resume().tolerance(1e-6).run().expect("a branch");
+    assert_eq!(branch.folds().count(), 2);
+    assert_eq!(finer.folds().count(), 2);
     let mut folds = branch.folds().zip(finer.folds());
     assert!(folds.all(|(a, b)| (a.point.value - b.point.value).abs() < a.error + b.error));
 }
