@@ -192,7 +192,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         period(period: usize) { self.request.period = Some(period) }
 
         /// Relative accuracy asked of peak-to-peak. Default: 1e-6. The balance chooses harmonics at every point such that its estimated
-        /// error, [`Point::error`], is below the tolerance, at most 150 for each period of the excitation. By shooting the
+        /// error is below the tolerance, at most 150 for each period of the excitation: the distance from the branch. [`Point::error`] adds
+        /// what lies along it, which is of the same size and grows where the branch is steep. By shooting the
         /// [tolerance of the flow](Shooting::tolerance) follows from it, and a closed form has none; what came of it is in [`Point::error`].
         tolerance(tolerance: f64) { self.request.tolerance = tolerance }
 
@@ -213,9 +214,10 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         /// }
         ///
         /// let request = FrequencyResponse::of(&Stopped {}).from(1.0).to(1.3).tolerance(1e-4);
-        /// let (plain, fine) = (request.orbit(1.2)?, request.accuracy_of("pushes").orbit(1.2)?);
+        /// let (plain, fine) = (request.orbit(1.1)?, request.accuracy_of("pushes").orbit(1.1)?);
         /// println!("{} and {} harmonics", plain.orbit.harmonics(), fine.orbit.harmonics());
-        /// println!("pushes to {:?} of itself", fine.error);
+        /// assert!(fine.orbit.harmonics() > plain.orbit.harmonics());
+        /// assert!(fine.error < Some(1e-4));
         /// # Ok::<(), hertzian::Error>(())
         /// ```
         accuracy_of(name: impl Into<String>) { self.accuracy = Some(name.into()) }

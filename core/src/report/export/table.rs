@@ -78,7 +78,7 @@ pub const COLUMNS: [&str; 20] = [
 /// let mut table = Table::of(&model);
 /// branch.points.iter().for_each(|point| table.add(0, point));
 /// assert_eq!(table.to_csv(), branch.to_csv());
-/// assert!(table.to_csv().lines().next().unwrap().contains(",value,bend,"));
+/// assert!(table.to_csv().lines().next().unwrap().contains(",value,bend,force 1_min_force,"));
 /// # Ok::<(), hertzian::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
