@@ -11,10 +11,11 @@
 //! function of Neimark-Sacker bifurcations in Govaerts (2000), chapter 4, is as small as the product of all their distances and drowns in
 //! rounding. What passes there tells what happens: a complex pair, minus one, or one.
 
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix};
 
 use super::point::Event;
 use crate::event::EventKind;
+use crate::numeric::spectrum::eigenvalues;
 
 /// No modulus is told from zero below the exponential of this.
 const LEAST: f64 = -30.0;
@@ -26,6 +27,18 @@ const TOGETHER: f64 = 1e-6;
 const ALIKE: f64 = 1e-5;
 /// Values that differ by this part are one, whatever their errors are.
 const SAME: f64 = 1e-10;
+
+/// Multipliers over the whole period, of a map over one of its parts; largest first.
+pub(crate) fn multipliers(map: &DMatrix<f64>, parts: usize) -> Vec<Complex<f64>> {
+    let mut values = eigenvalues(map);
+    for value in &mut values {
+        let of_part = *value;
+        for _ in 1..parts {
+            *value *= of_part;
+        }
+    }
+    values
+}
 
 /// (1) of the multiplier at a place, those that are missing being too small to be told from zero; not a number where nothing is known.
 pub(crate) fn logarithm(multipliers: &[Complex<f64>], place: usize) -> f64 {

@@ -7,13 +7,16 @@
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 8 (branch switching); Seydel (2010),
 //! Practical Bifurcation and Stability Analysis, section 5.6.
 
-use crate::continuation::follow::CurvePoint;
+use super::solve;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::continuation::problem::{Problem, Scale};
 use crate::numeric::linear::dot;
 
 /// A solution farther away than so many times its step is one of another branch.
 const FARTHEST: f64 = 10.0;
+/// A more regular branch is followed beyond the point before by this part of the step onto it.
+const MARGIN: f64 = 0.5;
 
 /// Where a branch begins, and where to.
 #[derive(Debug, Clone, Copy)]
@@ -64,4 +67,29 @@ impl BranchSwitch<'_> {
         }
         Some(CurvePoint { u, tangent, scale })
     }
+}
+
+/// The step along the more regular branch that passes over the point where a step came onto it: from beyond the
+/// parameter where the step begins.
+pub(crate) fn step_on_other_branch(
+    problem: &mut dyn Problem,
+    newton: &mut Newton,
+    Step { before, next }: Step<'_>,
+    options: NewtonOptions,
+) -> Option<CurvePoint> {
+    let last = next.u.len() - 1;
+    let slope = next.tangent[last];
+    let distance = (1.0 + MARGIN) * (before.parameter() - next.parameter());
+    let along = distance / slope;
+    let pairs = next.u.iter().zip(&next.tangent);
+    let mut u: Vec<f64> = pairs.map(|(x, t)| x + along * t).collect();
+    solve::at_value(problem, newton, &mut u, options).ok()?;
+    let mut tangent = vec![0.0; u.len()];
+    newton.tangent(problem, &u, &mut tangent, true);
+    let scale = next.scale;
+    let length = newton.norm().length(scale, &tangent) * slope.signum();
+    for t in &mut tangent {
+        *t /= length;
+    }
+    Some(CurvePoint { u, tangent, scale })
 }

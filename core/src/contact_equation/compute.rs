@@ -1,6 +1,5 @@
 //! One orbit, or a branch of them, from a guess.
 
-use std::f64::consts::TAU;
 use std::time::Instant;
 
 use super::equations::Equations;
@@ -8,17 +7,19 @@ use super::gaps::Gaps;
 use super::method::ContactBranch;
 use super::plan::{Frame, Plan};
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
+use super::regular::{Compared, NEAR};
 use super::rest::Rest;
 use super::run::Run;
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::engine;
-use crate::branches::error::OrbitError;
+use crate::branches::error::{Attempts, OrbitError};
 use crate::branches::observed::Motion;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
 use crate::branches::record::Record;
+use crate::branches::recurrence::Recurrence;
 use crate::branches::solve;
 use crate::continuation::follow::{CurvePoint, FollowOptions, Start, Stop};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
@@ -147,7 +148,17 @@ fn ended(
     started: Instant,
 ) -> Result<Followed, Error> {
     let from = options.from;
+    let joined = run.joined.as_ref().map(|Recurrence { period, image, .. }| {
+        let last = run.record.points.last().map_or(from, |point| point.value);
+        let event = run.record.events.last();
+        Stop::Joined {
+            period: *period,
+            symmetric: image.is_minus(),
+            value: event.map_or(last, |event| event.point.value),
+        }
+    });
     let stopped = match outcome {
+        Ok(_) if joined.is_some() => joined.unwrap_or(Stop::Interrupted),
         Ok(Stop::Interrupted) if lost => Stop::StepTooShort {
             step: options.steps.smallest,
             value: run.record.points.last().map_or(from, |point| point.value),
@@ -190,19 +201,76 @@ fn ended(
     Ok(Followed { branch, rest })
 }
 
-/// A solution near an orbit that is given by its series.
+/// A solution near an orbit that is given by its series. What comes back earlier is followed until then only.
 fn first(problem: &ContactProblem, guess: &Point, value: f64) -> Result<First, Error> {
+    let whole = Recurrence::whole(problem.asked.period);
+    let seen = seen_in(problem, guess);
+    if let Some(seen) = seen.filter(|seen| seen.period == whole.period)
+        && let Ok(first) = first_like(problem, guess, value, &seen)
+    {
+        return Ok(first);
+    }
+    let first = first_like(problem, guess, value, &whole)?;
+    match problem.earlier(&first.equations, problem.same()) {
+        None => Ok(first),
+        Some(found) if found.period < whole.period => Err(OrbitError::NoSuchPeriod {
+            period: whole.period,
+            value,
+            attempts: Attempts {
+                planned: 1,
+                made: 1,
+                shorter: 1,
+                evaluations: 0,
+            },
+        }
+        .into()),
+        Some(found) => Ok(first_like(problem, guess, value, &found).unwrap_or(first)),
+    }
+}
+
+/// How a guess comes back in less time than is asked for, as far as it tells.
+fn seen_in(problem: &ContactProblem, guess: &Point) -> Option<Recurrence> {
+    let orbit = &guess.orbit;
+    let rate = orbit.base * orbit.period as f64;
+    let at = |phase: f64, state: &mut [f64]| write_state(orbit, phase / rate, state);
+    let compared = Compared {
+        begin: 0.0,
+        rate,
+        most: NEAR * guess.size(),
+        coordinates: orbit.coordinates(),
+    };
+    let whole = Recurrence::whole(problem.asked.period);
+    compared.earlier(&at, &whole, &problem.asked.symmetries)
+}
+
+/// Writes positions and velocities at a time.
+fn write_state(orbit: &Orbit, time: f64, state: &mut [f64]) {
+    let coordinates = orbit.coordinates();
+    for i in 0..coordinates {
+        if let Some((x, v)) = orbit.state_at(i, time) {
+            (state[i], state[coordinates + i]) = (x, v);
+        }
+    }
+}
+
+/// A solution that comes back like this.
+fn first_like(
+    problem: &ContactProblem,
+    guess: &Point,
+    value: f64,
+    recurrence: &Recurrence,
+) -> Result<First, OrbitError> {
     let mut last = OrbitError::NoStart {
         value,
         reason: NewtonError::NotFinite { iterations: 0 },
     };
     for resolution in TRIED {
-        match first_with(problem, guess, value, resolution) {
+        match first_with(problem, guess, value, resolution, recurrence) {
             Ok(first) => return Ok(first),
             Err(reason) => last = OrbitError::NoStart { value, reason },
         }
     }
-    Err(last.into())
+    Err(last)
 }
 
 fn first_with(
@@ -210,6 +278,7 @@ fn first_with(
     guess: &Point,
     value: f64,
     resolution: usize,
+    recurrence: &Recurrence,
 ) -> Result<First, NewtonError> {
     let unusable = NewtonError::NotFinite { iterations: 0 };
     let values = problem.setting.values(value).ok_or(unusable)?;
@@ -219,10 +288,9 @@ fn first_with(
     let rate = orbit.base * orbit.period as f64;
     let pace = values.base / rate;
     let at = |phase: f64, state: &mut [f64]| {
-        for i in 0..coordinates {
-            if let Some((x, v)) = orbit.state_at(i, phase / rate) {
-                (state[i], state[coordinates + i]) = (x, v * pace);
-            }
+        write_state(orbit, phase / rate, state);
+        for v in &mut state[coordinates..] {
+            *v *= pace;
         }
     };
     let gaps = Gaps {
@@ -230,8 +298,7 @@ fn first_with(
         at: &at,
         coordinates,
     };
-    let length = TAU * problem.asked.period as f64;
-    let plan = Plan::sampled(&gaps, length);
+    let plan = Plan::sampled(&gaps, recurrence);
     let middles = guess.observed.motions.iter().map(Motion::middle);
     let frame = Frame {
         reference: middles.chain(vec![0.0; coordinates]).collect(),

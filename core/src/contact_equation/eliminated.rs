@@ -6,6 +6,7 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
+use crate::branches::recurrence::SignedPermutation;
 use crate::numeric::linear::{Lu, Matrix};
 
 /// Room for both, made when it is first asked for.
@@ -32,10 +33,19 @@ impl Solver {
     }
 
     /// (4), from the derivatives of residuals row by row.
-    fn map(&mut self, derivatives: &[f64], unknowns: usize, order: usize) -> Option<DMatrix<f64>> {
+    fn map(
+        &mut self,
+        derivatives: &[f64],
+        unknowns: usize,
+        order: usize,
+        image: &SignedPermutation,
+    ) -> Option<DMatrix<f64>> {
         let row = |row: usize| &derivatives[row * (unknowns + 1)..][..unknowns];
-        let unit = |i: usize, j: usize| f64::from(u8::from(i == j));
-        let mut map = DMatrix::from_fn(order, order, |i, j| row(i)[j] + unit(i, j));
+        let mut map = DMatrix::from_fn(order, order, |i, j| row(i)[j]);
+        for i in 0..order {
+            let (place, sign) = image.state_entry(i, order / 2);
+            map[(i, place)] += sign;
+        }
         for i in 0..unknowns - order {
             let entries = &row(order + i)[order..];
             self.matrix.row_mut(i).copy_from_slice(entries);
@@ -51,21 +61,28 @@ impl Solver {
                 map[(i, j)] -= through.map(|(a, x)| a * x).sum::<f64>();
             }
         }
+        let whole = map.clone();
+        for i in 0..order {
+            let (place, sign) = image.state_entry(i, order / 2);
+            map.row_mut(place).copy_from(&(sign * whole.row(i)));
+        }
         Some(map)
     }
 }
 
 impl Equations {
-    /// The map (4) of the states over the period: positions, and velocities by the frequency.
+    /// The map (4) of the states until the orbit comes back: positions, and velocities by the frequency. `None` too where the unknowns are
+    /// those of no motion, since switches are in another order.
     pub(super) fn map(&mut self, u: &[f64]) -> Option<DMatrix<f64>> {
         self.pass(u, true);
-        if self.failed {
+        if self.failed || !self.is_in_order() {
             return None;
         }
         let (n, order) = (self.skeleton.unknowns(), self.skeleton.order);
         let inner = &mut self.eliminated.inner;
         let inner = inner.get_or_insert_with(|| Solver::of(n - order));
-        let mut map = inner.map(&self.matrix, n, order)?;
+        let image = &self.skeleton.recurrence().image;
+        let mut map = inner.map(&self.matrix, n, order, image)?;
         for i in 0..order {
             for j in 0..order {
                 map[(i, j)] *= self.unit(j) / self.unit(i);

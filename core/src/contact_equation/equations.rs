@@ -9,10 +9,10 @@
 //! with the steady response `y_p` to the load, and the polynomials through the forces `f` at the nodes. The equations are
 //!
 //! ```text
-//! f - phi(g, g') = 0 at the nodes,    g = level at switches,    y_end - y_begin = 0                          (2)
+//! f - phi(g, g') = 0 at the nodes,    g = level at switches,    y_end - S y_begin = 0                        (2)
 //! ```
 //!
-//! Derivatives by all unknowns are carried along. With `X f` for the integral of (1), where everything is held but the length,
+//! with the image `S` of the coordinates after which the orbit comes back. Derivatives by all unknowns are carried along. With `X f` for the integral of (1), where everything is held but the length,
 //!
 //! ```text
 //! d(X f)/ds = X f / s + A int_0^(psi s) (psi - t / s) e^(A (psi s - t)) B f dt                                (3)
@@ -21,13 +21,14 @@
 //! The map of the states is what is left when forces and switches are eliminated: perturbed states have their own switches.
 //!
 //! ```text
-//! M = E_y - E_w W^-1 W_y,    rows E of the end, W of the others; columns y of states, w of the others         (4)
+//! M = S^-1 (E_y - E_w W^-1 W_y),    rows E of the end, W of the others; columns y of states, w of the others  (4)
 //! ```
 //!
 //! Source: the integral equation of the periodic contact force, Babitsky (1998), Theory of Vibro-Impact Systems and Applications,
 //! section 2.2, in causal form; collocation at Gauss nodes, Hairer, Norsett and Wanner (1993), section II.7.
 
 use std::cell::OnceCell;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::eliminated::Eliminated;
@@ -36,6 +37,7 @@ use super::place::half_way;
 use super::placement::Told;
 use super::room::Room;
 use super::skeleton::Skeleton;
+use super::touches::Image;
 use super::values::Values;
 use crate::cancel::Cancel;
 use crate::continuation::jacobian::Jacobian;
@@ -132,6 +134,8 @@ pub(super) struct Equations {
     pub(super) passed: Vec<Passed>,
     /// Of the last pass, when they are asked for.
     pub(super) extremes: OnceCell<Extremes>,
+    /// Contacts in each other's place when an orbit has come back, once they were seen.
+    pub(super) images: OnceCell<Vec<Image>>,
     /// The last orbit of the branch, and the last one that was found.
     pub(super) known: [Vec<f64>; 2],
     room: Room,
@@ -168,6 +172,7 @@ impl Equations {
             eliminated: Eliminated::default(),
             passed: Vec::new(),
             extremes: OnceCell::new(),
+            images: OnceCell::new(),
             known: [Vec::new(), Vec::new()],
             room: Room::default(),
             last: Vec::new(),
@@ -417,7 +422,7 @@ impl Problem for Equations {
         for (state, weight) in weights[..order].iter_mut().enumerate() {
             *weight = 1.0 / (self.unit(state) * self.unit(state));
         }
-        let whole = self.size / self.skeleton.length;
+        let whole = self.size / TAU;
         let switches = self.skeleton.switches.len();
         weights[order..order + switches].fill(whole * whole);
         // Forces follow from the motion.

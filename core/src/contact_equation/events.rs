@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 use super::equations::Equations;
 use super::method::VANISHED;
 use super::run::Run;
+use crate::branches::moduli::multipliers;
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Touch, Zero};
 use crate::branches::solve;
@@ -16,7 +17,7 @@ use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::event::EventKind;
 use crate::numeric::linear::dot;
-use crate::numeric::spectrum::{distance, eigenvalues};
+use crate::numeric::spectrum::distance;
 use crate::shooting::tested::{Test, Tests};
 
 /// An event is known well enough when more nodes change its value by this part of it.
@@ -130,18 +131,19 @@ fn at_event(
     again.equations.compute(&again.point.u, false);
     let mut point = run.observed(&again.equations, again.point.parameter());
     if let (Some(map), Some(coarse)) = (map, coarse) {
-        let found = eigenvalues(map);
-        let critical = if kind == EventKind::PeriodDoubling {
-            -1.0
-        } else {
-            1.0
+        let parts = again.equations.skeleton.recurrence().parts;
+        let found = multipliers(map, parts);
+        // Over an even number of parts minus one is one.
+        let critical = match kind {
+            EventKind::PeriodDoubling if !parts.is_multiple_of(2) => -1.0,
+            _ => 1.0,
         };
         let nearest = found.iter().map(|m| match kind {
             EventKind::NeimarkSacker => (m.norm() - 1.0).abs(),
             _ => (m - critical).norm(),
         });
         let nearest = nearest.fold(f64::INFINITY, f64::min);
-        let spread = distance(&found, &eigenvalues(coarse)) + nearest;
+        let spread = distance(&found, &multipliers(coarse, parts)) + nearest;
         point.stability = Stability::of(found, spread);
     }
     point
@@ -235,6 +237,7 @@ fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(C
 pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
     let at = &touch.located.point;
     let Some(mut read) = run.read(at) else { return };
+    let alike = run.alike(touch.extreme.contact);
     let mut error = touch.error + SAFETY * read.shift.abs();
     if let Some((square, _)) = run.watched(&at.u, &touch.extreme) {
         let mut finer: Option<Equations> = None;
@@ -274,7 +277,7 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
         point: read.point,
         test: touch.located.test,
         after: touch.after,
-        contacts: touch.contacts,
+        contacts: touch.contacts * alike,
         tangent: at.tangent.clone(),
     });
 }

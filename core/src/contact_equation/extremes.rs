@@ -24,9 +24,9 @@ const FORETOLD: f64 = 0.02;
 /// Of one orbit.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Extremes {
-    /// Per coordinate, phase and value where it is smallest and largest.
+    /// Per coordinate, phase and value where it is smallest and largest over the period.
     pub(super) coordinates: Vec<[Place; 2]>,
-    /// Per contact, in the order of time; none where its law has no levels.
+    /// Per contact, in the order of time, until the orbit comes back; none where its law has no levels.
     pub(super) gaps: Vec<Vec<GapExtreme>>,
 }
 
@@ -87,13 +87,41 @@ impl Extremes {
             add_short(motion, contact, gaps);
         }
         let coordinates = turns.into_iter().enumerate();
+        let coordinates = coordinates.map(|(coordinate, turns)| turns.located(motion, coordinate));
+        let coordinates: Vec<[Place; 2]> = coordinates.collect();
         Self {
-            coordinates: coordinates
-                .map(|(coordinate, turns)| turns.located(motion, coordinate))
-                .collect(),
+            coordinates: of_period(motion, &coordinates),
             gaps,
         }
     }
+}
+
+/// Smallest and largest values over the period, from those until the orbit comes back: then coordinates have the motions of their images.
+fn of_period(motion: &Motion<'_>, found: &[[Place; 2]]) -> Vec<[Place; 2]> {
+    let skeleton = &motion.equations.skeleton;
+    let image = &skeleton.recurrence().image;
+    let mut most = found.to_vec();
+    for turns in 1..image.order() {
+        let image = image.power(turns);
+        let later = skeleton.length * turns as f64;
+        for (coordinate, most) in most.iter_mut().enumerate() {
+            let (place, sign) = image.entry(coordinate);
+            let mut ends = found[place].map(|end| Place {
+                x: end.x + later,
+                value: sign * end.value,
+            });
+            if sign < 0.0 {
+                ends.reverse();
+            }
+            if ends[0].value < most[0].value {
+                most[0] = ends[0];
+            }
+            if ends[1].value > most[1].value {
+                most[1] = ends[1];
+            }
+        }
+    }
+    most
 }
 
 impl Samples {

@@ -1,5 +1,6 @@
 //! Whether equations fit the orbit of their last pass: switches are where its gaps have them, and what may meet is told in pairs.
 
+use super::equations::Equations;
 use super::gaps::is_lonely;
 use super::motion::{GapExtreme, Motion};
 use super::placement::Told;
@@ -20,17 +21,25 @@ pub(super) enum Fits {
     No,
 }
 
+impl Equations {
+    /// Whether the switches of the last pass are in the order that they are told in: those of different contacts may pass each other.
+    pub(super) fn is_in_order(&self) -> bool {
+        let mut last = self.skeleton.begin;
+        self.passed.iter().all(|passed| {
+            let [from, to] = passed.phases;
+            let in_order = to >= from - BEYOND && to >= last - BEYOND;
+            last = to;
+            in_order
+        })
+    }
+}
+
 impl Run<'_> {
     /// Whether the equations still fit the orbit of their last pass.
     pub(super) fn fits(&self, u: &[f64]) -> Fits {
         let motion = Motion::of(&self.equations);
-        let skeleton = &self.equations.skeleton;
-        let mut last = skeleton.begin;
-        for passed in &self.equations.passed {
-            if passed.phases[1] < passed.phases[0] - BEYOND || passed.phases[1] < last - BEYOND {
-                return Fits::No;
-            }
-            last = passed.phases[1];
+        if !self.equations.is_in_order() {
+            return Fits::No;
         }
         let found = motion.extremes().gaps.concat();
         let mut fits = self.pairs_fit(u);
@@ -101,6 +110,20 @@ impl Run<'_> {
         })
     }
 
+    /// The range of a gap, and of those with the same law: contacts may be in each other's place later.
+    pub(super) fn range(&self, extremes: &[GapExtreme], contact: usize) -> f64 {
+        let contacts = &self.equations.values.contacts;
+        let whole = self.equations.skeleton.recurrence().parts == 1;
+        let alike = |other: usize| {
+            other == contact || !whole && contacts[other].law == contacts[contact].law
+        };
+        let own = extremes.iter().filter(|other| alike(other.contact));
+        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), other| {
+            (low.min(other.gap), high.max(other.gap))
+        });
+        high - low
+    }
+
     fn extreme_fits(&self, u: &[f64], extreme: &GapExtreme, all: &[GapExtreme]) -> Fits {
         let GapExtreme {
             contact,
@@ -110,11 +133,7 @@ impl Run<'_> {
             ..
         } = *extreme;
         let levels = &self.equations.values.contacts[contact].levels;
-        let own = all.iter().filter(|other| other.contact == contact);
-        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), other| {
-            (low.min(other.gap), high.max(other.gap))
-        });
-        let size = (high - low).max(f64::MIN_POSITIVE);
+        let size = self.range(all, contact).max(f64::MIN_POSITIVE);
         let skeleton = &self.equations.skeleton;
         let piece = skeleton.intervals[interval].pieces[contact];
         let mut fits = Fits::Yes;
@@ -148,10 +167,7 @@ impl Run<'_> {
             return false;
         }
         let motion = Motion::of(&self.equations);
-        let at = |phase: f64, state: &mut [f64]| {
-            let (interval, phase) = motion.interval(phase);
-            motion.state(interval, phase, state);
-        };
+        let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
         let gaps = self.gaps(&at);
         let square = -above / gaps.bend(place.0, phase);
         (plan::NEAR..=0.0).contains(&square)

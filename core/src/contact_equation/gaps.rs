@@ -59,18 +59,29 @@ impl Gaps<'_> {
     }
 }
 
-/// Crossings of levels and extremes of a gap, from samples.
-pub(super) fn look(
+/// Crossings of levels and extremes of all gaps from a phase on, from samples.
+pub(super) fn seen(gaps: &Gaps<'_>, from: f64, length: f64) -> (Vec<Placed>, Vec<GapExtreme>) {
+    let (mut crossings, mut extremes) = (Vec::new(), Vec::new());
+    for (contact, of) in gaps.values.contacts.iter().enumerate() {
+        if !of.levels.is_empty() {
+            look(gaps, contact, [from, length], &mut crossings, &mut extremes);
+        }
+    }
+    (crossings, extremes)
+}
+
+/// The same of one gap.
+fn look(
     gaps: &Gaps<'_>,
     contact: usize,
-    length: f64,
+    [from, length]: [f64; 2],
     crossings: &mut Vec<Placed>,
     extremes: &mut Vec<GapExtreme>,
 ) {
     let levels = &gaps.values.contacts[contact].levels;
     let samples = (SAMPLES * length / std::f64::consts::TAU).ceil() as usize;
     let at = |index: usize| {
-        let phase = length * (index as f64 / samples as f64);
+        let phase = from + length * (index as f64 / samples as f64);
         (phase, gaps.gap(contact, phase))
     };
     let mut before = at(0);

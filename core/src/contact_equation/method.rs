@@ -6,7 +6,7 @@ use super::fits::Fits;
 use super::problem::{FIRST, RESOLUTIONS};
 use super::reading::ReadOrbit;
 use super::run::Run;
-use crate::branches::engine::Walk;
+use crate::branches::engine::{Search, Walk};
 use crate::branches::extreme::Extreme;
 use crate::branches::keep::keep;
 use crate::branches::moduli;
@@ -16,9 +16,10 @@ use crate::branches::problem::{
 };
 use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
-use crate::continuation::follow::{Continue, CurvePoint, Halted, Step};
+use crate::branches::switch::step_on_other_branch;
+use crate::continuation::follow::{Continue, CurvePoint, Halted, Step, Stop};
 use crate::continuation::locate::Located;
-use crate::continuation::newton::Newton;
+use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::event::EventKind;
 use crate::shooting::tested::{self, Tests};
@@ -45,6 +46,8 @@ pub(super) struct ContactBranch<'b, 'r> {
     watched: Vec<Watched>,
     /// The test functions computed last, and where.
     tested: Option<(Vec<f64>, Tests)>,
+    /// Those of the last orbit that was kept, and what was varied there.
+    last: Option<(f64, Tests)>,
     /// The equations that the walk goes on with, and its last point in them.
     next: Option<Next>,
     /// The equations before, while others are tried.
@@ -60,6 +63,11 @@ pub(super) struct ContactBranch<'b, 'r> {
     visit: See<'b>,
 }
 
+/// What the bordered determinant is divided by. Where the slope is rounding, nothing is known of the quotient.
+fn divisor(at: &CurvePoint) -> f64 {
+    at.known_slope(VANISHING).unwrap_or(f64::NAN)
+}
+
 /// What the walk goes on with.
 struct Next {
     equations: Equations,
@@ -70,7 +78,8 @@ struct Next {
 impl<'b, 'r> ContactBranch<'b, 'r> {
     pub(super) fn new(run: &'b mut Run<'r>, visit: See<'b>) -> Self {
         let watched = if run.problem.asked.stability {
-            tested::watched(EventKind::PeriodDoubling, run.equations.skeleton.order)
+            let skeleton = &run.equations.skeleton;
+            tested::watched(skeleton.recurrence().doubling(), skeleton.order)
         } else {
             Vec::new()
         };
@@ -79,6 +88,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             run,
             watched,
             tested: None,
+            last: None,
             next: None,
             before: None,
             stuck: false,
@@ -92,9 +102,20 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let known = self.tested.take().filter(|(u, _)| *u == at.u);
         let found = known.unwrap_or_else(|| {
             let map = self.run.equations.map(&at.u);
-            (at.u.clone(), Tests::of(map.as_ref(), at.parameter_slope()))
+            let tests = match &self.last {
+                // The last orbit has other equations, in which it was looked at.
+                Some((value, tests)) if map.is_none() && *value == at.parameter() => tests.clone(),
+                _ => Tests::of(map.as_ref(), divisor(at)),
+            };
+            (at.u.clone(), tests)
         });
         &self.tested.insert(found).1
+    }
+
+    /// Looks at the last orbit that was kept, of a branch that goes on.
+    pub(super) fn look_at_last(&mut self, at: &CurvePoint) {
+        let map = self.run.equations.map(&at.u);
+        self.last = Some((at.parameter(), Tests::of(map.as_ref(), divisor(at))));
     }
 
     /// How well multipliers are known along the last step.
@@ -109,7 +130,12 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         };
         let tells = zero.told || zero.least <= self.last_error();
         let multipliers = &self.tests(&zero.root.located.point).multipliers;
-        moduli::seen_by_moduli(multipliers, place, tells)
+        let seen = moduli::seen_by_moduli(multipliers, place, tells)?;
+        Some(if seen == EventKind::PeriodDoubling {
+            self.watched[1].kind
+        } else {
+            seen
+        })
     }
 
     /// Prepares the equations that fit an orbit. Says whether there are any.
@@ -147,9 +173,32 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         }
     }
 
+    /// What is done with an orbit that was read, by equations that fit it.
+    fn decide(&mut self, at: &CurvePoint, read: ReadOrbit, fits: Fits, stuck: bool) -> Read {
+        let wanted = self.wanted(&read.point);
+        let coarse = wanted > self.run.resolution;
+        let again = !stuck && self.refused < REFUSALS;
+        if coarse && again && self.prepare(&at.u, wanted) {
+            self.refused += 1;
+            return Read::Refused;
+        }
+        self.refused = 0;
+        self.held = self.held.saturating_sub(1);
+        self.run.equations.known[0].clone_from(&at.u);
+        if !self.keep_point(at, read) {
+            return Read::Stop;
+        }
+        let other = fits == Fits::Soon || wanted != self.run.resolution;
+        if other && !stuck && self.prepare(&at.u, wanted) {
+            return Read::ResizeBehind;
+        }
+        Read::Kept
+    }
+
     fn keep_point(&mut self, at: &CurvePoint, read: ReadOrbit) -> bool {
         let ReadOrbit { point, map, .. } = read;
-        let tests = Tests::of(map.as_ref(), at.parameter_slope());
+        let tests = Tests::of(map.as_ref(), divisor(at));
+        self.last = Some((at.parameter(), tests.clone()));
         self.tested = Some((at.u.clone(), tests));
         let done = self.run.record.points.len() + 1;
         let answer = (self.visit)(Progress::orbit(done, &point));
@@ -196,7 +245,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
     fn vanishes(&mut self, change: Change, located: &Located) -> bool {
         let point = &located.point;
         let unit = match tested::Test::of(change.test) {
-            tested::Test::Slope => (point.parameter().abs() / point.scale.parameter).max(1.0),
+            tested::Test::Slope => point.narrowness(),
             tested::Test::Bordered => {
                 self.run.others(&point.u, 1.0) / point.parameter_slope().abs()
             }
@@ -214,39 +263,42 @@ impl BranchProblem for ContactBranch<'_, '_> {
         &mut self.run.record
     }
 
+    fn is_beyond(&mut self, at: &CurvePoint) -> bool {
+        self.run.joined = self.run.earlier(at);
+        self.run.joined.is_some()
+    }
+
+    fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {
+        let other = step_on_other_branch(&mut self.run.equations, newton, step, options)?;
+        if !self.watched.is_empty() {
+            Search::of_joint(self, step, &other, options).record(self, newton);
+        }
+        None
+    }
+
     fn read(&mut self, _: &mut Newton, at: &CurvePoint) -> Read {
         let stuck = std::mem::take(&mut self.stuck);
-        let Some(read) = self.run.read_on(at) else {
-            self.lost = true;
-            return Read::Stop;
-        };
-        let fits = self.run.fits(&at.u);
-        let wanted = self.wanted(&read.point);
         let again = !stuck && self.refused < REFUSALS;
-        if fits == Fits::No {
-            if !again || !self.prepare(&at.u, self.run.resolution) {
+        self.run
+            .equations
+            .compute(&at.u, self.run.problem.asked.stability);
+        let equations = &self.run.equations;
+        if equations.failed || equations.is_in_order() {
+            let Some(read) = self.run.read_on(at) else {
                 self.lost = true;
                 return Read::Stop;
+            };
+            let fits = self.run.fits(&at.u);
+            if fits != Fits::No {
+                return self.decide(at, read, fits, stuck);
             }
-            self.refused += 1;
-            return Read::Refused;
         }
-        let coarse = wanted > self.run.resolution;
-        if coarse && again && self.prepare(&at.u, wanted) {
-            self.refused += 1;
-            return Read::Refused;
-        }
-        self.refused = 0;
-        self.held = self.held.saturating_sub(1);
-        self.run.equations.known[0].clone_from(&at.u);
-        if !self.keep_point(at, read) {
+        if !again || !self.prepare(&at.u, self.run.resolution) {
+            self.lost = true;
             return Read::Stop;
         }
-        let other = fits == Fits::Soon || wanted != self.run.resolution;
-        if other && !stuck && self.prepare(&at.u, wanted) {
-            return Read::ResizeBehind;
-        }
-        Read::Kept
+        self.refused += 1;
+        Read::Refused
     }
 
     fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> ZeroOutcome {
@@ -254,13 +306,21 @@ impl BranchProblem for ContactBranch<'_, '_> {
         let Some(kind) = self.kind(zero) else {
             return ZeroOutcome::Nothing;
         };
-        let Some(event) = events::event(self.run, zero, kind) else {
+        let Some(mut event) = events::event(self.run, zero, kind) else {
             return ZeroOutcome::Unread;
         };
+        let at = &zero.root.located.point.u;
+        if event.kind == EventKind::BranchPoint && self.run.breaks_symmetry(at) {
+            event.kind = EventKind::SymmetryBreaking;
+        }
         if of_modulus && moduli::is_recorded(&self.run.record.events, &event) {
             return ZeroOutcome::Nothing;
         }
+        let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();
         self.run.record.events.push(event);
+        if meets && self.run.meets(at) {
+            return ZeroOutcome::Ends(Stop::Interrupted);
+        }
         ZeroOutcome::Event
     }
 

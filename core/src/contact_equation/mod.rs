@@ -4,7 +4,7 @@
 //! `linear` and `block` have the motion of the linear part, `nodes`, `grading` and `integrals` the integrals over a stretch, `skeleton`, `placement` and `place`
 //! which pieces gaps are on and where the unknowns stand, `targets`, `pass`, `equations` and `eliminated` residuals and derivatives, `motion` and `extremes` the
 //! motion at any phase. `gaps`, `plan` and `transfer` tell which skeleton an orbit has, `fits` whether it still is right, `reading` what is
-//! read off an orbit, with its errors. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
+//! read off an orbit, with its errors. `regular` whether it comes back earlier. `run`, `method`, `events` and `touches` are what the engine of branches asks for.
 //!
 //! Laws are called in `pass`; what their forces do to the motion is integrated in `integrals`.
 //!
@@ -32,6 +32,7 @@ mod placement;
 mod plan;
 pub(crate) mod problem;
 mod reading;
+mod regular;
 mod rest;
 mod room;
 mod run;

@@ -57,7 +57,21 @@ impl<'e> Motion<'e> {
         self.equations.passed[interval].phases
     }
 
-    /// The interval that a phase is in; phases outside of the period are shifted into it.
+    /// Writes positions and velocities at any phase.
+    pub(super) fn at(&self, phase: f64, state: &mut [f64]) {
+        let skeleton = &self.equations.skeleton;
+        let (interval, within) = self.interval(phase);
+        self.state(interval, within, state);
+        let image = &skeleton.recurrence().image;
+        if !image.is_identity() {
+            let turns = ((phase - within) / skeleton.length).round() as i64;
+            let turns = turns.rem_euclid(image.order() as i64) as usize;
+            let moved = image.power(turns).of_states(state, state.len() / 2);
+            state.copy_from_slice(&moved);
+        }
+    }
+
+    /// The interval that a phase is in; phases outside of what is followed are shifted into it.
     pub(super) fn interval(&self, phase: f64) -> (usize, f64) {
         let (begin, length) = (
             self.equations.skeleton.begin,

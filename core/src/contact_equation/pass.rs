@@ -70,6 +70,7 @@ impl Pass<'_> {
     pub(super) fn close(&mut self, reference: &[f64]) {
         let (order, columns) = (self.skeleton.order, self.columns());
         let linear = &self.values.linear;
+        let image = &self.skeleton.recurrence().image;
         let n = order / 2;
         for i in 0..order {
             let half = if i < n {
@@ -78,9 +79,10 @@ impl Pass<'_> {
                 &linear.velocities
             };
             let through = half.row(i % n);
-            let known = self.u[i] + reference[i];
+            let (place, sign) = image.state_entry(i, n);
+            let known = self.u[place] + reference[place];
             let pairs = through.iter().zip(&self.room.y);
-            self.residual[i] = pairs.map(|(a, y)| a * y).sum::<f64>() - known;
+            self.residual[i] = pairs.map(|(a, y)| a * y).sum::<f64>() - sign * known;
             if !self.derivatives {
                 continue;
             }
@@ -90,7 +92,7 @@ impl Pass<'_> {
                     add(row, *factor, by);
                 }
             }
-            row[i] -= 1.0;
+            row[place] -= sign;
         }
     }
 

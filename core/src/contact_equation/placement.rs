@@ -1,6 +1,11 @@
 //! What a skeleton is made from, as data: where a period begins, and its switches.
+//!
+//! Of an orbit that comes back after a part of its period, with coordinates or contacts in each other's place, that part is all there is.
+
+use std::f64::consts::TAU;
 
 use super::values::Contact;
+use crate::branches::recurrence::Recurrence;
 
 /// How a switch is told by its unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,15 +53,26 @@ pub(super) struct Resolution {
     pub(super) panels: usize,
 }
 
-/// Where a period begins, how long it is, and on which pieces the gaps are there.
+/// Where a period or a part of it begins, how the orbit comes back after it, and on which pieces the gaps are at its beginning.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Beginning {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) phase: f64,
-    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    pub(super) length: f64,
+    pub(super) recurrence: Recurrence,
     pub(super) pieces: Vec<usize>,
+}
+
+impl Beginning {
+    /// Phase until the orbit comes back.
+    pub(super) fn length(&self) -> f64 {
+        length(&self.recurrence)
+    }
+}
+
+/// Phase of the declaration until an orbit comes back.
+pub(super) fn length(recurrence: &Recurrence) -> f64 {
+    TAU * recurrence.period as f64 / recurrence.parts as f64
 }
 
 /// What a skeleton is made from: its beginning, and the switches in the order of time.
@@ -71,11 +87,8 @@ pub(super) struct Placement {
 impl Placement {
     /// Whether it is one of these contacts: it may have been read from a file.
     pub(super) fn fits(&self, contacts: &[Contact]) -> bool {
-        let Beginning {
-            phase,
-            length,
-            pieces,
-        } = &self.beginning;
+        let Beginning { phase, pieces, .. } = &self.beginning;
+        let length = self.beginning.length();
         let mut levels = contacts.iter().map(|contact| contact.levels.len());
         let on_pieces = pieces.len() == contacts.len()
             && pieces.iter().all(|piece| levels.next() >= Some(*piece));
@@ -95,7 +108,7 @@ impl Placement {
                 && other < self.placed.len()
                 && (*phase..=phase + length).contains(&placed.phase)
         };
-        let whole = phase.is_finite() && length.is_finite() && *length > 0.0;
+        let whole = phase.is_finite() && length.is_finite() && length > 0.0;
         on_pieces && whole && self.placed.iter().all(possible)
     }
 }

@@ -4,10 +4,11 @@
 //! that are short of a level.
 
 use super::equations::{Equations, Setting};
-use super::gaps::{BEND, Gaps, beginning, is_lonely, look, piece};
+use super::gaps::{BEND, Gaps, beginning, is_lonely, piece, seen};
 use super::motion::GapExtreme;
-use super::placement::{Beginning, Placed, Placement, Resolution, Switch, Told};
+use super::placement::{Beginning, Placed, Placement, Resolution, Switch, Told, length};
 use super::skeleton::Skeleton;
+use crate::branches::recurrence::Recurrence;
 use crate::law::{Derivatives, Law, On};
 
 /// Two switches of a gap at one level with a shorter way between them are a pair; pairs part beyond the other length.
@@ -38,39 +39,39 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// Of a motion with a period of so long from phase zero.
-    pub(super) fn sampled(gaps: &Gaps<'_>, length: f64) -> Self {
-        let mut crossings = Vec::new();
-        let mut extremes = Vec::new();
-        for contact in 0..gaps.values.contacts.len() {
-            let levels = &gaps.values.contacts[contact].levels;
-            if !levels.is_empty() {
-                look(gaps, contact, length, &mut crossings, &mut extremes);
-            }
+    /// Of a motion that comes back like this.
+    pub(super) fn sampled(gaps: &Gaps<'_>, recurrence: &Recurrence) -> Self {
+        let length = length(recurrence);
+        let (crossings, extremes) = seen(gaps, 0.0, length);
+        if recurrence.parts == 1 {
+            return Self::of(gaps, recurrence, crossings, &extremes);
         }
-        Self::of(gaps, length, crossings, &extremes)
+        // Contacts may be in each other's place behind the end: what is seen has to be between beginning and end.
+        let begin = begun(gaps, length, &crossings, &extremes);
+        let (crossings, extremes) = seen(gaps, begin, length);
+        Self::from_beginning(gaps, recurrence, begin, crossings, &extremes)
     }
 
     /// From the places where gaps cross levels, and their extremes.
     pub(super) fn of(
         gaps: &Gaps<'_>,
-        length: f64,
+        recurrence: &Recurrence,
+        crossings: Vec<Placed>,
+        extremes: &[GapExtreme],
+    ) -> Self {
+        let begin = begun(gaps, length(recurrence), &crossings, extremes);
+        Self::from_beginning(gaps, recurrence, begin, crossings, extremes)
+    }
+
+    fn from_beginning(
+        gaps: &Gaps<'_>,
+        recurrence: &Recurrence,
+        begin: f64,
         mut crossings: Vec<Placed>,
         extremes: &[GapExtreme],
     ) -> Self {
-        let mut short = Vec::new();
-        for extreme in extremes {
-            let levels = &gaps.values.contacts[extreme.contact].levels;
-            if is_lonely(extreme, extremes, length, LONELY) {
-                for level in 0..levels.len() {
-                    short.extend(short_pair(gaps, extreme, level));
-                }
-            }
-        }
-        let known = crossings
-            .iter()
-            .chain(short.iter().map(|[(first, _), _]| first));
-        let begin = beginning(gaps, length, known.map(|placed| placed.phase));
+        let length = length(recurrence);
+        let short = short_pairs(gaps, length, extremes);
         let within = |phase: f64| begin + (phase - begin).rem_euclid(length);
         for placed in &mut crossings {
             placed.phase = within(placed.phase);
@@ -98,7 +99,7 @@ impl Plan {
         Self {
             beginning: Beginning {
                 phase: begin,
-                length,
+                recurrence: recurrence.clone(),
                 pieces: pieces.collect(),
             },
             planned,
@@ -227,6 +228,29 @@ fn pair_up(gaps: &Gaps<'_>, begin: f64, planned: &mut [Planned]) {
         planned[second].placed.switch.told = Told::Second { other: first };
         planned[second].value = half * half;
     }
+}
+
+/// Where what is followed begins.
+fn begun(gaps: &Gaps<'_>, length: f64, crossings: &[Placed], extremes: &[GapExtreme]) -> f64 {
+    let short = short_pairs(gaps, length, extremes);
+    let known = crossings
+        .iter()
+        .chain(short.iter().map(|[(first, _), _]| first));
+    beginning(gaps, length, known.map(|placed| placed.phase))
+}
+
+/// The pairs of switches that watch extremes.
+fn short_pairs(gaps: &Gaps<'_>, length: f64, extremes: &[GapExtreme]) -> Vec<[(Placed, f64); 2]> {
+    let mut short = Vec::new();
+    for extreme in extremes {
+        let levels = &gaps.values.contacts[extreme.contact].levels;
+        if is_lonely(extreme, extremes, length, LONELY) {
+            for level in 0..levels.len() {
+                short.extend(short_pair(gaps, extreme, level));
+            }
+        }
+    }
+    short
 }
 
 /// The two switches that watch an extreme which is short of a level by little, both at its phase, with `H`.

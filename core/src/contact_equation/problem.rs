@@ -40,7 +40,7 @@ impl ContactProblem {
     /// Of what was asked for.
     ///
     /// # Errors
-    /// If the stiffness varies in time, a force jumps at a level, or orbits of several periods are asked for: other methods have those.
+    /// If the stiffness varies in time or a force jumps at a level: other methods have those.
     pub(crate) fn new(asked: ShootingProblem, tolerance: f64) -> Result<Self, Error> {
         let setting = Setting::new(
             &asked.system,
@@ -56,10 +56,6 @@ impl ContactProblem {
         }
         if extreme::force_jumps(asked.system.as_ref()) {
             let why = "a force jumps at a level";
-            return Err(ModelError::NoContactEquation { why }.into());
-        }
-        if asked.period > 1 {
-            let why = "orbits of several periods";
             return Err(ModelError::NoContactEquation { why }.into());
         }
         Ok(Self {

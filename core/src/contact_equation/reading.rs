@@ -1,20 +1,18 @@
 //! What is read off an orbit, with its errors: one step from it to a solution with more nodes tells what the nodes leave out.
 
-use std::f64::consts::TAU;
-
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
 use super::motion::{Motion, Within};
 use super::run::{DIFFERENCE, Run};
+use crate::branches::moduli::multipliers;
 use crate::branches::observed::{Motion as Extent, Observed};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
-use crate::branches::recurrence::Recurrence;
 use crate::branches::stability::{Stability, Verdict};
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
-use crate::numeric::spectrum::{distance, eigenvalues};
+use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
 use crate::shooting::reading::Reader;
 
@@ -90,8 +88,9 @@ impl Run<'_> {
             maximum: maximum.value,
             ..Extent::NONE
         });
-        let recurrence = Recurrence::whole(problem.period);
-        let mut outputs = problem.output_reader(value, &recurrence);
+        let skeleton = &equations.skeleton;
+        let recurrence = skeleton.recurrence();
+        let mut outputs = problem.output_reader(value, recurrence);
         if let Some(outputs) = &mut outputs {
             for interval in 0..motion.intervals() {
                 let [from, to] = motion.phases(interval);
@@ -104,9 +103,9 @@ impl Run<'_> {
             }
         }
         let mut states = vec![0.0; 2 * coordinates * problem.period];
-        for (period, state) in states.chunks_exact_mut(2 * coordinates).enumerate() {
-            let (interval, phase) = motion.interval(TAU * period as f64);
-            motion.state(interval, phase, state);
+        let segment = skeleton.length / problem.period as f64;
+        for (index, state) in states.chunks_exact_mut(2 * coordinates).enumerate() {
+            motion.at(segment * index as f64, state);
         }
         let switches = switches(equations);
         Point {
@@ -117,16 +116,16 @@ impl Run<'_> {
                 states,
                 coordinates,
                 omega: problem.omega_at(value),
-                base: rate / problem.period as f64,
-                period: problem.period,
+                base: rate / recurrence.period as f64,
+                period: recurrence.period,
                 parts: recurrence.parts,
-                symmetric: false,
-                image: recurrence.image,
+                symmetric: recurrence.image.is_minus(),
+                image: recurrence.image.clone(),
             },
             stability: Stability::unknown(),
             observed: Observed {
                 outputs: outputs.map_or_else(Vec::new, Reader::motions),
-                ..Observed::extremes(motions.collect(), switches)
+                ..Observed::extremes(motions.collect(), switches * recurrence.parts)
             },
             error: None,
         }
@@ -159,11 +158,14 @@ impl Run<'_> {
         point.error = Some(stated(error));
         let mut spread = 0.0;
         if let Some(map) = &map {
-            let found = eigenvalues(map);
+            let parts = self.equations.skeleton.recurrence().parts;
+            let found = multipliers(map, parts);
             let known = finer_map.as_ref();
-            let moved = known.map_or(f64::INFINITY, |finer| distance(&found, &eigenvalues(finer)));
+            let apart = |finer| distance(&found, &multipliers(finer, parts));
+            let moved = known.map_or(f64::INFINITY, apart);
             point.stability = Stability::of(found, SAFETY * moved);
-            spread = known.map_or(f64::INFINITY, |finer| moved.max((map - finer).norm()));
+            let of_map = |finer: &DMatrix<f64>| parts as f64 * (map - finer).norm();
+            spread = known.map_or(f64::INFINITY, |finer| moved.max(of_map(finer)));
         }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
@@ -213,7 +215,8 @@ impl Run<'_> {
         }
         point.error = Some(stated(error));
         if let Some(map) = &map {
-            point.stability = Stability::of(eigenvalues(map), spread);
+            let parts = self.equations.skeleton.recurrence().parts;
+            point.stability = Stability::of(multipliers(map, parts), spread);
             if point.stability.verdict == Verdict::Undecided {
                 return self.read(at);
             }
@@ -360,9 +363,10 @@ struct Finer {
 /// of these values, to first order.
 fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 {
     let motion = Motion::of(finer);
-    let off = |coordinate: usize, place: &Place| {
-        let (interval, phase) = motion.interval(place.x);
-        motion.coordinate(coordinate, interval, phase)[0] - place.value
+    let mut state = vec![0.0; finer.skeleton.order];
+    let mut off = |coordinate: usize, place: &Place| {
+        motion.at(place.x, &mut state);
+        state[coordinate] - place.value
     };
     let counts = |index: usize| match accuracy {
         Accuracy::Coordinate(one) => index == one,

@@ -55,7 +55,8 @@ impl Rest {
             return None;
         }
         let values = problem.setting.values(self.made)?;
-        if !self.placement.fits(&values.contacts) {
+        let fits = self.placement.fits(&values.contacts);
+        if !fits || !problem.admits(&self.placement.beginning.recurrence) {
             return None;
         }
         let skeleton = Skeleton::new(
@@ -108,5 +109,6 @@ impl ContactBranch<'_, '_> {
     /// As it was there.
     pub(super) fn take_up(&mut self, rest: &Rest) {
         (self.stuck, self.refused, self.held) = (rest.stuck, rest.refused, rest.held);
+        self.look_at_last(rest.walk.point());
     }
 }

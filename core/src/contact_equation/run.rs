@@ -11,6 +11,7 @@ use super::reading::Screened;
 use super::rest::Rest;
 use super::transfer;
 use crate::branches::record::Record;
+use crate::branches::recurrence::Recurrence;
 use crate::continuation::follow::CurvePoint;
 use crate::continuation::statistics::Statistics;
 use crate::numeric::spectrum::eigenvalues;
@@ -34,6 +35,8 @@ pub(super) struct Run<'r> {
     pub(super) screened: Option<Screened>,
     pub(super) record: Record,
     pub(super) statistics: Statistics,
+    /// What the branch has met.
+    pub(super) joined: Option<Recurrence>,
     /// Where it was before the last step.
     pub(super) rest: Option<Box<Rest>>,
 }
@@ -54,6 +57,7 @@ impl<'r> Run<'r> {
             screened: None,
             record: Record::default(),
             statistics: Statistics::default(),
+            joined: None,
             rest: None,
         }
     }
@@ -95,10 +99,7 @@ impl<'r> Run<'r> {
             return None;
         }
         let motion = Motion::of(&self.equations);
-        let at = |phase: f64, state: &mut [f64]| {
-            let (interval, phase) = motion.interval(phase);
-            motion.state(interval, phase, state);
-        };
+        let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
         look(&motion, &self.gaps(&at))
     }
 

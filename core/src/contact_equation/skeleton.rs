@@ -17,14 +17,20 @@
 //!
 //! So `H` passes zero smoothly where the gap touches its level: beyond, (3) goes on with the extreme of a gap that does not reach it.
 //!
+//! Of an orbit that comes back after a part of its period with an image `S` of its coordinates that part is cut, and its end is `S` of its
+//! beginning.
+//!
 //! Source: di Bernardo, Budd, Champneys and Kowalczyk (2008), Piecewise-smooth Dynamical Systems, section 6.2 (grazing: the time in
 //! contact grows as the root of the penetration).
+
+use std::f64::consts::TAU;
 
 use super::grading::STEEPEST;
 use super::nodes::{COUNTS, Nodes};
 use super::place::{Place, half_way};
 use super::placement::{Placement, Switch, Told};
 use super::values::Contact;
+use crate::branches::recurrence::Recurrence;
 use crate::law::{Law, Quantity, Variation};
 use crate::numeric::fourier::grading;
 use crate::system::System;
@@ -113,7 +119,7 @@ impl Interval {
 /// All of it.
 #[derive(Debug, Clone)]
 pub(super) struct Skeleton {
-    /// Phase where the period begins, and its length.
+    /// Phase where the period begins, or the part of it after which the orbit comes back, and its length.
     pub(super) begin: f64,
     pub(super) length: f64,
     /// Number of states.
@@ -139,15 +145,15 @@ impl Skeleton {
         } = placement.clone();
         let mut skeleton = Self {
             begin: beginning.phase,
-            length: beginning.length,
+            length: beginning.length(),
             order,
             switches: placed.iter().map(|placed| placed.switch).collect(),
             intervals: Vec::new(),
             forces: 0,
             placement,
         };
+        let end = beginning.phase + beginning.length();
         let mut pieces = beginning.pieces;
-        let end = beginning.phase + beginning.length;
         let (mut from, mut phase) = (Cut::Begin, beginning.phase);
         let ends = placed
             .iter()
@@ -281,7 +287,8 @@ impl Skeleton {
         let panels = if active.is_empty() {
             1
         } else {
-            let asked = self.placement.resolution.panels as f64 * way.length / self.length;
+            let whole = self.length.min(TAU);
+            let asked = self.placement.resolution.panels as f64 * way.length / whole;
             asked.ceil().max(1.0) as usize
         };
         let [first, last] = way.cuts.map(|cut| self.steepness(system, contacts, cut));
@@ -328,6 +335,11 @@ impl Skeleton {
         let exponents = exponents_at(system.law(of.law), &of.arguments, level);
         let power = grading::power_for(&exponents.iter().copied());
         (power as usize).clamp(1, STEEPEST)
+    }
+
+    /// How the orbit comes back at its end.
+    pub(super) fn recurrence(&self) -> &Recurrence {
+        &self.placement.beginning.recurrence
     }
 
     /// Number of unknowns, without the parameter.

@@ -6,9 +6,46 @@ use super::motion::{GapExtreme, Motion};
 use super::placement::Told;
 use super::run::{Run, SAME};
 use crate::branches::extreme::Extreme;
+use crate::branches::recurrence::Recurrence;
 
 /// What `H` of a pair may be where its gap touches the level.
 const TOUCHES: f64 = 1e-9;
+/// Levels that differ by this part are one.
+const SAME_LEVEL: f64 = 1e-9;
+/// Where gaps are compared, in parts of the time after which the orbit comes back: nowhere in particular.
+const LOOKED_AT: f64 = 0.377;
+
+/// A contact with the gap that another one has had, or with the opposite.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Image {
+    contact: usize,
+    sign: f64,
+}
+
+/// The image of a contact after so many parts.
+fn later(images: &[Image], contact: usize, parts: usize) -> Image {
+    let own = Image { contact, sign: 1.0 };
+    (0..parts).fold(own, |Image { contact, sign }, _| {
+        let next = images[contact];
+        Image {
+            contact: next.contact,
+            sign: sign * next.sign,
+        }
+    })
+}
+
+/// Whether levels are those of another contact, or the opposite ones.
+fn are_alike(levels: &[f64], others: &[f64], sign: f64) -> bool {
+    let same = |(level, other): (&f64, &f64)| {
+        (level - sign * other).abs() <= SAME_LEVEL * level.abs().max(other.abs())
+    };
+    levels.len() == others.len()
+        && if sign > 0.0 {
+            levels.iter().zip(others).all(same)
+        } else {
+            levels.iter().zip(others.iter().rev()).all(same)
+        }
+}
 
 impl Run<'_> {
     /// All extremes of gaps as the engine sees them.
@@ -18,25 +55,22 @@ impl Run<'_> {
         if self.equations.failed {
             return false;
         }
-        let motion = Motion::of(&self.equations);
-        let length = self.equations.skeleton.length;
-        for (contact, found) in motion.extremes().gaps.iter().enumerate() {
-            let mut found = found.clone();
-            found.sort_by(|a, b| {
-                let place = |extreme: &GapExtreme| extreme.phase.rem_euclid(length);
-                place(a).total_cmp(&place(b))
-            });
-            let gaps = found.iter().map(|extreme| extreme.gap);
-            let (low, high) = gaps.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                (a.min(x), b.max(x))
-            });
-            let size = 0.5 * (high - low);
+        let whole = TAU * self.equations.skeleton.recurrence().period as f64;
+        let mut found = self.of_period();
+        let place = |extreme: &GapExtreme| extreme.phase.rem_euclid(whole);
+        found.sort_by(|a, b| {
+            let contacts = a.contact.cmp(&b.contact);
+            contacts.then(place(a).total_cmp(&place(b)))
+        });
+        for of_contact in found.chunk_by(|a, b| a.contact == b.contact) {
+            let contact = of_contact[0].contact;
+            let size = 0.5 * self.range(of_contact, contact);
             let levels = &self.equations.values.contacts[contact].levels;
             for (level, value) in levels.iter().enumerate() {
-                extremes.extend(found.iter().map(|extreme| Extreme {
+                extremes.extend(of_contact.iter().map(|extreme| Extreme {
                     contact,
                     level,
-                    tau: TAU * extreme.phase.rem_euclid(length) / length,
+                    tau: TAU * place(extreme) / whole,
                     maximum: extreme.maximum,
                     above: (extreme.gap - value) / size,
                     size,
@@ -46,6 +80,97 @@ impl Run<'_> {
             }
         }
         true
+    }
+
+    /// Extremes over the whole period of the orbit of the last pass: where it comes back earlier, with their images. Of contacts that take
+    /// each other's place the first one has them all.
+    fn of_period(&self) -> Vec<GapExtreme> {
+        let motion = Motion::of(&self.equations);
+        let skeleton = &self.equations.skeleton;
+        let found = motion.extremes().gaps.concat();
+        let images = self.images();
+        let parts = skeleton.recurrence().parts;
+        let is_first = |contact: usize| {
+            let mut others = (1..parts).map(|part| later(images, contact, part).contact);
+            others.all(|other| contact <= other)
+        };
+        let firsts: Vec<bool> = (0..images.len()).map(is_first).collect();
+        let image = |extreme: &GapExtreme, part: usize| {
+            let Image { contact, sign } = later(images, extreme.contact, part);
+            GapExtreme {
+                contact,
+                phase: extreme.phase + skeleton.length * part as f64,
+                gap: sign * extreme.gap,
+                maximum: extreme.maximum == (sign > 0.0),
+                ..*extreme
+            }
+        };
+        let all = (0..parts).flat_map(|part| found.iter().map(move |extreme| image(extreme, part)));
+        all.filter(|extreme| firsts[extreme.contact]).collect()
+    }
+
+    /// Number of contacts that take the place of one until the period is over.
+    pub(super) fn alike(&self, contact: usize) -> usize {
+        let images = self.images();
+        let parts = self.equations.skeleton.recurrence().parts;
+        let mut alike: Vec<usize> = (0..parts)
+            .map(|part| later(images, contact, part).contact)
+            .collect();
+        alike.sort_unstable();
+        alike.dedup();
+        alike.len()
+    }
+
+    /// For every contact the one that has its gap, or the opposite, when the orbit has come back: found from the motion of the last pass.
+    fn images(&self) -> &[Image] {
+        self.equations.images.get_or_init(|| self.seen_images())
+    }
+
+    fn seen_images(&self) -> Vec<Image> {
+        let skeleton = &self.equations.skeleton;
+        let contacts = &self.equations.values.contacts;
+        if skeleton.recurrence().parts == 1 {
+            let own = |contact| Image { contact, sign: 1.0 };
+            return (0..contacts.len()).map(own).collect();
+        }
+        let motion = Motion::of(&self.equations);
+        let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
+        let gaps = self.gaps(&at);
+        let seen = |phase: f64| -> Vec<[f64; 2]> {
+            let all = 0..contacts.len();
+            all.map(|contact| gaps.gap(contact, phase)).collect()
+        };
+        let phase = skeleton.begin + LOOKED_AT * skeleton.length;
+        let [now, then] = [phase, phase + skeleton.length].map(seen);
+        let base = self.equations.values.base;
+        let mut taken = vec![false; contacts.len()];
+        let mut images = Vec::with_capacity(contacts.len());
+        for (contact, of) in contacts.iter().enumerate() {
+            let apart = |other: usize, sign: f64| {
+                let [gap, rate] = [0, 1].map(|i| (then[other][i] - sign * now[contact][i]).abs());
+                gap + rate / base
+            };
+            let pairs = (0..contacts.len())
+                .flat_map(|contact| [1.0, -1.0].map(|sign| Image { contact, sign }));
+            let mut possible = pairs.filter(
+                |Image {
+                     contact: other,
+                     sign,
+                 }| {
+                    !taken[*other] && are_alike(&of.levels, &contacts[*other].levels, *sign)
+                },
+            );
+            let first = possible.next();
+            let image = possible.fold(first, |best, next| {
+                let distance = |image: &Image| apart(image.contact, image.sign);
+                best.filter(|best| distance(best) <= distance(&next))
+                    .or(Some(next))
+            });
+            let image = image.unwrap_or(Image { contact, sign: 1.0 });
+            taken[image.contact] = true;
+            images.push(image);
+        }
+        images
     }
 
     /// Writes the linear form of unknowns that gap less level is at an extreme that is short of it, in units of the extreme: by (3) of
@@ -62,17 +187,29 @@ impl Run<'_> {
     /// The unknown `H` of the pair that watches an extreme which is short of its level, and half of `g''`.
     pub(super) fn watched(&self, u: &[f64], extreme: &Extreme) -> Option<(usize, f64)> {
         let skeleton = &self.equations.skeleton;
-        let mut switches = skeleton.switches.iter().enumerate();
-        switches.find_map(|(index, switch)| {
-            let Told::First { other, bend } = switch.told else {
+        let images = self.images();
+        let Recurrence { period, parts, .. } = *skeleton.recurrence();
+        let whole = TAU * period as f64;
+        let is_watched = |index: usize, part: usize| {
+            let switch = &skeleton.switches[index];
+            let phase = skeleton.phase(u, index) + skeleton.length * part as f64;
+            let apart = (TAU * phase / whole - extreme.tau).rem_euclid(TAU);
+            let Image { contact, sign } = later(images, switch.contact, part);
+            let levels = self.equations.values.contacts[contact].levels.len();
+            let (level, rises) = if sign > 0.0 {
+                (switch.level, switch.rises)
+            } else {
+                (levels - 1 - switch.level, !switch.rises)
+            };
+            let same = (contact, level, rises) == (extreme.contact, extreme.level, extreme.maximum);
+            same && parts as f64 * apart.min(TAU - apart) < SAME
+        };
+        (0..skeleton.switches.len()).find_map(|index| {
+            let Told::First { other, bend } = skeleton.switches[index].told else {
                 return None;
             };
-            let phase = TAU * skeleton.phase(u, index) / skeleton.length;
-            let apart = (phase - extreme.tau).rem_euclid(TAU);
-            let same = (switch.contact, switch.level, switch.rises)
-                == (extreme.contact, extreme.level, extreme.maximum);
             let square = skeleton.slot(other);
-            let short = same && apart.min(TAU - apart) < SAME && u[square] <= TOUCHES;
+            let short = u[square] <= TOUCHES && (0..parts).any(|part| is_watched(index, part));
             short.then_some((square, bend))
         })
     }

@@ -1,7 +1,7 @@
 //! An orbit of other equations: its unknowns in these, and the plan of equations that fit it.
 
 use super::equations::Equations;
-use super::gaps::{Gaps, apart};
+use super::gaps::{Gaps, apart, seen};
 use super::motion::{GapExtreme, Motion};
 use super::placement::{Placed, Switch, Told};
 use super::plan::{Plan, write_forces};
@@ -26,7 +26,12 @@ pub(super) fn transferred(
     for ((x, state), origin) in to.iter_mut().zip(&state).zip(&equations.reference) {
         *x = state - origin;
     }
-    let known = crossings(old, u);
+    // Behind an end contacts may be in each other's place: what is beyond is seen there.
+    let (known, extremes) = if old.recurrence().parts == 1 {
+        (crossings(old, u), motion.extremes().gaps.concat())
+    } else {
+        seen(gaps, new.begin, new.length)
+    };
     for (index, switch) in new.switches.iter().enumerate() {
         let slot = new.slot(index);
         match switch.told {
@@ -40,7 +45,7 @@ pub(super) fn transferred(
                 let ends = pair.map(|switch| nearest(&known, switch, from, new.length));
                 let [by, square] = match ends {
                     [Some(a), Some(b)] if a < b => [0.5 * (a + b), 0.25 * (b - a) * (b - a)],
-                    _ => short_of(motion, gaps, switch, [from, bend])?,
+                    _ => short_of(&extremes, gaps, switch, [from, bend, new.length])?,
                 };
                 to[slot] = near[slot] + by;
                 to[new.slot(other)] = square;
@@ -65,17 +70,15 @@ fn nearest(known: &[Placed], switch: &Switch, from: f64, length: f64) -> Option<
 
 /// How far the extreme that is short of a level is from a phase, and its `H`.
 fn short_of(
-    motion: &Motion<'_>,
+    extremes: &[GapExtreme],
     gaps: &Gaps<'_>,
     switch: &Switch,
-    [from, bend]: [f64; 2],
+    [from, bend, length]: [f64; 3],
 ) -> Option<[f64; 2]> {
-    let extremes = &motion.extremes().gaps[switch.contact];
-    let length = motion.equations.skeleton.length;
     let level = gaps.values.contacts[switch.contact].levels[switch.level];
     let found = extremes
         .iter()
-        .filter(|extreme| extreme.maximum == switch.rises)
+        .filter(|extreme| extreme.contact == switch.contact && extreme.maximum == switch.rises)
         .map(|extreme| {
             [
                 apart(extreme.phase, from, length),
@@ -111,12 +114,15 @@ fn crossings(skeleton: &Skeleton, u: &[f64]) -> Vec<Placed> {
 /// The plan of an orbit of other equations, from the motion of their last pass.
 pub(super) fn replanned(motion: &Motion<'_>, u: &[f64], gaps: &Gaps<'_>) -> Plan {
     let skeleton = &motion.equations.skeleton;
+    if skeleton.recurrence().parts > 1 {
+        return Plan::sampled(gaps, skeleton.recurrence());
+    }
     let mut crossings = crossings(skeleton, u);
     let extremes = motion.extremes().gaps.concat();
     for extreme in &extremes {
         add_beyond(gaps, skeleton, extreme, &mut crossings);
     }
-    Plan::of(gaps, skeleton.length, crossings, &extremes)
+    Plan::of(gaps, skeleton.recurrence(), crossings, &extremes)
 }
 
 /// Adds the switches around an extreme that is beyond the levels of its piece, where the parabola of the gap has them.

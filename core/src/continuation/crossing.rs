@@ -21,6 +21,8 @@ const SIDE: usize = 4;
 const WIDTHS: [f64; 2] = [0.1, 0.02];
 /// Fewer orbits than this are not enough.
 const FEWEST: usize = 5;
+/// Cosine of the angle between tangents of one branch near the point.
+const ALIKE: f64 = 0.9;
 /// Errors of all orbits together, in units of what the worst of them does to the result when it is left out.
 const LEFT_OUT: f64 = 4.0;
 
@@ -118,12 +120,27 @@ impl Search<'_> {
                 found.push(Node { s, u, slope, test });
             }
         }
+        self.leave_other_branch(newton, &mut found);
         if found.len() < FEWEST {
             return None;
         }
         self.nodes = found;
         self.zero = root(&self.nodes)?;
         Some(())
+    }
+
+    /// Leaves out solutions on the branch that crosses: their tangents are none of most others.
+    fn leave_other_branch(&self, newton: &Newton, found: &mut Vec<Node>) {
+        let (norm, scale) = (newton.norm(), self.like.scale);
+        let alike = |a: &Node, b: &Node| {
+            let lengths = norm.length(scale, &a.slope) * norm.length(scale, &b.slope);
+            norm.product(scale, &a.slope, &b.slope).abs() > ALIKE * lengths
+        };
+        let count = |node: &Node| found.iter().filter(|other| alike(node, other)).count();
+        let counts: Vec<usize> = found.iter().map(count).collect();
+        let most = counts.iter().max().copied().unwrap_or(0);
+        let mut counts = counts.into_iter();
+        found.retain(|_| 2 * counts.next().unwrap_or(0) > most);
     }
 
     /// The solution at a place, and its tangent.

@@ -36,17 +36,7 @@ impl Run<'_> {
         let Ok(map) = equations.map(u, &mut |_| {}) else {
             return false;
         };
-        let identity = DMatrix::<f64>::identity(map.nrows(), map.ncols());
-        let svd = (map - identity).svd(false, true);
-        let smallest = svd.singular_values.imin();
-        let Some(v) = svd.v_t.map(|v| v.row(smallest).transpose()) else {
-            return false;
-        };
-        let coordinates = v.len() / 2;
-        self.had(equations).any(|image| {
-            let moved = image.of_states(v.as_slice(), coordinates);
-            (DVector::from_vec(moved) - &v).norm() > APART
-        })
+        breaks(&map, self.had(equations))
     }
 
     /// Whether the state of an orbit has a permutation that the last one has not: the branch has met one of orbits with it.
@@ -60,6 +50,24 @@ impl Run<'_> {
         let mut images = self.problem.at_once.iter();
         images.any(|image| !had.contains(&image) && has(equations, state, image, same))
     }
+}
+
+/// Whether the direction in which the map leaves states alone has not one of these permutations.
+pub(crate) fn breaks<'p>(
+    map: &DMatrix<f64>,
+    mut had: impl Iterator<Item = &'p SignedPermutation>,
+) -> bool {
+    let identity = DMatrix::<f64>::identity(map.nrows(), map.ncols());
+    let svd = (map - identity).svd(false, true);
+    let smallest = svd.singular_values.imin();
+    let Some(v) = svd.v_t.map(|v| v.row(smallest).transpose()) else {
+        return false;
+    };
+    let coordinates = v.len() / 2;
+    had.any(|image| {
+        let moved = image.of_states(v.as_slice(), coordinates);
+        (DVector::from_vec(moved) - &v).norm() > APART
+    })
 }
 
 /// Whether a state is its image.

@@ -14,6 +14,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::equations::{Equations, Frame, Span};
 use super::problem::ShootingProblem;
+use crate::branches::moduli::multipliers;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::error::Error;
 use crate::numeric::spectrum::{distance, eigenvalues};
@@ -132,31 +133,14 @@ impl ErrorReference {
     }
 }
 
-/// Multipliers over the whole period, of a map over one of its parts; largest first.
-pub(super) fn multipliers(map: &DMatrix<f64>, parts: usize) -> Vec<Complex<f64>> {
-    let mut values = eigenvalues(map);
-    for value in &mut values {
-        let of_part = *value;
-        for _ in 1..parts {
-            *value *= of_part;
-        }
-    }
-    values
-}
-
 /// How far multipliers move when the entries of their map do.
-pub(super) fn moved(
-    map: &DMatrix<f64>,
-    multipliers: &[Complex<f64>],
-    parts: usize,
-    by: f64,
-) -> f64 {
+pub(super) fn moved(map: &DMatrix<f64>, found: &[Complex<f64>], parts: usize, by: f64) -> f64 {
     let disturbed = |sign: f64| {
         let entries = DMatrix::from_fn(map.nrows(), map.ncols(), |i, j| {
             let alternating = if (i + j).is_multiple_of(2) { 1.0 } else { sign };
             map[(i, j)] + by * alternating
         });
-        distance(multipliers, &self::multipliers(&entries, parts))
+        distance(found, &multipliers(&entries, parts))
     };
     disturbed(1.0).max(disturbed(-1.0))
 }

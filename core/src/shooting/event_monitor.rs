@@ -14,7 +14,6 @@
 
 use super::bifurcation_curve::{BifurcationCurvePoint, Plane, Special, SpecialKind};
 use super::codimension_one::{Condition, Curve};
-use super::error_reference::multipliers;
 use super::generalised_flip::HalfPeriodDifference;
 use super::normal_form::CubicCoefficient;
 use super::problem::ShootingProblem;
@@ -23,6 +22,7 @@ use super::special_search::{
     Counted, Criterion, Function, Place, ReferenceCurve, Search, TestFunctions, Tests, apart,
     values,
 };
+use crate::branches::moduli::multipliers;
 use crate::continuation::follow::{Continue, CurvePoint, Halt, Outcome, Step, Stop, Visit};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;

@@ -4,12 +4,13 @@
 //! driven to zero there; its error is what an error reference makes of it.
 
 use super::equations::Equations;
-use super::error_reference::{self, ErrorReference, multipliers};
+use super::error_reference::{self, ErrorReference};
 use super::method::VANISHED;
 use super::problem::ShootingProblem;
 use super::run::{Run, observe, relative};
 use super::tested::{Test, Tests};
 use crate::branches::engine::{self, Aim};
+use crate::branches::moduli::multipliers;
 use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Change, Root, Touch, Zero};
 use crate::continuation::follow::{CurvePoint, Step};

@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::events;
 use super::gap_extremes::GapExtremes;
-use super::minimal_period::{earlier, may_be_earlier, step_on_other_branch};
+use super::minimal_period::{earlier, may_be_earlier};
 use super::run::Run;
 use super::tested::{self, Tests};
 use crate::branches::engine::{Search, Walk};
@@ -11,11 +11,12 @@ use crate::branches::extreme::{self, Extreme};
 use crate::branches::keep::keep;
 use crate::branches::moduli;
 use crate::branches::problem::{
-    BranchProblem, Change, Read, Test, TestValue, Touch, Watched, Zero, ZeroOutcome,
+    BranchProblem, Change, Read, TestValue, Touch, Watched, Zero, ZeroOutcome,
 };
 use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
+use crate::branches::switch::step_on_other_branch;
 use crate::continuation::follow::{Continue, CurvePoint, Step, Stop};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -220,25 +221,8 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     fn end(&mut self, newton: &mut Newton, step: Step<'_>, options: NewtonOptions) -> Option<Read> {
         let equations = &mut self.equations;
         let other = step_on_other_branch(equations, newton, step, options)?;
-        let change = Change {
-            test: Test::Watched(0),
-            kind: EventKind::BranchPoint,
-        };
         if !self.watched.is_empty() {
-            let beyond = Step {
-                before: step.next,
-                next: &other,
-            };
-            let ends = [beyond.before, beyond.next].map(|at| self.test(0, at));
-            let search = Search {
-                step: beyond,
-                change,
-                ends,
-                after: self.run.record.points.len(),
-                told: true,
-                options,
-            };
-            search.record(self, newton);
+            Search::of_joint(self, step, &other, options).record(self, newton);
         }
         None
     }

@@ -7,15 +7,10 @@
 
 use super::equations::Equations;
 use crate::branches::recurrence::{CyclicSymmetry, Recurrence};
-use crate::branches::solve;
-use crate::continuation::follow::{CurvePoint, Step};
-use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::time::FlowError;
 
 /// The same at a branch point: along a branch that turns there, states are known to the root of what the value is known to.
 const SAME_AT_POINT: f64 = 1e-4;
-/// The other branch is followed beyond the point before by this part of the step.
-const MARGIN: f64 = 0.5;
 
 /// By what part of the `size` of orbits two states differ at most that are one.
 #[derive(Debug, Clone, Copy)]
@@ -86,29 +81,4 @@ pub(super) fn are_near(equations: &Equations, state: &[f64], other: &[f64], most
         let unit = if i < n { 1.0 } else { equations.frame.omega };
         (x - y).abs() <= most * unit
     })
-}
-
-/// The step along the more regular branch that passes over the point where a step came onto it: from beyond the
-/// parameter where the step begins.
-pub(super) fn step_on_other_branch(
-    equations: &mut Equations,
-    newton: &mut Newton,
-    Step { before, next }: Step<'_>,
-    options: NewtonOptions,
-) -> Option<CurvePoint> {
-    let last = next.u.len() - 1;
-    let slope = next.tangent[last];
-    let distance = (1.0 + MARGIN) * (before.parameter() - next.parameter());
-    let along = distance / slope;
-    let pairs = next.u.iter().zip(&next.tangent);
-    let mut u: Vec<f64> = pairs.map(|(x, t)| x + along * t).collect();
-    solve::at_value(equations, newton, &mut u, options).ok()?;
-    let mut tangent = vec![0.0; u.len()];
-    newton.tangent(equations, &u, &mut tangent, true);
-    let scale = next.scale;
-    let length = newton.norm().length(scale, &tangent) * slope.signum();
-    for t in &mut tangent {
-        *t /= length;
-    }
-    Some(CurvePoint { u, tangent, scale })
 }

@@ -40,6 +40,7 @@ mod tests;
 
 pub(crate) use bifurcation_curve::Plane;
 pub use bifurcation_curve::{BifurcationCurve, BifurcationCurvePoint, Special, SpecialKind};
+pub(crate) use broken_symmetry::breaks;
 pub(crate) use checked::Asked;
 pub use options::Shooting;
 pub(crate) use rest::Rest;

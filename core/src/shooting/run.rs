@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
-use super::error_reference::{Corrected, ErrorReference, multipliers};
+use super::error_reference::{Corrected, ErrorReference};
 use super::extremes;
 use super::method::ShootingBranch;
 use super::minimal_period::{SameState, earlier, may_be_earlier};
@@ -12,6 +12,7 @@ use super::reading::Reader;
 use super::rest::Rest;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
+use crate::branches::moduli::multipliers;
 use crate::branches::observed::{Motion, Observed};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;

@@ -66,7 +66,31 @@ impl Engine {
     }
 }
 
-impl Search<'_> {
+impl<'s> Search<'s> {
+    /// For the branch point that a step passed over onto a branch of more regular orbits, along which `other` is behind it.
+    pub(crate) fn of_joint(
+        problem: &mut dyn BranchProblem,
+        step: Step<'s>,
+        other: &'s CurvePoint,
+        options: NewtonOptions,
+    ) -> Self {
+        let beyond = Step {
+            before: step.next,
+            next: other,
+        };
+        Self {
+            step: beyond,
+            change: Change {
+                test: Test::Watched(0),
+                kind: EventKind::BranchPoint,
+            },
+            ends: [beyond.before, beyond.next].map(|at| problem.test(0, at)),
+            after: problem.points(),
+            told: true,
+            options,
+        }
+    }
+
     /// Locates an event, with what the matrix has now or else with more of the equations in it, and keeps it; or the place where the test
     /// function jumps.
     pub(crate) fn record(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Recorded {

@@ -1,11 +1,11 @@
 //! A rotor on eight balls that move with the cage, in the manner of Sunnersjo (1978).
 //!
-//! The balls are alike, so the orbits come back after the passage of one, a sixteenth of the period of the declaration. Both methods
-//! know of the balls that they are alike: the balance has the harmonics of a passage only, and shooting follows a passage only. What
+//! The balls are alike, so the orbits come back after the passage of one, a sixteenth of the period of the declaration. All methods
+//! know of the balls that they are alike: the balance has the harmonics of a passage only, the others follow a passage only. What
 //! begins where the time of a passage doubles has an eighth of the declared period, and multipliers of one over all of it.
 
 use hertzian::EventKind::{Fold, PeriodDoubling};
-use hertzian::{Branch, EventKind, FrequencyResponse, Shooting, Side, Verdict};
+use hertzian::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting, Side, Verdict};
 
 use super::{all_found, of_shooting};
 
@@ -65,6 +65,18 @@ fn the_lower_doubling_of_a_passage_is_found() {
 }
 
 #[test]
+fn the_contact_equation_finds_all() {
+    for ([from, to], known, digits) in [
+        ([0.35, 0.36], &FOLDS[..], 1e-13),
+        ([0.7344, 0.7348], &UPPER[..], 1e-11),
+        ([0.6646, 0.665], &LOWER[..], 1e-11),
+    ] {
+        by_contact_equation([from, to], known, digits);
+        by_contact_equation([to, from], known, digits);
+    }
+}
+
+#[test]
 fn the_balance_finds_the_folds() {
     let ends = [0.352, 0.3585];
     either_way(ends, |ends| by_balance(ends, &FOLDS, 1e-13, false));
@@ -93,6 +105,13 @@ fn by_balance(range: [f64; 2], known: &[(EventKind, f64)], digits: f64, bifurcat
     let request = FrequencyResponse::of(&model).from(range[0]).to(range[1]);
     let request = request.stability(false).bifurcations(bifurcations);
     all_and_no_more(&request.run().unwrap(), known, digits);
+}
+
+fn by_contact_equation([from, to]: [f64; 2], known: &[(EventKind, f64)], digits: f64) {
+    let model = Bearing { load: 1.0 };
+    let request = FrequencyResponse::of(&model).by(ContactEquation::new());
+    let branch = request.from(from).to(to).run().unwrap();
+    all_and_no_more(&branch, known, digits);
 }
 
 fn by_shooting([from, to]: [f64; 2], known: &[(EventKind, f64)], digits: f64) {

@@ -1,9 +1,12 @@
 //! Orbits against those of shooting, and derivatives against differences.
 
+mod regular;
+
 use super::equations::{Equations, Setting};
 use super::gaps::Gaps;
 use super::placement::Resolution;
 use super::plan::{Frame, Plan};
+use crate::branches::recurrence::Recurrence;
 use crate::branches::solve;
 use crate::cancel::Cancel;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -65,7 +68,17 @@ fn first(
     system: &dyn System,
     vary: Option<&str>,
     omega: f64,
+    resolution: [usize; 2],
+) -> (Equations, Vec<f64>) {
+    first_of(system, vary, omega, resolution, &Recurrence::whole(1))
+}
+
+fn first_of(
+    system: &dyn System,
+    vary: Option<&str>,
+    omega: f64,
     [nodes, panels]: [usize; 2],
+    recurrence: &Recurrence,
 ) -> (Equations, Vec<f64>) {
     let request = FrequencyResponse::of(system);
     let point = request.orbit(omega).unwrap();
@@ -98,7 +111,7 @@ fn first(
         at: &at,
         coordinates,
     };
-    let plan = Plan::sampled(&gaps, std::f64::consts::TAU);
+    let plan = Plan::sampled(&gaps, recurrence);
     let frame = Frame {
         reference: vec![0.0; 2 * coordinates],
         size: point.size(),
@@ -113,7 +126,18 @@ fn derivatives_are_those_of_differences(
     omega: f64,
     panels: usize,
 ) {
-    let (mut equations, u) = first(system, vary, omega, [12, panels]);
+    let whole = Recurrence::whole(1);
+    derivatives_are_those_of_differences_of(system, vary, omega, panels, &whole);
+}
+
+fn derivatives_are_those_of_differences_of(
+    system: &dyn System,
+    vary: Option<&str>,
+    omega: f64,
+    panels: usize,
+    recurrence: &Recurrence,
+) {
+    let (mut equations, u) = first_of(system, vary, omega, [12, panels], recurrence);
     equations.compute(&u, true);
     let n = u.len() - 1;
     let matrix = equations.matrix.clone();

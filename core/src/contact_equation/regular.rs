@@ -1,0 +1,210 @@
+//! Whether an orbit comes back in less time than it is followed for: before its period is over, or with coordinates or contacts in each
+//! other's place.
+//!
+//! A motion is told by its state at one phase. With `q(t + j T/m) = S^j q(t)` of [`recurrence`](crate::branches::recurrence) there it has
+//! that for ever.
+
+use std::f64::consts::TAU;
+
+use super::equations::Equations;
+use super::gaps::At;
+use super::motion::Motion;
+use super::problem::ContactProblem;
+use super::run::Run;
+use crate::branches::recurrence::{CyclicSymmetry, Recurrence, SignedPermutation};
+use crate::continuation::follow::CurvePoint;
+use crate::shooting::breaks;
+
+/// Two states of a solution that differ by this part of the size are one, at least; the accuracy that is asked for tells more.
+const SAME: f64 = 1e-7;
+const COARSEST: f64 = 1e-4;
+/// The same in parts of the tolerance.
+const TOLERANCES: f64 = 10.0;
+/// At a branch point states are known to the root of what the value is known to; and those of a guess are not better.
+pub(super) const NEAR: f64 = 1e-4;
+
+/// What a state is compared by: a phase where it is taken, and the unit of velocities.
+#[derive(Clone, Copy)]
+pub(super) struct Compared {
+    pub(super) begin: f64,
+    pub(super) rate: f64,
+    /// States that differ by less are one.
+    pub(super) most: f64,
+    pub(super) coordinates: usize,
+}
+
+impl Compared {
+    /// The states of a solution.
+    pub(super) fn of(equations: &Equations, part: f64) -> Self {
+        Self {
+            begin: equations.skeleton.begin,
+            rate: equations.values.base,
+            most: part * equations.size,
+            coordinates: equations.skeleton.order / 2,
+        }
+    }
+
+    /// Whether two states are one.
+    pub(super) fn are_one(&self, state: &[f64], other: &[f64]) -> bool {
+        let mut pairs = state.iter().zip(other).enumerate();
+        pairs.all(|(i, (x, y))| {
+            let unit = if i < self.coordinates { 1.0 } else { self.rate };
+            (x - y).abs() <= self.most * unit
+        })
+    }
+
+    /// How a motion comes back in less time than it is given to, the least that there is; `None` if it does not.
+    pub(super) fn earlier(
+        &self,
+        at: At<'_>,
+        given: &Recurrence,
+        symmetries: &[CyclicSymmetry],
+    ) -> Option<Recurrence> {
+        let state = |phase: f64| {
+            let mut state = vec![0.0; 2 * self.coordinates];
+            at(phase, &mut state);
+            state
+        };
+        let first = state(self.begin);
+        let mut least: Option<Recurrence> = None;
+        for symmetry in symmetries {
+            for (steps, recurrence) in symmetry.within(given) {
+                let shorter = |least: &Recurrence| {
+                    recurrence.period * least.parts < least.period * recurrence.parts
+                };
+                if !least.as_ref().is_none_or(shorter) {
+                    break;
+                }
+                let later = self.begin + TAU * steps as f64 / symmetry.parts as f64;
+                let image = recurrence.image.of_states(&first, self.coordinates);
+                if self.are_one(&state(later), &image) {
+                    least = Some(recurrence);
+                    break;
+                }
+            }
+        }
+        least
+    }
+}
+
+impl ContactProblem {
+    /// By what part of the size two states of solutions differ that are one.
+    pub(super) fn same(&self) -> f64 {
+        (TOLERANCES * self.tolerance).clamp(SAME, COARSEST)
+    }
+
+    /// How the orbit of the last pass comes back in less time than it is followed for.
+    pub(super) fn earlier(&self, equations: &Equations, part: f64) -> Option<Recurrence> {
+        let given = equations.skeleton.recurrence();
+        if !self.may_be_earlier(given) {
+            return None;
+        }
+        let motion = Motion::of(equations);
+        let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
+        Compared::of(equations, part).earlier(&at, given, &self.asked.symmetries)
+    }
+
+    /// Whether there may be orbits that come back in less time.
+    pub(super) fn may_be_earlier(&self, given: &Recurrence) -> bool {
+        let mut symmetries = self.asked.symmetries.iter();
+        symmetries.any(|symmetry| symmetry.within(given).next().is_some())
+    }
+
+    /// Whether orbits may come back like this.
+    pub(super) fn admits(&self, recurrence: &Recurrence) -> bool {
+        let whole = Recurrence::whole(self.asked.period);
+        let mut symmetries = self.asked.symmetries.iter();
+        *recurrence == whole
+            || symmetries.any(|symmetry| {
+                let mut within = symmetry.within(&whole);
+                within.any(|(_, other)| other == *recurrence)
+            })
+    }
+
+    /// Permutations of coordinates that the orbit of the last pass has at every time.
+    pub(super) fn at_once(&self, equations: &Equations, part: f64) -> Vec<&SignedPermutation> {
+        if self.asked.at_once.is_empty() {
+            return Vec::new();
+        }
+        let compared = Compared::of(equations, part);
+        let mut state = vec![0.0; 2 * compared.coordinates];
+        Motion::of(equations).at(compared.begin, &mut state);
+        let images = self.asked.at_once.iter();
+        let has = |image: &&SignedPermutation| {
+            compared.are_one(&state, &image.of_states(&state, compared.coordinates))
+        };
+        images.filter(has).collect()
+    }
+}
+
+impl Run<'_> {
+    /// How the orbit at a point comes back in less time than it is followed for, or that it has a permutation which the last one has not.
+    pub(super) fn earlier(&mut self, at: &CurvePoint) -> Option<Recurrence> {
+        let given = self.equations.skeleton.recurrence();
+        let problem = self.problem;
+        let any = problem.may_be_earlier(given) || !problem.asked.at_once.is_empty();
+        if self.record.points.is_empty() || !any {
+            return None;
+        }
+        self.equations.compute(&at.u, problem.asked.stability);
+        self.met(problem.same())
+    }
+
+    /// The same of the last pass.
+    fn met(&self, part: f64) -> Option<Recurrence> {
+        let given = self.equations.skeleton.recurrence();
+        if self.equations.failed {
+            return None;
+        }
+        let earlier = self.problem.earlier(&self.equations, part);
+        earlier.or_else(|| {
+            let had = self.had();
+            let has = self.problem.at_once(&self.equations, part);
+            let gains = has.iter().any(|image| !had.contains(image));
+            gains.then(|| given.clone())
+        })
+    }
+
+    /// The permutations that the last orbit has.
+    fn had(&self) -> Vec<&SignedPermutation> {
+        let Some(last) = self.record.points.last() else {
+            return Vec::new();
+        };
+        let state = last.orbit.state();
+        let compared = Compared::of(&self.equations, self.problem.same());
+        let images = self.problem.asked.at_once.iter();
+        let has = |image: &&SignedPermutation| {
+            compared.are_one(&state, &image.of_states(&state, compared.coordinates))
+        };
+        images.filter(has).collect()
+    }
+
+    /// Whether orbits without a permutation begin at the crossing that the last orbit has.
+    pub(super) fn breaks_symmetry(&mut self, u: &[f64]) -> bool {
+        if self.problem.asked.at_once.is_empty() {
+            return false;
+        }
+        let Some(map) = self.equations.map(u) else {
+            return false;
+        };
+        breaks(&map, self.had().into_iter())
+    }
+
+    /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the same orbits
+    /// again, looked at from elsewhere.
+    pub(super) fn meets(&mut self, u: &[f64]) -> bool {
+        let given = self.equations.skeleton.recurrence();
+        if !self.problem.may_be_earlier(given) && self.problem.asked.at_once.is_empty() {
+            return false;
+        }
+        self.equations.compute(u, false);
+        let met = self.met(self.problem.same().max(NEAR));
+        if let (Some(event), true) = (self.record.events.last(), met.is_some()) {
+            // The orbits behind the point are those before it.
+            let after = event.after;
+            self.record.points.truncate(after);
+        }
+        self.joined = met;
+        self.joined.is_some()
+    }
+}
