@@ -195,7 +195,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         if point.orbit.has_series() {
             return of_series(self.request.system.as_ref(), point, source);
         }
-        by_shooting::reading(&self.request, self.shooting(), point, source)
+        by_shooting::reading(&self.request, self.shooting()?, point, source)
     }
 }
 
