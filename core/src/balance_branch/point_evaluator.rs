@@ -3,6 +3,7 @@
 use super::output_error::OfCoordinates;
 use crate::balance::Balance;
 use crate::balance::truncation::{BEYOND, RefinedBalance};
+use crate::branches::observed::EXTREMES;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::continuation::newton::Newton;
@@ -18,8 +19,6 @@ pub(super) const ROUNDING: f64 = 1e-14;
 const STILL: f64 = 10.0;
 /// A branch less steep than this is at a fold that was located.
 const FOLD: f64 = 1e-6;
-/// Roundings of the two extremes.
-pub(super) const EXTREMES: f64 = 4.0;
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
