@@ -56,6 +56,23 @@ pub(super) struct Screened {
 }
 
 impl Screened {
+    /// Whether its numbers can be what they say: they may have been read from a file.
+    pub(super) fn is_possible(&self) -> bool {
+        let Self {
+            tails,
+            apart,
+            shift,
+            slope,
+            error,
+            spread,
+            ..
+        } = self;
+        let numbers = [apart, shift, slope, error, spread];
+        tails.iter().all(|tail| *tail > 0.0)
+            && numbers.into_iter().all(|x| *x >= 0.0)
+            && self.left <= SCREENED
+    }
+
     /// How many times as large errors may be where forces leave so much out: they are products of what the forces and what the rule of
     /// integration leave out. `None` if they leave out so much more that this says nothing.
     fn grown(&self, tails: &[f64]) -> Option<f64> {

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::both_ways::is_left;
+use super::both_ways::{begins_at, is_left};
 use super::following::{Following, Left, by_any};
 use super::sealed::Follow;
 use super::{by_balance, by_contact_equation, by_shooting};
@@ -339,7 +339,8 @@ impl Resume<'_> {
         };
         let to = self.to.unwrap_or(to);
         if let Some((value, middle)) = following.both_ways() {
-            let middle = points.get(middle).ok_or(RequestError::Rest)?;
+            let begun = begins_at(value, middle, points).then(|| &points[middle]);
+            let middle = begun.ok_or(RequestError::Rest)?;
             let request = Request {
                 to: Some(to),
                 near: Some(Guess::Orbit(middle.orbit.clone())),

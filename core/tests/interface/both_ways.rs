@@ -158,6 +158,9 @@ fn parts_that_are_none_are_refused() {
         ("\"points\":4", "\"points\":9"),
         ("\"events\":0", "\"events\":3"),
         ("\"turns\":0", "\"turns\":18446744073709551615"),
+        ("\"value\":0.68}", "\"value\":\"NaN\"}"),
+        ("\"value\":0.68}", "\"value\":1e300}"),
+        ("\"value\":0.68}", "\"value\":0.7}"),
     ] {
         let (before, both) = text.split_at(at);
         assert!(both.contains(from), "{from}");
