@@ -51,7 +51,8 @@ impl PointEvaluator<'_> {
             finer, observer, ..
         } = self;
         let change = finer.change_of(u, &mut |balance, orbit| {
-            observer.output(balance, orbit, output).peak_to_peak()
+            let motion = observer.output(balance, orbit, output);
+            [motion.minimum, motion.maximum]
         });
         if own + change == 0.0 {
             // It does not move, and neither does that of the corrected orbit.
