@@ -79,6 +79,32 @@ fn by_the_balance() {
     is_honest(&request, &["pushes", "apart", "beside"]);
 }
 
+/// Orbits between those of a branch, and those of the branch, take no harmonics for noise.
+#[test]
+fn of_a_branch_by_the_balance() {
+    let most = |request: &FrequencyResponse| {
+        let branch = request.run().expect("a branch");
+        let between = branch.at(0.937).expect("orbits");
+        let points = branch.points.iter().chain(&between);
+        points.map(|point| point.orbit.harmonics()).max()
+    };
+    let alike = FrequencyResponse::of(&ALIKE).from(0.9).to(1.0);
+    let straight = FrequencyResponse::of(&Straight {}).from(0.9).to(0.95);
+    for (request, names) in [
+        (
+            alike.tolerance(1e-4),
+            &["pushes", "pulls", "apart", "beside"][..],
+        ),
+        (straight.tolerance(1e-3), &["pushes", "apart", "beside"]),
+    ] {
+        let plain = most(&request);
+        for &name in names {
+            let harmonics = most(&request.clone().accuracy_of(name));
+            assert!(harmonics <= plain, "{name}: {harmonics:?}");
+        }
+    }
+}
+
 #[test]
 fn by_shooting() {
     let request = FrequencyResponse::of(&ALIKE).from(0.5).to(1.5);
