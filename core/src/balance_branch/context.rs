@@ -211,17 +211,19 @@ impl BranchContext {
     /// The orbit at a value between those of two neighbours, with their harmonics, or more where the tolerance asks for them.
     fn between(&self, [a, b]: [&Point; 2], value: f64) -> Result<Point, Error> {
         let mut harmonics = a.orbit.harmonics().max(b.orbit.harmonics());
-        let mut point = self.searched([a, b], value, harmonics)?;
+        let Searched {
+            mut point,
+            mut error,
+        } = self.searched([a, b], value, harmonics)?;
         let mut chooser = self.chooser.clone();
         loop {
-            let error = point.error.unwrap_or(f64::INFINITY);
             let chosen = chooser.as_mut().and_then(|c| c.decide(harmonics, error));
             let Some(more) = chosen.filter(|&chosen| chosen > harmonics) else {
                 return Ok(point);
             };
             harmonics = more;
             match self.searched([a, b], value, harmonics) {
-                Ok(better) => point = better,
+                Ok(better) => Searched { point, error } = better,
                 // What was found stands, with its error.
                 Err(_) => return Ok(point),
             }
@@ -229,7 +231,12 @@ impl BranchContext {
     }
 
     /// The orbit at a value between those of two neighbours, searched along the chord of the two.
-    fn searched(&self, [a, b]: [&Point; 2], value: f64, harmonics: usize) -> Result<Point, Error> {
+    fn searched(
+        &self,
+        [a, b]: [&Point; 2],
+        value: f64,
+        harmonics: usize,
+    ) -> Result<Searched, Error> {
         let mut balance = self.balance(self.with_harmonics(harmonics, harmonics));
         let newton = &mut Newton::new(&balance);
         let extended = |point: &Point| {
@@ -256,8 +263,16 @@ impl BranchContext {
         let last = u.len() - 1;
         u[last] = value;
         let mut evaluator = self.evaluator(balance.resolution());
-        Ok(evaluator.read(&mut balance, newton, &u))
+        let point = evaluator.read(&mut balance, newton, &u);
+        let error = evaluator.by_harmonics(point.error.unwrap_or(f64::INFINITY));
+        Ok(Searched { point, error })
     }
+}
+
+/// An orbit that was searched, with the part of its error that more harmonics take away.
+struct Searched {
+    point: Point,
+    error: f64,
 }
 
 /// Whether two orbits are one to nine digits.

@@ -3,6 +3,7 @@
 use super::output_error::OfCoordinates;
 use crate::balance::Balance;
 use crate::balance::truncation::{BEYOND, RefinedBalance};
+use crate::branches::observed::EXTREMES;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::continuation::newton::Newton;
@@ -16,10 +17,10 @@ use crate::orbit::stability::{Method, Stability};
 pub(super) const ROUNDING: f64 = 1e-14;
 /// A first coordinate that moves by less than so many times what is left of the equations, and rounding, is at rest.
 const STILL: f64 = 10.0;
+/// An error of so many times what rounding makes of an update is due to it.
+const ROUNDINGS: f64 = 100.0;
 /// A branch less steep than this is at a fold that was located.
 const FOLD: f64 = 1e-6;
-/// Roundings of the two extremes.
-pub(super) const EXTREMES: f64 = 4.0;
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
@@ -58,6 +59,15 @@ impl<'a> PointEvaluator<'a> {
             estimate,
             accuracy,
             rounding: 0.0,
+        }
+    }
+
+    /// The part of an error of the last orbit that harmonics take away: none of what rounding leaves.
+    pub(crate) fn by_harmonics(&self, error: f64) -> f64 {
+        if error <= ROUNDINGS * self.rounding {
+            0.0
+        } else {
+            error
         }
     }
 

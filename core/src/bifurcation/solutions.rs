@@ -69,7 +69,8 @@ impl SolutionsAt {
     pub fn largest(&self) -> Option<f64> {
         let stable = self.orbits.iter().map(|solution| &solution.point);
         let stable = stable.filter(|point| point.stability.verdict == Verdict::Stable);
-        stable.map(Point::peak_to_peak).max_by(f64::total_cmp)
+        let sizes = stable.map(Point::peak_to_peak);
+        sizes.filter(|size| !size.is_nan()).max_by(f64::total_cmp)
     }
 }
 

@@ -1,6 +1,7 @@
 //! A branch of orbits as data.
 
 use std::any::Any;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Debug;
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,7 +16,7 @@ use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::{EventKind, Turn};
-use crate::system::{ContactFacts, OutputFacts, ParameterFacts, System, SystemFacts};
+use crate::system::{OutputFacts, ParameterFacts, System, SystemFacts};
 use crate::time::Work;
 
 /// A branch of orbits in the order in which it was followed, by whatever method.
@@ -92,7 +93,8 @@ pub struct Model {
     /// The outputs, in the order of their declaration.
     #[cfg_attr(feature = "serde", serde(default))]
     pub outputs: Vec<Output>,
-    /// Names of the contacts: of their laws, with a number from one on where a law acts in several.
+    /// Names of the contacts: of their laws, with a number from one on where a law acts in several. Numbers that would give the name of an
+    /// output, a coordinate or another law are left out.
     #[cfg_attr(feature = "serde", serde(default))]
     pub contacts: Vec<String>,
     /// Number of pieces of the law of each contact.
@@ -188,20 +190,42 @@ impl Output {
     }
 }
 
-/// A name for each contact: that of its law, numbered where the law acts in several.
+/// A name for each contact: that of its law, numbered where the law acts in several. A number is left out where an output, a coordinate or a
+/// law has that name.
 fn contacts_of(system: &dyn System) -> Vec<String> {
-    let contacts = &system.facts().contacts;
-    let number = |index: usize| {
-        let law = contacts[index].law;
-        let alike = |contacts: &[ContactFacts]| contacts.iter().filter(|c| c.law == law).count();
-        let name = &system.law(law).facts().name;
-        if alike(contacts) > 1 {
-            format!("{name}_{}", alike(&contacts[..=index]))
-        } else {
-            name.to_string()
+    let facts = system.facts();
+    let contacts = &facts.contacts;
+    let law_name = |law: usize| system.law(law).facts().name.as_ref();
+    let outputs = facts.outputs.iter().map(|output| output.name.as_ref());
+    let signals: HashSet<&str> = outputs
+        .chain(facts.coordinates.iter().map(AsRef::as_ref))
+        .collect();
+    let laws: HashSet<&str> = contacts.iter().map(|of| law_name(of.law)).collect();
+    let mut acts: HashMap<usize, usize> = HashMap::new();
+    for contact in contacts.iter() {
+        *acts.entry(contact.law).or_default() += 1;
+    }
+    let mut names: Vec<String> = Vec::with_capacity(contacts.len());
+    let mut own: HashSet<String> = HashSet::new();
+    let mut numbers: HashMap<usize, usize> = HashMap::new();
+    for contact in contacts.iter() {
+        let name = law_name(contact.law);
+        if acts[&contact.law] == 1 && !signals.contains(name) && own.insert(name.to_owned()) {
+            names.push(name.to_owned());
+            continue;
         }
-    };
-    (0..contacts.len()).map(number).collect()
+        let number = numbers.entry(contact.law).or_default();
+        names.push(loop {
+            *number += 1;
+            let numbered = format!("{name}_{number}");
+            let other = numbered.as_str();
+            let is_free = !signals.contains(other) && !laws.contains(other);
+            if is_free && own.insert(numbered.clone()) {
+                break numbered;
+            }
+        });
+    }
+    names
 }
 
 /// What it takes to compute further orbits of a branch: the system, and what was asked for by the method that followed it. Of a branch

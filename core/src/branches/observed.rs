@@ -1,5 +1,21 @@
 //! What is read off an orbit, as data.
 
+/// Roundings of the two extremes.
+pub(crate) const EXTREMES: f64 = 4.0;
+/// What moves by no more than so many times its noise is at rest.
+const STILL: f64 = 10.0;
+
+/// An error as a part of what it is measured by. What is zero, and has none, has no part either; of what is zero alone, nothing is known.
+pub(crate) fn part_of(error: f64, measure: f64) -> f64 {
+    if measure > 0.0 && !error.is_nan() {
+        error / measure
+    } else if error == 0.0 {
+        0.0
+    } else {
+        f64::INFINITY
+    }
+}
+
 /// What is read off one orbit: of one by the balance everything, of one by shooting the extremes of its coordinates, and the rest by
 /// [`Branch::complete`](crate::Branch::complete).
 #[derive(Debug, Clone, PartialEq)]
@@ -67,6 +83,35 @@ impl Motion {
     /// Largest less smallest value.
     pub fn peak_to_peak(&self) -> f64 {
         self.maximum - self.minimum
+    }
+
+    /// Its largest value by size.
+    pub(crate) fn farthest(&self) -> f64 {
+        self.maximum.abs().max(self.minimum.abs())
+    }
+
+    /// How far its extremes are from those of another one, together: what peak-to-peak differs by may vanish by chance. Nothing where
+    /// neither moves.
+    pub(crate) fn apart(&self, other: &Self) -> f64 {
+        if self.peak_to_peak() == 0.0 && other.peak_to_peak() == 0.0 {
+            return 0.0;
+        }
+        (other.maximum - self.maximum).abs() + (other.minimum - self.minimum).abs()
+    }
+
+    /// Whether it does not move, where so much of peak-to-peak is noise.
+    pub(crate) fn is_at_rest(&self, noise: f64) -> bool {
+        let rounding = EXTREMES * f64::EPSILON * self.farthest();
+        self.peak_to_peak() <= STILL * (noise + rounding)
+    }
+
+    /// What errors of peak-to-peak are measured by: by itself, and of what is at rest by its largest value.
+    pub(crate) fn measure(&self, noise: f64) -> f64 {
+        if self.is_at_rest(noise) {
+            self.farthest()
+        } else {
+            self.peak_to_peak()
+        }
     }
 
     /// Before anything was seen of it.

@@ -29,7 +29,7 @@ pub(super) const VANISHED: f64 = 1e-14;
 /// A test function must vanish as exactly.
 pub(super) const VANISHING: f64 = 1e-9;
 /// A point is refused so often at most.
-const REFUSALS: usize = 8;
+pub(super) const REFUSALS: usize = 8;
 /// Multipliers that may be wrong by more are not compared with one.
 const COARSE: f64 = 1e-3;
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
@@ -38,7 +38,7 @@ const MULTIPLIERS: f64 = 100.0;
 /// Parts of the tolerance below which fewer nodes do, and how many points are followed with more of them before fewer are tried: a number
 /// of nodes that was not enough is not tried again at once.
 const PLENTY: f64 = 1e-4;
-const HELD: usize = 12;
+pub(super) const HELD: usize = 12;
 
 /// A branch by the contact equation.
 pub(super) struct ContactBranch<'b, 'r> {

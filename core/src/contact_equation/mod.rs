@@ -15,6 +15,7 @@ mod block;
 pub(crate) mod compute;
 mod eliminated;
 mod equations;
+mod errors;
 mod events;
 mod extremes;
 mod fits;

@@ -92,23 +92,42 @@ impl Placement {
         let mut levels = contacts.iter().map(|contact| contact.levels.len());
         let on_pieces = pieces.len() == contacts.len()
             && pieces.iter().all(|piece| levels.next() >= Some(*piece));
-        let possible = |placed: &Placed| {
-            let Switch {
-                contact,
-                level,
-                told,
-                ..
-            } = placed.switch;
-            let other = match told {
-                Told::Alone => 0,
-                Told::First { other, .. } | Told::Second { other } => other,
-            };
-            let level = contacts.get(contact).map(|of| level < of.levels.len());
-            level == Some(true)
-                && other < self.placed.len()
-                && (*phase..=phase + length).contains(&placed.phase)
+        let has_level = |placed: &Placed| {
+            let Switch { contact, level, .. } = placed.switch;
+            contacts
+                .get(contact)
+                .is_some_and(|of| level < of.levels.len())
         };
-        let whole = phase.is_finite() && length.is_finite() && length > 0.0;
-        on_pieces && whole && self.placed.iter().all(possible)
+        let end = phase + length;
+        let within = |placed: &Placed| (*phase..=end).contains(&placed.phase);
+        let told = |index: usize| self.is_told(index);
+        on_pieces
+            && (0.0..=length).contains(phase)
+            && self.placed.iter().all(has_level)
+            && self.placed.iter().all(within)
+            && self.placed.is_sorted_by(|a, b| a.phase <= b.phase)
+            && (0..self.placed.len()).all(told)
+    }
+
+    /// Whether a switch is alone, or one of two that name each other: of the same gap at the same level, which rises at one of them.
+    fn is_told(&self, index: usize) -> bool {
+        let own = self.placed[index].switch;
+        let other = |place: usize| {
+            let of = self.placed.get(place).map(|placed| placed.switch);
+            of.filter(|of| {
+                (of.contact, of.level) == (own.contact, own.level) && of.rises != own.rises
+            })
+        };
+        match own.told {
+            Told::Alone => true,
+            Told::First { other: place, bend } => {
+                let second = other(place).map(|second| second.told);
+                place > index && bend.is_finite() && second == Some(Told::Second { other: index })
+            }
+            Told::Second { other: place } => {
+                let first = other(place).map(|first| first.told);
+                place < index && matches!(first, Some(Told::First { other, .. }) if other == index)
+            }
+        }
     }
 }

@@ -3,18 +3,18 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
+use super::errors::everywhere;
 use super::motion::{Motion, Within};
-use super::run::{DIFFERENCE, Run};
+use super::run::Run;
 use crate::branches::moduli::multipliers;
-use crate::branches::observed::{Motion as Extent, Observed};
+use crate::branches::observed::{Motion as Extent, Observed, part_of};
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::stability::{Stability, Verdict};
 use crate::continuation::follow::CurvePoint;
-use crate::numeric::roots::Place;
 use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
-use crate::shooting::reading::Reader;
+use crate::shooting::reading::Rounded;
 
 /// What one step from a finer solution says of the error is multiplied by this.
 const SAFETY: f64 = 2.0;
@@ -24,8 +24,6 @@ const SCREENED: usize = 31;
 const MOST: f64 = 30.0;
 /// Roundings in the last coefficients of forces.
 const ROUNDED: f64 = 16.0;
-/// Phases at which two motions are compared.
-const COMPARED: usize = 24;
 /// Where the branch is steeper than this part, as before a fold, what is varied moves the orbit by more.
 const STEEPER: f64 = 0.5;
 
@@ -56,6 +54,23 @@ pub(super) struct Screened {
 }
 
 impl Screened {
+    /// Whether its numbers can be what they say: they may have been read from a file.
+    pub(super) fn is_possible(&self) -> bool {
+        let Self {
+            tails,
+            apart,
+            shift,
+            slope,
+            error,
+            spread,
+            ..
+        } = self;
+        let numbers = [apart, shift, slope, error, spread];
+        tails.iter().all(|tail| *tail > 0.0)
+            && numbers.into_iter().all(|x| *x >= 0.0)
+            && self.left <= SCREENED
+    }
+
     /// How many times as large errors may be where forces leave so much out: they are products of what the forces and what the rule of
     /// integration leave out. `None` if they leave out so much more that this says nothing.
     fn grown(&self, tails: &[f64]) -> Option<f64> {
@@ -90,18 +105,6 @@ impl Run<'_> {
         });
         let skeleton = &equations.skeleton;
         let recurrence = skeleton.recurrence();
-        let mut outputs = problem.output_reader(value, recurrence);
-        if let Some(outputs) = &mut outputs {
-            for interval in 0..motion.intervals() {
-                let [from, to] = motion.phases(interval);
-                if to > from {
-                    outputs.include(&Within {
-                        motion: &motion,
-                        interval,
-                    });
-                }
-            }
-        }
         let mut states = vec![0.0; 2 * coordinates * problem.period];
         let segment = skeleton.length / problem.period as f64;
         for (index, state) in states.chunks_exact_mut(2 * coordinates).enumerate() {
@@ -124,11 +127,34 @@ impl Run<'_> {
             },
             stability: Stability::unknown(),
             observed: Observed {
-                outputs: outputs.map_or_else(Vec::new, Reader::motions),
+                outputs: self.outputs(equations, value, false),
                 ..Observed::extremes(motions.collect(), switches * recurrence.parts)
             },
             error: None,
         }
+    }
+
+    /// The outputs of the same, with more rounding of states if that is wanted.
+    pub(super) fn outputs(&self, equations: &Equations, value: f64, rounded: bool) -> Vec<Extent> {
+        let problem = &self.problem.asked;
+        let motion = Motion::of(equations);
+        let recurrence = equations.skeleton.recurrence();
+        let Some(mut outputs) = problem.output_reader(value, recurrence) else {
+            return Vec::new();
+        };
+        for interval in 0..motion.intervals() {
+            let [from, to] = motion.phases(interval);
+            let within = Within {
+                motion: &motion,
+                interval,
+            };
+            if to > from && rounded {
+                outputs.include(&Rounded(&within));
+            } else if to > from {
+                outputs.include(&within);
+            }
+        }
+        outputs.motions()
     }
 
     /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them.
@@ -152,9 +178,18 @@ impl Run<'_> {
         let apart = self.apart(&finer, &point, other[other.len() - 1]);
         let everywhere = everywhere([&self.equations, &finer]);
         self.finer = Some(finer);
-        let size = self.accuracy().peak_to_peak(&point.observed);
-        let steepness = self.steepness(at).unwrap_or_else(|| self.rise(&point));
-        let error = SAFETY * (apart + steepness * shift.abs()) / size;
+        let moves = apart > 0.0 || self.accuracy().peak_to_peak(&point.observed) > 0.0;
+        let noise = if moves { self.noise(&point) } else { 0.0 };
+        let size = self.size(&point, noise);
+        let steepness = self
+            .steepness(at, &point)
+            .unwrap_or_else(|| self.rise(&point));
+        let along = if shift == 0.0 {
+            0.0
+        } else {
+            steepness * shift.abs()
+        };
+        let error = part_of(SAFETY * (apart + along) + noise, size);
         point.error = Some(stated(error));
         let mut spread = 0.0;
         if let Some(map) = &map {
@@ -173,7 +208,7 @@ impl Run<'_> {
             apart: everywhere.max(apart),
             shift: shift.abs(),
             slope: at.parameter_slope().abs(),
-            error: error.max(SAFETY * everywhere / size),
+            error: error.max(part_of(SAFETY * everywhere, size)),
             spread: SAFETY * spread,
             left: SCREENED,
         });
@@ -199,7 +234,7 @@ impl Run<'_> {
         let (mut point, map) = self.read_plainly(at)?;
         let tails = self.tails(&at.u);
         let rise = self.rise(&point);
-        let size = self.accuracy().peak_to_peak(&point.observed);
+        let size = self.size(&point, 0.0);
         let same = |known: &&mut Screened| known.switches == switches(&self.equations);
         let known = self.screened.as_mut().filter(same);
         let grown = known.and_then(|known| known.grown(&tails).map(|grown| (known, grown)));
@@ -207,7 +242,7 @@ impl Run<'_> {
             return self.read(at);
         };
         known.left -= 1;
-        let error = SAFETY * (known.apart + rise * known.shift) / size;
+        let error = part_of(SAFETY * (known.apart + rise * known.shift), size);
         let error = grown * error.max(known.error);
         let spread = grown * known.spread;
         if error.is_nan() || error > self.problem.tolerance {
@@ -239,61 +274,6 @@ impl Run<'_> {
             None
         };
         Some((self.observed(&self.equations, at.parameter()), map))
-    }
-
-    /// How peak-to-peak changes with what is varied, along the tangent.
-    fn steepness(&mut self, at: &CurvePoint) -> Option<f64> {
-        if matches!(self.accuracy(), Accuracy::Output(_)) {
-            return None;
-        }
-        let extremes = self.equations.extremes.get()?.coordinates.clone();
-        let slope = at.parameter_slope();
-        let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
-        let moved = at.u.iter().zip(&at.tangent);
-        let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
-        self.equations.compute(&moved, false);
-        let known = !self.equations.failed && slope != 0.0;
-        let steepness = known
-            .then(|| apart(&self.equations, &extremes, self.accuracy()) / (step * slope).abs());
-        self.equations.compute(&at.u, false);
-        steepness
-    }
-
-    /// What the error is of.
-    fn accuracy(&self) -> Accuracy {
-        self.problem.asked.accuracy
-    }
-
-    /// How far a finer orbit at a value is from this one in what the error is of.
-    fn apart(&self, finer: &Equations, point: &Point, value: f64) -> f64 {
-        let accuracy = self.accuracy();
-        if let Accuracy::Output(_) = accuracy {
-            let [own, other] = [point, &self.observed(finer, value)]
-                .map(|point| accuracy.peak_to_peak(&point.observed));
-            return (other - own).abs();
-        }
-        let motions = self.equations.extremes.get();
-        apart(
-            finer,
-            motions.map_or(&[][..], |found| &found.coordinates),
-            accuracy,
-        )
-    }
-
-    /// The same, since the last point.
-    fn rise(&self, point: &Point) -> f64 {
-        self.record.points.last().map_or(0.0, |last| {
-            let by = (point.value - last.value).abs();
-            if by > 0.0 {
-                let of = |point: &Point| match self.accuracy() {
-                    Accuracy::Coordinates => point.peak_to_peak(),
-                    one => one.peak_to_peak(&point.observed),
-                };
-                (of(point) - of(last)).abs() / by
-            } else {
-                0.0
-            }
-        })
     }
 
     /// What the forces at the nodes leave out on every interval, by the size of their last coefficients. What is less than their rounding is
@@ -333,10 +313,10 @@ impl Run<'_> {
     }
 }
 
-/// With what rounding adds; of what does not move, which has no part of itself, nothing is known.
+/// With what rounding adds, but where there is no error at all.
 fn stated(error: f64) -> f64 {
-    if error.is_nan() {
-        f64::INFINITY
+    if error == 0.0 {
+        0.0
     } else {
         error + 100.0 * f64::EPSILON
     }
@@ -357,44 +337,6 @@ struct Finer {
     u: Vec<f64>,
     /// What it changes in what is varied.
     shift: f64,
-}
-
-/// How far a finer orbit is from where the coordinates of another one, or the one that the error is of, are smallest and largest: the error
-/// of these values, to first order.
-fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 {
-    let motion = Motion::of(finer);
-    let mut state = vec![0.0; finer.skeleton.order];
-    let mut off = |coordinate: usize, place: &Place| {
-        motion.at(place.x, &mut state);
-        state[coordinate] - place.value
-    };
-    let counts = |index: usize| match accuracy {
-        Accuracy::Coordinate(one) => index == one,
-        Accuracy::Coordinates | Accuracy::Output(_) => true,
-    };
-    let pairs = extremes.iter().enumerate();
-    let pairs = pairs.filter(|(index, _)| counts(*index));
-    let apart = pairs.map(|(coordinate, [low, high])| off(coordinate, high) - off(coordinate, low));
-    apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
-}
-
-/// The largest difference of a coordinate between two motions.
-fn everywhere(equations: [&Equations; 2]) -> f64 {
-    let motions = equations.map(Motion::of);
-    let skeleton = &equations[0].skeleton;
-    let coordinates = equations[0].values.linear.positions.nrows();
-    let mut states = [vec![0.0; 2 * coordinates], vec![0.0; 2 * coordinates]];
-    let mut most = 0.0_f64;
-    for sample in 0..COMPARED {
-        let phase = skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
-        for (motion, state) in motions.iter().zip(&mut states) {
-            let (interval, phase) = motion.interval(phase);
-            motion.state(interval, phase, state);
-        }
-        let pairs = states[0].iter().zip(&states[1]).take(coordinates);
-        most = pairs.fold(most, |most, (a, b)| most.max((a - b).abs()));
-    }
-    most
 }
 
 /// How often gaps cross levels.

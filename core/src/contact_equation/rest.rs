@@ -1,7 +1,7 @@
 //! Where a run by the contact equation is, as data: what is left of it follows from that.
 
 use super::equations::Equations;
-use super::method::ContactBranch;
+use super::method::{ContactBranch, HELD, REFUSALS};
 use super::placement::Placement;
 use super::plan::Frame;
 use super::problem::{ContactProblem, RESOLUTIONS};
@@ -46,8 +46,12 @@ impl Rest {
         let coordinates = problem.setting.layout.coordinates;
         let resolution = *RESOLUTIONS.get(self.resolution)?;
         let vectors = [&self.reference].into_iter().chain(&self.known);
-        let mut numbers = vectors.flatten().chain([&self.size, &self.made]);
+        let numbers = vectors.flatten().chain([&self.size, &self.made]);
+        let mut numbers = numbers.chain(&self.finer);
         let possible = numbers.all(|x| x.is_finite())
+            && self.screened.iter().all(Screened::is_possible)
+            && self.refused <= REFUSALS
+            && self.held <= HELD
             && self.size > 0.0
             && self.reference.len() == 2 * coordinates
             && self.placement.resolution == resolution;
@@ -72,7 +76,9 @@ impl Rest {
         };
         let (setting, reference) = (problem.setting.clone(), self.reference.clone());
         let mut equations = Equations::new(setting, self.made, skeleton, reference, self.size)?;
-        if !self.walk.fits(equations.skeleton.unknowns()) {
+        let unknowns = equations.skeleton.unknowns();
+        let is_known = |known: &Vec<f64>| known.is_empty() || known.len() == unknowns + 1;
+        if !self.walk.fits(unknowns) || !self.known.iter().all(is_known) {
             return None;
         }
         let [before, last] = <&[Vec<f64>; 2]>::try_from(&self.known[..]).ok()?;

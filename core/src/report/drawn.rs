@@ -184,7 +184,7 @@ impl View {
         let mut counts: Vec<String> = hidden
             .filter_map(|kind| {
                 let count = all.iter().filter(|(own, _)| own.is_like(kind)).count();
-                (count > 0).then(|| format!("{count} {kind}"))
+                (count > 0).then(|| counted(kind, count))
             })
             .collect();
         let turns = turns().filter(|(kind, _)| !shown(*kind)).count();
@@ -320,4 +320,18 @@ fn line_of(verdict: Verdict) -> Line {
         Verdict::Unstable => Line::Unstable,
         Verdict::Undecided => Line::Undecided,
     }
+}
+
+/// So many events of a kind, in words.
+fn counted(kind: EventKind, count: usize) -> String {
+    let one = match kind {
+        EventKind::Fold => "fold",
+        EventKind::SymmetryBreaking => "symmetry breaking",
+        EventKind::PeriodDoubling => "period doubling",
+        EventKind::BranchPoint => "branch point",
+        EventKind::NeimarkSacker => "Neimark-Sacker bifurcation",
+        EventKind::Grazing { .. } => "grazing",
+    };
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {one}{plural}")
 }

@@ -4,6 +4,7 @@ use hertzian_chart::{Chart, Scale};
 
 use super::view::{Frequency, View};
 use crate::branches::branch::Branch;
+use crate::branches::point::Event;
 use crate::event::EventKind;
 use crate::report::error::ViewError;
 use crate::response::FrequencyResponse;
@@ -148,7 +149,20 @@ fn events_are_marked_by_choice_and_the_others_counted() {
     assert!(all.contains(legend) && !all.contains("not marked"));
     let view = View::new().events([EventKind::PeriodDoubling]);
     let none = branch.chart_of(&view).unwrap().to_svg();
-    assert!(!none.contains(legend) && none.contains("not marked: 2 fold"));
+    assert!(!none.contains(legend) && none.contains("not marked: 2 folds\""));
+    let mut one = branch.clone();
+    one.events.truncate(1);
+    let fold = one.events[0].clone();
+    for kind in [EventKind::NeimarkSacker, EventKind::BranchPoint] {
+        let event = Event {
+            kind,
+            ..fold.clone()
+        };
+        one.events.extend([event.clone(), event]);
+    }
+    let counted = one.chart_of(&view).unwrap().to_svg();
+    let expected = "not marked: 1 fold, 2 branch points, 2 Neimark-Sacker bifurcations\"";
+    assert!(counted.contains(expected));
     assert_eq!("fold".parse(), Ok(EventKind::Fold));
     let error = "folds".parse::<EventKind>().unwrap_err().to_string();
     assert!(error.contains("there are fold, period-doubling"), "{error}");

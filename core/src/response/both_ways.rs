@@ -4,7 +4,7 @@
 //! part, so that what comes of it is what an uninterrupted run gives.
 
 use crate::branches::branch::{Branch, Further};
-use crate::branches::point::Event;
+use crate::branches::point::{Event, Point};
 use crate::cancel::Cancel;
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
@@ -12,6 +12,9 @@ use crate::error::Error;
 use crate::event::Turn;
 use crate::model::request::RequestError;
 use crate::time::Work;
+
+/// Rounding of the value of an orbit that was found again, as a part of values along the branch.
+const ROUNDING: f64 = 1e-9;
 
 /// A branch that was followed both ways, as it was interrupted or has ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,10 +54,34 @@ impl<R> Part<R> {
     }
 }
 
+/// One part by itself, without what it cost.
+fn alone<R>(branch: Branch, rest: Option<Box<R>>) -> Part<R> {
+    Part {
+        branch: Branch {
+            begin: None,
+            statistics: Statistics::default(),
+            work: Work::default(),
+            elapsed: std::time::Duration::default(),
+            further: Further::default(),
+            ..branch
+        },
+        rest,
+    }
+}
+
 /// Whether something is left of a branch that was followed both ways.
 pub(super) fn is_left(branch: &Branch) -> bool {
     let back = branch.begin.is_none_or(Stop::can_be_resumed);
     branch.stopped.can_be_resumed() || branch.stopped != Stop::Closed && back
+}
+
+/// Whether the orbit at a place is the one at this value from which a branch was followed: both may have been read from a file. With other
+/// harmonics it was found again, at that value to rounding.
+pub(super) fn begins_at(value: f64, place: usize, points: &[Point]) -> bool {
+    let from = |point: &Point| (point.value - value).abs();
+    let extent = points.iter().map(from).fold(1.0, f64::max) + value.abs();
+    let at = points.get(place).map(from);
+    extent.is_finite() && at.is_some_and(|apart| apart <= ROUNDING * extent)
 }
 
 /// Which part of a branch.
@@ -140,17 +167,6 @@ impl<R: Clone> BothWays<R> {
 
     /// Both parts of a branch, without what they cost; `None` if it is another one.
     fn parts(&self, branch: &Branch) -> Option<[Option<Part<R>>; 2]> {
-        let alone = |branch: Branch, rest: &Option<Box<R>>| Part {
-            branch: Branch {
-                begin: None,
-                statistics: Statistics::default(),
-                work: Work::default(),
-                elapsed: std::time::Duration::default(),
-                further: Further::default(),
-                ..branch
-            },
-            rest: rest.clone(),
-        };
         let Some(Back {
             points,
             events,
@@ -158,10 +174,15 @@ impl<R: Clone> BothWays<R> {
             rest,
         }) = &self.back
         else {
-            return Some([Some(alone(branch.clone(), &self.forth)), None]);
+            let begun = branch.points.is_empty() || begins_at(self.value, 0, &branch.points);
+            let forth = alone(branch.clone(), self.forth.clone());
+            return begun.then_some([Some(forth), None]);
         };
         // The first orbit of both is the same.
         let shared = points.checked_sub(1)?;
+        if !begins_at(self.value, shared, &branch.points) {
+            return None;
+        }
         let (before, behind) = (branch.points.get(..*points)?, branch.points.get(shared..)?);
         let (events_before, events_behind) = branch.events.split_at_checked(*events)?;
         let (turns_before, turns_behind) = branch.turns.split_at_checked(*turns)?;
@@ -200,6 +221,9 @@ impl<R: Clone> BothWays<R> {
                 .collect(),
             ..branch.clone()
         };
-        Some([Some(alone(forth, &self.forth)), Some(alone(back, rest))])
+        Some([
+            Some(alone(forth, self.forth.clone())),
+            Some(alone(back, rest.clone())),
+        ])
     }
 }

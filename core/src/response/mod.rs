@@ -201,6 +201,8 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         /// output or a coordinate by its name, as a part of itself. Default: of all coordinates, of the first one as a part of its own, of
         /// the others as a part of the largest. An output that is a small difference of large coordinates, a rate or a force takes more
         /// harmonics, or nodes, than the coordinates do; by shooting the tolerance of the flow stays what it is, and the error is stated.
+        /// What does not move has its largest value in place of peak-to-peak, or the largest coordinate where it is one; a force that is
+        /// zero and stays so has no error.
         ///
         /// ```
         /// use hertzian::FrequencyResponse;
@@ -366,7 +368,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         if point.orbit.has_series() {
             return Ok(point.clone());
         }
-        let found = by_shooting::completed(&self.request, self.shooting(), point);
+        let found = by_shooting::completed(&self.request, self.shooting()?, point);
         self.request.unless_cancelled(point.value, found)
     }
 
@@ -375,17 +377,29 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     /// # Errors
     /// If neither an output nor a coordinate has the name that was given.
     fn accurate(&self) -> Result<M, Error> {
-        let accuracy = match &self.accuracy {
-            Some(name) => Accuracy::of(&Model::of(self.request.system.as_ref()), name)?,
-            None => Accuracy::Coordinates,
-        };
-        Ok(self.method.clone().accurate_in(accuracy))
+        Ok(self.method.clone().accurate_in(self.accuracy()?))
     }
 
-    /// The options of shooting, where that is the method, or those by default.
-    pub(crate) fn shooting(&self) -> Shooting {
+    /// What the accuracy is of.
+    ///
+    /// # Errors
+    /// If neither an output nor a coordinate has the name that was given.
+    fn accuracy(&self) -> Result<Accuracy, Error> {
+        self.accuracy
+            .as_ref()
+            .map_or(Ok(Accuracy::Coordinates), |name| {
+                Accuracy::of(&Model::of(self.request.system.as_ref()), name)
+            })
+    }
+
+    /// The options of shooting, where that is the method, or those by default, with what the accuracy is of.
+    ///
+    /// # Errors
+    /// If neither an output nor a coordinate has the name that was given.
+    pub(crate) fn shooting(&self) -> Result<Shooting, Error> {
         let method: &dyn std::any::Any = &self.method;
-        method.downcast_ref().copied().unwrap_or_default()
+        let shooting: Shooting = method.downcast_ref().copied().unwrap_or_default();
+        Ok(sealed::Follow::accurate_in(shooting, self.accuracy()?))
     }
 
     /// The curve of bifurcations through an event of a branch, as a second parameter (or `"omega"`) varies between two values: of
@@ -417,7 +431,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
     ) -> Result<BifurcationCurve, Error> {
         let found = by_shooting::track(
             &self.request,
-            self.shooting(),
+            self.shooting()?,
             event,
             by_shooting::Second {
                 name: second,

@@ -91,7 +91,8 @@ impl Branch {
             let Some(measured) = self.measured(&wanted, point)? else {
                 continue;
             };
-            if largest.is_none_or(|(known, _)| measured > known) {
+            // What is not a number is not larger than one.
+            if !measured.is_nan() && largest.is_none_or(|(known, _)| measured > known) {
                 largest = Some((measured, point));
             }
         }
@@ -195,7 +196,7 @@ impl<M: OrbitMethod> FrequencyResponse<M> {
         if point.orbit.has_series() {
             return of_series(self.request.system.as_ref(), point, source);
         }
-        by_shooting::reading(&self.request, self.shooting(), point, source)
+        by_shooting::reading(&self.request, self.shooting()?, point, source)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::both_ways::is_left;
+use super::both_ways::{begins_at, is_left};
 use super::following::{Following, Left, by_any};
 use super::sealed::Follow;
 use super::{by_balance, by_contact_equation, by_shooting};
@@ -105,7 +105,7 @@ impl Resume<'_> {
 
         /// The branch has no more points than this, those that it has included. Default: as many more as it was asked for where it met
         /// that limit, and otherwise as it was asked for. Where it was followed both ways, as by
-        /// [`through`](crate::FrequencyResponse::through), each way may have as many.
+        /// [`through`](crate::FrequencyResponse::through), the limit is that of each part, and what a part has is counted for itself.
         max_points(points: usize) { self.max_points = Some(points) }
 
         /// Follows the branch once more from its first orbit, with another accuracy of the output.
@@ -149,13 +149,8 @@ impl Resume<'_> {
     ) -> Result<Branch, Error> {
         let following = self.branch.following()?;
         let asked = following.request();
-        let ends = [Some(self.branch.stopped), self.branch.begin];
-        let limited = |end: &Option<Stop>| matches!(end, Some(Stop::PointLimit { .. }));
-        let more = if ends.iter().any(limited) {
-            self.branch.points.len()
-        } else {
-            0
-        };
+        let limited = |end: Stop| matches!(end, Stop::PointLimit { .. });
+        let more = self.most_points(following, limited).unwrap_or(0);
         let most = asked.max_points.saturating_add(more);
         let request = Request {
             max_points: self.max_points.unwrap_or(most),
@@ -168,8 +163,8 @@ impl Resume<'_> {
         let again = self.tolerance.or(self.largest_step).is_some() || self.bifurcations.is_some();
         let farther = self.to.is_some() && self.to != asked.to;
         if let Some(most) = self.max_points.filter(|_| !again) {
-            let has = self.branch.points.len();
-            let least = has as f64 + 1.0;
+            let has = self.most_points(following, Stop::can_be_resumed);
+            let least = has.unwrap_or(self.branch.points.len()) as f64 + 1.0;
             let must = "must be more than the points that the branch has";
             validate::option("max_points", most as f64, least..=f64::INFINITY, must)?;
         }
@@ -186,6 +181,27 @@ impl Resume<'_> {
             .last()
             .map_or(f64::NAN, |point| point.value);
         request.unless_lost(value, found)
+    }
+
+    /// How many points the part to the end of the range has, and the one to its beginning: none where it was followed one way. The first orbit
+    /// of both is the same.
+    fn points_of_parts(&self, following: &Following) -> [usize; 2] {
+        let count = self.branch.points.len();
+        let both = following
+            .both_ways()
+            .filter(|_| self.branch.begin.is_some());
+        both.map_or([count, 0], |(_, middle)| {
+            let middle = middle.min(count.saturating_sub(1));
+            [count - middle, middle + 1]
+        })
+    }
+
+    /// The most points of a part that ended so: a limit is that of each. `None` where neither did.
+    fn most_points(&self, following: &Following, so: impl Fn(Stop) -> bool) -> Option<usize> {
+        let ends = [Some(self.branch.stopped), self.branch.begin];
+        let parts = self.points_of_parts(following).into_iter().zip(ends);
+        let ended = parts.filter(|(_, end)| end.is_some_and(&so));
+        ended.map(|(count, _)| count).max()
     }
 
     /// The rest of what was asked for.
@@ -258,6 +274,7 @@ impl Resume<'_> {
             return self.again(following, request, visit);
         };
         self.unkept()?;
+        let [has, _] = self.points_of_parts(following);
         let to = self.to.or(request.to).unwrap_or(last.value);
         if !ends {
             return Err(
@@ -282,7 +299,7 @@ impl Resume<'_> {
             to: Some(to),
             near: Some(Guess::Orbit(last.orbit.clone())),
             period: Some(last.orbit.period),
-            max_points: request.max_points.saturating_sub(points.len() - 1).max(2),
+            max_points: request.max_points.saturating_sub(has - 1).max(2),
             ..request.clone()
         };
         let run = |method: &dyn Follow| method.run(&request, &mut *visit);
@@ -322,7 +339,8 @@ impl Resume<'_> {
         };
         let to = self.to.unwrap_or(to);
         if let Some((value, middle)) = following.both_ways() {
-            let middle = points.get(middle).ok_or(RequestError::Rest)?;
+            let begun = begins_at(value, middle, points).then(|| &points[middle]);
+            let middle = begun.ok_or(RequestError::Rest)?;
             let request = Request {
                 to: Some(to),
                 near: Some(Guess::Orbit(middle.orbit.clone())),

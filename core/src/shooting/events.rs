@@ -6,6 +6,7 @@
 use super::equations::Equations;
 use super::error_reference::{self, ErrorReference};
 use super::method::VANISHED;
+use super::output_error::{self, At, output_error};
 use super::problem::ShootingProblem;
 use super::run::{Run, observe, relative};
 use super::tested::{Test, Tests};
@@ -18,6 +19,7 @@ use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{AsProblem, Problem};
 use crate::event::{EventKind, Turn};
 use crate::numeric::spectrum::{distance, eigenvalues};
+use crate::orbit::observe::Accuracy;
 use crate::orbit::stability::Stability;
 
 /// What rounding leaves in the value of a touch, where the distance from a level has a root to be told apart from.
@@ -206,7 +208,24 @@ fn compared(
     let by = (moved.located.point.parameter() - read.value).abs();
     let error = part * by + root.error + moved.error + ROUNDING * read.value.abs();
     let apart = part * equations.apart(u, there);
-    read.error = Some(relative(apart, &read, problem.accuracy));
+    read.error = Some(match problem.accuracy {
+        Accuracy::Output(output) => {
+            let errors = output_error::Errors {
+                part,
+                states: 0.0,
+                size: read.size(),
+            };
+            let (best, other) = (
+                At { equations, u },
+                At {
+                    equations: others,
+                    u: there,
+                },
+            );
+            output_error(problem, output, &read.observed, best, other, errors).ok()?
+        }
+        accuracy => relative(apart, &read, accuracy),
+    });
     if let Some(map) = map {
         let found = multipliers(&map, parts);
         let there = others.map(there, &mut |_| {}).ok()?;

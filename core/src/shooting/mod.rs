@@ -25,6 +25,7 @@ mod method;
 mod minimal_period;
 mod normal_form;
 mod options;
+mod output_error;
 mod past_fold;
 pub(crate) mod problem;
 pub(crate) mod reading;

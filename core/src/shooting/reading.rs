@@ -11,10 +11,10 @@
 use std::f64::consts::TAU;
 
 use super::problem::ShootingProblem;
-use crate::branches::observed::{ContactMotion, Motion};
+use crate::branches::observed::{ContactMotion, EXTREMES, Motion};
 use crate::branches::recurrence::{Recurrence, SignedPermutation};
 use crate::numeric::fourier::{gauss, series};
-use crate::numeric::golden;
+use crate::numeric::{disturb, golden};
 use crate::time::Stretch;
 use crate::time::signals::{Asked, Signals};
 
@@ -75,6 +75,20 @@ pub(crate) struct Reader<'s> {
     on_pieces: Vec<Vec<f64>>,
     state: Vec<f64>,
     image: Vec<f64>,
+}
+
+/// The same stretch with roundings in its states, which are those of sums that cancel in an output.
+pub(crate) struct Rounded<'s>(pub(crate) &'s dyn Stretch);
+
+impl Stretch for Rounded<'_> {
+    fn phases(&self) -> (f64, f64) {
+        self.0.phases()
+    }
+
+    fn state(&self, phase: f64, state: &mut [f64]) {
+        self.0.state(phase, state);
+        disturb(state, EXTREMES * f64::EPSILON);
+    }
 }
 
 /// One part of the orbit.

@@ -3,10 +3,11 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
-use super::error_reference::{Corrected, ErrorReference};
+use super::error_reference::ErrorReference;
 use super::extremes;
 use super::method::ShootingBranch;
 use super::minimal_period::{SameState, earlier, may_be_earlier};
+use super::output_error::{At, Errors, output_error};
 use super::problem::ShootingProblem;
 use super::reading::Reader;
 use super::rest::Rest;
@@ -226,9 +227,22 @@ impl<'r> Run<'r> {
         self.state_error = error;
         let stated = match (problem.accuracy, &corrected) {
             (Accuracy::Output(output), Some(corrected)) => {
-                let own = problem.accuracy.peak_to_peak(&point.observed);
-                let states = in_states * self.size;
-                self.error_of_output(equations, u, corrected, output, own, states)?
+                let here = At { equations, u };
+                let there = At {
+                    equations: &mut reference.equations,
+                    u: &corrected.u,
+                };
+                let errors = Errors {
+                    part: reference.part,
+                    states: in_states,
+                    size: self.size,
+                };
+                let (best, other) = if reference.finer {
+                    (there, here)
+                } else {
+                    (here, there)
+                };
+                output_error(problem, output, &point.observed, best, other, errors)?
             }
             (accuracy, _) => relative(error, &point, accuracy),
         };
@@ -239,38 +253,6 @@ impl<'r> Run<'r> {
             Stability::of(found, spread)
         };
         Ok((point, Some(map)))
-    }
-}
-
-impl Run<'_> {
-    /// The error of peak-to-peak of an output, as a part of itself, at an orbit that was corrected: what differs in the other orbit, which is
-    /// not the one that is reported, and what moves states by so much.
-    fn error_of_output(
-        &mut self,
-        equations: &mut Equations,
-        u: &[f64],
-        corrected: &Corrected,
-        output: usize,
-        own: f64,
-        states: f64,
-    ) -> Result<f64, FlowError> {
-        let Self {
-            problem,
-            reference,
-            size,
-            ..
-        } = self;
-        let apart = reference.equations.apart(u, &corrected.u);
-        let (other, known) = if reference.finer {
-            (equations, u)
-        } else {
-            (&mut reference.equations, &corrected.u[..])
-        };
-        let change = (peak_to_peak_of(problem, other, known, output)? - own).abs();
-        let times = f64::max(change / apart, own / (2.0 * *size));
-        let error = (reference.part * change + times * states) / own;
-        // An output that does not move has no part of itself.
-        Ok(if error.is_nan() { f64::INFINITY } else { error })
     }
 }
 
@@ -331,22 +313,6 @@ pub(super) fn no_orbit(value: f64, reason: NewtonError, failure: Option<FlowErro
         Some(reason) => MotionError { value, reason }.into(),
         None => OrbitError::NoStart { value, reason }.into(),
     }
-}
-
-/// Peak-to-peak of an output of an orbit.
-fn peak_to_peak_of(
-    problem: &ShootingProblem,
-    equations: &mut Equations,
-    u: &[f64],
-    output: usize,
-) -> Result<f64, FlowError> {
-    let recurrence = equations.span.recurrence.clone();
-    let Some(mut outputs) = problem.output_reader(u[u.len() - 1], &recurrence) else {
-        return Ok(f64::NAN);
-    };
-    equations.trace(u, &mut |stretch| outputs.include(stretch))?;
-    let motion = outputs.motions().into_iter().nth(output);
-    Ok(motion.map_or(f64::NAN, |motion| motion.peak_to_peak()))
 }
 
 /// An error of states as a part of peak-to-peak: of the first coordinate's, or the one that accuracy is asked of, unless it is at rest, else

@@ -24,6 +24,7 @@ hertzian::oscillator! {
         ddot(x) + contact(x) = 0.4*cos(omega*t) + 1;
         output speed = dot(x);
         output pushes = force(contact);
+        output place = x;
     }
 }
 
@@ -100,7 +101,7 @@ fn shooting_and_the_contact_equation_state_the_error_of_the_output() {
         }
     }
     let request = FrequencyResponse::of(&Ball {}).from(0.6).to(1.3);
-    for name in ["speed", "pushes"] {
+    for name in ["place", "x"] {
         keeps(&request.clone().by(Shooting::new()), name, 0.75, 1e-5);
         keeps(
             &request.clone().by(ContactEquation::new()),
@@ -183,5 +184,84 @@ fn what_has_no_accuracy_is_refused() {
         let error = request.accuracy_of(name).run().expect_err("no such output");
         let said = error.to_string();
         assert!(said.contains("slip, pushes, shock, x, y"), "{said}");
+    }
+}
+
+/// Where extremes of an output change alike, its peak-to-peak changes less by chance than either does.
+#[test]
+fn an_error_is_not_small_by_chance() {
+    let request = FrequencyResponse::of(&Ball {}).from(0.6).to(1.3);
+    for value in [0.97818, 0.9792] {
+        keeps(
+            &request.clone().by(ContactEquation::new()),
+            "speed",
+            value,
+            1e-4,
+        );
+    }
+}
+
+/// Before a fold most of the error is along the branch: of an output that is a coordinate as much as of that.
+#[test]
+fn the_first_orbit_of_a_branch_has_its_error_along_the_branch_too() {
+    let request = FrequencyResponse::of(&Ball {}).by(ContactEquation::new());
+    let request = request.from(0.978_170_2).to(0.6).max_points(2);
+    let [place, x] = ["place", "x"].map(|name| {
+        let branch = request.clone().accuracy_of(name).run();
+        branch.expect("a branch").points[0].error.expect("an error")
+    });
+    assert!((place / x - 1.0).abs() < 1e-3, "{place:e} {x:e}");
+}
+
+hertzian::oscillator! {
+    /// A stop that is not reached.
+    Hard(x) {
+        law stop(gap) { gap > 0 => gap, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + x^3 + stop(x - 50) = 0.3*cos(omega*t);
+        output speed = dot(x);
+        output pushes = force(stop);
+    }
+}
+
+#[test]
+fn events_by_shooting_have_the_error_of_the_output() {
+    let request = FrequencyResponse::of(&Hard {}).from(1.0).to(2.2);
+    let request = request.by(Shooting::new());
+    let speed = |branch: &Branch| -> Vec<_> {
+        let folds = branch.folds().map(|fold| &fold.point);
+        folds
+            .map(|at| (at.observed.outputs[0].peak_to_peak(), at.error))
+            .collect()
+    };
+    let exact = request.clone().tolerance(1e-11).run().expect("a branch");
+    let coarse = request.tolerance(1e-3).accuracy_of("speed");
+    let found = speed(&coarse.run().expect("a branch"));
+    assert_eq!(found.len(), 2);
+    for ((found, stated), (exact, _)) in found.into_iter().zip(speed(&exact)) {
+        let (error, stated) = ((found / exact - 1.0).abs(), stated.expect("an error"));
+        assert!(error <= stated, "{error:e} {stated:e}");
+    }
+    // A force that is zero is known.
+    let pushes = coarse.accuracy_of("pushes").run().expect("a branch");
+    let errors = pushes.folds().map(|fold| fold.point.error);
+    assert!(errors.eq([Some(0.0), Some(0.0)]));
+}
+
+/// What is computed of an orbit or an event by shooting, whatever found it, has the same accuracy, and refuses the same names.
+#[test]
+fn what_shooting_completes_has_a_name_too() {
+    let request = FrequencyResponse::of(&Hard {}).from(1.0).to(2.2);
+    let request = request.by(Shooting::new()).tolerance(1e-3);
+    let branch = request.run().expect("a branch");
+    let fold = branch.folds().next().expect("a fold");
+    let wrong = request.accuracy_of("sped");
+    let errors = [
+        wrong.complete(&fold.point).err(),
+        wrong.reading("speed", &fold.point).err(),
+        wrong.track(fold, "omega", [1.0, 2.0]).err(),
+    ];
+    for error in errors {
+        let said = error.expect("no such output").to_string();
+        assert!(said.contains("speed, pushes, x"), "{said}");
     }
 }

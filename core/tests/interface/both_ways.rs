@@ -70,6 +70,39 @@ fn a_limit_is_that_of_each_part() {
     assert_eq!(texts(&resumed.expect("a branch")), texts(&whole));
 }
 
+/// What each part has is counted for itself, also where both together have more than a new limit; and where nothing is said of it.
+#[test]
+fn a_new_limit_is_that_of_each_part() {
+    let request = FrequencyResponse::of(&ONE).from(0.66).to(0.73).harmonics(9);
+    let whole = request.through(VALUE).expect("a branch");
+    let limited = request.max_points(4).through(VALUE).expect("a branch");
+    for (resume, points) in [
+        (limited.resume().max_points(5), 5),
+        (limited.resume().max_points(6), 6),
+        (limited.resume(), 8),
+    ] {
+        let resumed = resume.run().expect("a branch");
+        let limit = Stop::PointLimit { points };
+        assert_eq!((resumed.begin, resumed.stopped), (Some(limit), limit));
+        assert_eq!(resumed.points.len(), 2 * points - 1);
+        let all = resumed.resume().max_points(20_000).run();
+        assert_eq!(texts(&all.expect("a branch")), texts(&whole));
+    }
+    let refused = limited.resume().max_points(4).run();
+    let said = refused.expect_err("it has as many").to_string();
+    assert!(said.contains("must be more than the points"), "{said}");
+    // Beyond its range goes the part to its end.
+    let count = whole.points.len();
+    let forth = whole
+        .points
+        .iter()
+        .filter(|point| point.value >= VALUE)
+        .count();
+    let longer = whole.resume().to(0.8).max_points(count + 1).run();
+    let longer = longer.expect("a branch");
+    assert_eq!(longer.points.len(), count + (count + 1 - forth));
+}
+
 /// Resumed and interrupted again in its first part, a branch still has what was known of the other one.
 #[test]
 fn what_was_known_of_a_part_stays() {
@@ -125,6 +158,9 @@ fn parts_that_are_none_are_refused() {
         ("\"points\":4", "\"points\":9"),
         ("\"events\":0", "\"events\":3"),
         ("\"turns\":0", "\"turns\":18446744073709551615"),
+        ("\"value\":0.68}", "\"value\":\"NaN\"}"),
+        ("\"value\":0.68}", "\"value\":1e300}"),
+        ("\"value\":0.68}", "\"value\":0.7}"),
     ] {
         let (before, both) = text.split_at(at);
         assert!(both.contains(from), "{from}");

@@ -1,6 +1,7 @@
 //! What a user of the runtime alone meets: messages, results to keep, structures given as matrices, declarations read from text.
 
 mod accuracy;
+mod at_rest;
 #[cfg(feature = "serde")]
 mod both_ways;
 mod cancelled;

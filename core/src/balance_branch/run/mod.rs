@@ -31,8 +31,6 @@ pub(crate) use rest::Rest;
 /// The core grows when updates shrink by less than this at so many points in succession.
 const SLOW: f64 = 0.5;
 const SLOW_POINTS: usize = 2;
-/// An error of so many times what rounding makes of an update is due to it.
-const ROUNDINGS: f64 = 100.0;
 /// A core that no number of harmonics exceeds.
 const ALL: usize = 1 << 24;
 
@@ -267,13 +265,7 @@ impl<'a> Run<'a> {
         }
         let chosen = self.chooser.as_mut().and_then(|chooser| {
             let error = point.error.map_or(f64::INFINITY, |_| self.evaluator.across);
-            // What rounding leaves, no harmonics take away.
-            let error = if error <= ROUNDINGS * self.evaluator.rounding {
-                0.0
-            } else {
-                error
-            };
-            chooser.decide(harmonics, error)
+            chooser.decide(harmonics, self.evaluator.by_harmonics(error))
         });
         self.wanted = self
             .context

@@ -9,8 +9,8 @@ use crate::orbit::observe::Measure;
 use crate::report::unit::in_unit;
 
 /// Names of the columns that every table begins with; after them come the parameters of the system, by name, and then for each
-/// contact by its name, that of its law with a number from one on where the law acts in several, as of one called `stop`, `stop_min_force`
-/// and `stop_max_force`, the extremes of its law with their signs, and `stop_piece_1` and so on, the part of the period on each piece of its
+/// contact by its name, that of its law with a number from one on where the law acts in several (the next one where an output, a
+/// coordinate or another law has that name), as of one called `stop`, `stop_min_force` and `stop_max_force`, the extremes of its law with their signs, and `stop_piece_1` and so on, the part of the period on each piece of its
 /// law, from the lowest gaps to the highest.
 ///
 /// | column | what it is |
@@ -33,7 +33,8 @@ use crate::report::unit::in_unit;
 /// `tip_p2p`, `tip_max`, `tip_min`, `tip_mean`, `tip_rms` and `tip_crest`, the [measures](Measure) of these names; then for each contact
 /// `stop_impulse` and `stop_impacts`, over the period of the orbit.
 ///
-/// In a model with units what has one says so: `omega [rad/s]`, `tip_rms [um]`.
+/// In a model with units what has one says so: `omega [rad/s]`, `tip_rms [um]`. Columns of contacts have none: a model does not
+/// know the units of its laws, but of an output that is the force of one.
 ///
 /// What is not known, or is not there, is empty, as much is of an orbit by shooting until it is
 /// [completed](crate::Branch::complete); a number that is not finite is `inf` or `NaN`.
@@ -104,7 +105,7 @@ const MEASURES: [Measure; 6] = [
 ];
 
 impl Table {
-    /// A table without rows. A parameter whose name is taken gets an underscore after it.
+    /// A table without rows. A parameter whose name is that of another column gets an underscore after it.
     pub fn of(system: &dyn crate::system::System) -> Self {
         Self::of_model(&Model::of(system))
     }
@@ -112,23 +113,17 @@ impl Table {
     /// The same where the system itself is not at hand.
     pub fn of_model(model: &Model) -> Self {
         let pieces = model.pieces.clone();
-        let mut names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
-        let of_contacts = of_contacts(model);
-        for parameter in &model.parameters {
-            let mut name = parameter.name.clone();
-            while names.contains(&name) || of_contacts.contains(&name) {
-                name.push('_');
-            }
-            names.push(name);
-        }
-        names.extend(of_contacts);
+        let mut others = of_contacts(model);
         let named = named(model);
         if named != [0; 2] {
-            names.extend(of_signals(model));
-            names.extend(contacts(model).flat_map(|(contact, _)| {
+            others.extend(of_signals(model));
+            others.extend(contacts(model).flat_map(|(contact, _)| {
                 ["impulse", "impacts"].map(|what| format!("{contact}_{what}"))
             }));
         }
+        let parameters = model.parameters.iter().map(|own| own.name.clone());
+        let mut names = without_repetition(&others, parameters);
+        names.extend(others);
         with_units(model, &mut names);
         Self {
             names,
@@ -142,9 +137,13 @@ impl Table {
     /// The same where errors are of an output or a coordinate of this name, as of [`Branch::accuracy_of`](crate::Branch::accuracy_of).
     #[must_use]
     pub fn with_errors_of(mut self, name: Option<&str>) -> Self {
-        let error = self.names.iter_mut().find(|own| *own == "error");
+        let error = self.names.iter().position(|own| own == "error");
         if let (Some(error), Some(name)) = (error, name) {
-            *error = format!("error_of_{name}");
+            let mut of_name = format!("error_of_{name}");
+            while self.names.contains(&of_name) {
+                of_name.push('_');
+            }
+            self.names[error] = of_name;
         }
         self
     }
@@ -225,6 +224,18 @@ pub(crate) fn line<'c>(text: &mut String, cells: impl Iterator<Item = &'c str>) 
         };
     }
     text.push('\n');
+}
+
+/// [`COLUMNS`] and the parameters: one whose name is another column's gets an underscore after it, or as many as it takes.
+fn without_repetition(others: &[String], parameters: impl Iterator<Item = String>) -> Vec<String> {
+    let mut names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
+    for mut name in parameters {
+        while names.contains(&name) || others.contains(&name) {
+            name.push('_');
+        }
+        names.push(name);
+    }
+    names
 }
 
 /// How many outputs and coordinates have columns of their names: none where one coordinate is all there is.
@@ -380,6 +391,43 @@ mod tests {
             assert_eq!((cell("contacts"), cell("peak_force")), ("", ""));
             assert_eq!((cell("stability"), value("value")), ("stable", omega));
         }
+    }
+
+    crate::oscillator! {
+        Taken(x, y) {
+            param x_p2p = 0.5;
+            param stop_3_impulse = 0.1;
+            param error_of_x = 0.2;
+            law stop(gap) { gap > 0 => gap, else => 0 }
+            law stop_2(gap) { gap > 1 => 3*(gap - 1), else => 0 }
+            ddot(x) + 0.2*dot(x) + x + stop(x - 9) + stop_2(x) = x_p2p*cos(omega*t);
+            ddot(y) + error_of_x*dot(y) + y + stop(y - 8) = stop_3_impulse*cos(omega*t);
+            output stop_1 = 2*x;
+        }
+    }
+
+    #[test]
+    fn names_of_columns_and_contacts_are_unique() {
+        let model = Taken::default();
+        let branch = FrequencyResponse::of(&model).from(0.5).to(0.52);
+        let branch = branch.accuracy_of("x").run().expect("a branch");
+        let contacts = &branch.model.contacts;
+        assert_eq!(*contacts, ["stop_3", "stop_2", "stop_4"]);
+        let text = branch.to_csv();
+        let mut lines = text.lines();
+        let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+        let unique: std::collections::HashSet<&&str> = names.iter().collect();
+        assert_eq!(unique.len(), names.len(), "{names:?}");
+        assert_eq!(names[20..23], ["x_p2p_", "stop_3_impulse_", "error_of_x"]);
+        assert!(names.contains(&"error_of_x_") && names.contains(&"stop_4_impacts"));
+        let cells: Vec<&str> = lines.next().expect("a row").split(',').collect();
+        let cell = |name: &str| {
+            let column = names.iter().position(|&other| other == name);
+            cells[column.expect("a column")]
+        };
+        let value = |name: &str| cell(name).parse::<f64>().expect("a number");
+        assert_eq!((value("x_p2p_"), value("error_of_x")), (0.5, 0.2));
+        assert!((value("stop_1_p2p") - 2.0 * value("x_p2p")).abs() < 1e-9);
     }
 
     #[test]

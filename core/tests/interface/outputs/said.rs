@@ -105,3 +105,22 @@ fn events_are_described_by_what_leads() {
         "{said}"
     );
 }
+
+/// What is not a number is not larger than one, wherever it stands.
+#[test]
+fn the_largest_orbit_is_one_of_those_with_a_number() {
+    let (branch, _) = super::at(&super::Isolated::default(), 0.9);
+    let largest = |branch: &hertzian::Branch| {
+        let found = branch.largest("x:p2p").expect("a measure");
+        found.map(|point| point.value)
+    };
+    // Below its resonance a linear oscillator moves the more the higher the frequency.
+    assert_eq!(largest(&branch), Some(0.9 * 1.001));
+    let mut unknown = branch;
+    unknown.points[0].observed.motions[0].maximum = f64::NAN;
+    assert_eq!(largest(&unknown), Some(0.9 * 1.001));
+    for point in &mut unknown.points {
+        point.observed.motions[0].maximum = f64::NAN;
+    }
+    assert_eq!(largest(&unknown), None);
+}

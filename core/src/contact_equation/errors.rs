@@ -1,0 +1,151 @@
+//! How far two orbits are apart in what the error is of, and what that is measured by.
+
+use super::equations::Equations;
+use super::motion::Motion;
+use super::run::{DIFFERENCE, Run};
+use crate::branches::observed::{EXTREMES, Motion as Extent, Observed};
+use crate::branches::point::Point;
+use crate::continuation::follow::CurvePoint;
+use crate::numeric::roots::Place;
+use crate::orbit::observe::Accuracy;
+
+/// Phases at which two motions are compared.
+const COMPARED: usize = 24;
+
+impl Run<'_> {
+    /// How peak-to-peak changes with what is varied, along the tangent.
+    pub(super) fn steepness(&mut self, at: &CurvePoint, point: &Point) -> Option<f64> {
+        let accuracy = self.accuracy();
+        let extremes = self.equations.extremes.get()?.coordinates.clone();
+        let slope = at.parameter_slope();
+        let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
+        let moved = at.u.iter().zip(&at.tangent);
+        let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
+        self.equations.compute(&moved, false);
+        let known = !self.equations.failed && slope != 0.0;
+        let apart = known.then(|| {
+            if let Accuracy::Output(_) = accuracy {
+                let value = moved[moved.len() - 1];
+                self.changed(point, &self.outputs(&self.equations, value, false))
+            } else {
+                apart(&self.equations, &extremes, accuracy)
+            }
+        });
+        self.equations.compute(&at.u, false);
+        apart.map(|apart| apart / (step * slope).abs())
+    }
+
+    /// How much of an output is rounding of the states of the last pass.
+    pub(super) fn noise(&self, point: &Point) -> f64 {
+        match self.accuracy() {
+            Accuracy::Output(_) => {
+                self.changed(point, &self.outputs(&self.equations, point.value, true))
+            }
+            Accuracy::Coordinates | Accuracy::Coordinate(_) => 0.0,
+        }
+    }
+
+    /// How far the output that the error is of is from that among others.
+    fn changed(&self, point: &Point, others: &[Extent]) -> f64 {
+        let Accuracy::Output(output) = self.accuracy() else {
+            return f64::NAN;
+        };
+        let pair = point.observed.outputs.get(output).zip(others.get(output));
+        pair.map_or(f64::NAN, |(own, there)| own.apart(there))
+    }
+
+    /// What errors are measured by: what they are of, and the largest coordinate for one that is at rest.
+    pub(super) fn size(&self, point: &Point, noise: f64) -> f64 {
+        let Observed {
+            motions, outputs, ..
+        } = &point.observed;
+        let largest = Accuracy::Coordinates.peak_to_peak(&point.observed);
+        match self.accuracy() {
+            Accuracy::Coordinates => largest,
+            Accuracy::Coordinate(index) => {
+                let own = motions.get(index);
+                let rounding = motions.iter().map(Extent::farthest).fold(0.0, f64::max);
+                let noise = EXTREMES * f64::EPSILON * rounding;
+                own.filter(|own| !own.is_at_rest(noise))
+                    .map_or(largest, Extent::peak_to_peak)
+            }
+            Accuracy::Output(index) => {
+                let own = outputs.get(index);
+                own.map_or(f64::NAN, |own| own.measure(noise))
+            }
+        }
+    }
+
+    /// What the error is of.
+    pub(super) fn accuracy(&self) -> Accuracy {
+        self.problem.asked.accuracy
+    }
+
+    /// How far a finer orbit at a value is from this one in what the error is of.
+    pub(super) fn apart(&self, finer: &Equations, point: &Point, value: f64) -> f64 {
+        let accuracy = self.accuracy();
+        if let Accuracy::Output(_) = accuracy {
+            return self.changed(point, &self.outputs(finer, value, false));
+        }
+        let motions = self.equations.extremes.get();
+        apart(
+            finer,
+            motions.map_or(&[][..], |found| &found.coordinates),
+            accuracy,
+        )
+    }
+
+    /// The same, since the last point.
+    pub(super) fn rise(&self, point: &Point) -> f64 {
+        self.record.points.last().map_or(0.0, |last| {
+            let by = (point.value - last.value).abs();
+            if by > 0.0 {
+                let of = |point: &Point| match self.accuracy() {
+                    Accuracy::Coordinates => point.peak_to_peak(),
+                    one => one.peak_to_peak(&point.observed),
+                };
+                (of(point) - of(last)).abs() / by
+            } else {
+                0.0
+            }
+        })
+    }
+}
+
+/// How far a finer orbit is from where the coordinates of another one, or the one that the error is of, are smallest and largest: the error
+/// of these values, to first order.
+fn apart(finer: &Equations, extremes: &[[Place; 2]], accuracy: Accuracy) -> f64 {
+    let motion = Motion::of(finer);
+    let mut state = vec![0.0; finer.skeleton.order];
+    let mut off = |coordinate: usize, place: &Place| {
+        motion.at(place.x, &mut state);
+        state[coordinate] - place.value
+    };
+    let counts = |index: usize| match accuracy {
+        Accuracy::Coordinate(one) => index == one,
+        Accuracy::Coordinates | Accuracy::Output(_) => true,
+    };
+    let pairs = extremes.iter().enumerate();
+    let pairs = pairs.filter(|(index, _)| counts(*index));
+    let apart = pairs.map(|(coordinate, [low, high])| off(coordinate, high) - off(coordinate, low));
+    apart.fold(0.0, |most: f64, apart| most.max(apart.abs()))
+}
+
+/// The largest difference of a coordinate between two motions.
+pub(super) fn everywhere(equations: [&Equations; 2]) -> f64 {
+    let motions = equations.map(Motion::of);
+    let skeleton = &equations[0].skeleton;
+    let coordinates = equations[0].values.linear.positions.nrows();
+    let mut states = [vec![0.0; 2 * coordinates], vec![0.0; 2 * coordinates]];
+    let mut most = 0.0_f64;
+    for sample in 0..COMPARED {
+        let phase = skeleton.begin + skeleton.length * (sample as f64 / COMPARED as f64);
+        for (motion, state) in motions.iter().zip(&mut states) {
+            let (interval, phase) = motion.interval(phase);
+            motion.state(interval, phase, state);
+        }
+        let pairs = states[0].iter().zip(&states[1]).take(coordinates);
+        most = pairs.fold(most, |most, (a, b)| most.max((a - b).abs()));
+    }
+    most
+}
