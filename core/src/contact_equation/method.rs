@@ -1,5 +1,7 @@
 //! The contact equation as the engine of branches sees it.
 
+use nalgebra::DMatrix;
+
 use super::equations::Equations;
 use super::events;
 use super::fits::Fits;
@@ -46,8 +48,8 @@ pub(super) struct ContactBranch<'b, 'r> {
     watched: Vec<Watched>,
     /// The test functions computed last, and where.
     tested: Option<(Vec<f64>, Tests)>,
-    /// Those of the last orbit that was kept, and what was varied there.
-    last: Option<(f64, Tests)>,
+    /// The last orbit that was kept.
+    pub(super) last: Option<Last>,
     /// The equations that the walk goes on with, and its last point in them.
     next: Option<Next>,
     /// The equations before, while others are tried.
@@ -61,6 +63,34 @@ pub(super) struct ContactBranch<'b, 'r> {
     /// The branch was lost where a gap reached a level, and not why.
     pub(super) lost: bool,
     visit: See<'b>,
+}
+
+/// What test functions of an orbit follow from, whatever its equations.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Last {
+    /// What is varied, and what the bordered determinant is divided by.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    value: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    slope: f64,
+    /// The map of the states column by column, if it is known.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    map: Vec<f64>,
+}
+
+impl Last {
+    fn tests(&self) -> Tests {
+        let order = self.map.len().isqrt();
+        let map = (order > 0).then(|| DMatrix::from_column_slice(order, order, &self.map));
+        Tests::of(map.as_ref(), self.slope)
+    }
+
+    /// Whether it is one of so many states: it may have been read from a file.
+    pub(super) fn is_of(&self, order: usize) -> bool {
+        let whole = self.map.is_empty() || self.map.len() == order * order;
+        whole && self.map.iter().all(|entry| entry.is_finite())
+    }
 }
 
 /// What the bordered determinant is divided by. Where the slope is rounding, nothing is known of the quotient.
@@ -104,18 +134,12 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             let map = self.run.equations.map(&at.u);
             let tests = match &self.last {
                 // The last orbit has other equations, in which it was looked at.
-                Some((value, tests)) if map.is_none() && *value == at.parameter() => tests.clone(),
+                Some(last) if map.is_none() && last.value == at.parameter() => last.tests(),
                 _ => Tests::of(map.as_ref(), divisor(at)),
             };
             (at.u.clone(), tests)
         });
         &self.tested.insert(found).1
-    }
-
-    /// Looks at the last orbit that was kept, of a branch that goes on.
-    pub(super) fn look_at_last(&mut self, at: &CurvePoint) {
-        let map = self.run.equations.map(&at.u);
-        self.last = Some((at.parameter(), Tests::of(map.as_ref(), divisor(at))));
     }
 
     /// How well multipliers are known along the last step.
@@ -198,7 +222,11 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
     fn keep_point(&mut self, at: &CurvePoint, read: ReadOrbit) -> bool {
         let ReadOrbit { point, map, .. } = read;
         let tests = Tests::of(map.as_ref(), divisor(at));
-        self.last = Some((at.parameter(), tests.clone()));
+        self.last = Some(Last {
+            value: at.parameter(),
+            slope: divisor(at),
+            map: map.map_or_else(Vec::new, |map| map.as_slice().to_vec()),
+        });
         self.tested = Some((at.u.clone(), tests));
         let done = self.run.record.points.len() + 1;
         let answer = (self.visit)(Progress::orbit(done, &point));

@@ -1,7 +1,7 @@
 //! Where a run by the contact equation is, as data: what is left of it follows from that.
 
 use super::equations::Equations;
-use super::method::{ContactBranch, HELD, REFUSALS};
+use super::method::{ContactBranch, HELD, Last, REFUSALS};
 use super::placement::Placement;
 use super::plan::Frame;
 use super::problem::{ContactProblem, RESOLUTIONS};
@@ -32,6 +32,8 @@ pub(crate) struct Rest {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     finer: Option<f64>,
     screened: Option<Screened>,
+    /// The last orbit that was kept.
+    last: Option<Last>,
     /// Other equations lead nowhere from the last point.
     stuck: bool,
     /// How often the last point was refused.
@@ -81,6 +83,13 @@ impl Rest {
         if !self.walk.fits(unknowns) || !self.known.iter().all(is_known) {
             return None;
         }
+        if !self
+            .last
+            .as_ref()
+            .is_none_or(|last| last.is_of(values.order()))
+        {
+            return None;
+        }
         let [before, last] = <&[Vec<f64>; 2]>::try_from(&self.known[..]).ok()?;
         equations.known = [before.clone(), last.clone()];
         let mut run = Run::new(problem, frame, self.resolution, equations);
@@ -106,6 +115,7 @@ impl ContactBranch<'_, '_> {
             known: equations.known.to_vec(),
             finer,
             screened,
+            last: self.last.clone(),
             stuck: self.stuck,
             refused: self.refused,
             held: self.held,
@@ -115,6 +125,6 @@ impl ContactBranch<'_, '_> {
     /// As it was there.
     pub(super) fn take_up(&mut self, rest: &Rest) {
         (self.stuck, self.refused, self.held) = (rest.stuck, rest.refused, rest.held);
-        self.look_at_last(rest.walk.point());
+        self.last.clone_from(&rest.last);
     }
 }

@@ -237,7 +237,7 @@ fn is_refused(path: &std::path::Path, what: &str) {
 
 /// Where in what is left of a branch by the contact equation, and what cannot be there: `FIRST` and `SECOND` are the places of two switches
 /// that name each other, `LAST` that of the last one.
-const NONSENSE: [(&str, &str); 24] = [
+const NONSENSE: [(&str, &str); 26] = [
     ("/placement/placed/0/phase", "6.28"),
     ("/placement/placed/0/phase", "\"NaN\""),
     ("/placement/placed/LAST/phase", "0.001"),
@@ -250,8 +250,10 @@ const NONSENSE: [(&str, &str); 24] = [
     ("/placement/placed/SECOND/switch/told", "\"alone\""),
     ("/placement/placed/SECOND/switch/level", "7"),
     ("/placement/beginning/phase", "1e300"),
-    ("/placement/beginning/length", "1e300"),
-    ("/placement/beginning/length", "\"inf\""),
+    ("/placement/beginning/recurrence/parts", "7"),
+    ("/placement/beginning/recurrence/parts", "0"),
+    ("/placement/beginning/recurrence/period", "2"),
+    ("/last/map", "[0.5]"),
     ("/made", "\"NaN\""),
     ("/size", "-1.0"),
     ("/finer", "\"inf\""),

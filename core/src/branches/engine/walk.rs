@@ -72,11 +72,6 @@ impl Places {
 }
 
 impl Walk {
-    /// The last point.
-    pub(crate) fn point(&self) -> &CurvePoint {
-        &self.halted.point
-    }
-
     /// Whether all its vectors are those of so many unknowns, and what it says of the branch can be: it may have been read from a file.
     pub(crate) fn fits(&self, unknowns: usize) -> bool {
         let Halted {
