@@ -1,11 +1,11 @@
 //! Branches of periodic orbits: as data, and what follows them, whichever method computes the orbits.
 
 pub(crate) mod branch;
+pub(crate) mod checkpoint;
 pub(crate) mod engine;
 pub(crate) mod error;
 pub(crate) mod extreme;
 mod guess;
-pub(crate) mod keep;
 pub(crate) mod moduli;
 pub(crate) mod observed;
 pub(crate) mod orbit;

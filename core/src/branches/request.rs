@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::branch::Branch;
+use super::checkpoint::Keep;
 use super::error::unless_cancelled;
-use super::keep::Keep;
 use super::orbit::Orbit;
 use crate::cancel::Cancel;
 use crate::continuation::step::StepControl;

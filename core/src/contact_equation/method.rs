@@ -8,9 +8,9 @@ use super::fits::Fits;
 use super::problem::{FIRST, RESOLUTIONS};
 use super::reading::ReadOrbit;
 use super::run::Run;
+use crate::branches::checkpoint::keep;
 use crate::branches::engine::{Search, Walk};
 use crate::branches::extreme::Extreme;
-use crate::branches::keep::keep;
 use crate::branches::moduli;
 use crate::branches::point::Point;
 use crate::branches::problem::{

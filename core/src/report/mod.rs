@@ -1,6 +1,8 @@
 //! How results are drawn and written.
 
 mod branch;
+#[cfg(feature = "serde")]
+mod checkpoint;
 #[cfg(feature = "plot")]
 mod curve;
 #[cfg(feature = "plot")]
@@ -9,8 +11,6 @@ pub(crate) mod diagram;
 mod drawn;
 pub(crate) mod error;
 pub mod export;
-#[cfg(feature = "serde")]
-mod keep;
 #[cfg(feature = "plot")]
 mod labels;
 mod map;

@@ -8,11 +8,11 @@ mod by_shooting;
 mod following;
 mod multipliers;
 mod reading;
+#[cfg(feature = "serde")]
+mod request_in_file;
 mod resume;
 #[doc(hidden)]
 pub mod stages;
-#[cfg(feature = "serde")]
-mod written;
 
 pub use resume::Resume;
 

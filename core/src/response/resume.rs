@@ -9,7 +9,7 @@ use super::sealed::Follow;
 use super::{by_balance, by_contact_equation, by_shooting};
 use crate::balance_branch::check::Asked;
 use crate::branches::branch::Branch;
-use crate::branches::keep::Keep;
+use crate::branches::checkpoint::Keep;
 use crate::branches::progress::{Progress, See};
 use crate::branches::request::{Guess, Request};
 use crate::cancel::Cancel;

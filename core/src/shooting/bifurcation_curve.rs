@@ -1,14 +1,14 @@
 //! Following a curve of bifurcations in two parameters, both ways from one of them.
 //!
-//! What is special is looked for by [`event_monitor`](super::event_monitor).
+//! What is special is looked for by [`special_monitor`](super::special_monitor).
 
 use nalgebra::Complex;
 
 use super::codimension_one::{Condition, Curve};
-use super::event_monitor::EventMonitor;
 use super::grazing_condition::GrazingCondition;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
+use super::special_monitor::SpecialMonitor;
 use super::start;
 use super::switch::is_crossing;
 use crate::branches::error::OrbitError;
@@ -245,7 +245,7 @@ fn half(
         },
         newton: newton_options,
     };
-    let mut monitor = EventMonitor::new(problem, plane, newton_options, &curve);
+    let mut monitor = SpecialMonitor::new(problem, plane, newton_options, &curve);
     let mut interrupted = false;
     let outcome = follow(
         &mut curve,

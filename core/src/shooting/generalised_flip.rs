@@ -16,7 +16,7 @@
 use super::bifurcation_curve::{Special, SpecialKind};
 use super::codimension_one::Curve;
 use super::equations::Equations;
-use super::event_monitor::{EventMonitor, ROUNDING};
+use super::special_monitor::{ROUNDING, SpecialMonitor};
 use super::special_search::apart;
 use crate::continuation::follow::{CurvePoint, Step};
 
@@ -84,7 +84,7 @@ impl HalfPeriodDifference {
     }
 }
 
-impl EventMonitor<'_, '_> {
+impl SpecialMonitor<'_, '_> {
     /// Whether an orbit of half the period lies between the last point and this one.
     pub(super) fn passes_half_the_period(&mut self, curve: &Curve<'_>, at: &CurvePoint) -> bool {
         if self.functions.shift != Some(-1.0) {

@@ -6,9 +6,9 @@ use super::gap_extremes::GapExtremes;
 use super::minimal_period::{earlier, may_be_earlier};
 use super::run::Run;
 use super::tested::{self, Tests};
+use crate::branches::checkpoint::keep;
 use crate::branches::engine::{Search, Walk};
 use crate::branches::extreme::{self, Extreme};
-use crate::branches::keep::keep;
 use crate::branches::moduli;
 use crate::branches::problem::{
     BranchProblem, Change, Read, TestValue, Touch, Watched, Zero, ZeroOutcome,

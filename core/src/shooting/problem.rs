@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::branches::keep::Keep;
+use crate::branches::checkpoint::Keep;
 use crate::branches::recurrence::{CyclicSymmetry, SignedPermutation};
 use crate::cancel::Cancel;
 use crate::continuation::follow::FollowOptions;

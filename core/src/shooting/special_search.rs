@@ -4,9 +4,9 @@ use nalgebra::{Complex, DMatrix};
 
 use super::codimension_one::{Curve, determinant};
 use super::error_reference::ErrorReference;
-use super::event_monitor::{ROUNDING, VANISHED};
 use super::normal_form::CubicCoefficient;
 use super::problem::ShootingProblem;
+use super::special_monitor::{ROUNDING, VANISHED};
 use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::locate::{inside, locate};
 use crate::continuation::newton::{Newton, NewtonOptions};

@@ -3,13 +3,13 @@
 use super::Run;
 use super::crossed::CROSSED;
 use super::event_monitor::{EventMonitor, Found, Test as OfOrbit};
-use super::events::FOLD_TOLERANCE;
+use super::folds::FOLD_TOLERANCE;
 use super::gap_extremes::GapExtremes;
 use crate::balance::{Balance, Resolution};
 use crate::balance_branch::context::EventSelection;
+use crate::branches::checkpoint::keep;
 use crate::branches::engine::{self, Walk};
 use crate::branches::extreme::{self, Extreme};
-use crate::branches::keep::keep;
 use crate::branches::moduli;
 use crate::branches::problem::{
     BranchProblem, Change, Read, Test, TestValue, Touch, Watched, Zero, ZeroOutcome,

@@ -4,7 +4,7 @@
 mod corrected_moduli;
 mod crossed;
 mod event_monitor;
-mod events;
+mod folds;
 mod gap_extremes;
 mod method;
 mod rest;

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use crate::branches::branch::Branch;
 use crate::branches::point::{Event, Point};
 use crate::error::Error;
+use crate::report::checkpoint;
 use crate::report::error::FileError;
-use crate::report::keep;
 
 /// The version of what is written: files of another one are not read.
 pub const JSON_VERSION: u32 = 2;
@@ -131,7 +131,7 @@ impl Branch {
         let path = path.as_ref();
         let text = contents(path)?;
         let refused = |source: serde_json::Error| refused(path, &text, &source);
-        if let Some(kept) = keep::read(&text) {
+        if let Some(kept) = checkpoint::read(&text) {
             is_read(path, kept.version)?;
             let branch = kept.branch().and_then(Self::checked).map_err(refused)?;
             return Ok(vec![branch]);

@@ -39,7 +39,7 @@ const JUMPS: f64 = 1e-3;
 pub(super) const ROUNDING: f64 = 1e-12;
 
 /// What is looked at along a curve.
-pub(super) struct EventMonitor<'p, 'a> {
+pub(super) struct SpecialMonitor<'p, 'a> {
     problem: &'p ShootingProblem,
     plane: &'p Plane<'a>,
     options: NewtonOptions,
@@ -68,7 +68,7 @@ struct Moved {
     part: f64,
 }
 
-impl<'p, 'a> EventMonitor<'p, 'a> {
+impl<'p, 'a> SpecialMonitor<'p, 'a> {
     pub(super) fn new(
         problem: &'p ShootingProblem,
         plane: &'p Plane<'a>,

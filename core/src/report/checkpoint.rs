@@ -16,8 +16,8 @@ use serde_json::Value;
 
 use super::export::JSON_VERSION;
 use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::checkpoint::{Keep, Rest};
 use crate::branches::engine::Places;
-use crate::branches::keep::{Keep, Rest};
 use crate::branches::point::{Event, Point};
 use crate::branches::record::Kept;
 use crate::continuation::follow::Stop;
