@@ -2,7 +2,7 @@
 
 use super::engine::Places;
 use super::point::{Event, Point};
-use crate::event::Turn;
+use crate::event::{EventKind, Turn};
 
 /// Orbits with what happened between them. Places of events and turns count the points before them.
 #[derive(Debug, Default)]
@@ -27,6 +27,16 @@ impl Record {
             events: &self.events,
             turns: &self.turns,
         }
+    }
+
+    /// Where the branch has joined another one: the branch point behind its last orbit, else that orbit.
+    pub(crate) fn joint(&self) -> Option<f64> {
+        let here = |event: &&Event| {
+            event.kind == EventKind::BranchPoint && event.after == self.points.len()
+        };
+        let event = self.events.last().filter(here);
+        let last = || self.points.last().map(|point| point.value);
+        event.map(|event| event.point.value).or_else(last)
     }
 
     /// Drops a place that turned out to be where a level is touched.

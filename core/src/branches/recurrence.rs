@@ -112,13 +112,21 @@ impl SignedPermutation {
         power
     }
 
-    /// The least power that is the identity.
+    /// The least power that is the identity: the least common multiple of the lengths of its cycles, twice those that change a sign.
     pub(crate) fn order(&self) -> usize {
-        let mut power = self.clone();
-        let mut order = 1;
-        while !power.is_identity() {
-            power = self.after(&power);
-            order += 1;
+        let mut seen = vec![false; self.entries.len()];
+        let mut order: usize = 1;
+        for first in 0..self.entries.len() {
+            let (mut place, mut length, mut sign) = (first, 0, 1.0);
+            while !seen[place] {
+                seen[place] = true;
+                let (next, own) = self.entry(place);
+                (place, length, sign) = (next, length + 1, sign * own);
+            }
+            if length > 0 {
+                let length = if sign < 0.0 { 2 * length } else { length };
+                order = order.saturating_mul(length / greatest_common_divisor(order, length));
+            }
         }
         order
     }

@@ -7,7 +7,7 @@ use super::gaps::Gaps;
 use super::method::ContactBranch;
 use super::plan::{Frame, Plan};
 use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
-use super::regular::{Compared, NEAR};
+use super::regular::Compared;
 use super::rest::Rest;
 use super::run::Run;
 use crate::branches::branch::{Branch, Further, Model};
@@ -32,6 +32,9 @@ const UPDATE: f64 = 1e-2;
 const COARSEST: f64 = 1e-6;
 /// Resolutions that a first orbit is looked for with.
 const TRIED: [usize; 3] = [FIRST, 5, 7];
+
+/// Parts of its size that an orbit differs by from one that comes back earlier, where it was found to six digits.
+const GUESSED: f64 = 1e-5;
 
 /// A branch, and what it goes on from, where it was interrupted.
 pub(crate) struct Followed {
@@ -148,14 +151,10 @@ fn ended(
     started: Instant,
 ) -> Result<Followed, Error> {
     let from = options.from;
-    let joined = run.joined.as_ref().map(|Recurrence { period, image, .. }| {
-        let last = run.record.points.last().map_or(from, |point| point.value);
-        let event = run.record.events.last();
-        Stop::Joined {
-            period: *period,
-            symmetric: image.is_minus(),
-            value: event.map_or(last, |event| event.point.value),
-        }
+    let joined = run.joined.as_ref().map(|joined| Stop::Joined {
+        period: joined.period,
+        symmetric: joined.image.is_minus(),
+        value: run.record.joint().unwrap_or(from),
     });
     let stopped = match outcome {
         Ok(_) if joined.is_some() => joined.unwrap_or(Stop::Interrupted),
@@ -204,28 +203,30 @@ fn ended(
 /// A solution near an orbit that is given by its series. What comes back earlier is followed until then only.
 fn first(problem: &ContactProblem, guess: &Point, value: f64) -> Result<First, Error> {
     let whole = Recurrence::whole(problem.asked.period);
-    let seen = seen_in(problem, guess);
-    if let Some(seen) = seen.filter(|seen| seen.period == whole.period)
-        && let Ok(first) = first_like(problem, guess, value, &seen)
-    {
-        return Ok(first);
-    }
-    let first = first_like(problem, guess, value, &whole)?;
-    match problem.earlier(&first.equations, problem.same()) {
-        None => Ok(first),
-        Some(found) if found.period < whole.period => Err(OrbitError::NoSuchPeriod {
-            period: whole.period,
-            value,
-            attempts: Attempts {
-                planned: 1,
-                made: 1,
-                shorter: 1,
-                evaluations: 0,
-            },
+    let seen = seen_in(problem, guess).filter(|seen| seen.period == whole.period);
+    let seen = seen.and_then(|seen| first_like(problem, guess, value, &seen).ok());
+    let mut first = match seen {
+        Some(first) => first,
+        None => first_like(problem, guess, value, &whole)?,
+    };
+    // Each time it comes back in less time than the last.
+    while let Some(found) = problem.earlier(&first.equations, problem.same()) {
+        if found.period < whole.period {
+            return Err(OrbitError::NoSuchPeriod {
+                period: whole.period,
+                value,
+                attempts: Attempts {
+                    planned: 1,
+                    made: 1,
+                    shorter: 1,
+                    evaluations: 0,
+                },
+            }
+            .into());
         }
-        .into()),
-        Some(found) => Ok(first_like(problem, guess, value, &found).unwrap_or(first)),
+        first = first_like(problem, guess, value, &found)?;
     }
+    Ok(first)
 }
 
 /// How a guess comes back in less time than is asked for, as far as it tells.
@@ -236,7 +237,7 @@ fn seen_in(problem: &ContactProblem, guess: &Point) -> Option<Recurrence> {
     let compared = Compared {
         begin: 0.0,
         rate,
-        most: NEAR * guess.size(),
+        most: GUESSED * guess.size(),
         coordinates: orbit.coordinates(),
     };
     let whole = Recurrence::whole(problem.asked.period);

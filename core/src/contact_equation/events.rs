@@ -70,7 +70,10 @@ pub(super) fn event(run: &mut Run<'_>, zero: &Zero, kind: EventKind) -> Option<E
         return Some(event);
     };
     let map = again.equations.map(&again.point.u);
-    event.point = at_event(run, &mut again, map.as_ref(), read.map.as_ref(), kind);
+    event.point = Point {
+        error: event.point.error,
+        ..at_event(run, &mut again, map.as_ref(), read.map.as_ref(), kind)
+    };
     (event.error, event.test) = (again.error, again.test);
     event.tangent = again.point.tangent;
     Some(event)
@@ -237,7 +240,7 @@ fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(C
 pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
     let at = &touch.located.point;
     let Some(mut read) = run.read(at) else { return };
-    let alike = run.alike(touch.extreme.contact);
+    let contacts = run.touching(&at.u, touch);
     let mut error = touch.error + SAFETY * read.shift.abs();
     if let Some((square, _)) = run.watched(&at.u, &touch.extreme) {
         let mut finer: Option<Equations> = None;
@@ -277,7 +280,7 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
         point: read.point,
         test: touch.located.test,
         after: touch.after,
-        contacts: touch.contacts * alike,
+        contacts,
         tangent: at.tangent.clone(),
     });
 }

@@ -3,12 +3,14 @@
 use super::equations::Equations;
 use super::gaps::is_lonely;
 use super::motion::{GapExtreme, Motion};
-use super::placement::Told;
+use super::placement::{Told, nearness};
 use super::plan;
 use super::run::{Run, SAME};
 
 /// A gap that is beyond its level by this part of its size is elsewhere.
 const BEYOND: f64 = 1e-9;
+/// What rounding leaves of the phase between two switches in one place.
+const BACK: f64 = 1e-9;
 
 /// What the gaps of an orbit say of its equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,13 +26,8 @@ pub(super) enum Fits {
 impl Equations {
     /// Whether the switches of the last pass are in the order that they are told in: those of different contacts may pass each other.
     pub(super) fn is_in_order(&self) -> bool {
-        let mut last = self.skeleton.begin;
-        self.passed.iter().all(|passed| {
-            let [from, to] = passed.phases;
-            let in_order = to >= from - BEYOND && to >= last - BEYOND;
-            last = to;
-            in_order
-        })
+        let ways = self.passed.iter().map(|passed| passed.phases);
+        ways.into_iter().all(|[from, to]| to >= from - BACK)
     }
 }
 
@@ -94,6 +91,7 @@ impl Run<'_> {
     /// Whether an extreme that is watched comes near another one, with which it may end.
     fn meets_another(&self, u: &[f64], found: &[GapExtreme]) -> bool {
         let skeleton = &self.equations.skeleton;
+        let near = nearness(skeleton.length);
         skeleton.switches.iter().enumerate().any(|(index, switch)| {
             let Told::First { other, .. } = switch.told else {
                 return false;
@@ -106,22 +104,8 @@ impl Run<'_> {
                 maximum: switch.rises,
             };
             let short = u[skeleton.slot(other)] <= 0.0;
-            short && !is_lonely(&extreme, found, skeleton.length, plan::TOO_NEAR)
+            short && !is_lonely(&extreme, found, skeleton.length, plan::TOO_NEAR * near)
         })
-    }
-
-    /// The range of a gap, and of those with the same law: contacts may be in each other's place later.
-    pub(super) fn range(&self, extremes: &[GapExtreme], contact: usize) -> f64 {
-        let contacts = &self.equations.values.contacts;
-        let whole = self.equations.skeleton.recurrence().parts == 1;
-        let alike = |other: usize| {
-            other == contact || !whole && contacts[other].law == contacts[contact].law
-        };
-        let own = extremes.iter().filter(|other| alike(other.contact));
-        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), other| {
-            (low.min(other.gap), high.max(other.gap))
-        });
-        high - low
     }
 
     fn extreme_fits(&self, u: &[f64], extreme: &GapExtreme, all: &[GapExtreme]) -> Fits {
@@ -143,7 +127,14 @@ impl Run<'_> {
             if beyond > BEYOND * size {
                 return Fits::No;
             }
-            let lonely = || is_lonely(extreme, all, skeleton.length, plan::LONELY);
+            let lonely = || {
+                is_lonely(
+                    extreme,
+                    all,
+                    skeleton.length,
+                    plan::LONELY * nearness(skeleton.length),
+                )
+            };
             if (above < 0.0) == maximum && lonely() && self.is_near(u, extreme, level) {
                 fits = Fits::Soon;
             }
@@ -160,7 +151,7 @@ impl Run<'_> {
         let watched = skeleton.switches.iter().enumerate().any(|(index, switch)| {
             let told = matches!(switch.told, Told::First { .. });
             let apart = (skeleton.phase(u, index) - phase).rem_euclid(skeleton.length);
-            let near = apart.min(skeleton.length - apart) < SAME;
+            let near = apart.min(skeleton.length - apart) < SAME * nearness(skeleton.length);
             told && (switch.contact, switch.level) == place && near
         });
         if watched {

@@ -89,7 +89,8 @@ impl Last {
     /// Whether it is one of so many states: it may have been read from a file.
     pub(super) fn is_of(&self, order: usize) -> bool {
         let whole = self.map.is_empty() || self.map.len() == order * order;
-        whole && self.map.iter().all(|entry| entry.is_finite())
+        let slope = self.slope.is_nan() || self.slope.is_finite() && self.slope != 0.0;
+        whole && slope && self.map.iter().chain([&self.value]).all(|x| x.is_finite())
     }
 }
 

@@ -66,7 +66,7 @@ impl Screened {
             ..
         } = self;
         let numbers = [apart, shift, slope, error, spread];
-        tails.iter().all(|tail| *tail > 0.0)
+        tails.iter().all(|tail| *tail > 0.0 && tail.is_finite())
             && numbers.into_iter().all(|x| *x >= 0.0)
             && self.left <= SCREENED
     }

@@ -20,8 +20,8 @@ const SAME: f64 = 1e-7;
 const COARSEST: f64 = 1e-4;
 /// The same in parts of the tolerance.
 const TOLERANCES: f64 = 10.0;
-/// At a branch point states are known to the root of what the value is known to; and those of a guess are not better.
-pub(super) const NEAR: f64 = 1e-4;
+/// At a branch point states are known to the root of what the value is known to.
+const NEAR: f64 = 1e-4;
 
 /// What a state is compared by: a phase where it is taken, and the unit of velocities.
 #[derive(Clone, Copy)]
@@ -34,12 +34,15 @@ pub(super) struct Compared {
 }
 
 impl Compared {
-    /// The states of a solution.
+    /// The states of the solution of the last pass, which may be smaller than those that its equations began with.
     pub(super) fn of(equations: &Equations, part: f64) -> Self {
+        let extremes = &Motion::of(equations).extremes().coordinates;
+        let ranges = extremes.iter().map(|[low, high]| high.value - low.value);
+        let size = 0.5 * ranges.fold(0.0, f64::max);
         Self {
             begin: equations.skeleton.begin,
             rate: equations.values.base,
-            most: part * equations.size,
+            most: part * equations.size.min(size),
             coordinates: equations.skeleton.order / 2,
         }
     }
@@ -153,7 +156,7 @@ impl Run<'_> {
     /// The same of the last pass.
     fn met(&self, part: f64) -> Option<Recurrence> {
         let given = self.equations.skeleton.recurrence();
-        if self.equations.failed {
+        if self.equations.failed || !self.equations.is_in_order() {
             return None;
         }
         let earlier = self.problem.earlier(&self.equations, part);

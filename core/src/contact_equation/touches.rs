@@ -3,13 +3,16 @@
 use std::f64::consts::TAU;
 
 use super::motion::{GapExtreme, Motion};
-use super::placement::Told;
+use super::placement::{Told, nearness};
 use super::run::{Run, SAME};
 use crate::branches::extreme::Extreme;
+use crate::branches::problem::Touch;
 use crate::branches::recurrence::Recurrence;
 
 /// What `H` of a pair may be where its gap touches the level.
 const TOUCHES: f64 = 1e-9;
+/// Extremes that are so near to their levels, in units of the gap, at an orbit that touches one, touch as well.
+const AT_ONCE: f64 = 1e-8;
 /// Levels that differ by this part are one.
 const SAME_LEVEL: f64 = 1e-9;
 /// Where gaps are compared, in parts of the time after which the orbit comes back: nowhere in particular.
@@ -52,7 +55,7 @@ impl Run<'_> {
     pub(super) fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         extremes.clear();
         self.equations.compute(u, false);
-        if self.equations.failed {
+        if self.equations.failed || !self.equations.is_in_order() {
             return false;
         }
         let whole = TAU * self.equations.skeleton.recurrence().period as f64;
@@ -64,7 +67,7 @@ impl Run<'_> {
         });
         for of_contact in found.chunk_by(|a, b| a.contact == b.contact) {
             let contact = of_contact[0].contact;
-            let size = 0.5 * self.range(of_contact, contact);
+            let size = (0.5 * self.range(of_contact, contact)).max(f64::MIN_POSITIVE);
             let levels = &self.equations.values.contacts[contact].levels;
             for (level, value) in levels.iter().enumerate() {
                 extremes.extend(of_contact.iter().map(|extreme| Extreme {
@@ -109,8 +112,41 @@ impl Run<'_> {
         all.filter(|extreme| firsts[extreme.contact]).collect()
     }
 
+    /// The range of a gap over the period, from these extremes of what is followed.
+    pub(super) fn range(&self, extremes: &[GapExtreme], contact: usize) -> f64 {
+        let images = self.images();
+        let parts = self.equations.skeleton.recurrence().parts;
+        let all = extremes.iter().flat_map(|extreme| {
+            let later = move |part| (later(images, extreme.contact, part), extreme.gap);
+            (0..parts).map(later)
+        });
+        let own = all.filter(|(image, _)| image.contact == contact);
+        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), own| {
+            let gap = own.0.sign * own.1;
+            (low.min(gap), high.max(gap))
+        });
+        high - low
+    }
+
+    /// Number of contacts that touch levels where one of them does, with those that take their places until the period is over.
+    pub(super) fn touching(&mut self, u: &[f64], touch: &Touch) -> usize {
+        let mut extremes = Vec::new();
+        self.extremes(u, &mut extremes);
+        let touches = extremes
+            .iter()
+            .filter(|extreme| extreme.above.abs() <= AT_ONCE);
+        let contacts = touches.map(|extreme| extreme.contact);
+        let mut contacts: Vec<usize> = contacts.chain([touch.extreme.contact]).collect();
+        contacts.sort_unstable();
+        contacts.dedup();
+        contacts
+            .into_iter()
+            .map(|contact| self.alike(contact))
+            .sum()
+    }
+
     /// Number of contacts that take the place of one until the period is over.
-    pub(super) fn alike(&self, contact: usize) -> usize {
+    fn alike(&self, contact: usize) -> usize {
         let images = self.images();
         let parts = self.equations.skeleton.recurrence().parts;
         let mut alike: Vec<usize> = (0..parts)
@@ -202,7 +238,7 @@ impl Run<'_> {
                 (levels - 1 - switch.level, !switch.rises)
             };
             let same = (contact, level, rises) == (extreme.contact, extreme.level, extreme.maximum);
-            same && parts as f64 * apart.min(TAU - apart) < SAME
+            same && period as f64 * apart.min(TAU - apart) < SAME * nearness(skeleton.length)
         };
         (0..skeleton.switches.len()).find_map(|index| {
             let Told::First { other, bend } = skeleton.switches[index].told else {

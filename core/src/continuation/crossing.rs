@@ -129,18 +129,23 @@ impl Search<'_> {
         Some(())
     }
 
-    /// Leaves out solutions on the branch that crosses: their tangents are none of most others.
+    /// Leaves out solutions on the branch that crosses: their tangents are none of most others, or of those at the ends of the step.
     fn leave_other_branch(&self, newton: &Newton, found: &mut Vec<Node>) {
         let (norm, scale) = (newton.norm(), self.like.scale);
         let alike = |a: &Node, b: &Node| {
             let lengths = norm.length(scale, &a.slope) * norm.length(scale, &b.slope);
             norm.product(scale, &a.slope, &b.slope).abs() > ALIKE * lengths
         };
-        let count = |node: &Node| found.iter().filter(|other| alike(node, other)).count();
-        let counts: Vec<usize> = found.iter().map(count).collect();
-        let most = counts.iter().max().copied().unwrap_or(0);
-        let mut counts = counts.into_iter();
-        found.retain(|_| 2 * counts.next().unwrap_or(0) > most);
+        let votes = |node: &Node| {
+            let count = |nodes: &[Node]| nodes.iter().filter(|other| alike(node, other)).count();
+            (count(found), count(&self.ends))
+        };
+        let Some(best) = (0..found.len()).max_by_key(|index| votes(&found[*index])) else {
+            return;
+        };
+        let kept: Vec<bool> = found.iter().map(|node| alike(node, &found[best])).collect();
+        let mut kept = kept.into_iter();
+        found.retain(|_| kept.next().unwrap_or(false));
     }
 
     /// The solution at a place, and its tangent.

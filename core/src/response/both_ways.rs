@@ -79,7 +79,7 @@ pub(super) fn is_left(branch: &Branch) -> bool {
 /// harmonics it was found again, at that value to rounding.
 pub(super) fn begins_at(value: f64, place: usize, points: &[Point]) -> bool {
     let from = |point: &Point| (point.value - value).abs();
-    let extent = points.iter().map(from).fold(1.0, f64::max) + value.abs();
+    let extent = points.iter().map(from).fold(0.0, f64::max) + value.abs();
     let at = points.get(place).map(from);
     extent.is_finite() && at.is_some_and(|apart| apart <= ROUNDING * extent)
 }

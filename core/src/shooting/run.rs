@@ -128,15 +128,10 @@ impl<'r> Run<'r> {
             .last()
             .map_or(options.from, |point| point.value);
         if let Some(Recurrence { period, image, .. }) = &self.joined {
-            let joint = self
-                .record
-                .events
-                .last()
-                .map_or(value, |event| event.point.value);
             return Ok(Stop::Joined {
                 period: *period,
                 symmetric: image.is_minus(),
-                value: joint,
+                value: self.record.joint().unwrap_or(value),
             });
         }
         match (outcome, self.failure, failure) {
