@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::equations::Equations;
 use super::errors::everywhere;
 use super::motion::{Motion, Within};
+use super::placement::Told;
 use super::run::Run;
 use crate::branches::moduli::multipliers;
 use crate::branches::observed::{Motion as Extent, Observed, part_of};
@@ -339,11 +340,14 @@ struct Finer {
     shift: f64,
 }
 
-/// How often gaps cross levels.
+/// How often gaps cross levels. Both switches of a pair stand in one place where an extreme is short of its level; those of different
+/// contacts may, and count.
 fn switches(equations: &Equations) -> usize {
-    let passed = equations.skeleton.intervals.iter().zip(&equations.passed);
-    let ghosts = passed.filter(|(interval, passed)| {
-        interval.ends.is_some() && passed.phases[1] <= passed.phases[0]
+    let skeleton = &equations.skeleton;
+    let is_second = |switch: usize| matches!(skeleton.switches[switch].told, Told::Second { .. });
+    let passed = skeleton.intervals.iter().zip(&equations.passed);
+    let short = passed.filter(|(interval, passed)| {
+        interval.ends.is_some_and(is_second) && passed.phases[1] <= passed.phases[0]
     });
-    equations.skeleton.switches.len() - 2 * ghosts.count()
+    skeleton.switches.len() - 2 * short.count()
 }
