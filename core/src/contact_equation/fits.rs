@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::gaps::is_lonely;
 use super::motion::{GapExtreme, Motion};
-use super::placement::{Told, nearness};
+use super::placement::Told;
 use super::plan;
 use super::run::{Run, SAME};
 
@@ -91,7 +91,6 @@ impl Run<'_> {
     /// Whether an extreme that is watched comes near another one, with which it may end.
     fn meets_another(&self, u: &[f64], found: &[GapExtreme]) -> bool {
         let skeleton = &self.equations.skeleton;
-        let near = nearness(skeleton.length);
         skeleton.switches.iter().enumerate().any(|(index, switch)| {
             let Told::First { other, .. } = switch.told else {
                 return false;
@@ -104,7 +103,7 @@ impl Run<'_> {
                 maximum: switch.rises,
             };
             let short = u[skeleton.slot(other)] <= 0.0;
-            short && !is_lonely(&extreme, found, skeleton.length, plan::TOO_NEAR * near)
+            short && !is_lonely(&extreme, found, skeleton.length, plan::TOO_NEAR)
         })
     }
 
@@ -127,14 +126,7 @@ impl Run<'_> {
             if beyond > BEYOND * size {
                 return Fits::No;
             }
-            let lonely = || {
-                is_lonely(
-                    extreme,
-                    all,
-                    skeleton.length,
-                    plan::LONELY * nearness(skeleton.length),
-                )
-            };
+            let lonely = || is_lonely(extreme, all, skeleton.length, plan::LONELY);
             if (above < 0.0) == maximum && lonely() && self.is_near(u, extreme, level) {
                 fits = Fits::Soon;
             }
@@ -151,7 +143,7 @@ impl Run<'_> {
         let watched = skeleton.switches.iter().enumerate().any(|(index, switch)| {
             let told = matches!(switch.told, Told::First { .. });
             let apart = (skeleton.phase(u, index) - phase).rem_euclid(skeleton.length);
-            let near = apart.min(skeleton.length - apart) < SAME * nearness(skeleton.length);
+            let near = apart.min(skeleton.length - apart) < SAME;
             told && (switch.contact, switch.level) == place && near
         });
         if watched {

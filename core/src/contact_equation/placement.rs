@@ -7,9 +7,6 @@ use std::f64::consts::TAU;
 use super::values::Contact;
 use crate::branches::recurrence::Recurrence;
 
-/// Orbits that come back more often within a period have less room for what is near.
-const PASSAGES: f64 = 4.0;
-
 /// How a switch is told by its unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,11 +22,6 @@ pub(super) enum Told {
     },
     /// It is the second of two: its unknown is `H`.
     Second { other: usize },
-}
-
-/// What phases count as near beside each other, of those that do over a period: less where an orbit comes back many times in it.
-pub(super) fn nearness(length: f64) -> f64 {
-    (PASSAGES * length / TAU).min(1.0)
 }
 
 /// A gap at a level.

@@ -6,7 +6,7 @@
 use super::equations::{Equations, Setting};
 use super::gaps::{BEND, Gaps, beginning, is_lonely, piece, seen};
 use super::motion::GapExtreme;
-use super::placement::{Beginning, Placed, Placement, Resolution, Switch, Told, length, nearness};
+use super::placement::{Beginning, Placed, Placement, Resolution, Switch, Told, length};
 use super::skeleton::Skeleton;
 use crate::branches::recurrence::Recurrence;
 use crate::law::{Derivatives, Law, On};
@@ -244,7 +244,7 @@ fn short_pairs(gaps: &Gaps<'_>, length: f64, extremes: &[GapExtreme]) -> Vec<[(P
     let mut short = Vec::new();
     for extreme in extremes {
         let levels = &gaps.values.contacts[extreme.contact].levels;
-        if is_lonely(extreme, extremes, length, LONELY * nearness(length)) {
+        if is_lonely(extreme, extremes, length, LONELY) {
             for level in 0..levels.len() {
                 short.extend(short_pair(gaps, extreme, level));
             }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::motion::{GapExtreme, Motion};
-use super::placement::{Told, nearness};
+use super::placement::Told;
 use super::run::{Run, SAME};
 use crate::branches::extreme::Extreme;
 use crate::branches::problem::Touch;
@@ -238,7 +238,7 @@ impl Run<'_> {
                 (levels - 1 - switch.level, !switch.rises)
             };
             let same = (contact, level, rises) == (extreme.contact, extreme.level, extreme.maximum);
-            same && period as f64 * apart.min(TAU - apart) < SAME * nearness(skeleton.length)
+            same && parts as f64 * apart.min(TAU - apart) < SAME
         };
         (0..skeleton.switches.len()).find_map(|index| {
             let Told::First { other, bend } = skeleton.switches[index].told else {
