@@ -101,7 +101,7 @@ fn shooting_and_the_contact_equation_state_the_error_of_the_output() {
         }
     }
     let request = FrequencyResponse::of(&Ball {}).from(0.6).to(1.3);
-    for name in ["place", "x"] {
+    for name in ["speed", "pushes", "place", "x"] {
         keeps(&request.clone().by(Shooting::new()), name, 0.75, 1e-5);
         keeps(
             &request.clone().by(ContactEquation::new()),
