@@ -106,6 +106,21 @@ crate::error::room_error! {
 }
 
 impl OrbitError {
+    /// The one orbit that was found has a shorter period.
+    pub(crate) fn of_shorter_period(period: usize, value: f64) -> Self {
+        let attempts = Attempts {
+            planned: 1,
+            made: 1,
+            shorter: 1,
+            evaluations: 0,
+        };
+        Self::NoSuchPeriod {
+            period,
+            value,
+            attempts,
+        }
+    }
+
     fn kind(&self) -> ErrorKind {
         match self {
             Self::SearchLimit { .. } => ErrorKind::Limit,

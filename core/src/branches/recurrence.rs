@@ -85,6 +85,11 @@ impl SignedPermutation {
         (0..states.len()).map(image).collect()
     }
 
+    /// Whether a state is its own image, to what [`are_near`] allows.
+    pub(crate) fn holds(&self, state: &[f64], most: f64, omega: f64) -> bool {
+        are_near(state, &self.of_states(state, state.len() / 2), most, omega)
+    }
+
     /// Writes the image of one state.
     pub(crate) fn write(&self, state: &[f64], image: &mut [f64]) {
         for (entry, to) in image.iter_mut().enumerate() {
@@ -226,6 +231,47 @@ impl Recurrence {
             1
         }
     }
+}
+
+/// How an orbit comes back in less time than it is followed for, the least that there is; `None` if it does not. Whether it comes back
+/// like this, after `j` steps of the symmetry of that index, is asked with `j` rising for each of them.
+///
+/// # Errors
+/// What the answer fails with.
+pub(crate) fn least<E>(
+    given: &Recurrence,
+    symmetries: &[CyclicSymmetry],
+    mut comes_back: impl FnMut(usize, usize, &Recurrence) -> Result<bool, E>,
+) -> Result<Option<Recurrence>, E> {
+    let mut least: Option<Recurrence> = None;
+    for (index, symmetry) in symmetries.iter().enumerate() {
+        for (steps, recurrence) in symmetry.within(given) {
+            let shorter = |least: &Recurrence| {
+                recurrence.period * least.parts < least.period * recurrence.parts
+            };
+            if !least.as_ref().is_none_or(shorter) {
+                break;
+            }
+            if comes_back(index, steps, &recurrence)? {
+                least = Some(recurrence);
+                break;
+            }
+        }
+    }
+    Ok(least)
+}
+
+/// Whether there may be orbits that come back in less time than one is followed for.
+pub(crate) fn may_be_earlier(given: &Recurrence, symmetries: &[CyclicSymmetry]) -> bool {
+    let mut symmetries = symmetries.iter();
+    symmetries.any(|symmetry| symmetry.within(given).next().is_some())
+}
+
+/// Whether coordinates of two states differ by `most` at most, and their rates by that times `omega`.
+pub(crate) fn are_near(state: &[f64], other: &[f64], most: f64, omega: f64) -> bool {
+    let n = state.len() / 2;
+    let mut pairs = state.iter().zip(other).enumerate();
+    pairs.all(|(i, (x, y))| (x - y).abs() <= most * if i < n { 1.0 } else { omega })
 }
 
 pub(crate) fn greatest_common_divisor(mut a: usize, mut b: usize) -> usize {

@@ -12,7 +12,7 @@ use super::rest::Rest;
 use super::run::Run;
 use crate::branches::branch::{Branch, Further, Model};
 use crate::branches::engine;
-use crate::branches::error::{Attempts, OrbitError};
+use crate::branches::error::OrbitError;
 use crate::branches::observed::Motion;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
@@ -212,17 +212,7 @@ fn first(problem: &ContactProblem, guess: &Point, value: f64) -> Result<First, E
     // Each time it comes back in less time than the last.
     while let Some(found) = problem.earlier(&first.equations, problem.same()) {
         if found.period < whole.period {
-            return Err(OrbitError::NoSuchPeriod {
-                period: whole.period,
-                value,
-                attempts: Attempts {
-                    planned: 1,
-                    made: 1,
-                    shorter: 1,
-                    evaluations: 0,
-                },
-            }
-            .into());
+            return Err(OrbitError::of_shorter_period(whole.period, value).into());
         }
         first = first_like(problem, guess, value, &found)?;
     }

@@ -4,6 +4,7 @@
 //! A motion is told by its state at one phase. With `q(t + j T/m) = S^j q(t)` of [`recurrence`](crate::branches::recurrence) there it has
 //! that for ever.
 
+use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 use super::equations::Equations;
@@ -11,7 +12,9 @@ use super::gaps::At;
 use super::motion::Motion;
 use super::problem::ContactProblem;
 use super::run::Run;
-use crate::branches::recurrence::{CyclicSymmetry, Recurrence, SignedPermutation};
+use crate::branches::recurrence::{
+    CyclicSymmetry, Recurrence, SignedPermutation, are_near, least, may_be_earlier,
+};
 use crate::continuation::follow::CurvePoint;
 use crate::shooting::breaks;
 
@@ -48,12 +51,18 @@ impl Compared {
     }
 
     /// Whether two states are one.
-    pub(super) fn are_one(&self, state: &[f64], other: &[f64]) -> bool {
-        let mut pairs = state.iter().zip(other).enumerate();
-        pairs.all(|(i, (x, y))| {
-            let unit = if i < self.coordinates { 1.0 } else { self.rate };
-            (x - y).abs() <= self.most * unit
-        })
+    fn are_one(&self, state: &[f64], other: &[f64]) -> bool {
+        are_near(state, other, self.most, self.rate)
+    }
+
+    /// Those permutations that leave a state alone.
+    fn held<'p>(
+        &self,
+        state: &[f64],
+        images: &'p [SignedPermutation],
+    ) -> Vec<&'p SignedPermutation> {
+        let holds = |image: &&SignedPermutation| image.holds(state, self.most, self.rate);
+        images.iter().filter(holds).collect()
     }
 
     /// How a motion comes back in less time than it is given to, the least that there is; `None` if it does not.
@@ -69,23 +78,12 @@ impl Compared {
             state
         };
         let first = state(self.begin);
-        let mut least: Option<Recurrence> = None;
-        for symmetry in symmetries {
-            for (steps, recurrence) in symmetry.within(given) {
-                let shorter = |least: &Recurrence| {
-                    recurrence.period * least.parts < least.period * recurrence.parts
-                };
-                if !least.as_ref().is_none_or(shorter) {
-                    break;
-                }
-                let later = self.begin + TAU * steps as f64 / symmetry.parts as f64;
-                let image = recurrence.image.of_states(&first, self.coordinates);
-                if self.are_one(&state(later), &image) {
-                    least = Some(recurrence);
-                    break;
-                }
-            }
-        }
+        let comes_back = |symmetry: usize, steps: usize, recurrence: &Recurrence| {
+            let part = steps as f64 / symmetries[symmetry].parts as f64;
+            let image = recurrence.image.of_states(&first, self.coordinates);
+            Ok(self.are_one(&state(self.begin + TAU * part), &image))
+        };
+        let Ok(least) = least::<Infallible>(given, symmetries, comes_back);
         least
     }
 }
@@ -109,8 +107,7 @@ impl ContactProblem {
 
     /// Whether there may be orbits that come back in less time.
     pub(super) fn may_be_earlier(&self, given: &Recurrence) -> bool {
-        let mut symmetries = self.asked.symmetries.iter();
-        symmetries.any(|symmetry| symmetry.within(given).next().is_some())
+        may_be_earlier(given, &self.asked.symmetries)
     }
 
     /// Whether orbits may come back like this.
@@ -132,11 +129,7 @@ impl ContactProblem {
         let compared = Compared::of(equations, part);
         let mut state = vec![0.0; 2 * compared.coordinates];
         Motion::of(equations).at(compared.begin, &mut state);
-        let images = self.asked.at_once.iter();
-        let has = |image: &&SignedPermutation| {
-            compared.are_one(&state, &image.of_states(&state, compared.coordinates))
-        };
-        images.filter(has).collect()
+        compared.held(&state, &self.asked.at_once)
     }
 }
 
@@ -173,13 +166,8 @@ impl Run<'_> {
         let Some(last) = self.record.points.last() else {
             return Vec::new();
         };
-        let state = last.orbit.state();
         let compared = Compared::of(&self.equations, self.problem.same());
-        let images = self.problem.asked.at_once.iter();
-        let has = |image: &&SignedPermutation| {
-            compared.are_one(&state, &image.of_states(&state, compared.coordinates))
-        };
-        images.filter(has).collect()
+        compared.held(&last.orbit.state(), &self.problem.asked.at_once)
     }
 
     /// Whether orbits without a permutation begin at the crossing that the last orbit has.

@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::follow::{FollowOptions, Outcome, Start, Stop, Visit, follow};
-use super::problem::Problem;
+use super::crossing::locate_crossing;
+use super::follow::{CurvePoint, FollowOptions, Outcome, Start, Step, Stop, Visit, follow};
+use super::problem::{Problem, Scale};
 use super::step::StepControl;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
@@ -130,4 +131,77 @@ fn a_branch_that_turns_at_its_start_ends_on_the_other_limb() {
     assert!(last > fold && last - fold < 0.002, "{last}");
     assert_eq!(ends.len(), 1);
     assert!(ends[0].0 > 0.0 && ends[0].1 < 0.0, "{ends:?}");
+}
+
+/// How much the curve that is followed bends in [`Crossed`].
+const BEND: f64 = 10.0;
+
+/// `(x - lambda - BEND lambda^4) (x + lambda + lambda^2 / 2) = 0`: two curves that cross at the origin.
+struct Crossed;
+
+/// The first of them, and its slope.
+fn followed(lambda: f64) -> [f64; 2] {
+    [
+        lambda + BEND * lambda.powi(4),
+        1.0 + 4.0 * BEND * lambda.powi(3),
+    ]
+}
+
+impl Problem for Crossed {
+    fn unknowns(&self) -> usize {
+        1
+    }
+
+    fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
+        let [curve, slope] = followed(u[1]);
+        let [own, other] = [u[0] - curve, u[0] + u[1] + 0.5 * u[1] * u[1]];
+        residual[0] = own * other;
+        if let Some(jacobian) = jacobian {
+            jacobian.core_mut().row_mut(0)[0] = own + other;
+            jacobian.set_column(&[own * (1.0 + u[1]) - other * slope]);
+        }
+    }
+
+    fn weights(&self, weights: &mut [f64]) {
+        weights[0] = 1.0;
+    }
+
+    fn is_mean(&self, _unknown: usize) -> bool {
+        false
+    }
+}
+
+/// The cubic over the step is so far from the curve about the crossing that Newton's method lands on the other one from some places.
+#[test]
+fn a_crossing_is_located_on_the_branch_that_comes_to_it() {
+    let mut problem = Crossed;
+    let mut newton = Newton::new(&problem);
+    let point = |lambda: f64| {
+        let [x, slope] = followed(lambda);
+        let length = (1.0 + slope * slope).sqrt();
+        CurvePoint {
+            u: vec![x, lambda],
+            tangent: vec![slope / length, 1.0 / length],
+            scale: Scale::UNIT,
+        }
+    };
+    for (from, to) in [(-0.1, 0.2), (-0.2, 0.3), (-0.3, 0.3)] {
+        let [before, next] = [from, to].map(point);
+        let step = Step {
+            before: &before,
+            next: &next,
+        };
+        let options = NewtonOptions {
+            tolerance: 1e-12,
+            iterations: 12,
+            damped: false,
+        };
+        // Vanishes at the crossing along either curve, so that points of both look alike.
+        let test = |_: &mut Crossed, at: &CurvePoint| at.u[1];
+        let found = locate_crossing(&mut problem, &mut newton, step, options, test).unwrap();
+        let lambda = found.point.parameter();
+        assert!(lambda.abs() < 1e-9, "{from} to {to}: {lambda:e}");
+        let [x, along] = [found.point.tangent[0], found.point.tangent[1]];
+        assert!((x - along).abs() < 1e-6, "{from} to {to}: {x} and {along}");
+    }
 }

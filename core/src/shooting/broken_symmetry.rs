@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::equations::Equations;
-use super::minimal_period::{SameState, are_near};
+use super::minimal_period::SameState;
 use super::run::Run;
 use crate::branches::recurrence::SignedPermutation;
 
@@ -72,6 +72,5 @@ pub(crate) fn breaks<'p>(
 
 /// Whether a state is its image.
 fn has(equations: &Equations, state: &[f64], image: &SignedPermutation, same: SameState) -> bool {
-    let moved = image.of_states(state, state.len() / 2);
-    are_near(equations, state, &moved, same.part * same.size)
+    image.holds(state, same.part * same.size, equations.frame.omega)
 }

@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::events;
 use super::gap_extremes::GapExtremes;
-use super::minimal_period::{earlier, may_be_earlier};
+use super::minimal_period::earlier;
 use super::run::Run;
 use super::tested::{self, Tests};
 use crate::branches::checkpoint::keep;
@@ -15,7 +15,7 @@ use crate::branches::problem::{
 };
 use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
-use crate::branches::recurrence::Recurrence;
+use crate::branches::recurrence::{Recurrence, may_be_earlier};
 use crate::branches::switch::step_on_other_branch;
 use crate::continuation::follow::{Continue, CurvePoint, Step, Stop};
 use crate::continuation::locate::Located;
@@ -136,7 +136,7 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
             return Ok(None);
         }
         let same = self.run.same_state(&self.equations);
-        if may_be_earlier(&self.equations, symmetries)
+        if may_be_earlier(&self.equations.span.recurrence, symmetries)
             && let Some(found) = earlier(&mut self.equations, &at.u, same, symmetries)?
         {
             return Ok(Some(found));

@@ -6,7 +6,7 @@
 //! points.
 
 use super::equations::Equations;
-use crate::branches::recurrence::{CyclicSymmetry, Recurrence};
+use crate::branches::recurrence::{CyclicSymmetry, Recurrence, are_near, least};
 use crate::time::FlowError;
 
 /// The same at a branch point: along a branch that turns there, states are known to the root of what the value is known to.
@@ -41,44 +41,18 @@ pub(super) fn earlier(
 ) -> Result<Option<Recurrence>, FlowError> {
     let most = same.part * same.size;
     let value = u[u.len() - 1];
-    let coordinates = equations.order() / 2;
-    let first = equations.states_of(u)[..equations.order()].to_vec();
-    let mut least: Option<Recurrence> = None;
-    for symmetry in symmetries {
-        let mut state = first.clone();
-        let mut passed = 0;
-        for (steps, recurrence) in symmetry.within(&equations.span.recurrence) {
-            let shorter = |least: &Recurrence| {
-                recurrence.period * least.parts < least.period * recurrence.parts
-            };
-            if !least.as_ref().is_none_or(shorter) {
-                break;
-            }
-            equations.pass(&mut state, value, [passed, steps], symmetry.parts)?;
-            passed = steps;
-            let image = recurrence.image.of_states(&first, coordinates);
-            if are_near(equations, &state, &image, most) {
-                least = Some(recurrence);
-                break;
-            }
+    let (order, omega) = (equations.order(), equations.frame.omega);
+    let first = equations.states_of(u)[..order].to_vec();
+    let given = equations.span.recurrence.clone();
+    let (mut state, mut passed) = (first.clone(), [0, 0]);
+    least(&given, symmetries, |symmetry, steps, recurrence| {
+        if passed[0] != symmetry {
+            (state, passed) = (first.clone(), [symmetry, 0]);
         }
-    }
-    Ok(least)
-}
-
-/// Whether there may be orbits that come back in less time than is followed.
-pub(super) fn may_be_earlier(equations: &Equations, symmetries: &[CyclicSymmetry]) -> bool {
-    let given = &equations.span.recurrence;
-    let mut symmetries = symmetries.iter();
-    symmetries.any(|symmetry| symmetry.within(given).next().is_some())
-}
-
-/// Whether a state is another one, but for this.
-pub(super) fn are_near(equations: &Equations, state: &[f64], other: &[f64], most: f64) -> bool {
-    let n = state.len() / 2;
-    let mut pairs = state.iter().zip(other).enumerate();
-    pairs.all(|(i, (x, y))| {
-        let unit = if i < n { 1.0 } else { equations.frame.omega };
-        (x - y).abs() <= most * unit
+        let parts = symmetries[symmetry].parts;
+        equations.pass(&mut state, value, [passed[1], steps], parts)?;
+        passed[1] = steps;
+        let image = recurrence.image.of_states(&first, order / 2);
+        Ok(are_near(&state, &image, most, omega))
     })
 }

@@ -6,7 +6,7 @@ use super::equations::Equations;
 use super::error_reference::ErrorReference;
 use super::extremes;
 use super::method::ShootingBranch;
-use super::minimal_period::{SameState, earlier, may_be_earlier};
+use super::minimal_period::{SameState, earlier};
 use super::output_error::{At, Errors, output_error};
 use super::problem::ShootingProblem;
 use super::reading::Reader;
@@ -20,7 +20,7 @@ use crate::branches::point::Point;
 use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
 use crate::branches::record::Record;
-use crate::branches::recurrence::Recurrence;
+use crate::branches::recurrence::{Recurrence, may_be_earlier};
 use crate::continuation::follow::{FollowOptions, Start, Stop};
 use crate::continuation::newton::NewtonError;
 use crate::continuation::statistics::Statistics;
@@ -164,7 +164,9 @@ impl<'r> Run<'r> {
         let Some(event) = self.record.events.last() else {
             return false;
         };
-        if !may_be_earlier(equations, symmetries) && self.problem.at_once.is_empty() {
+        if !may_be_earlier(&equations.span.recurrence, symmetries)
+            && self.problem.at_once.is_empty()
+        {
             return false;
         }
         let after = event.after;

@@ -6,7 +6,6 @@ use super::minimal_period::{SameState, earlier};
 use super::past_fold;
 use super::problem::ShootingProblem;
 use super::run::no_orbit;
-use crate::branches::error::Attempts;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::Motion;
 use crate::branches::point::Point;
@@ -94,17 +93,7 @@ fn first_in(
         return Ok(first);
     };
     if recurrence.period < problem.period {
-        return Err(OrbitError::NoSuchPeriod {
-            period: problem.period,
-            value,
-            attempts: Attempts {
-                planned: 1,
-                made: 1,
-                shorter: 1,
-                evaluations: 0,
-            },
-        }
-        .into());
+        return Err(OrbitError::of_shorter_period(problem.period, value).into());
     }
     first.follow_part(problem, recurrence)?;
     Ok(first)
