@@ -240,7 +240,6 @@ fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(C
 pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
     let at = &touch.located.point;
     let Some(mut read) = run.read(at) else { return };
-    let contacts = run.touching(&at.u, touch);
     let mut error = touch.error + SAFETY * read.shift.abs();
     if let Some((square, _)) = run.watched(&at.u, &touch.extreme) {
         let mut finer: Option<Equations> = None;
@@ -280,7 +279,7 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
         point: read.point,
         test: touch.located.test,
         after: touch.after,
-        contacts,
+        contacts: touch.contacts,
         tangent: at.tangent.clone(),
     });
 }

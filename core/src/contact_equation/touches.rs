@@ -6,13 +6,10 @@ use super::motion::{GapExtreme, Motion};
 use super::placement::Told;
 use super::run::{Run, SAME};
 use crate::branches::extreme::Extreme;
-use crate::branches::problem::Touch;
 use crate::branches::recurrence::Recurrence;
 
 /// What `H` of a pair may be where its gap touches the level.
 const TOUCHES: f64 = 1e-9;
-/// Extremes that are so near to their levels, in units of the gap, at an orbit that touches one, touch as well.
-const AT_ONCE: f64 = 1e-8;
 /// Levels that differ by this part are one.
 const SAME_LEVEL: f64 = 1e-9;
 /// Where gaps are compared, in parts of the time after which the orbit comes back: nowhere in particular.
@@ -85,19 +82,13 @@ impl Run<'_> {
         true
     }
 
-    /// Extremes over the whole period of the orbit of the last pass: where it comes back earlier, with their images. Of contacts that take
-    /// each other's place the first one has them all.
+    /// Extremes over the whole period of the orbit of the last pass: where it comes back earlier, with their images.
     fn of_period(&self) -> Vec<GapExtreme> {
         let motion = Motion::of(&self.equations);
         let skeleton = &self.equations.skeleton;
         let found = motion.extremes().gaps.concat();
         let images = self.images();
         let parts = skeleton.recurrence().parts;
-        let is_first = |contact: usize| {
-            let mut others = (1..parts).map(|part| later(images, contact, part).contact);
-            others.all(|other| contact <= other)
-        };
-        let firsts: Vec<bool> = (0..images.len()).map(is_first).collect();
         let image = |extreme: &GapExtreme, part: usize| {
             let Image { contact, sign } = later(images, extreme.contact, part);
             GapExtreme {
@@ -109,7 +100,7 @@ impl Run<'_> {
             }
         };
         let all = (0..parts).flat_map(|part| found.iter().map(move |extreme| image(extreme, part)));
-        all.filter(|extreme| firsts[extreme.contact]).collect()
+        all.collect()
     }
 
     /// The range of a gap over the period, from these extremes of what is followed.
@@ -126,35 +117,6 @@ impl Run<'_> {
             (low.min(gap), high.max(gap))
         });
         high - low
-    }
-
-    /// Number of contacts that touch levels where one of them does, with those that take their places until the period is over.
-    pub(super) fn touching(&mut self, u: &[f64], touch: &Touch) -> usize {
-        let mut extremes = Vec::new();
-        self.extremes(u, &mut extremes);
-        let touches = extremes
-            .iter()
-            .filter(|extreme| extreme.above.abs() <= AT_ONCE);
-        let contacts = touches.map(|extreme| extreme.contact);
-        let mut contacts: Vec<usize> = contacts.chain([touch.extreme.contact]).collect();
-        contacts.sort_unstable();
-        contacts.dedup();
-        contacts
-            .into_iter()
-            .map(|contact| self.alike(contact))
-            .sum()
-    }
-
-    /// Number of contacts that take the place of one until the period is over.
-    fn alike(&self, contact: usize) -> usize {
-        let images = self.images();
-        let parts = self.equations.skeleton.recurrence().parts;
-        let mut alike: Vec<usize> = (0..parts)
-            .map(|part| later(images, contact, part).contact)
-            .collect();
-        alike.sort_unstable();
-        alike.dedup();
-        alike.len()
     }
 
     /// For every contact the one that has its gap, or the opposite, when the orbit has come back: found from the motion of the last pass.
