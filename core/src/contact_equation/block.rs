@@ -28,6 +28,8 @@ const SMALL: f64 = 0.1;
 /// Points of the rule for (2), and the angle that the fastest factor turns by between one and the next such rule.
 const POINTS: usize = 24;
 const TURN: f64 = 4.0;
+/// More such rules than this are no part of a period.
+const MOST: f64 = 1e5;
 
 /// `A` of two states.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -189,6 +191,10 @@ impl Block {
         let wave = Complex::new(0.0, frequency);
         let turn = (self.rate() + frequency) * s.abs();
         let rules = (turn / TURN).ceil().max(1.0);
+        // Unknowns that belong to no motion: there the pass fails.
+        if rules > MOST {
+            return [Complex::new(f64::NAN, f64::NAN); 4];
+        }
         let rule = gauss::rule(POINTS);
         let mut r = Complex::new(0.0, 0.0);
         let mut by = r;

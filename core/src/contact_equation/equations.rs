@@ -33,6 +33,7 @@ use std::sync::Arc;
 
 use super::eliminated::Eliminated;
 use super::extremes::Extremes;
+use super::moving_stiffness::as_contacts;
 use super::place::half_way;
 use super::placement::Told;
 use super::room::Room;
@@ -70,11 +71,12 @@ impl Setting {
         omega: f64,
         cancel: &Cancel,
     ) -> Self {
-        let layout = Layout::of(system.as_ref());
+        let mut layout = Layout::of(system.as_ref());
+        let system = as_contacts(system, &mut layout);
         let mut by = vec![0.0; layout.coefficients];
         system.coefficients_by(Variable::Omega, &parameters, omega, &mut by);
         Self {
-            system: Arc::clone(system),
+            system,
             layout: Arc::new(layout),
             variable,
             plain: variable == Variable::Omega && by.iter().all(|x| *x == 0.0),
@@ -113,6 +115,8 @@ pub(super) struct Passed {
     pub(super) forced: Vec<f64>,
     /// The states at the beginning, the nodes and the end.
     pub(super) states: Vec<f64>,
+    /// How the force of each contact changes with its gap at the nodes, if derivatives were asked for.
+    pub(super) stiffness: Vec<f64>,
 }
 
 /// The equations on one skeleton.

@@ -41,6 +41,8 @@ const MULTIPLIERS: f64 = 100.0;
 /// of nodes that was not enough is not tried again at once.
 const PLENTY: f64 = 1e-4;
 pub(super) const HELD: usize = 12;
+/// What is varied at a point that has no place in other equations: far beyond every range.
+const NOWHERE: f64 = f64::MAX;
 
 /// A branch by the contact equation.
 pub(super) struct ContactBranch<'b, 'r> {
@@ -379,10 +381,9 @@ impl BranchProblem for ContactBranch<'_, '_> {
             return;
         };
         let length = u.len();
-        // Far beyond every range.
         let nowhere = |scale| {
             let mut u = vec![0.0; length];
-            u[length - 1] = f64::MAX;
+            u[length - 1] = NOWHERE;
             CurvePoint {
                 u,
                 tangent: vec![0.0; length],
@@ -394,6 +395,9 @@ impl BranchProblem for ContactBranch<'_, '_> {
             numbers.all(|x| x.is_finite())
         };
         let mut point = |of: &CurvePoint| {
+            if of.parameter() >= NOWHERE {
+                return None;
+            }
             let found = self.run.point_in(of, &equations, &u);
             found.filter(is_finite)
         };

@@ -25,6 +25,7 @@ mod integrals;
 mod linear;
 mod method;
 mod motion;
+mod moving_stiffness;
 mod nodes;
 mod options;
 mod pass;

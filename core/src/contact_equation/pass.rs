@@ -115,6 +115,11 @@ impl Pass<'_> {
         passed.free.clear();
         passed.free.extend(free.map(|(y, steady)| y - steady));
         passed.forced.clear();
+        passed.stiffness.clear();
+        if self.derivatives {
+            let nodes = interval.active.len() * interval.nodes.count();
+            passed.stiffness.resize(nodes, 0.0);
+        }
         passed.states.clear();
         passed.states.extend_from_slice(&self.room.y);
         if time > 0.0 {
@@ -172,6 +177,8 @@ impl Pass<'_> {
             self.outputs(stretch, place, active);
             self.law(stretch, place, active);
         }
+        let nodes = passed.stiffness.len();
+        passed.stiffness.copy_from_slice(&self.room.by_gap[..nodes]);
         self.end(stretch);
     }
 

@@ -40,7 +40,7 @@ impl ContactProblem {
     /// Of what was asked for.
     ///
     /// # Errors
-    /// If the stiffness varies in time or a force jumps at a level: other methods have those.
+    /// If a force jumps at a level: other methods have those.
     pub(crate) fn new(asked: ShootingProblem, tolerance: f64) -> Result<Self, Error> {
         let setting = Setting::new(
             &asked.system,
@@ -49,11 +49,6 @@ impl ContactProblem {
             asked.omega,
             &asked.cancel,
         );
-        let mut stiffness = setting.layout.stiffness.iter();
-        if stiffness.any(|entry| entry.wave.harmonic > 0) {
-            let why = "the stiffness varies in time";
-            return Err(ModelError::NoContactEquation { why }.into());
-        }
         if extreme::force_jumps(asked.system.as_ref()) {
             let why = "a force jumps at a level";
             return Err(ModelError::NoContactEquation { why }.into());

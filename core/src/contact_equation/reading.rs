@@ -7,6 +7,7 @@ use super::errors::everywhere;
 use super::motion::{Motion, Within};
 use super::placement::Told;
 use super::run::Run;
+use super::skeleton::Interval;
 use crate::branches::moduli::multipliers;
 use crate::branches::observed::{Motion as Extent, Observed, part_of};
 use crate::branches::orbit::Orbit;
@@ -35,6 +36,10 @@ pub(super) struct Screened {
     /// What the forces of every contact on every interval left out there, and how often gaps crossed levels.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     tails: Vec<f64>,
+    /// The same of how forces change with their gaps, which multipliers are made of: where a gap is about to touch its level they may leave
+    /// out more from one orbit to the next than forces do.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    slopes: Vec<f64>,
     switches: usize,
     /// Of the motion across the tangent at any phase, and of what is varied. One number, as peak-to-peak, may be right by chance where
     /// its error changes sign.
@@ -50,6 +55,9 @@ pub(super) struct Screened {
     error: f64,
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     spread: f64,
+    /// The most that forces, and those or their changes, have left out since, in parts of that. Last coefficients may be small by chance.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    most: Vec<f64>,
     /// As many orbits may still be compared with it.
     left: usize,
 }
@@ -59,6 +67,7 @@ impl Screened {
     pub(super) fn is_possible(&self) -> bool {
         let Self {
             tails,
+            slopes,
             apart,
             shift,
             slope,
@@ -67,17 +76,32 @@ impl Screened {
             ..
         } = self;
         let numbers = [apart, shift, slope, error, spread];
-        tails.iter().all(|tail| *tail > 0.0 && tail.is_finite())
+        let mut all = tails.iter().chain(slopes);
+        all.all(|tail| *tail > 0.0 && tail.is_finite())
             && numbers.into_iter().all(|x| *x >= 0.0)
+            && self.most.len() == 2
+            && self.most.iter().all(|ratio| (1.0..=MOST).contains(ratio))
             && self.left <= SCREENED
     }
 
-    /// How many times as large errors may be where forces leave so much out: they are products of what the forces and what the rule of
-    /// integration leave out. `None` if they leave out so much more that this says nothing.
-    fn grown(&self, tails: &[f64]) -> Option<f64> {
-        let pairs = tails.iter().zip(&self.tails);
-        let ratio = pairs.fold(1.0, |most: f64, (now, then)| most.max(now / then));
-        (ratio <= MOST && tails.len() == self.tails.len()).then_some(SAFETY * ratio * ratio)
+    /// How many times as large errors may be where so much is left out: they are products of what the forces and what the rule of
+    /// integration leave out. First those of the orbit, then those of its multipliers. `None` if so much more is left out that this says
+    /// nothing.
+    fn grown(&mut self, [tails, slopes]: [&[f64]; 2]) -> Option<[f64; 2]> {
+        if (tails.len(), slopes.len()) != (self.tails.len(), self.slopes.len()) {
+            return None;
+        }
+        let ratio = |most: f64, now: &[f64], then: &[f64]| {
+            let pairs = now.iter().zip(then);
+            pairs.fold(most, |most, (now, then)| most.max(now / then))
+        };
+        let forces = ratio(self.most[0], tails, &self.tails);
+        let all = ratio(forces.max(self.most[1]), slopes, &self.slopes);
+        if all > MOST {
+            return None;
+        }
+        self.most = vec![forces, all];
+        Some([forces, all].map(|ratio| SAFETY * ratio * ratio))
     }
 }
 
@@ -161,6 +185,7 @@ impl Run<'_> {
     /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them.
     pub(super) fn read(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
         let (mut point, map) = self.read_plainly(at)?;
+        let slopes = self.slopes();
         let Some(Finer { u: other, shift }) = self.corrected(at) else {
             point.error = Some(f64::INFINITY);
             return Some(unknown(point, map));
@@ -195,22 +220,18 @@ impl Run<'_> {
         let mut spread = 0.0;
         if let Some(map) = &map {
             let parts = self.equations.skeleton.recurrence().parts;
-            let found = multipliers(map, parts);
-            let known = finer_map.as_ref();
-            let apart = |finer| distance(&found, &multipliers(finer, parts));
-            let moved = known.map_or(f64::INFINITY, apart);
-            point.stability = Stability::of(found, SAFETY * moved);
-            let of_map = |finer: &DMatrix<f64>| parts as f64 * (map - finer).norm();
-            spread = known.map_or(f64::INFINITY, |finer| moved.max(of_map(finer)));
+            (point.stability, spread) = stability(map, finer_map.as_ref(), parts);
         }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
+            slopes,
             switches: switches(&self.equations),
             apart: everywhere.max(apart),
             shift: shift.abs(),
             slope: at.parameter_slope().abs(),
             error: error.max(part_of(SAFETY * everywhere, size)),
             spread: SAFETY * spread,
+            most: vec![1.0, 1.0],
             left: SCREENED,
         });
         Some(ReadOrbit {
@@ -233,19 +254,22 @@ impl Run<'_> {
             return self.read(at);
         }
         let (mut point, map) = self.read_plainly(at)?;
-        let tails = self.tails(&at.u);
+        let (tails, slopes) = (self.tails(&at.u), self.slopes());
         let rise = self.rise(&point);
         let size = self.size(&point, 0.0);
         let same = |known: &&mut Screened| known.switches == switches(&self.equations);
         let known = self.screened.as_mut().filter(same);
-        let grown = known.and_then(|known| known.grown(&tails).map(|grown| (known, grown)));
-        let Some((known, grown)) = grown else {
+        let grown = known.and_then(|known| {
+            let grown = known.grown([&tails, &slopes])?;
+            Some((known, grown))
+        });
+        let Some((known, [grown, spreading])) = grown else {
             return self.read(at);
         };
         known.left -= 1;
         let error = part_of(SAFETY * (known.apart + rise * known.shift), size);
         let error = grown * error.max(known.error);
-        let spread = grown * known.spread;
+        let spread = spreading * known.spread;
         if error.is_nan() || error > self.problem.tolerance {
             return self.read(at);
         }
@@ -277,19 +301,41 @@ impl Run<'_> {
         Some((self.observed(&self.equations, at.parameter()), map))
     }
 
-    /// What the forces at the nodes leave out on every interval, by the size of their last coefficients. What is less than their rounding is
-    /// as large as that.
+    /// What the forces at the nodes leave out on every interval, by the size of their last coefficients and of what a unit force does.
     fn tails(&self, u: &[f64]) -> Vec<f64> {
-        let forces = &u[..u.len() - 1];
-        let first = forces.len() - self.equations.skeleton.forces;
-        let largest = forces[first..].iter().fold(0.0, |m: f64, f| m.max(f.abs()));
-        let least = (ROUNDED * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
-        let mut tails = Vec::new();
-        for interval in &self.equations.skeleton.intervals {
-            for active in &interval.active {
-                let forces = &u[active.first..][..interval.nodes.count()];
-                tails.push(interval.nodes.tail(forces).max(least));
+        let intervals = self.equations.skeleton.intervals.iter();
+        let of = |interval: &Interval| {
+            let nodes = interval.active.len() * interval.nodes.count();
+            let first = interval.active.first().map_or(0, |active| active.first);
+            &u[first..][..nodes]
+        };
+        self.left_out(intervals.map(|interval| (interval, of(interval))))
+    }
+
+    /// The same of how the forces of the last pass change with their gaps, if derivatives were asked for.
+    fn slopes(&self) -> Vec<f64> {
+        let intervals = self.equations.skeleton.intervals.iter();
+        let pairs = intervals.zip(&self.equations.passed);
+        self.left_out(pairs.map(|(interval, passed)| (interval, &passed.stiffness[..])))
+    }
+
+    /// What functions leave out on intervals, contact by contact, from their values at the nodes. What is less than their rounding is as
+    /// large as that.
+    fn left_out<'i>(&self, values: impl Iterator<Item = (&'i Interval, &'i [f64])>) -> Vec<f64> {
+        let contacts = self.equations.values.contacts.iter();
+        let sizes: Vec<f64> = contacts.map(|contact| contact.input.size()).collect();
+        let (mut tails, mut largest) = (Vec::new(), 0.0_f64);
+        for (interval, values) in values {
+            let of_contacts = values.chunks_exact(interval.nodes.count());
+            for (active, values) in interval.active.iter().zip(of_contacts) {
+                let size = sizes[active.contact];
+                tails.push(size * interval.nodes.tail(values));
+                largest = values.iter().fold(largest, |m, x| m.max(size * x.abs()));
             }
+        }
+        let least = (ROUNDED * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
+        for tail in &mut tails {
+            *tail = tail.max(least);
         }
         tails
     }
@@ -321,6 +367,17 @@ fn stated(error: f64) -> f64 {
     } else {
         error + 100.0 * f64::EPSILON
     }
+}
+
+/// The multipliers of a map over one of so many parts, with what a finer solution changes in them; and the most that it changes in them or
+/// in the map.
+fn stability(map: &DMatrix<f64>, finer: Option<&DMatrix<f64>>, parts: usize) -> (Stability, f64) {
+    let found = multipliers(map, parts);
+    let apart = |finer| distance(&found, &multipliers(finer, parts));
+    let moved = finer.map_or(f64::INFINITY, apart);
+    let of_map = |finer: &DMatrix<f64>| parts as f64 * (map - finer).norm();
+    let spread = finer.map_or(f64::INFINITY, |finer| moved.max(of_map(finer)));
+    (Stability::of(found, SAFETY * moved), spread)
 }
 
 /// An orbit that no finer solution was found for.

@@ -42,6 +42,17 @@ impl Moving {
         }
     }
 
+    /// The largest entry that it may have.
+    pub(super) fn size(&self) -> f64 {
+        let entries = 0..self.constant.len();
+        let of = |i: usize| {
+            let waves = self.waves.iter();
+            let waves = waves.map(|(_, cosine, sine)| cosine[i].abs() + sine[i].abs());
+            self.constant[i].abs() + waves.sum::<f64>()
+        };
+        entries.map(of).fold(0.0, f64::max)
+    }
+
     /// It does not move.
     pub(super) fn is_constant(&self) -> bool {
         self.waves.is_empty()

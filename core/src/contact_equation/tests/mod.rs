@@ -1,5 +1,6 @@
 //! Orbits against those of shooting, and derivatives against differences.
 
+mod moving_stiffness;
 mod regular;
 
 use super::equations::{Equations, Setting};
@@ -231,25 +232,28 @@ fn events_are_those_of_shooting() {
             drive: 0.1,
         };
         let request = FrequencyResponse::of(&model).from(from).to(to);
-        let branch = request.clone().by(ContactEquation::new()).run().unwrap();
-        let exact = request.by(Shooting::new().tolerance(1e-12)).run().unwrap();
-        assert_eq!(branch.stopped, exact.stopped);
-        assert_eq!(branch.turns, []);
-        let sorted = |branch: &Branch| {
-            let mut events: Vec<_> = branch
-                .events
-                .iter()
-                .map(|e| (e.point.value, e.kind))
-                .collect();
-            events.sort_by(|a, b| a.0.total_cmp(&b.0));
-            events
-        };
-        let (found, exact) = (sorted(&branch), sorted(&exact));
-        assert_eq!(found.len(), exact.len(), "{found:?} {exact:?}");
-        for (found, exact) in found.iter().zip(&exact) {
-            assert_eq!(found.1, exact.1);
-            assert!((found.0 - exact.0).abs() < 1e-9, "{found:?} {exact:?}");
-        }
+        events_agree(&request);
+    }
+}
+
+/// Events of a branch are those of shooting.
+fn events_agree(request: &FrequencyResponse) {
+    let branch = request.clone().by(ContactEquation::new()).run().unwrap();
+    let shooting = request.clone().by(Shooting::new().tolerance(1e-12));
+    let exact = shooting.run().unwrap();
+    assert_eq!(branch.stopped, exact.stopped);
+    assert_eq!(branch.turns, []);
+    let sorted = |branch: &Branch| {
+        let events = branch.events.iter();
+        let mut events: Vec<_> = events.map(|e| (e.point.value, e.kind)).collect();
+        events.sort_by(|a, b| a.0.total_cmp(&b.0));
+        events
+    };
+    let (found, exact) = (sorted(&branch), sorted(&exact));
+    assert_eq!(found.len(), exact.len(), "{found:?} {exact:?}");
+    for (found, exact) in found.iter().zip(&exact) {
+        assert_eq!(found.1, exact.1);
+        assert!((found.0 - exact.0).abs() < 1e-9, "{found:?} {exact:?}");
     }
 }
 
@@ -300,29 +304,34 @@ fn orbits_are_those_of_shooting_and_their_errors_hold() {
         of(&one).from(0.6).to(0.8),
     ];
     for request in requests {
-        let branch = request.run().unwrap();
-        assert!(branch.points.len() > 10);
-        for point in &branch.points {
-            let shooting = request.clone().by(Shooting::new().tolerance(1e-12));
-            let exact = shooting
-                .near_orbit(&point.orbit)
-                .orbit(point.value)
-                .unwrap();
-            let pairs = point.observed.motions.iter().zip(&exact.observed.motions);
-            let size = |motion: &crate::observe::Motion| motion.peak_to_peak();
-            let largest = exact.observed.motions.iter().map(size).fold(0.0, f64::max);
-            let apart = pairs.map(|(a, b)| (size(a) - size(b)).abs() / largest);
-            let (apart, stated) = (apart.fold(0.0, f64::max), point.error.unwrap());
-            assert!(
-                apart <= stated + 1e-11,
-                "{}: {apart:e} {stated:e}",
-                point.value
-            );
-            let [a, b] = [&point.stability, &exact.stability];
-            let spread = crate::numeric::spectrum::distance(&a.multipliers, &b.multipliers);
-            let known = a.error + b.error + 1e-9;
-            assert!(spread <= known, "{}: {spread:e} {known:e}", point.value);
-            assert_eq!(a.verdict, b.verdict);
-        }
+        errors_hold(&request);
+    }
+}
+
+/// Along a branch what is stated of orbits and multipliers holds against shooting.
+fn errors_hold(request: &FrequencyResponse<ContactEquation>) {
+    let branch = request.run().unwrap();
+    assert!(branch.points.len() > 10);
+    for point in &branch.points {
+        let shooting = request.clone().by(Shooting::new().tolerance(1e-12));
+        let exact = shooting
+            .near_orbit(&point.orbit)
+            .orbit(point.value)
+            .unwrap();
+        let pairs = point.observed.motions.iter().zip(&exact.observed.motions);
+        let size = |motion: &crate::observe::Motion| motion.peak_to_peak();
+        let largest = exact.observed.motions.iter().map(size).fold(0.0, f64::max);
+        let apart = pairs.map(|(a, b)| (size(a) - size(b)).abs() / largest);
+        let (apart, stated) = (apart.fold(0.0, f64::max), point.error.unwrap());
+        assert!(
+            apart <= stated + 1e-11,
+            "{}: {apart:e} {stated:e}",
+            point.value
+        );
+        let [a, b] = [&point.stability, &exact.stability];
+        let spread = crate::numeric::spectrum::distance(&a.multipliers, &b.multipliers);
+        let known = a.error + b.error + 1e-9;
+        assert!(spread <= known, "{}: {spread:e} {known:e}", point.value);
+        assert_eq!(a.verdict, b.verdict);
     }
 }
