@@ -5,7 +5,7 @@
 //! belong to one frequency. Lengths are in nanometres, forces in those that bend the lever by one, time in units of its free resonance.
 //! To make it your own, change the lever, the sample, or the distance.
 
-use hertzian::chart::{Chart, Curve, Series};
+use hertzian::chart::{Chart, Curve, Series, event_markers};
 use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
@@ -34,9 +34,11 @@ hertzian::oscillator! {
 
 /// Traces the resonance at three distances: far, near, and nearer than the free amplitude.
 pub fn main() -> Result<(), Error> {
-    let mut chart = Chart::new("Tip of a force microscope, free amplitude 10 nm, quality 400")
-        .x("excitation frequency / free resonance")
-        .y("peak-to-peak [nm]");
+    let mut chart =
+        Chart::new("Tip of a force microscope, free amplitude 10 nm, quality factor 400")
+            .x("excitation frequency / free resonance")
+            .y("peak-to-peak of the tip [nm]");
+    let mut folds = Vec::new();
     for distance in [12.0, 10.0, 8.0] {
         let model = Tip {
             quality: 400.0,
@@ -50,6 +52,7 @@ pub fn main() -> Result<(), Error> {
         println!("surface {distance} nm from the tip at rest:");
         for fold in branch.folds() {
             println!("  {}", branch.describe(fold));
+            folds.push((fold.kind, [fold.point.value, fold.point.peak_to_peak()]));
         }
         // The other end of a branch that turned back.
         let again = FrequencyResponse::of(&model).from(1.006).to(0.994).run()?;
@@ -62,14 +65,15 @@ pub fn main() -> Result<(), Error> {
             );
         }
         chart = chart.curve(Curve {
-            label: format!("{distance} nm away"),
+            label: format!("surface {distance} nm away"),
             runs: branch.runs(),
         });
     }
     let surface = Series {
-        label: "8 nm to the surface".to_owned(),
+        label: "to the surface at 8 nm and back".to_owned(),
         points: vec![[0.994, 16.0], [1.006, 16.0]],
     };
+    let chart = event_markers(folds).fold(chart, Chart::marks);
     chart.reference(surface).write("adhesion.svg")?;
     println!("written adhesion.svg");
     Ok(())

@@ -44,11 +44,14 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut markers = Vec::new();
     for (index, attractor) in basins.attractors.iter().enumerate() {
         let share = basins.count(Fate::Periodic(index)) as f64 / (CELLS * CELLS) as f64;
-        let label = format!("period {}: {:.1} %", attractor.period, 100.0 * share);
+        // Two of them may have one period.
+        let letter = char::from(b'a' + index as u8);
+        let name = format!("{letter}, period {}", attractor.period);
+        let label = format!("{name}: {:.1} %", 100.0 * share);
         println!("{label} of the starts");
         let points = attractor.points.iter().map(|state| [state[0], state[1]]);
         markers.push(Series {
-            label: format!("points of period {}", attractor.period),
+            label: format!("points of {name}"),
             points: points.collect(),
         });
         classes.push((label, Colour::Class(index)));
@@ -60,8 +63,8 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         _ => others,
     };
     let mut chart = Chart::new("Where motions settle: ζ = 0.032, W = 1, A = 1, ω = 1")
-        .x("initial x")
-        .y("initial rate of x")
+        .x("initial x / static deflection")
+        .y("initial rate of x / (static deflection × linear frequency)")
         .raster(Raster {
             x: sides.0,
             y: sides.1,

@@ -5,7 +5,7 @@
 //! To make it your own, change the torque, the error of the profile, or the stiffness of one flank.
 
 use hertzian::chart::View;
-use hertzian::{Error, EventKind, FrequencyResponse};
+use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
     /// Gear pair with backlash
@@ -42,9 +42,8 @@ pub fn main() -> Result<(), Error> {
         }
         branches.push(branch);
     }
-    // The gap touches the level one, where the teeth are pressed together no more.
-    let view = View::new().events([EventKind::Grazing { turns: false }]);
-    let chart = view.together(&branches)?;
+    // Where grazing is marked the gap touches the level one, and the teeth are pressed together no more.
+    let chart = View::new().together(&branches)?;
     let chart = chart.title("Gear pair with backlash, damping ratio 5 %, mean deformation 0.1");
     let chart = chart.x("mesh frequency / linear resonance");
     let chart = chart.y("peak-to-peak of the transmission error / half the backlash");

@@ -4,7 +4,7 @@
 //! make it your own, change the pieces of the law: every level of the gap begins another one, and the compiler says if a gap is left
 //! between them, or if units do not agree.
 
-use hertzian::chart::{Chart, Curve};
+use hertzian::chart::{Chart, Curve, event_markers};
 use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
@@ -41,6 +41,7 @@ pub fn main() -> Result<(), Error> {
     let mut chart = Chart::new("A machine on a mount with stops, 2 mm above and 1.5 mm below")
         .x("excitation frequency ω [rad/s]")
         .y("peak-to-peak of x [mm]");
+    let mut folds = Vec::new();
     for drive in [10.0, 20.0, 40.0, 80.0] {
         // What is not said here has its default.
         let model = Isolator {
@@ -53,12 +54,14 @@ pub fn main() -> Result<(), Error> {
         println!("{drive} N: up to {largest:.3} mm");
         for fold in branch.folds() {
             println!("  {}", branch.describe(fold));
+            folds.push((fold.kind, [fold.point.value, fold.point.peak_to_peak()]));
         }
         chart = chart.curve(Curve {
-            label: format!("{drive} N"),
+            label: format!("excitation {drive} N"),
             runs: branch.runs(),
         });
     }
+    let chart = event_markers(folds).fold(chart, Chart::marks);
     chart.write("own_law.svg")?;
     println!("written own_law.svg");
     Ok(())

@@ -4,8 +4,8 @@
 //! stability in between. In the manner of the third example of `NLvib`, Krack and Gross (2019). To make it your own, add coordinates
 //! (`x[8]` declares eight), springs between them, and stops.
 
-use hertzian::chart::{Chart, Curve, Line, Run, Series};
-use hertzian::{Error, FrequencyResponse, Point, Verdict};
+use hertzian::chart::{Chart, event_markers};
+use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
     /// Two masses and a stop
@@ -40,55 +40,20 @@ pub fn main() -> Result<(), Error> {
     let request = FrequencyResponse::of(&model).from(0.8).to(1.7);
     let branch = request.bifurcations(true).run()?;
 
-    let mut chart = Chart::new("Two masses, the first with a stop at a distance of 1")
-        .x("excitation frequency ω")
-        .y("peak-to-peak")
-        .curve(curve("first mass", &branch.points, 0))
-        .curve(curve("second mass", &branch.points, 1));
+    let marks = branch.events.iter().map(|event| {
+        let size = event.point.observed.motions[0].peak_to_peak();
+        (event.kind, [event.point.value, size])
+    });
     for event in &branch.events {
         println!("{}", branch.describe(event));
     }
-    let mut kinds: Vec<_> = branch.events.iter().map(|event| event.kind).collect();
-    kinds.dedup();
-    while let Some(kind) = kinds.pop() {
-        kinds.retain(|other| *other != kind);
-        let points = branch.events(kind);
-        let points = points.map(|event| [event.point.value, event.point.peak_to_peak()]);
-        chart = chart.markers(Series {
-            label: kind.to_string(),
-            points: points.collect(),
-        });
-    }
+    let chart = Chart::new("Two masses x and y, x with a stop at a distance of 1")
+        .x("excitation frequency / resonance of either mass alone")
+        .y("peak-to-peak / distance of the stop")
+        .curve(branch.curve("x")?)
+        .curve(branch.curve("y")?);
+    let chart = event_markers(marks).fold(chart, Chart::marks);
     chart.write("two_masses.svg")?;
     println!("written two_masses.svg");
     Ok(())
-}
-
-/// Peak-to-peak of one coordinate: a new run begins where the verdict changes, at the last point before.
-fn curve(label: &str, points: &[Point], coordinate: usize) -> Curve {
-    let place = |point: &Point| {
-        [
-            point.value,
-            point.observed.motions[coordinate].peak_to_peak(),
-        ]
-    };
-    let mut runs: Vec<Run> = Vec::new();
-    for pair in points.windows(2) {
-        let line = match pair[1].stability.verdict {
-            Verdict::Stable => Line::Stable,
-            Verdict::Unstable => Line::Unstable,
-            Verdict::Undecided => Line::Undecided,
-        };
-        match runs.last_mut() {
-            Some(run) if run.line == line => run.points.push(place(&pair[1])),
-            _ => runs.push(Run {
-                line,
-                points: pair.iter().map(place).collect(),
-            }),
-        }
-    }
-    Curve {
-        label: label.to_owned(),
-        runs,
-    }
 }

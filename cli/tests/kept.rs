@@ -35,26 +35,35 @@ fn refused(arguments: &[&str]) -> String {
 /// A curve that takes long enough to be killed on the way.
 const SLOW: [&str; 3] = ["response", "--harmonics", "150"];
 
+/// Kills it when there are a few lines. Says if it did: where a line takes long to write, as on a busy machine, there are fewer until it ends.
+fn was_killed(kept: &str, svg: &str) -> bool {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_hertzian"));
+    program.args(SLOW).args(["--keep", kept, "--svg", svg]);
+    program.stdout(Stdio::null()).stderr(Stdio::null());
+    let _ = std::fs::remove_file(kept);
+    let mut running = program.spawn().expect("the program");
+    let begun = Instant::now();
+    let lines = || std::fs::read(kept).map_or(0, |text| text.split(|b| *b == b'\n').count());
+    while lines() < 5 {
+        if let Some(status) = running.try_wait().expect("a state") {
+            assert!(status.success(), "{status}");
+            return false;
+        }
+        let waited = begun.elapsed();
+        assert!(waited < Duration::from_secs(120), "nothing is kept");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    running.kill().expect("killed");
+    running.wait().expect("it has ended");
+    true
+}
+
 #[test]
 fn a_branch_goes_on_after_the_program_was_killed() {
     let folder = Folder::new("killed");
     let [kept, svg, whole, resumed] =
         ["kept.json", "a.svg", "whole.json", "resumed.json"].map(|name| folder.file(name));
-    let mut program = Command::new(env!("CARGO_BIN_EXE_hertzian"));
-    program.args(SLOW).args(["--keep", &kept, "--svg", &svg]);
-    program.stdout(Stdio::null()).stderr(Stdio::null());
-    let mut running = program.spawn().expect("the program");
-    let begun = Instant::now();
-    let lines = || std::fs::read(&kept).map_or(0, |text| text.split(|b| *b == b'\n').count());
-    while lines() < 5 {
-        assert!(
-            begun.elapsed() < Duration::from_secs(120),
-            "nothing is kept"
-        );
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    running.kill().expect("killed");
-    running.wait().expect("it has ended");
+    assert!((0..20).any(|_| was_killed(&kept, &svg)), "it is too fast");
     if Branch::read(&kept).expect("a branch").stopped == Stop::ReachedEnd {
         // It was faster. Killed it would have left a part of what it wrote, and of a line.
         let text = std::fs::read(&kept).expect("what it kept");
