@@ -39,7 +39,7 @@ pub(super) struct Screened {
     /// The same of how forces change with their gaps, which multipliers are made of: where a gap is about to touch its level they may leave
     /// out more from one orbit to the next than forces do.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    slopes: Vec<f64>,
+    stiffness: Vec<f64>,
     switches: usize,
     /// Of the motion across the tangent at any phase, and of what is varied. One number, as peak-to-peak, may be right by chance where
     /// its error changes sign.
@@ -57,7 +57,7 @@ pub(super) struct Screened {
     spread: f64,
     /// The most that forces, and those or their changes, have left out since, in parts of that. Last coefficients may be small by chance.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
-    most: Vec<f64>,
+    most: [f64; 2],
     /// As many orbits may still be compared with it.
     left: usize,
 }
@@ -67,7 +67,7 @@ impl Screened {
     pub(super) fn is_possible(&self) -> bool {
         let Self {
             tails,
-            slopes,
+            stiffness,
             apart,
             shift,
             slope,
@@ -76,10 +76,9 @@ impl Screened {
             ..
         } = self;
         let numbers = [apart, shift, slope, error, spread];
-        let mut all = tails.iter().chain(slopes);
+        let mut all = tails.iter().chain(stiffness);
         all.all(|tail| *tail > 0.0 && tail.is_finite())
             && numbers.into_iter().all(|x| *x >= 0.0)
-            && self.most.len() == 2
             && self.most.iter().all(|ratio| (1.0..=MOST).contains(ratio))
             && self.left <= SCREENED
     }
@@ -87,8 +86,8 @@ impl Screened {
     /// How many times as large errors may be where so much is left out: they are products of what the forces and what the rule of
     /// integration leave out. First those of the orbit, then those of its multipliers. `None` if so much more is left out that this says
     /// nothing.
-    fn grown(&mut self, [tails, slopes]: [&[f64]; 2]) -> Option<[f64; 2]> {
-        if (tails.len(), slopes.len()) != (self.tails.len(), self.slopes.len()) {
+    fn grown(&mut self, [tails, stiffness]: [&[f64]; 2]) -> Option<[f64; 2]> {
+        if (tails.len(), stiffness.len()) != (self.tails.len(), self.stiffness.len()) {
             return None;
         }
         let ratio = |most: f64, now: &[f64], then: &[f64]| {
@@ -96,11 +95,11 @@ impl Screened {
             pairs.fold(most, |most, (now, then)| most.max(now / then))
         };
         let forces = ratio(self.most[0], tails, &self.tails);
-        let all = ratio(forces.max(self.most[1]), slopes, &self.slopes);
+        let all = ratio(forces.max(self.most[1]), stiffness, &self.stiffness);
         if all > MOST {
             return None;
         }
-        self.most = vec![forces, all];
+        self.most = [forces, all];
         Some([forces, all].map(|ratio| SAFETY * ratio * ratio))
     }
 }
@@ -185,7 +184,7 @@ impl Run<'_> {
     /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them.
     pub(super) fn read(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
         let (mut point, map) = self.read_plainly(at)?;
-        let slopes = self.slopes();
+        let stiffness = self.stiffness();
         let Some(Finer { u: other, shift }) = self.corrected(at) else {
             point.error = Some(f64::INFINITY);
             return Some(unknown(point, map));
@@ -224,14 +223,14 @@ impl Run<'_> {
         }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
-            slopes,
+            stiffness,
             switches: switches(&self.equations),
             apart: everywhere.max(apart),
             shift: shift.abs(),
             slope: at.parameter_slope().abs(),
             error: error.max(part_of(SAFETY * everywhere, size)),
             spread: SAFETY * spread,
-            most: vec![1.0, 1.0],
+            most: [1.0, 1.0],
             left: SCREENED,
         });
         Some(ReadOrbit {
@@ -254,13 +253,13 @@ impl Run<'_> {
             return self.read(at);
         }
         let (mut point, map) = self.read_plainly(at)?;
-        let (tails, slopes) = (self.tails(&at.u), self.slopes());
+        let (tails, stiffness) = (self.tails(&at.u), self.stiffness());
         let rise = self.rise(&point);
         let size = self.size(&point, 0.0);
         let same = |known: &&mut Screened| known.switches == switches(&self.equations);
         let known = self.screened.as_mut().filter(same);
         let grown = known.and_then(|known| {
-            let grown = known.grown([&tails, &slopes])?;
+            let grown = known.grown([&tails, &stiffness])?;
             Some((known, grown))
         });
         let Some((known, [grown, spreading])) = grown else {
@@ -313,7 +312,7 @@ impl Run<'_> {
     }
 
     /// The same of how the forces of the last pass change with their gaps, if derivatives were asked for.
-    fn slopes(&self) -> Vec<f64> {
+    fn stiffness(&self) -> Vec<f64> {
         let intervals = self.equations.skeleton.intervals.iter();
         let pairs = intervals.zip(&self.equations.passed);
         self.left_out(pairs.map(|(interval, passed)| (interval, &passed.stiffness[..])))

@@ -99,8 +99,8 @@ impl Run<'_> {
                 ..*extreme
             }
         };
-        let all = (0..parts).flat_map(|part| found.iter().map(move |extreme| image(extreme, part)));
-        all.collect()
+        let all = (0..parts).flat_map(|part| found.iter().map(move |extreme| (extreme, part)));
+        all.map(|(extreme, part)| image(extreme, part)).collect()
     }
 
     /// The range of a gap over the period, from these extremes of what is followed.
