@@ -20,6 +20,8 @@ pub struct Facts {
     outputs: Vec<Py<Named>>,
     /// Names of the contacts: those of their laws, with a number from one on where a law acts in several: list of str.
     contacts: Vec<String>,
+    /// Units of their forces, empty for plain numbers; no entry at all where the model has no units: list of str.
+    force_units: Vec<String>,
     /// Number of pieces of the law of each contact: list of int.
     pieces: Vec<usize>,
 }
@@ -52,6 +54,7 @@ impl Facts {
             parameters: parameters.collect::<PyResult<_>>()?,
             outputs: outputs.collect::<PyResult<_>>()?,
             contacts: model.contacts,
+            force_units: model.force_units,
             pieces: model.pieces,
         })
     }

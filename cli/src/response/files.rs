@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::backbone::Backbone;
 
-/// What `--json` writes: results of the library as they are.
+/// What `--json` writes: results of the library as they are. `Branch::read_all` (`core/src/report/export/json.rs`) reads `version` and `branches`.
 #[derive(Debug, Serialize)]
 pub struct Record<'r> {
     /// The version of the form.

@@ -18,7 +18,7 @@ pub fn chart(
     label: &str,
     error: impl Fn(&Measured) -> Option<f64>,
 ) -> Chart {
-    let mut chart = Chart::new(problem.title)
+    let mut chart = Chart::new(format!("{}: {label}", problem.title))
         .x("time of the curve without multipliers, milliseconds")
         .y(label)
         .scales(Scale::Logarithmic, Scale::Logarithmic);
@@ -56,19 +56,10 @@ pub fn chart(
 
 /// The same with the points of other programs, failures as well.
 pub fn with_peers(chart: Chart, peers: &[Peer], error: impl Fn(&Peer) -> Option<f64>) -> Chart {
-    let mut last = None;
     peers.iter().fold(chart, |chart, peer| {
         let Some(error) = error(peer) else {
             return chart;
         };
-        // Of several settings of one program the first has the name.
-        let who = (&peer.name, peer.failure.is_some());
-        if last.replace(who) == Some(who) {
-            return chart.note(Note {
-                label: peer.setting.clone(),
-                point: [1e3 * peer.seconds[0], error.max(FLOOR)],
-            });
-        }
         let harmonics = peer.setting.starts_with("K =").then_some(&peer.setting);
         let setting = harmonics.map_or_else(String::new, |setting| format!(", {setting}"));
         let failed = peer.failure.as_ref().map_or("", |_| ", failed");
@@ -82,7 +73,7 @@ pub fn with_peers(chart: Chart, peers: &[Peer], error: impl Fn(&Peer) -> Option<
 
 /// Errors of multipliers over the time that they take.
 pub fn multipliers(problem: &Problem, answers: &[Answer]) -> Chart {
-    let mut chart = Chart::new(problem.title)
+    let mut chart = Chart::new(format!("{}: multipliers", problem.title))
         .x("time of one orbit's multipliers, milliseconds")
         .y("largest error of a multiplier")
         .scales(Scale::Logarithmic, Scale::Logarithmic);

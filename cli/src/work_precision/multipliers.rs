@@ -4,29 +4,22 @@ use std::time::Duration;
 
 use cpu_time::ThreadTime;
 use hertzian::error::chain;
-use hertzian::stability::{Method, Projection, Sorting};
 use hertzian::{Complex, FrequencyResponse, Point, Shooting};
 
 use super::method::Reference;
 use super::problem::Problem;
+use crate::multipliers::study::METHODS;
 
-/// What is compared; the last is shooting.
-pub const NAMES: [&str; 7] = [
+/// What is compared: [`METHODS`], and shooting.
+pub const NAMES: [&str; METHODS.len() + 1] = [
     "monodromy, as many steps as needed",
     "monodromy, to 1e-10",
-    "Hill, imaginary part",
+    "Hill, symmetry",
     "Hill, weighted mean",
+    "Hill, imaginary part",
     "Koopman-Hill, direct",
     "Koopman-Hill, subharmonic",
     "shooting: orbit and multipliers",
-];
-const METHODS: [Method; 6] = [
-    Method::Default,
-    Method::Monodromy,
-    Method::Hill(Sorting::ImaginaryPart),
-    Method::Hill(Sorting::WeightedMean),
-    Method::KoopmanHill(Projection::Direct),
-    Method::KoopmanHill(Projection::Subharmonic),
 ];
 const HARMONICS: [usize; 4] = [5, 10, 20, 40];
 const TOLERANCES: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];

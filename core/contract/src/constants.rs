@@ -282,6 +282,14 @@ pub const fn contact(law: usize) -> ContactFacts {
     ContactFacts::new(law)
 }
 
+/// A contact of a law, with the unit of what that gives.
+pub const fn contact_in(law: usize, unit: &'static str) -> ContactFacts {
+    ContactFacts {
+        law,
+        unit: Cow::Borrowed(unit),
+    }
+}
+
 /// An entry of `M`.
 pub const fn mass(row: usize, column: usize) -> Place {
     Place::Mass { row, column }

@@ -248,18 +248,30 @@ impl ParameterFacts {
 }
 
 /// A term `e_c phi_c(g_c, g_c')` of (1).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ContactFacts {
     /// Index of its law.
     pub law: usize,
+    /// The unit of what its law gives, without factors outside of it; empty where it is not known, and for plain numbers.
+    pub unit: Cow<'static, str>,
 }
 
 impl ContactFacts {
     /// A contact with the law of this index.
     #[inline]
     pub const fn new(law: usize) -> Self {
-        Self { law }
+        Self {
+            law,
+            unit: Cow::Borrowed(""),
+        }
+    }
+
+    /// The same with the unit of what its law gives.
+    #[must_use]
+    pub fn unit(mut self, unit: impl Into<Cow<'static, str>>) -> Self {
+        self.unit = unit.into();
+        self
     }
 }
 

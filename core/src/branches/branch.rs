@@ -97,6 +97,9 @@ pub struct Model {
     /// output, a coordinate or another law are left out.
     #[cfg_attr(feature = "serde", serde(default))]
     pub contacts: Vec<String>,
+    /// Units of their forces, empty for plain numbers and where a law is measured in several; none at all where the model has no units.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub force_units: Vec<String>,
     /// Number of pieces of the law of each contact.
     pub pieces: Vec<usize>,
 }
@@ -141,6 +144,7 @@ impl Model {
     pub fn of(system: &dyn System) -> Self {
         let facts: &SystemFacts = system.facts();
         let pieces = facts.contacts.iter();
+        let measured = pieces.clone().filter(|_| !facts.units.is_empty());
         Self {
             name: facts.name.to_string(),
             equation: facts.equation.to_string(),
@@ -149,6 +153,7 @@ impl Model {
             parameters: facts.parameters.iter().map(Parameter::of).collect(),
             outputs: facts.outputs.iter().map(Output::of).collect(),
             contacts: contacts_of(system),
+            force_units: measured.map(|contact| contact.unit.to_string()).collect(),
             pieces: pieces
                 .map(|contact| system.law(contact.law).facts().pieces.len())
                 .collect(),

@@ -7,7 +7,7 @@
 //! dX(t + h)/ds = e^(A h) (dX(t)/ds + (h / s) A X(t)) + sum_q w_q (1 + d_q s A) e^(A d_q s) f_q                (2)
 //! ```
 //!
-//! The derivative of (3) of [`equations`](super::equations) is the sum of (2) over the ways.
+//! (2) summed over the ways is the derivative in (3) of [`equations`](super::equations).
 
 use std::ops::Range;
 
@@ -103,7 +103,7 @@ impl Integrals {
             } else {
                 self.tables(of, r, block);
             }
-            self.force(of, r, block);
+            self.fill_forced(of, r, block);
         }
     }
 
@@ -172,7 +172,7 @@ impl Integrals {
     }
 
     /// The forced states of a pair.
-    fn force(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
+    fn fill_forced(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
         let (n, targets) = (self.nodes, self.targets());
         let tables = [&self.once, &self.twice].map(|of| &of[r * targets * n..][..targets * n]);
         let d = block.deviation;

@@ -10,7 +10,7 @@ use super::reading::ReadOrbit;
 use super::run::Run;
 use crate::branches::checkpoint::keep;
 use crate::branches::engine::{Search, Walk};
-use crate::branches::extreme::Extreme;
+use crate::branches::extreme::{self, Extreme};
 use crate::branches::moduli;
 use crate::branches::point::Point;
 use crate::branches::problem::{
@@ -159,7 +159,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         let multipliers = &self.tests(&zero.root.located.point).multipliers;
         let seen = moduli::seen_by_moduli(multipliers, place, tells)?;
         Some(if seen == EventKind::PeriodDoubling {
-            self.watched[1].kind
+            self.watched[tested::DOUBLING].kind
         } else {
             seen
         })
@@ -357,6 +357,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
 
     fn seeks_touches(&self) -> bool {
         self.run.problem.asked.stability
+    }
+
+    fn force_jumps(&self) -> bool {
+        extreme::force_jumps(self.run.problem.asked.system.as_ref())
     }
 
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {

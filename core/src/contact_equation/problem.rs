@@ -2,9 +2,7 @@
 
 use super::equations::Setting;
 use super::placement::Resolution;
-use crate::branches::extreme;
 use crate::error::Error;
-use crate::model::error::ModelError;
 use crate::shooting::problem::ShootingProblem;
 
 /// Nodes of a stretch and panels of a whole period, coarser ones first.
@@ -49,10 +47,6 @@ impl ContactProblem {
             asked.omega,
             &asked.cancel,
         );
-        if extreme::force_jumps(asked.system.as_ref()) {
-            let why = "a force jumps at a level";
-            return Err(ModelError::NoContactEquation { why }.into());
-        }
         Ok(Self {
             setting,
             asked,

@@ -16,7 +16,7 @@ use crate::branches::stability::{Stability, Verdict};
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
-use crate::shooting::reading::Rounded;
+use crate::shooting::signals::Rounded;
 
 /// What one step from a finer solution says of the error is multiplied by this.
 const SAFETY: f64 = 2.0;

@@ -8,8 +8,11 @@ use super::run::{Run, SAME};
 use crate::branches::extreme::Extreme;
 use crate::branches::recurrence::Recurrence;
 
-/// What `H` of a pair may be where its gap touches the level.
+/// What `H` of a pair may be where its gap touches the level, and where that is still what an extreme beyond it goes with.
 const TOUCHES: f64 = 1e-9;
+const BEYOND: f64 = 1e-2;
+/// `H` below which how far beyond a level an extreme is is rounding.
+const ROUNDED: f64 = 1e-12;
 /// Levels that differ by this part are one.
 const SAME_LEVEL: f64 = 1e-9;
 /// Where gaps are compared, in parts of the time after which the orbit comes back: nowhere in particular.
@@ -65,8 +68,9 @@ impl Run<'_> {
         for of_contact in found.chunk_by(|a, b| a.contact == b.contact) {
             let contact = of_contact[0].contact;
             let size = (0.5 * self.range(of_contact, contact)).max(f64::MIN_POSITIVE);
-            let levels = &self.equations.values.contacts[contact].levels;
-            for (level, value) in levels.iter().enumerate() {
+            let of = &self.equations.values.contacts[contact];
+            let facts = self.equations.setting.system.law(of.law).facts();
+            for (level, value) in of.levels.iter().enumerate() {
                 extremes.extend(of_contact.iter().map(|extreme| Extreme {
                     contact,
                     level,
@@ -74,7 +78,7 @@ impl Run<'_> {
                     maximum: extreme.maximum,
                     above: (extreme.gap - value) / size,
                     size,
-                    jumps: false,
+                    jumps: facts.levels[level].force_jumps,
                     begins: false,
                 }));
             }
@@ -172,12 +176,19 @@ impl Run<'_> {
     }
 
     /// Writes the linear form of unknowns that gap less level is at an extreme that is short of it, in units of the extreme: by (3) of
-    /// [`skeleton`](super::skeleton) a multiple of `H`. Says whether the extreme is watched.
+    /// [`skeleton`](super::skeleton) a multiple of `H`; beyond a level where the force jumps another multiple, to leading order. Says whether the
+    /// extreme is watched.
     pub(super) fn extreme_form(&self, u: &[f64], extreme: &Extreme, form: &mut [f64]) -> bool {
         let watched = self.watched(u, extreme);
         if let Some((square, bend)) = watched {
+            let short = -bend / extreme.size;
+            let beyond = extreme.above / u[square];
             form.fill(0.0);
-            form[square] = -bend / extreme.size;
+            form[square] = if u[square] > ROUNDED && beyond * short > 0.0 {
+                beyond
+            } else {
+                short
+            };
         }
         watched.is_some()
     }
@@ -207,7 +218,8 @@ impl Run<'_> {
                 return None;
             };
             let square = skeleton.slot(other);
-            let short = u[square] <= TOUCHES && (0..parts).any(|part| is_watched(index, part));
+            let most = if extreme.jumps { BEYOND } else { TOUCHES };
+            let short = u[square] <= most && (0..parts).any(|part| is_watched(index, part));
             short.then_some((square, bend))
         })
     }

@@ -145,6 +145,7 @@ impl Position {
     /// As a visitor has asked for it.
     pub(super) fn halted(self, halt: Halt) -> Outcome {
         if halt == Halt::Stop {
+            // The visitor knows why, and says so where it is known better.
             return Outcome::Stopped(Stop::Interrupted);
         }
         Outcome::Halted(Box::new(self.here()))

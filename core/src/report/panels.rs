@@ -190,12 +190,16 @@ impl Branch {
     /// The forces of the contacts over the period.
     fn forces(&self, point: &Point, here: &str) -> Result<Chart, Error> {
         let names = &self.model.contacts;
+        let units = &self.model.force_units;
+        let alike = units.windows(2).all(|pair| pair[0] == pair[1]);
         let mut forces = Vec::new();
         for name in names {
             let points = self.waveform(name, point)?;
             let largest = points.iter().fold(0.0, |m: f64, [_, y]| m.max(y.abs()));
-            let label = if names.len() > 1 { name } else { "" };
-            let label = label.to_owned();
+            let label = match names.len() {
+                1 => String::new(),
+                _ => in_unit(name, if alike { "" } else { self.model.unit_of(name) }),
+            };
             forces.push((largest, Series { label, points }));
         }
         let (count, drawn) = (forces.len(), forces.len().min(CONTACTS));
@@ -206,9 +210,10 @@ impl Branch {
             [name] => format!("force of {name}"),
             _ => "force of contacts".to_owned(),
         };
+        let unit = units.first().filter(|_| alike).map_or("", String::as_str);
         let chart = Chart::new(format!("{what} over the period at {here}"))
             .x(self.time())
-            .y(what);
+            .y(in_unit(&what, unit));
         let forces = forces.into_iter().take(drawn).map(|(_, force)| force);
         let chart = forces.fold(chart, Chart::trace);
         Ok(if count > drawn {

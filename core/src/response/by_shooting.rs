@@ -17,7 +17,7 @@ use crate::model::request::RequestError;
 use crate::model::validate;
 use crate::orbit::observe::{Accuracy, Reading};
 use crate::shooting::compute::{self, Followed};
-use crate::shooting::reading::Found;
+use crate::shooting::signals::Found;
 use crate::shooting::{
     Asked, BifurcationCurve, Plane, Rest, Shooting, bifurcation_curve, complete, with_states,
 };

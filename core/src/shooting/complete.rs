@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::problem::ShootingProblem;
-use super::reading::{Found, Reader};
+use super::signals::{Found, Reader};
 use super::start;
 use crate::balance::aft::Aft;
 use crate::balance::{Balance, Parity, Resolution};

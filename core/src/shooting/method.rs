@@ -124,7 +124,7 @@ impl<'b, 'r> ShootingBranch<'b, 'r> {
         let multipliers = &self.tests(&zero.root.located.point).multipliers;
         let seen = moduli::seen_by_moduli(multipliers, place, tells)?;
         Some(if seen == EventKind::PeriodDoubling {
-            self.watched[1].kind
+            self.watched[tested::DOUBLING].kind
         } else {
             seen
         })
@@ -276,6 +276,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();
         self.run.record.events.push(event);
         if meets && self.run.meets(&mut self.equations) {
+            // Which orbits were met is told by `Run::stopped`.
             return ZeroOutcome::Ends(Stop::Interrupted);
         }
         ZeroOutcome::Event

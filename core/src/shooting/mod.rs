@@ -3,6 +3,13 @@
 //! Nothing is left out of an orbit but the error of the flow, which its tolerance bounds; where the flow is in closed form, only
 //! rounding. So shooting refines what a balance has found, and follows branches of orbits with their folds and period doublings
 //! by the same continuation.
+//!
+//! `equations` has the equations, `start` the first orbit, `sampled_states` one from a balance, `minimal_period` whether an orbit comes back earlier.
+//! `run` takes each orbit of a branch: its multipliers and their stated errors (`Run::read`), by another flow of `error_reference`, its extremes
+//! (`extremes`, `gap_extremes`), and what its outputs are (`complete`, `signals`, `output_error`). `method` is what the engine of branches asks for,
+//! `tested` the test functions, `events` what is recorded at their zeros. `at` and `switch` answer what a branch is asked afterwards (`past_fold`,
+//! `crossed`, `broken_symmetry`, `normal_form`). `bifurcation_curve` follows an event in two parameters (`codimension_one`, `grazing_condition`,
+//! `generalised_flip`, `special_monitor`, `special_search`).
 
 pub(crate) mod at;
 pub(crate) mod bifurcation_curve;
@@ -27,10 +34,10 @@ mod options;
 mod output_error;
 mod past_fold;
 pub(crate) mod problem;
-pub(crate) mod reading;
 mod rest;
 mod run;
 mod sampled_states;
+pub(crate) mod signals;
 mod special_monitor;
 mod special_search;
 mod start;

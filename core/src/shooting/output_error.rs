@@ -5,7 +5,7 @@
 
 use super::equations::Equations;
 use super::problem::ShootingProblem;
-use super::reading::Rounded;
+use super::signals::Rounded;
 use crate::branches::observed::{Motion, Observed, part_of};
 use crate::time::{FlowError, Stretch};
 

@@ -27,6 +27,11 @@ use crate::numeric::spectrum::eigenvalues;
 /// signs by chance.
 const UNRESOLVED: f64 = 1e-2;
 
+/// Places among those that are watched: branch point, period doubling, and the first of the moduli.
+const CROSSING: usize = 0;
+pub(crate) const DOUBLING: usize = 1;
+const MODULI: usize = 2;
+
 /// The test functions at one orbit.
 #[derive(Debug, Clone)]
 pub(crate) struct Tests {
@@ -66,9 +71,9 @@ impl Test {
     /// By its place among those that are watched.
     pub(crate) fn watched(index: usize) -> Self {
         match index {
-            0 => Self::Bordered,
-            1 => Self::Plus,
-            _ => Self::Modulus(index - 2),
+            CROSSING => Self::Bordered,
+            DOUBLING => Self::Plus,
+            _ => Self::Modulus(index - MODULI),
         }
     }
 

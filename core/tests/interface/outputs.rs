@@ -401,6 +401,7 @@ fn text_and_structure_have_the_same_outputs() {
     assert_eq!(branch.model.units, ["mm"]);
     assert_eq!(branch.model.parameters[2].unit, "N/mm^1.5");
     assert_eq!(branch.model.contacts, ["ground"]);
+    assert_eq!(branch.model.force_units, ["N"]);
     for (a, b) in read.observed.outputs.iter().zip(&declared.observed.outputs) {
         close(a.peak_to_peak(), b.peak_to_peak(), 1e-9);
     }
@@ -467,4 +468,57 @@ fn rates_of_angles_are_not_in_whole_turns() {
     let model = hertzian::Model::of(&Wheel::default());
     let units: Vec<&str> = model.outputs.iter().map(|own| own.unit.as_str()).collect();
     assert_eq!(units, ["rad", "rad/s", "rad/s^2", "Hz", "m/s", "1/s"]);
+}
+
+hertzian::oscillator! {
+    /// A block and a wheel, each with stops.
+    Braked(x: mm, theta: rad) {
+        param m: t = 1e-3 > 0;
+        param j: t*mm^2 = 1 > 0;
+        param k: N/mm = 50 > 0;
+        param kt: N*mm = 2000 > 0;
+        param arm: mm = 10 > 0;
+        param drive: N = 1;
+        law stop(gap) { gap > 0 => k*gap, else => 0 }
+        law twist(angle) { angle > 0 => kt*angle, else => 0 }
+        law soft(gap, s) { gap > 0 => s*gap, else => 0 }
+        law part(gap) { gap > 0 => gap, else => 0 }
+        m*ddot(x) + 0.1*m*omega*dot(x) + k*x + stop(x) + k*part(x) + soft(x, k) = drive*cos(omega*t);
+        j*ddot(theta) + 0.1*j*omega*dot(theta) + kt*theta + arm*stop(arm*theta) + twist(theta) + kt*part(theta) + soft(theta, kt) = arm*drive*cos(omega*t);
+        output moment = force(twist);
+    }
+}
+
+#[test]
+fn forces_of_contacts_have_units() {
+    let (branch, _) = at(&Braked::default(), 100.0);
+    let model = &branch.model;
+    let of = |name: &str| model.unit_of(name);
+    assert_eq!(model.contacts.len(), model.force_units.len());
+    assert_eq!(
+        [of("stop_1"), of("stop_2"), of("twist")],
+        ["N", "N", "N*mm"]
+    );
+    // Once as force and once as moment; and a length that is an angle too.
+    assert_eq!([of("soft_1"), of("part_1"), of("part_2")], [""; 3]);
+    assert_eq!(of("moment"), "N*mm");
+    let head = branch.to_csv();
+    let head = head.lines().next().expect("names");
+    for name in [
+        "peak_force [N]",
+        "stop_1_min_force [N]",
+        "stop_1_max_force [N]",
+        "stop_1_piece_2",
+        "twist_max_force [N*mm]",
+        "twist_impulse [N*mm*s]",
+        "twist_impacts",
+        "part_1_max_force",
+        "soft_2_impulse",
+        "moment_rms [N*mm]",
+    ] {
+        assert!(
+            head.split(',').any(|column| column == name),
+            "{name}: {head}"
+        );
+    }
 }

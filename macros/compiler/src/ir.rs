@@ -89,7 +89,7 @@ impl Model {
             .units(self.units.iter().cloned())
             .parameters(parameters)
             .divisor(self.divisor)
-            .contacts(self.laws.len(), self.contacts.iter().copied())
+            .contacts(self.laws.len(), self.contacts.iter().cloned())
             .places(self.coefficients.iter().map(|&(place, _)| place))
             .outputs(outputs)
     }

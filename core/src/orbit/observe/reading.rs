@@ -242,12 +242,13 @@ impl Model {
         self.measurable(wanted).map(|_| ())
     }
 
-    /// The unit of an output or a coordinate, by its name; empty where there is none, and of contacts.
+    /// The unit of an output, a coordinate, or the force of a contact, by its name; empty where there is none.
     pub fn unit_of(&self, name: &str) -> &str {
         match self.source(name) {
             Ok(Source::Output(index)) => &self.outputs[index].unit,
             Ok(Source::Coordinate(index)) => self.units.get(index).map_or("", String::as_str),
-            _ => "",
+            Ok(Source::Contact(index)) => self.force_units.get(index).map_or("", String::as_str),
+            Err(_) => "",
         }
     }
 

@@ -1,4 +1,4 @@
-//! Floquet stability of periodic orbits.
+//! Floquet stability of periodic orbits that are known by their series; shooting and the contact equation have multipliers of their own.
 //!
 //! A [`Method`] computes multipliers of an orbit as it is. The verdict ([`Stability`]) compares those of the orbit with those of
 //! the same orbit corrected for what its harmonics and samples leave out, and adds the method's own error.

@@ -166,6 +166,7 @@ impl Branch {
         let mut after = events.chain(self.turns.iter().map(|turn| turn.after));
         [0, model.coordinates.len()].contains(&model.units.len())
             && [0, model.pieces.len()].contains(&model.contacts.len())
+            && [0, model.pieces.len()].contains(&model.force_units.len())
             && (self.varied == "omega" || parameter(&self.varied))
             && after.all(|after| after <= points)
     }

@@ -33,8 +33,7 @@ use crate::report::unit::in_unit;
 /// `tip_p2p`, `tip_max`, `tip_min`, `tip_mean`, `tip_rms` and `tip_crest`, the [measures](Measure) of these names; then for each contact
 /// `stop_impulse` and `stop_impacts`, over the period of the orbit.
 ///
-/// In a model with units what has one says so: `omega [rad/s]`, `tip_rms [um]`. Columns of contacts have none: a model does not
-/// know the units of its laws, but of an output that is the force of one.
+/// In a model with units what has one says so: `omega [rad/s]`, `tip_rms [um]`, `stop_max_force [N]`.
 ///
 /// What is not known, or is not there, is empty, as much is of an orbit by shooting until it is
 /// [completed](crate::Branch::complete); a number that is not finite is `inf` or `NaN`.
@@ -253,33 +252,37 @@ fn of_signals(model: &Model) -> impl Iterator<Item = String> {
     names.flat_map(|name| MEASURES.map(|measure| format!("{name}_{measure}")))
 }
 
-/// Adds units to the names of columns.
+/// Adds units to the names of columns, in the order in which [`Table::of_model`] has them.
 fn with_units(model: &Model, names: &mut [String]) {
-    let Some(first) = model.units.first() else {
+    let Some(first) = model.units.first().map(String::as_str) else {
         return;
     };
-    let own = ["omega"].into_iter().zip(["rad/s"]);
-    let of_first = ["peak_to_peak", "max", "min", "mean", "rms"];
-    let own = own.chain(of_first.into_iter().map(|name| (name, first.as_str())));
-    let mut units: Vec<(usize, String)> = own
-        .filter_map(|(name, unit)| {
-            let place = COLUMNS.iter().position(|column| *column == name)?;
-            Some((place, unit.to_owned()))
-        })
-        .collect();
-    let parameters = model.parameters.iter().enumerate();
-    units.extend(parameters.map(|(index, own)| (COLUMNS.len() + index, own.unit.clone())));
-    let before = COLUMNS.len() + model.parameters.len() + of_contacts(model).len();
+    let force = |contact: usize| model.force_units.get(contact).map_or("", String::as_str);
+    let own = COLUMNS.map(|name| match name {
+        "omega" => "rad/s",
+        "peak_to_peak" | "max" | "min" | "mean" | "rms" => first,
+        "peak_force" => force(0),
+        _ => "",
+    });
+    let parameters = model.parameters.iter().map(|own| own.unit.as_str());
+    let of_contacts = model.pieces.iter().enumerate();
+    let of_contacts = of_contacts.flat_map(|(contact, &pieces)| {
+        let on_pieces = std::iter::repeat_n("", pieces);
+        std::iter::repeat_n(force(contact), 2).chain(on_pieces)
+    });
+    let own = own.into_iter().chain(parameters).chain(of_contacts);
+    let mut units: Vec<String> = own.map(str::to_owned).collect();
     if named(model) != [0; 2] {
         let outputs = model.outputs.iter().map(|output| &output.unit);
         let signals = outputs.chain(&model.units);
-        let of_signals = signals.flat_map(|unit| MEASURES.map(|measure| measure.unit(unit)));
-        units.extend(of_signals.enumerate().map(|(at, unit)| (before + at, unit)));
+        units.extend(signals.flat_map(|unit| MEASURES.map(|measure| measure.unit(unit))));
+        let contacts = 0..model.pieces.len();
+        units.extend(contacts.flat_map(|contact| {
+            [Measure::Impulse, Measure::Impacts].map(|measure| measure.unit(force(contact)))
+        }));
     }
-    for (place, unit) in units {
-        if let Some(name) = names.get_mut(place) {
-            *name = in_unit(name, &unit);
-        }
+    for (name, unit) in names.iter_mut().zip(units) {
+        *name = in_unit(name, &unit);
     }
 }
 

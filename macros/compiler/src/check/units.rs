@@ -27,6 +27,8 @@ pub struct Units {
     pub parameters: Vec<String>,
     /// One for each output, with the power of ten that its expression is multiplied by.
     pub outputs: Vec<(String, Rational)>,
+    /// Of the forces of laws, by name, that are in one unit wherever they act.
+    pub laws: HashMap<String, String>,
 }
 
 /// Either everything has a unit, or nothing: then the equations are checked. An output is given the unit of what it is equal to, unless
@@ -90,6 +92,7 @@ pub(super) fn units_agree(declaration: &Declaration, diagnostics: &mut Diagnosti
             let found = diagnostics.keep(checker.output(output));
             units.outputs.extend(found);
         }
+        units.laws = checker.units_of_laws();
     }
     units
 }
@@ -398,6 +401,18 @@ impl Checker<'_> {
                 "`{law}` is in {first} where it acts once and in {other} where it acts again: write the force that is meant as in the equation, with its gap"
             ))),
         }
+    }
+
+    /// Of each law whose forces are measured in one unit, and are no plain numbers.
+    fn units_of_laws(&self) -> HashMap<String, String> {
+        let unit = |law: &Law| {
+            let own = self.forces.iter().filter(|(name, _)| law.name == name);
+            let mut measures = own.filter_map(|(_, measure)| *measure);
+            let first = measures.next().filter(|first| *first != Dimension::ONE)?;
+            let alike = measures.all(|other| other == first);
+            alike.then(|| (law.name.to_string(), first.to_string()))
+        };
+        self.declaration.laws.iter().filter_map(unit).collect()
     }
 
     fn condition(&mut self, piece: &Piece) -> syn::Result<()> {

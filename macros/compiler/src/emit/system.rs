@@ -142,7 +142,10 @@ fn facts(model: &Model) -> TokenStream {
     let laws = position(facts.laws);
     let contacts = list(facts.contacts.iter().map(|contact| {
         let law = position(contact.law);
-        quote!(contact(#law))
+        match &*contact.unit {
+            "" => quote!(contact(#law)),
+            unit => quote!(contact_in(#law, #unit)),
+        }
     }));
     let places = list(facts.places.iter().copied().map(place));
     let units = list(facts.units.iter().map(|unit| text(unit)));

@@ -114,6 +114,10 @@ fn lowered(
         &mut assembly,
         diagnostics,
     );
+    for contact in &mut assembly.contacts {
+        let unit = units.laws.get(&builder.laws[contact.law].name);
+        contact.unit = unit.cloned().unwrap_or_default().into();
+    }
     let masses = assembly.masses();
     let ranges = &builder.context.ranges.parameters;
     let dag = &builder.context.dag;

@@ -94,8 +94,8 @@ impl fmt::Display for Dimension {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let is_own = |symbol: &&str| Self::of_symbol(symbol) == Some(*self);
         let names = SYMBOLS.iter().map(|(symbol, _)| *symbol);
-        // Rates by time are those of angles here: Hz counts whole turns.
-        let names = names.filter(|symbol| !["rad", "Hz", "kHz"].contains(symbol));
+        // Rates by time are those of angles here: Hz counts whole turns. What acts on an angle is a moment: N*m.
+        let names = names.filter(|symbol| !["rad", "Hz", "kHz", "J"].contains(symbol));
         if let Some(symbol) = names.clone().find(is_own) {
             return formatter.write_str(symbol);
         }
