@@ -244,6 +244,13 @@ pub(crate) trait BranchProblem {
         false
     }
 
+    /// Unknowns near those of a solution, in which an extreme has about a height, in its units: where an unknown tells that, on the other side of
+    /// a level where the force jumps too.
+    fn lifted(&mut self, u: &[f64], extreme: &Extreme, height: f64) -> Option<Vec<f64>> {
+        let _ = (u, extreme, height);
+        None
+    }
+
     /// How slowly, at a solution, a gap passes a level where the force jumps while it is slowed down: the height at which it would turn,
     /// in units of half of the gap's range. The least of all; infinite where there is none, or it is not known.
     fn slowest(&mut self, u: &[f64]) -> f64 {

@@ -34,7 +34,6 @@ use std::sync::Arc;
 use super::eliminated::Eliminated;
 use super::extremes::Extremes;
 use super::moving_stiffness::as_contacts;
-use super::place::half_way;
 use super::placement::Told;
 use super::room::Room;
 use super::skeleton::Skeleton;
@@ -290,8 +289,9 @@ impl Equations {
     fn touching(&mut self, u: &[f64], [first, second]: [usize; 2], bend: f64, derivatives: bool) {
         let columns = self.skeleton.unknowns() + 1;
         let rows = [first, second].map(|switch| self.skeleton.slot(switch));
-        let square = u[rows[1]];
-        let half = half_way(square);
+        let told = self.skeleton.told(first);
+        let square = told.square(u[rows[1]]);
+        let [half, by_unknown] = told.half(u[rows[1]]);
         let [a, b] = [first, second].map(|switch| self.room.at_switch[switch]);
         let of = |rows: &[f64], switch: usize, column: usize| rows[switch * columns + column];
         let room = &self.room;
@@ -307,7 +307,7 @@ impl Equations {
                 self.matrix[rows[0] * columns + column] = 0.5 * (x + y);
                 self.matrix[rows[1] * columns + column] = (y - x) / (2.0 * half);
             }
-            self.matrix[rows[1] * columns + rows[1]] -= slope / (2.0 * half * half);
+            self.matrix[rows[1] * columns + rows[1]] -= slope / half * by_unknown;
         } else {
             self.residual[rows[0]] = a[0] + bend * square;
             self.residual[rows[1]] = a[1];

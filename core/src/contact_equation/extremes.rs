@@ -1,7 +1,7 @@
 //! Extremes of the coordinates and of the gaps of an orbit, from one walk along its period.
 //!
 //! States are taken where the pass has them, and as densely as the linear part asks for where it has none. Where a slope changes its sign,
-//! its zero is closed in to: for a gap every one, for a coordinate those that may be its smallest or its largest value, as far as the cubic
+//! its zero is closed in to: for a gap every one, and two between the same samples where gaps and slopes on both sides tell of them, for a coordinate those that may be its smallest or its largest value, as far as the cubic
 //! through positions and velocities on both sides tells.
 
 use super::motion::{GapExtreme, Motion};
@@ -18,6 +18,11 @@ const MOST: f64 = 1e6;
 const LOCATED: f64 = 1e-9;
 /// Two extremes of a gap as near as this are one.
 const SEEN_TWICE: f64 = 1e-6;
+/// The rate of a gap is looked at between samples where it may come as near to zero, in parts of the larger one of both, so often at most.
+const DIPS: f64 = 0.1;
+const HALVINGS: usize = 4;
+/// As far from an extreme that is known, in parts of the distance of two samples, its rate has a sign.
+const ASIDE: f64 = 1e-3;
 /// A cubic may be wrong by this part of the range of a coordinate.
 const FORETOLD: f64 = 0.02;
 
@@ -164,28 +169,25 @@ impl Samples {
         contact: usize,
         found: &mut Vec<GapExtreme>,
     ) {
-        let at = |index: usize| {
-            let x = self.phases[index];
-            let value = motion.gap_of(contact, x, self.states(index))[1];
-            Place { x, value }
+        let mut scan = Scan {
+            motion,
+            interval,
+            contact,
+            found,
         };
-        let slope = |phase: f64| motion.gap(contact, interval, phase)[1];
-        let mut before = at(0);
-        for index in 1..self.phases.len() {
-            let next = at(index);
-            if (before.value > 0.0) != (next.value > 0.0) {
-                let within = LOCATED * (next.x - before.x);
-                if let Some(phase) = roots::root(before, next, within, slope) {
-                    found.push(GapExtreme {
-                        contact,
-                        interval,
-                        phase,
-                        gap: motion.gap(contact, interval, phase)[0],
-                        maximum: before.value > 0.0,
-                    });
-                }
+        let last = self.phases.len() - 1;
+        let mut before = scan.of(self.phases[0], self.states(0));
+        for index in 1..=last {
+            let mut next = scan.of(self.phases[index], self.states(index));
+            let here = next;
+            if index == 1 {
+                scan.move_inside(&mut before, next.x, true);
             }
-            before = next;
+            if index == last {
+                scan.move_inside(&mut next, before.x, false);
+            }
+            scan.between(before, next, HALVINGS);
+            before = here;
         }
     }
 
@@ -218,6 +220,100 @@ impl Samples {
                 turns.of[usize::from(before[1] > 0.0)].push(turn);
             }
             before = next;
+        }
+    }
+}
+
+/// A gap and its rate by the phase.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    x: f64,
+    gap: f64,
+    rate: f64,
+}
+
+/// The search for the extremes of a gap on an interval.
+struct Scan<'s, 'm> {
+    motion: &'s Motion<'m>,
+    interval: usize,
+    contact: usize,
+    found: &'s mut Vec<GapExtreme>,
+}
+
+impl Scan<'_, '_> {
+    fn of(&self, x: f64, states: &[f64]) -> Seen {
+        let [gap, rate] = self.motion.gap_of(self.contact, x, states);
+        let rate = rate / self.motion.equations.values.base;
+        Seen { x, gap, rate }
+    }
+
+    fn at(&self, x: f64) -> Seen {
+        let [gap, rate] = self.motion.gap(self.contact, self.interval, x);
+        let rate = rate / self.motion.equations.values.base;
+        Seen { x, gap, rate }
+    }
+
+    /// Where an interval begins or ends at an extreme that is short of a level, which is added afterwards, the sign of the rate is that beside it.
+    fn move_inside(&self, end: &mut Seen, other: f64, begins: bool) {
+        let skeleton = &self.motion.equations.skeleton;
+        let beside = if begins {
+            self.interval.checked_sub(1)
+        } else {
+            Some(self.interval + 1).filter(|next| *next < self.motion.intervals())
+        };
+        let Some(beside) = beside.filter(|beside| self.is_nowhere(*beside)) else {
+            return;
+        };
+        let ends = skeleton.intervals[beside.min(self.interval)].ends;
+        let Some(switch) = ends.map(|switch| skeleton.switches[switch]) else {
+            return;
+        };
+        let told = match switch.told {
+            Told::First { .. } => !begins,
+            Told::Second { .. } => begins,
+            Told::Alone => false,
+        };
+        if told && switch.contact == self.contact {
+            *end = self.at(end.x + ASIDE * (other - end.x));
+        }
+    }
+
+    fn is_nowhere(&self, interval: usize) -> bool {
+        let [from, to] = self.motion.phases(interval);
+        to <= from
+    }
+
+    /// Adds the extremes between two phases. Where the rate has one sign at both ends, the parabola that it is about tells whether it has another
+    /// one between them.
+    fn between(&mut self, before: Seen, next: Seen, halvings: usize) {
+        let time = next.x - before.x;
+        if (before.rate > 0.0) != (next.rate > 0.0) {
+            let slope = |phase: f64| self.at(phase).rate;
+            let place = |of: &Seen| Place {
+                x: of.x,
+                value: of.rate,
+            };
+            let root = roots::root(place(&before), place(&next), LOCATED * time, slope);
+            let Some(phase) = root else { return };
+            self.found.push(GapExtreme {
+                contact: self.contact,
+                interval: self.interval,
+                phase,
+                gap: self.at(phase).gap,
+                maximum: before.rate > 0.0,
+            });
+            return;
+        }
+        let [v, w] = [before.rate, next.rate].map(|rate| rate * time);
+        let way = next.gap - before.gap;
+        // p' = a s^2 + b s + v
+        let (a, b) = (3.0 * (v + w) - 6.0 * way, 6.0 * way - 4.0 * v - 2.0 * w);
+        let s = -b / (2.0 * a);
+        let turns = v.signum() * (v + 0.5 * b * s) < DIPS * v.abs().max(w.abs());
+        if halvings > 0 && turns && s > 0.0 && s < 1.0 {
+            let middle = self.at(before.x + s * time);
+            self.between(before, middle, halvings - 1);
+            self.between(middle, next, halvings - 1);
         }
     }
 }

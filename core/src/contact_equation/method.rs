@@ -371,6 +371,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
         self.run.extreme_form(u, extreme, form)
     }
 
+    fn lifted(&mut self, u: &[f64], extreme: &Extreme, height: f64) -> Option<Vec<f64>> {
+        self.run.lifted(u, extreme, height)
+    }
+
     fn keep_touch(&mut self, _: &mut Newton, _: Step<'_>, touch: &Touch) {
         events::touch(self.run, touch);
     }

@@ -1,14 +1,46 @@
 //! A phase with its derivatives by unknowns.
 
 /// `H` below which differences over the way are rounding.
-const CLOSEST: f64 = 1e-13;
+pub(super) const CLOSEST: f64 = 1e-13;
 
-/// `sqrt(H)`; zero where there is no way between the two.
-pub(super) fn half_way(square: f64) -> f64 {
-    if square > 0.0 {
-        square.max(CLOSEST).sqrt()
-    } else {
-        0.0
+/// By which unknown the way between two switches that may meet is told. Where both do, it is `H`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Opening {
+    /// By `H`, in which an orbit is smooth as long as the force grows from zero.
+    Square,
+    /// By its root, in which it is where the force jumps.
+    Root,
+}
+
+impl Opening {
+    /// Half of the way, and its derivative by the unknown; zero where there is none.
+    pub(super) fn half(self, unknown: f64) -> [f64; 2] {
+        if unknown <= 0.0 {
+            return [0.0; 2];
+        }
+        match self {
+            Self::Square => {
+                let half = unknown.max(CLOSEST).sqrt();
+                [half, 0.5 / half]
+            }
+            Self::Root => [unknown.max(CLOSEST.sqrt()), 1.0],
+        }
+    }
+
+    /// `H`
+    pub(super) fn square(self, unknown: f64) -> f64 {
+        match self {
+            Self::Root if unknown > 0.0 => unknown * unknown,
+            _ => unknown,
+        }
+    }
+
+    /// The unknown with an `H`.
+    pub(super) fn unknown(self, square: f64) -> f64 {
+        match self {
+            Self::Root if square > 0.0 => square.sqrt(),
+            _ => square,
+        }
     }
 }
 

@@ -137,7 +137,13 @@ impl Plan {
         for (x, origin) in u.iter_mut().zip(&equations.reference) {
             *x -= origin;
         }
-        u.extend(self.planned.iter().map(|planned| planned.value));
+        let told = self.planned.iter().enumerate();
+        u.extend(
+            told.map(|(index, planned)| match planned.placed.switch.told {
+                Told::Second { .. } => skeleton.told(index).unknown(planned.value),
+                _ => planned.value,
+            }),
+        );
         u.resize(skeleton.unknowns(), 0.0);
         u.push(value);
         write_forces(equations, gaps, &mut u);

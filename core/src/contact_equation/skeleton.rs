@@ -15,7 +15,8 @@
 //! g(c) - level + (g''/2) H = 0,    g'(c) = 0,                                     H <= 0                      (3)
 //! ```
 //!
-//! So `H` passes zero smoothly where the gap touches its level: beyond, (3) goes on with the extreme of a gap that does not reach it.
+//! So `H` passes zero smoothly where the gap touches its level: beyond, (3) goes on with the extreme of a gap that does not reach it. Where
+//! the force jumps at the level, the orbit goes as the root of `H > 0`, which is the unknown there then.
 //!
 //! Of an orbit that comes back after a part of its period with an image `S` of its coordinates that part is cut, and its end is `S` of its
 //! beginning.
@@ -27,7 +28,7 @@ use std::f64::consts::TAU;
 
 use super::grading::STEEPEST;
 use super::nodes::{COUNTS, Nodes};
-use super::place::{Place, half_way};
+use super::place::{Opening, Place};
 use super::placement::{Placement, Switch, Told};
 use super::values::Contact;
 use crate::branches::recurrence::Recurrence;
@@ -126,6 +127,8 @@ pub(super) struct Skeleton {
     pub(super) order: usize,
     /// In the order of time.
     pub(super) switches: Vec<Switch>,
+    /// How the way between two of them is told.
+    openings: Vec<Opening>,
     pub(super) intervals: Vec<Interval>,
     /// Number of forces.
     pub(super) forces: usize,
@@ -148,6 +151,10 @@ impl Skeleton {
             length: beginning.length(),
             order,
             switches: placed.iter().map(|placed| placed.switch).collect(),
+            openings: placed
+                .iter()
+                .map(|placed| opening(system, contacts, &placed.switch))
+                .collect(),
             intervals: Vec::new(),
             forces: 0,
             placement,
@@ -368,11 +375,11 @@ impl Skeleton {
                     Told::First { other, .. } => (own, self.slot(other), -1.0),
                     Told::Second { other } => (self.slot(other), own, 1.0),
                 };
-                let half = half_way(u[square]);
+                let [half, slope] = self.openings[index].half(u[square]);
                 let mut place = Place::fixed(self.begin + u[middle] + sign * half);
                 place.add(middle, 1.0);
                 if half > 0.0 {
-                    place.add(square, sign / (2.0 * half));
+                    place.add(square, sign * slope);
                 }
                 place
             }
@@ -402,10 +409,12 @@ impl Skeleton {
             let opening = [interval.from, interval.to]
                 .into_iter()
                 .find_map(|mark| self.opening(mark));
-            let Some((middle, square)) = opening.filter(|_| !interval.active.is_empty()) else {
+            let Some((told, middle, square)) = opening.filter(|_| !interval.active.is_empty())
+            else {
                 continue;
             };
-            if u[square].max(known[square]) <= 0.0 || u[square].min(known[square]) > OPEN {
+            let squares = [u, known].map(|u| told.square(u[square]));
+            if squares[0].max(squares[1]) <= 0.0 || squares[0].min(squares[1]) > OPEN {
                 continue;
             }
             carried = true;
@@ -430,8 +439,9 @@ impl Skeleton {
         carried
     }
 
-    /// Middle and `H` of the pair of switches between which a gap opens, where one of them is at a mark and its force goes on beyond.
-    fn opening(&self, mark: Mark) -> Option<(usize, usize)> {
+    /// How the pair of switches is told between which a gap opens, where one of them is at a mark and its force goes on beyond, with the places
+    /// of its two unknowns.
+    fn opening(&self, mark: Mark) -> Option<(Opening, usize, usize)> {
         let Cut::Switch(index) = mark.from else {
             return None;
         };
@@ -444,15 +454,31 @@ impl Skeleton {
             .intervals
             .iter()
             .find(|interval| interval.ends == Some(second))?;
+        let told = self.openings[first];
         beyond
             .active
             .is_empty()
-            .then_some((self.slot(first), self.slot(second)))
+            .then_some((told, self.slot(first), self.slot(second)))
+    }
+
+    /// How the way between a switch and the other one of its pair is told.
+    pub(super) fn told(&self, switch: usize) -> Opening {
+        self.openings[switch]
     }
 
     /// Phase of a switch.
     pub(super) fn phase(&self, u: &[f64], switch: usize) -> f64 {
         self.cut(u, Cut::Switch(switch)).phase
+    }
+}
+
+/// How the way between this switch and another one at its level is told.
+fn opening(system: &dyn System, contacts: &[Contact], switch: &Switch) -> Opening {
+    let facts = system.law(contacts[switch.contact].law).facts();
+    if facts.levels[switch.level].force_jumps {
+        Opening::Root
+    } else {
+        Opening::Square
     }
 }
 

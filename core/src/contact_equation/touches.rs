@@ -8,11 +8,11 @@ use super::run::{Run, SAME};
 use crate::branches::extreme::Extreme;
 use crate::branches::recurrence::Recurrence;
 
-/// What `H` of a pair may be where its gap touches the level, and where that is still what an extreme beyond it goes with.
+/// What `H` of a pair may be where its gap touches the level.
 const TOUCHES: f64 = 1e-9;
-const BEYOND: f64 = 1e-2;
-/// `H` below which how far beyond a level an extreme is is rounding.
-const ROUNDED: f64 = 1e-12;
+/// The root of `H` where the force jumps: up to the first it is how far beyond the level an extreme is, below the other one that is rounding.
+const BEYOND: f64 = 0.2;
+const ROUNDED: f64 = 1e-6;
 /// Levels that differ by this part are one.
 const SAME_LEVEL: f64 = 1e-9;
 /// Where gaps are compared, in parts of the time after which the orbit comes back: nowhere in particular.
@@ -176,24 +176,45 @@ impl Run<'_> {
     }
 
     /// Writes the linear form of unknowns that gap less level is at an extreme that is short of it, in units of the extreme: by (3) of
-    /// [`skeleton`](super::skeleton) a multiple of `H`; beyond a level where the force jumps another multiple, to leading order. Says whether the
-    /// extreme is watched.
+    /// [`skeleton`](super::skeleton) a multiple of `H`; beyond a level where the force jumps, to leading order, of its square root's square. Says
+    /// whether the extreme is watched.
     pub(super) fn extreme_form(&self, u: &[f64], extreme: &Extreme, form: &mut [f64]) -> bool {
         let watched = self.watched(u, extreme);
         if let Some((square, bend)) = watched {
-            let short = -bend / extreme.size;
-            let beyond = extreme.above / u[square];
+            let beyond = extreme.jumps && u[square] > ROUNDED;
             form.fill(0.0);
-            form[square] = if u[square] > ROUNDED && beyond * short > 0.0 {
-                beyond
+            form[square] = if beyond {
+                2.0 * extreme.above / u[square]
             } else {
-                short
+                -bend / extreme.size
             };
         }
         watched.is_some()
     }
 
-    /// The unknown `H` of the pair that watches an extreme which is short of its level, and half of `g''`.
+    /// Unknowns beside some, in which an extreme has about a height, in its units: where the force jumps at its level, the pair of switches that
+    /// watches it is that far apart.
+    pub(super) fn lifted(&self, u: &[f64], extreme: &Extreme, height: f64) -> Option<Vec<f64>> {
+        let (place, bend) = self.watched(u, extreme).filter(|_| extreme.jumps)?;
+        let is_clear = (height < 0.0) == extreme.maximum;
+        let beyond = u[place];
+        // Half of `g''` beyond the level.
+        let inside = if beyond > ROUNDED {
+            (extreme.above / (beyond * beyond)).abs()
+        } else {
+            (bend / extreme.size).abs()
+        };
+        let mut lifted = u.to_vec();
+        lifted[place] = if is_clear {
+            -height * extreme.size / bend
+        } else {
+            (height.abs() / inside).sqrt()
+        };
+        Some(lifted)
+    }
+
+    /// The unknown `H` of the pair that watches an extreme which is short of its level, or its root beyond one where the force jumps, and half of
+    /// `g''`.
     pub(super) fn watched(&self, u: &[f64], extreme: &Extreme) -> Option<(usize, f64)> {
         let skeleton = &self.equations.skeleton;
         let images = self.images();

@@ -195,8 +195,25 @@ impl CornerSearch<'_> {
     }
 
     /// The solution near a point whose extreme has a height.
-    fn beside(&mut self, from: &CurvePoint, mut extreme: Extreme, height: f64) -> Option<Beside> {
-        let (scale, n) = (from.scale, from.u.len() - 1);
+    fn beside(&mut self, from: &CurvePoint, extreme: Extreme, height: f64) -> Option<Beside> {
+        let Some(u) = self.problem.lifted(&from.u, &extreme, height) else {
+            return self.beside_by_steps(from, extreme, height);
+        };
+        let lifted = Extreme {
+            above: height,
+            ..extreme
+        };
+        self.solution(from, u, lifted, height)
+    }
+
+    /// The same along the tangent, where no unknown tells the height.
+    fn beside_by_steps(
+        &mut self,
+        from: &CurvePoint,
+        mut extreme: Extreme,
+        height: f64,
+    ) -> Option<Beside> {
+        let n = from.u.len() - 1;
         let mut u = from.u.clone();
         let mut form = vec![0.0; n + 1];
         let mut tangent = vec![0.0; n + 1];
@@ -215,6 +232,20 @@ impl CornerSearch<'_> {
             extreme = again(self.problem, &u, &extreme)?;
         }
         extreme = self.lift(&mut u, &tangent, extreme, height)?;
+        self.solution(from, u, extreme, height)
+    }
+
+    /// Solves the equations until an extreme has about a height.
+    fn solution(
+        &mut self,
+        from: &CurvePoint,
+        mut u: Vec<f64>,
+        mut extreme: Extreme,
+        height: f64,
+    ) -> Option<Beside> {
+        let scale = from.scale;
+        let mut form = vec![0.0; u.len()];
+        let mut tangent = vec![0.0; u.len()];
         for _ in 0..ORBITS {
             let rise = height - extreme.above;
             self.solve(&mut u, &extreme, rise, &mut form)?;
