@@ -145,7 +145,7 @@ impl Integrals {
         let size = self.targets() * n;
         let once = &mut self.once[r * size..][..size];
         let twice = &mut self.twice[r * size..][..size];
-        let rule = of.nodes.between(block.rate() * time);
+        let rule = of.nodes.between(block.rate() * time.abs());
         self.kernels.clear();
         let left = rule.left.iter();
         self.kernels
@@ -204,7 +204,7 @@ impl Integrals {
     /// (2) of a pair, whose kernels are known.
     fn by_time(&mut self, of: &Loaded<'_>, r: usize, block: &Block) {
         let (n, targets, time) = (self.nodes, self.targets(), of.time);
-        let rule = of.nodes.between(block.rate() * time);
+        let rule = of.nodes.between(block.rate() * time.abs());
         let loads = [0, 1].map(|i| &self.load[0][(2 * r + i) * n..][..n]);
         let (mut integral, mut slope) = ([0.0; 2], [0.0; 2]);
         let mut before = 0.0;

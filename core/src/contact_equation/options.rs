@@ -7,7 +7,7 @@ use crate::orbit::observe::Accuracy;
 /// sampled.
 ///
 /// Where an orbit comes back after a part of its period with coordinates or contacts in each other's place, as in a bearing or between two
-/// equal stops, that part is all that is computed. Refused are systems whose force jumps at a level.
+/// equal stops, that part is all that is computed.
 ///
 /// Nodes follow the [tolerance](crate::FrequencyResponse::tolerance); events are located again with more nodes until their value is known
 /// to nine digits. Branches that begin at its events, and orbits at a value, are computed by [`Shooting`](crate::Shooting).

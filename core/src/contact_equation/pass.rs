@@ -96,7 +96,8 @@ impl Pass<'_> {
         }
     }
 
-    /// Over an interval.
+    /// Over an interval. Where two contacts switch in another order than they are told in, its way is negative, and (1) goes back: to first
+    /// order in it the forces do what they do in the right order.
     pub(super) fn go(&mut self, interval: &Interval, passed: &mut Passed) {
         let from = self.skeleton.place(self.u, interval.from);
         let to = self.skeleton.place(self.u, interval.to);
@@ -122,10 +123,10 @@ impl Pass<'_> {
         }
         passed.states.clear();
         passed.states.extend_from_slice(&self.room.y);
-        if time > 0.0 {
-            self.interior(&stretch, passed);
-        } else {
+        if time == 0.0 {
             self.nowhere(interval);
+        } else {
+            self.interior(&stretch, passed);
         }
         if let Some(switch) = interval.ends {
             self.at_switch(&stretch, switch);
@@ -259,12 +260,31 @@ impl Pass<'_> {
             out,
         );
         for (node, at) in nodes.enumerate() {
+            if !self.room.forces[at].is_finite() {
+                self.hold(active, at);
+            }
             let row = active.first + node;
             self.residual[row] = self.u[row] - self.room.forces[at];
             if self.derivatives {
                 self.row(stretch, at, node, row);
             }
         }
+    }
+
+    /// Takes the force at the level where there is none beyond it, as of a power: guesses lie there, and orbits where switches of two contacts
+    /// pass each other.
+    fn hold(&mut self, active: &Active, at: usize) {
+        let contact = &self.values.contacts[active.contact];
+        let room = &mut *self.room;
+        let gap = contact.held(active.piece, room.gaps[at]);
+        let out = Derivatives {
+            force: &mut room.forces[at..=at],
+            by_gap: &mut room.by_gap[at..=at],
+            by_rate: &mut room.by_rate[at..=at],
+        };
+        let (law, piece) = (self.system.law(contact.law), On::Piece(active.piece));
+        law.derivatives(piece, &contact.arguments, &[gap], &[room.rates[at]], out);
+        room.by_gap[at] = 0.0;
     }
 
     /// Derivatives of a residual at a node.

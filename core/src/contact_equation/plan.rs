@@ -8,6 +8,7 @@ use super::gaps::{BEND, Gaps, beginning, is_lonely, piece, seen};
 use super::motion::GapExtreme;
 use super::placement::{Beginning, Placed, Placement, Resolution, Switch, Told, length};
 use super::skeleton::Skeleton;
+use super::values::Contact;
 use crate::branches::recurrence::Recurrence;
 use crate::law::{Derivatives, Law, On};
 
@@ -165,8 +166,8 @@ pub(super) fn write_forces(equations: &Equations, gaps: &Gaps<'_>, u: &mut [f64]
             let law = equations.setting.system.law(of.law);
             for node in 0..interval.nodes.count() {
                 let phase = from + interval.nodes.targets[node] * length;
-                let [gap, rate] = gaps.gap(active.contact, phase);
-                u[active.first + node] = force(law, &of.arguments, active.piece, gap, rate);
+                let gap = gaps.gap(active.contact, phase);
+                u[active.first + node] = force(law, of, active.piece, gap);
             }
         }
     }
@@ -182,26 +183,15 @@ pub(super) struct Frame {
 }
 
 /// Force on a piece. Beyond its levels, where a guess may lie, it is that at the level.
-fn force(law: &dyn Law, arguments: &[f64], piece: usize, gap: f64, rate: f64) -> f64 {
-    let mut levels = vec![0.0; law.facts().levels.len()];
-    law.levels(arguments, &mut levels);
-    let above = piece
-        .checked_sub(1)
-        .map_or(f64::NEG_INFINITY, |level| levels[level]);
-    let below = levels.get(piece).copied().unwrap_or(f64::INFINITY);
+fn force(law: &dyn Law, of: &Contact, piece: usize, [gap, rate]: [f64; 2]) -> f64 {
     let (mut force, mut by_gap, mut by_rate) = ([0.0], [0.0], [0.0]);
     let out = Derivatives {
         force: &mut force,
         by_gap: &mut by_gap,
         by_rate: &mut by_rate,
     };
-    law.derivatives(
-        On::Piece(piece),
-        arguments,
-        &[gap.clamp(above, below)],
-        &[rate],
-        out,
-    );
+    let gap = of.held(piece, gap);
+    law.derivatives(On::Piece(piece), &of.arguments, &[gap], &[rate], out);
     force[0]
 }
 

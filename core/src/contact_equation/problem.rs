@@ -2,7 +2,6 @@
 
 use super::equations::Setting;
 use super::placement::Resolution;
-use crate::error::Error;
 use crate::shooting::problem::ShootingProblem;
 
 /// Nodes of a stretch and panels of a whole period, coarser ones first.
@@ -36,10 +35,7 @@ pub(crate) struct ContactProblem {
 
 impl ContactProblem {
     /// Of what was asked for.
-    ///
-    /// # Errors
-    /// If a force jumps at a level: other methods have those.
-    pub(crate) fn new(asked: ShootingProblem, tolerance: f64) -> Result<Self, Error> {
+    pub(crate) fn new(asked: ShootingProblem, tolerance: f64) -> Self {
         let setting = Setting::new(
             &asked.system,
             asked.variable,
@@ -47,10 +43,10 @@ impl ContactProblem {
             asked.omega,
             &asked.cancel,
         );
-        Ok(Self {
+        Self {
             setting,
             asked,
             tolerance,
-        })
+        }
     }
 }

@@ -122,6 +122,14 @@ pub(super) struct Contact {
 }
 
 impl Contact {
+    /// A gap on a piece: no farther than at its ends.
+    pub(super) fn held(&self, piece: usize, gap: f64) -> f64 {
+        let below = piece.checked_sub(1).map(|level| self.levels[level]);
+        let above = self.levels.get(piece);
+        gap.max(below.unwrap_or(f64::NEG_INFINITY))
+            .min(above.copied().unwrap_or(f64::INFINITY))
+    }
+
     /// The highest harmonic of what moves in its gap.
     pub(super) fn harmonic(&self) -> f64 {
         self.gap.harmonic().max(self.offset.harmonic())

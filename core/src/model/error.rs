@@ -68,12 +68,6 @@ pub enum ModelError {
         "the motion has no closed form: a force is not affine on one of its pieces, or a stiffness or a direction varies in time"
     )]
     NotAffine,
-    /// The contact equation does not hold for systems of this kind.
-    #[error("not by the contact equation: {why}; `HarmonicBalance` and `Shooting` do that")]
-    NoContactEquation {
-        /// What it does not know.
-        why: &'static str,
-    },
 }
 
 crate::error::room_error! {
@@ -86,7 +80,6 @@ crate::error::room_error! {
     CarriedAway { value, load, direction }
     Free { direction }
     NotAffine {}
-    NoContactEquation { why }
     ;
 }
 

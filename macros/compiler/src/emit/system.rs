@@ -155,21 +155,22 @@ fn facts(model: &Model) -> TokenStream {
     }));
     let facts = if facts.units.is_empty() && facts.outputs.is_empty() {
         quote! {
-            system_facts(#name, #equation, #coordinates, PARAMETERS, #divisor, #laws, #contacts, #places)
+            system_facts(#name, #equation, #coordinates, PARAMETERS, #divisor, #laws, CONTACTS, #places)
         }
     } else {
         quote! {
             measured_system(
-                #name, #equation, #coordinates, #units, PARAMETERS, #divisor, #laws, #contacts, #places,
+                #name, #equation, #coordinates, #units, PARAMETERS, #divisor, #laws, CONTACTS, #places,
                 { const OUTPUTS: &[__system::OutputFacts] = #outputs; OUTPUTS }
             )
         }
     };
-    let names = imported(&quote!(#parameters #facts));
+    let names = imported(&quote!(#parameters #contacts #facts));
     quote! {
         {
             #names
             const PARAMETERS: &[__system::ParameterFacts] = #parameters;
+            const CONTACTS: &[__system::ContactFacts] = #contacts;
             #facts
         }
     }
