@@ -11,7 +11,7 @@ use crate::branches::recurrence::Recurrence;
 /// What `H` of a pair may be where its gap touches the level.
 const TOUCHES: f64 = 1e-9;
 /// The root of `H` where the force jumps: up to the first it is how far beyond the level an extreme is, below the other one that is rounding.
-const BEYOND: f64 = 0.2;
+const BEYOND: f64 = 0.5;
 const ROUNDED: f64 = 1e-6;
 /// Levels that differ by this part are one.
 const SAME_LEVEL: f64 = 1e-9;
@@ -220,7 +220,8 @@ impl Run<'_> {
         let images = self.images();
         let Recurrence { period, parts, .. } = *skeleton.recurrence();
         let whole = TAU * period as f64;
-        let is_watched = |index: usize, part: usize| {
+        // The sign with which it is watched: a later part of the period may be the first one mirrored.
+        let sign_of = |index: usize, part: usize| {
             let switch = &skeleton.switches[index];
             let phase = skeleton.phase(u, index) + skeleton.length * part as f64;
             let apart = (TAU * phase / whole - extreme.tau).rem_euclid(TAU);
@@ -232,7 +233,7 @@ impl Run<'_> {
                 (levels - 1 - switch.level, !switch.rises)
             };
             let same = (contact, level, rises) == (extreme.contact, extreme.level, extreme.maximum);
-            same && parts as f64 * apart.min(TAU - apart) < SAME
+            (same && parts as f64 * apart.min(TAU - apart) < SAME).then_some(sign)
         };
         (0..skeleton.switches.len()).find_map(|index| {
             let Told::First { other, bend } = skeleton.switches[index].told else {
@@ -240,8 +241,8 @@ impl Run<'_> {
             };
             let square = skeleton.slot(other);
             let most = if extreme.jumps { BEYOND } else { TOUCHES };
-            let short = u[square] <= most && (0..parts).any(|part| is_watched(index, part));
-            short.then_some((square, bend))
+            let sign = (0..parts).find_map(|part| sign_of(index, part))?;
+            (u[square] <= most).then_some((square, sign * bend))
         })
     }
 }

@@ -16,6 +16,8 @@ const BENDS: f64 = 0.9;
 const ACROSS: f64 = 1e-6;
 /// Each of the points on the way to a corner is so much nearer to the level than the one before.
 const WAY: f64 = 0.1;
+/// Or by less, where the branch bends by more than a right angle between two of them: up to this.
+const CLOSEST: f64 = 0.7;
 /// Where the walk goes on, by its height: the first of them that is not farther away than this, in units of the walk.
 const HEIGHTS: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 const FAR: f64 = 0.03;
@@ -103,16 +105,10 @@ impl CornerSearch<'_> {
             return None;
         }
         if !extreme.is_clear() {
-            corner.way = self.way(&corner, extreme.above);
+            corner.way = self.way(&corner, extreme.above)?;
         }
-        let mut last = at;
-        for point in corner.way.iter().chain([&corner.end]) {
-            if self.bend(last, point) <= 0.0 {
-                return None;
-            }
-            last = point;
-        }
-        Some(corner)
+        let last = corner.way.last().unwrap_or(at);
+        (self.bend(last, &corner.end) > 0.0).then_some(corner)
     }
 
     /// The orbit that touches, from the side where the level is not crossed.
@@ -148,21 +144,31 @@ impl CornerSearch<'_> {
         Some(touch)
     }
 
-    /// Points between one whose extreme has a height and the end of the branch at a corner: beyond the level it bends with the root of
-    /// the height.
-    fn way(&mut self, corner: &Corner, height: f64) -> Vec<CurvePoint> {
-        let mut way = Vec::new();
-        let mut height = WAY * height;
-        while height.abs() > FIRST / WAY {
-            if let Some(mut beside) =
-                self.beside(&corner.touch.located.point, corner.touch.extreme, height)
-            {
-                direct(&mut beside.point, corner.forwards);
-                way.push(beside.point);
+    /// Points between where the search comes from, at a height, and the end of the branch at a corner: beyond the level it bends with the root
+    /// of the height. None if it turns back on the way.
+    fn way(&mut self, corner: &Corner, height: f64) -> Option<Vec<CurvePoint>> {
+        let touch = &corner.touch;
+        let mut way: Vec<CurvePoint> = Vec::new();
+        let (mut from, mut next) = (height, WAY * height);
+        while next.abs() > FIRST / WAY {
+            let Some(Beside { mut point, .. }) =
+                self.beside(&touch.located.point, touch.extreme, next)
+            else {
+                next *= WAY;
+                continue;
+            };
+            direct(&mut point, corner.forwards);
+            let last = way.last().unwrap_or(self.approach.from);
+            if self.bend(last, &point) > 0.0 {
+                way.push(point);
+                (from, next) = (next, WAY * next);
+            } else if next / from < CLOSEST {
+                next = from * (next / from).sqrt();
+            } else {
+                return None;
             }
-            height *= WAY;
         }
-        way
+        Some(way)
     }
 
     /// The cosine of the angle between tangents.

@@ -163,6 +163,7 @@ fn go_on(
                 }
                 let mut resized = halted.clone();
                 problem.remap(&mut resized);
+                engine.forget_others(problem, &resized);
                 last = Some(halted);
                 Start::At(resized)
             }
@@ -251,6 +252,20 @@ impl Engine {
         }
         self.see(Seen::at(problem, at, self.falls));
         Continue::Continue(())
+    }
+
+    /// After a change of unknowns, of the points before it only the one to go on from is known in them.
+    fn forget_others(&mut self, problem: &mut dyn BranchProblem, halted: &Halted) {
+        let last = if self.refused {
+            halted.previous.as_ref()
+        } else {
+            Some(&halted.point)
+        };
+        if self.seen.last().map(|seen| &seen.point) != last {
+            self.seen.clear();
+            let seen = last.map(|at| Seen::at(problem, at, self.falls));
+            self.seen.extend(seen);
+        }
     }
 
     /// Remembers a point.

@@ -61,39 +61,49 @@ pub(super) fn units_agree(declaration: &Declaration, diagnostics: &mut Diagnosti
         );
         diagnostics.report(Extent::at(name.span()), message);
     }
-    let mut units = Units::default();
     if without.is_empty() {
-        let mut checker = Checker {
-            declaration,
-            names: with,
-            constants: Constants::of(&declaration.lets),
-            known: HashMap::new(),
-            forces: Vec::new(),
-            depth: 0,
-        };
-        let second = Dimension::of_symbol("s");
-        checker.names.insert("t".to_owned(), second);
-        checker
-            .names
-            .insert("omega".to_owned(), Dimension::ONE.per_time(1));
-        checker.all(diagnostics);
-        let text = |unit: &Option<(Unit, Extent)>| {
-            let text = unit.as_ref().map(|(unit, _)| unit.text.clone());
-            text.filter(|text| text != "1").unwrap_or_default()
-        };
-        for coordinate in &declaration.coordinates {
-            let unit = std::iter::repeat_n(text(&coordinate.unit), coordinate.size());
-            units.coordinates.extend(unit);
-        }
-        units.parameters = (declaration.parameters.iter())
-            .map(|parameter| text(&parameter.unit))
-            .collect();
-        for output in &declaration.outputs {
-            let found = diagnostics.keep(checker.output(output));
-            units.outputs.extend(found);
-        }
-        units.laws = checker.units_of_laws();
+        checked(declaration, with, diagnostics)
+    } else {
+        Units::default()
     }
+}
+
+/// Every sum of a declaration whose coordinates and parameters have these units is checked, and what follows from them is told.
+fn checked(
+    declaration: &Declaration,
+    names: HashMap<String, Measure>,
+    diagnostics: &mut Diagnostics,
+) -> Units {
+    let mut checker = Checker {
+        declaration,
+        names,
+        constants: Constants::of(&declaration.lets),
+        known: HashMap::new(),
+        forces: Vec::new(),
+        depth: 0,
+    };
+    let second = Dimension::of_symbol("s");
+    checker.names.insert("t".to_owned(), second);
+    let per_second = Dimension::ONE.per_time(1);
+    checker.names.insert("omega".to_owned(), per_second);
+    checker.all(diagnostics);
+    let text = |unit: &Option<(Unit, Extent)>| {
+        let text = unit.as_ref().map(|(unit, _)| unit.text.clone());
+        text.filter(|text| text != "1").unwrap_or_default()
+    };
+    let mut units = Units::default();
+    for coordinate in &declaration.coordinates {
+        let unit = std::iter::repeat_n(text(&coordinate.unit), coordinate.size());
+        units.coordinates.extend(unit);
+    }
+    units.parameters = (declaration.parameters.iter())
+        .map(|parameter| text(&parameter.unit))
+        .collect();
+    for output in &declaration.outputs {
+        let found = diagnostics.keep(checker.output(output));
+        units.outputs.extend(found);
+    }
+    units.laws = checker.units_of_laws();
     units
 }
 

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
 /// What `hertzian::emitted::constants` has.
-const CONSTANTS: [&str; 77] = [
+const CONSTANTS: [&str; 78] = [
     "Absolute",
     "Add",
     "Argument",
@@ -57,6 +57,7 @@ const CONSTANTS: [&str; 77] = [
     "argument",
     "at",
     "contact",
+    "contact_in",
     "cos",
     "damping",
     "data",
