@@ -69,6 +69,10 @@ pub(crate) enum Read {
     ResizeBehind,
     /// It is to be read again with other unknowns.
     Refused,
+    /// The step to it is to be made again, shorter; where there is none, it is refused.
+    TooFar,
+    /// No equations are found for what is behind the point before it: the walk ends.
+    Lost,
     /// It was kept, and the walk ends: the caller asked for it, or the orbit could not be read.
     Stop,
 }
@@ -249,6 +253,12 @@ pub(crate) trait BranchProblem {
     fn lifted(&mut self, u: &[f64], extreme: &Extreme, height: f64) -> Option<Vec<f64>> {
         let _ = (u, extreme, height);
         None
+    }
+
+    /// Whether the equations, as they are now, are those of the motion at a solution: other gaps may have passed their levels.
+    fn describes(&mut self, at: &CurvePoint) -> bool {
+        let _ = at;
+        true
     }
 
     /// How slowly, at a solution, a gap passes a level where the force jumps while it is slowed down: the height at which it would turn,

@@ -101,8 +101,7 @@ pub(crate) fn branch(
     let mut run = Run::new(problem, frame, resolution, equations);
     let mut branch = ContactBranch::new(&mut run, visit);
     let outcome = engine::run(&mut branch, Start::Near(u), options);
-    let lost = branch.lost;
-    ended(problem, run, outcome, lost, options, started)
+    ended(problem, run, outcome, options.from, started)
 }
 
 /// Goes on with a branch that was interrupted.
@@ -125,8 +124,7 @@ pub(crate) fn resume(
     }
     branch.take_up(rest);
     let outcome = engine::resume(&mut branch, rest.walk.clone(), options);
-    let lost = branch.lost;
-    ended(problem, run, outcome, lost, options, started)
+    ended(problem, run, outcome, options.from, started)
 }
 
 /// How a branch is followed from a value to another one.
@@ -138,7 +136,7 @@ fn options(problem: &ContactProblem, from: f64, to: f64) -> FollowOptions {
     options
 }
 
-/// The branch that a run has gathered, as the engine has ended; it may have been lost where a gap reached a level.
+/// The branch that a run has gathered, as the engine has ended.
 ///
 /// # Errors
 /// If there is no first orbit.
@@ -146,11 +144,9 @@ fn ended(
     problem: &ContactProblem,
     run: Run<'_>,
     outcome: Result<Stop, NewtonError>,
-    lost: bool,
-    options: FollowOptions,
+    from: f64,
     started: Instant,
 ) -> Result<Followed, Error> {
-    let from = options.from;
     let joined = run.joined.as_ref().map(|joined| Stop::Joined {
         period: joined.period,
         symmetric: joined.image.is_minus(),
@@ -158,11 +154,6 @@ fn ended(
     });
     let stopped = match outcome {
         Ok(_) if joined.is_some() => joined.unwrap_or(Stop::Interrupted),
-        Ok(Stop::Interrupted) if lost => Stop::StepTooShort {
-            step: options.steps.smallest,
-            value: run.record.points.last().map_or(from, |point| point.value),
-            reason: NewtonError::NotFinite { iterations: 0 },
-        },
         Ok(stopped) => stopped,
         Err(reason) => {
             return Err(OrbitError::NoStart {

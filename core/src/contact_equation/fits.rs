@@ -107,6 +107,31 @@ impl Run<'_> {
         })
     }
 
+    /// Whether an extreme of the last pass is beyond a level where the force jumps, without switches around it.
+    pub(super) fn has_leapt(&self, u: &[f64]) -> bool {
+        let motion = Motion::of(&self.equations);
+        let found = motion.extremes().gaps.concat();
+        let skeleton = &self.equations.skeleton;
+        found.iter().any(|extreme| {
+            let contact = extreme.contact;
+            let piece = skeleton.intervals[extreme.interval].pieces[contact];
+            let levels = self.equations.values.contacts[contact].levels.iter();
+            levels.enumerate().any(|(level, value)| {
+                let above = extreme.gap - value;
+                let beyond = if level < piece { -above } else { above };
+                let at_once = || self.has_leap(contact, level);
+                beyond > 0.0 && at_once() && !self.is_watched(u, extreme, level)
+            })
+        })
+    }
+
+    /// Whether the force of a contact jumps at a level.
+    pub(super) fn has_leap(&self, contact: usize, level: usize) -> bool {
+        let law = self.equations.values.contacts[contact].law;
+        let facts = self.equations.setting.system.law(law).facts();
+        facts.levels[level].force_jumps
+    }
+
     fn extreme_fits(&self, u: &[f64], extreme: &GapExtreme, all: &[GapExtreme]) -> Fits {
         let GapExtreme {
             contact,
@@ -123,7 +148,9 @@ impl Run<'_> {
         for (level, value) in levels.iter().enumerate() {
             let above = gap - value;
             let beyond = if level < piece { -above } else { above };
-            if beyond > BEYOND * size {
+            // A leap of the force changes the orbit at once.
+            let at_once = self.has_leap(contact, level) && !self.is_watched(u, extreme, level);
+            if beyond > if at_once { 0.0 } else { BEYOND * size } {
                 return Fits::No;
             }
             let lonely = || is_lonely(extreme, all, skeleton.length, plan::LONELY);
@@ -136,23 +163,32 @@ impl Run<'_> {
 
     /// Whether an extreme that is short of a level is to be watched and is not yet.
     fn is_near(&self, u: &[f64], extreme: &GapExtreme, level: usize) -> bool {
-        let skeleton = &self.equations.skeleton;
-        let place = (extreme.contact, level);
-        let phase = extreme.phase;
-        let above = extreme.gap - self.equations.values.contacts[place.0].levels[level];
-        let watched = skeleton.switches.iter().enumerate().any(|(index, switch)| {
-            let told = matches!(switch.told, Told::First { .. });
-            let apart = (skeleton.phase(u, index) - phase).rem_euclid(skeleton.length);
-            let near = apart.min(skeleton.length - apart) < SAME;
-            told && (switch.contact, switch.level) == place && near
-        });
-        if watched {
+        let (contact, phase) = (extreme.contact, extreme.phase);
+        let above = extreme.gap - self.equations.values.contacts[contact].levels[level];
+        if self.is_watched(u, extreme, level) {
             return false;
         }
         let motion = Motion::of(&self.equations);
         let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
         let gaps = self.gaps(&at);
-        let square = -above / gaps.bend(place.0, phase);
+        let square = -above / gaps.bend(contact, phase);
         (plan::NEAR..=0.0).contains(&square)
+    }
+
+    /// Whether a pair of switches stands at an extreme: both at it, where it is short of the level, or else around it.
+    fn is_watched(&self, u: &[f64], extreme: &GapExtreme, level: usize) -> bool {
+        let skeleton = &self.equations.skeleton;
+        let place = (extreme.contact, level);
+        skeleton.switches.iter().enumerate().any(|(index, switch)| {
+            let Told::First { other, .. } = switch.told else {
+                return false;
+            };
+            let [first, second] = [index, other].map(|index| skeleton.phase(u, index));
+            let apart = (first - extreme.phase).rem_euclid(skeleton.length);
+            let around = (extreme.phase - first).rem_euclid(skeleton.length) <= second - first;
+            let near = apart.min(skeleton.length - apart) < SAME;
+            let short = u[skeleton.slot(other)] <= 0.0;
+            (switch.contact, switch.level) == place && if short { near } else { around }
+        })
     }
 }

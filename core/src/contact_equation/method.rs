@@ -32,6 +32,8 @@ pub(super) const VANISHED: f64 = 1e-14;
 pub(super) const VANISHING: f64 = 1e-9;
 /// A point is refused so often at most.
 pub(super) const REFUSALS: usize = 8;
+/// A step is made again shorter so often at most, where it leaps over a touch of a level where the force jumps.
+const SHORTENED: usize = 8;
 /// Multipliers that may be wrong by more are not compared with one.
 const COARSE: f64 = 1e-3;
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
@@ -60,10 +62,10 @@ pub(super) struct ContactBranch<'b, 'r> {
     pub(super) stuck: bool,
     /// How often the last point was refused.
     pub(super) refused: usize,
+    /// How often the step to it was made again, shorter.
+    pub(super) shortened: usize,
     /// Points that are followed before fewer nodes are tried.
     pub(super) held: usize,
-    /// The branch was lost where a gap reached a level, and not why.
-    pub(super) lost: bool,
     visit: See<'b>,
 }
 
@@ -126,7 +128,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             before: None,
             stuck: false,
             refused: 0,
-            lost: false,
+            shortened: 0,
             visit,
         }
     }
@@ -210,6 +212,7 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             return Read::Refused;
         }
         self.refused = 0;
+        self.shortened = 0;
         self.held = self.held.saturating_sub(1);
         self.run.equations.known[0].clone_from(&at.u);
         if !self.keep_point(at, read) {
@@ -316,17 +319,20 @@ impl BranchProblem for ContactBranch<'_, '_> {
         let equations = &self.run.equations;
         if equations.failed || equations.is_in_order() {
             let Some(read) = self.run.read_on(at) else {
-                self.lost = true;
-                return Read::Stop;
+                return Read::Lost;
             };
             let fits = self.run.fits(&at.u);
             if fits != Fits::No {
                 return self.decide(at, read, fits, stuck);
             }
+            // Behind a corner there may be nothing near by: it is come to from where it is watched.
+            if again && self.shortened < SHORTENED && self.run.has_leapt(&at.u) {
+                self.shortened += 1;
+                return Read::TooFar;
+            }
         }
         if !again || !self.prepare(&at.u, self.run.resolution) {
-            self.lost = true;
-            return Read::Stop;
+            return Read::Lost;
         }
         self.refused += 1;
         Read::Refused
@@ -373,6 +379,15 @@ impl BranchProblem for ContactBranch<'_, '_> {
 
     fn lifted(&mut self, u: &[f64], extreme: &Extreme, height: f64) -> Option<Vec<f64>> {
         self.run.lifted(u, extreme, height)
+    }
+
+    fn slowest(&mut self, u: &[f64]) -> f64 {
+        self.run.slowest(u)
+    }
+
+    fn describes(&mut self, at: &CurvePoint) -> bool {
+        self.run.equations.compute(&at.u, false);
+        !self.run.equations.failed && self.run.fits(&at.u) != Fits::No
     }
 
     fn keep_touch(&mut self, _: &mut Newton, _: Step<'_>, touch: &Touch) {

@@ -15,6 +15,10 @@ const BEYOND: f64 = 0.5;
 const ROUNDED: f64 = 1e-6;
 /// Levels that differ by this part are one.
 const SAME_LEVEL: f64 = 1e-9;
+/// A pair whose `H`, or the root of it, is less is near its touch.
+const WIDE: f64 = 0.03;
+/// How fast a slope changes is seen over this, in radians.
+const SHORT: f64 = 1e-4;
 /// Where gaps are compared, in parts of the time after which the orbit comes back: nowhere in particular.
 const LOOKED_AT: f64 = 0.377;
 
@@ -84,6 +88,41 @@ impl Run<'_> {
             }
         }
         true
+    }
+
+    /// How slowly a gap passes a level where the force jumps while it is slowed down: the height `r^2 / (2 |a|)` at which it would turn, in units
+    /// of half of the gap's range, with its slope `r` by the phase and how fast that changes, `a`, before the level.
+    pub(super) fn slowest(&mut self, u: &[f64]) -> f64 {
+        self.equations.compute(u, false);
+        if self.equations.failed || !self.equations.is_in_order() {
+            return f64::INFINITY;
+        }
+        let motion = Motion::of(&self.equations);
+        let found = motion.extremes().gaps.concat();
+        let skeleton = &self.equations.skeleton;
+        let heights = skeleton.switches.iter().enumerate().map(|(index, switch)| {
+            let contact = switch.contact;
+            let size = 0.5 * self.range(&found, contact);
+            let [from, to] = motion.phases(index);
+            let width = (to - from).min(SHORT);
+            let slope = |phase: f64| motion.gap(contact, index, phase)[1];
+            let (before, rate) = (slope(to - width), slope(to));
+            let change = (rate - before) / width;
+            let slowed = rate * change < 0.0 && self.has_leap(contact, switch.level);
+            // A pair passes as slowly as its gap has gone beyond the level.
+            let other = match switch.told {
+                Told::First { other, .. } => Some(other),
+                Told::Second { .. } => Some(index),
+                Told::Alone => None,
+            };
+            let wide = other.is_none_or(|other| u[skeleton.slot(other)] > WIDE);
+            if slowed && wide && width > 0.0 {
+                0.5 * rate * rate / change.abs() / size
+            } else {
+                f64::INFINITY
+            }
+        });
+        heights.fold(f64::INFINITY, f64::min)
     }
 
     /// Extremes over the whole period of the orbit of the last pass: where it comes back earlier, with their images.

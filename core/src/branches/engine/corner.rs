@@ -142,8 +142,7 @@ impl Engine {
         let u = &last.point.u;
         let mut extremes = Vec::new();
         problem.extremes(u, &mut extremes);
-        let touches =
-            |extreme: &Extreme| extreme.jumps && extreme.is_clear() && extreme.above.abs() < PULLED;
+        let touches = |extreme: &Extreme| extreme.jumps && extreme.above.abs() < PULLED;
         if extremes.iter().any(touches) || problem.slowest(u) < PULLED {
             return Stop::PulledOn { value };
         }
@@ -168,6 +167,11 @@ impl Engine {
             Some((search.distance(at, &corner.end), corner, next))
         });
         let nearest = found.min_by(|a, b| a.0.total_cmp(&b.0));
+        // Where the equations hold no more at a touch, something else comes first, and the way to it is to be gone in shorter steps.
+        let nearest = nearest.filter(|(_, corner, next)| {
+            let mut both = [&corner.touch.located.point, next].into_iter();
+            both.all(|at| tried.problem.describes(at))
+        });
         if let Some((_, corner, next)) = &nearest {
             let after = tried.problem.points();
             self.keep_corner(&mut tried, [at, next], corner, after);

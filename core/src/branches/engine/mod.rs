@@ -49,10 +49,15 @@ use crate::continuation::follow::{
     follow_until_stuck,
 };
 use crate::continuation::newton::{Newton, NewtonError};
+use crate::continuation::problem::Norm;
 use crate::event::{EventKind, Turn};
 
 /// Points that are remembered: a parabola goes through them.
 const POINTS: usize = 3;
+/// A step that went too far is made again with this part of its length.
+const SHORTER: f64 = 0.3;
+/// A gap that would turn at this height beyond its level, in units of half of its range, does not pass it.
+const STOPPED: f64 = 1e-8;
 
 /// The state of a walk along a branch.
 struct Engine {
@@ -177,6 +182,7 @@ fn go_on(
                 };
                 // What was found with the former unknowns stands.
                 problem.revert();
+                engine.forget_others(problem, &halted);
                 Start::At(halted)
             }
         };
@@ -239,9 +245,22 @@ impl Engine {
 
     /// What follows from how a point was read.
     fn kept(&mut self, problem: &mut dyn BranchProblem, at: &CurvePoint, read: Read) -> Continue {
-        self.refused = read == Read::Refused;
+        self.refused = matches!(read, Read::Refused | Read::TooFar);
         match read {
+            Read::TooFar => {
+                return Continue::Break(if self.go_back(problem, at) {
+                    Halt::Resize
+                } else {
+                    self.ended = Some(self.lost(problem));
+                    Halt::Stop
+                });
+            }
             Read::Refused | Read::Resize => return Continue::Break(Halt::Resize),
+            Read::Lost => {
+                self.ended = Some(self.lost(problem));
+                self.explain_verdict(problem);
+                return Continue::Break(Halt::Stop);
+            }
             Read::Stop => {
                 // What happened in the step to it is not looked for any more, but it is said that something did.
                 self.explain_verdict(problem);
@@ -252,6 +271,36 @@ impl Engine {
         }
         self.see(Seen::at(problem, at, self.falls));
         Continue::Continue(())
+    }
+
+    /// Why no equations are found behind the last point.
+    fn lost(&self, problem: &mut dyn BranchProblem) -> Stop {
+        let last = problem.kept().points.last().map(|point| point.value);
+        let stop = Stop::StepTooShort {
+            step: self.options.steps.smallest,
+            value: last.unwrap_or(self.options.from),
+            reason: NewtonError::NotFinite { iterations: 0 },
+        };
+        self.named(problem, stop)
+    }
+
+    /// Makes the step to a point again, shorter, if there was one. Not if a gap hardly passes its level any more.
+    fn go_back(&mut self, problem: &mut dyn BranchProblem, next: &CurvePoint) -> bool {
+        let last = self.seen.last().map(|seen| seen.point.clone());
+        if let Some(before) = last.filter(|last| last.u.len() == next.u.len()) {
+            if problem.slowest(&before.u) < STOPPED {
+                return false;
+            }
+            let step = Step {
+                before: &before,
+                next,
+            };
+            let norm = Norm::of(problem.equations());
+            let length = norm.length(before.scale, &step.difference());
+            self.back = Some((before, SHORTER * length));
+            self.refused = false;
+        }
+        true
     }
 
     /// After a change of unknowns, of the points before it only the one to go on from is known in them.
