@@ -1,27 +1,65 @@
 //! How far two orbits are apart in what the error is of, and what that is measured by.
 
+use nalgebra::DMatrix;
+
 use super::equations::Equations;
 use super::motion::Motion;
 use super::run::{DIFFERENCE, Run};
+use crate::branches::moduli::multipliers;
 use crate::branches::observed::{EXTREMES, Motion as Extent, Observed};
 use crate::branches::point::Point;
 use crate::continuation::follow::CurvePoint;
 use crate::numeric::roots::Place;
+use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
 
 /// Phases at which two motions are compared.
 const COMPARED: usize = 24;
 
+/// How fast things change with what is varied.
+pub(super) struct Steepness {
+    pub(super) peak_to_peak: f64,
+    pub(super) multipliers: f64,
+}
+
+impl Steepness {
+    /// How far both move where what is varied is shifted.
+    pub(super) fn along(&self, shift: f64) -> [f64; 2] {
+        [self.peak_to_peak, self.multipliers].map(|steepness| {
+            if shift == 0.0 {
+                0.0
+            } else {
+                steepness * shift.abs()
+            }
+        })
+    }
+}
+
 impl Run<'_> {
-    /// How peak-to-peak changes with what is varied, along the tangent.
-    pub(super) fn steepness(&mut self, at: &CurvePoint, point: &Point) -> Option<f64> {
+    /// How peak-to-peak and, with the map of these unknowns, multipliers change with what is varied, along the tangent.
+    pub(super) fn steepness(
+        &mut self,
+        at: &CurvePoint,
+        point: &Point,
+        map: Option<&DMatrix<f64>>,
+    ) -> Option<Steepness> {
         let accuracy = self.accuracy();
         let extremes = self.equations.extremes.get()?.coordinates.clone();
         let slope = at.parameter_slope();
         let step = DIFFERENCE / at.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
         let moved = at.u.iter().zip(&at.tangent);
         let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
-        self.equations.compute(&moved, false);
+        let multipliers = if let Some(map) = map {
+            let parts = self.equations.skeleton.recurrence().parts;
+            let there = self.equations.map(&moved);
+            there.map_or(f64::INFINITY, |there| {
+                let [here, there] = [map, &there].map(|map| multipliers(map, parts));
+                distance(&here, &there)
+            })
+        } else {
+            self.equations.compute(&moved, false);
+            0.0
+        };
         let known = !self.equations.failed && slope != 0.0;
         let apart = known.then(|| {
             if let Accuracy::Output(_) = accuracy {
@@ -32,7 +70,11 @@ impl Run<'_> {
             }
         });
         self.equations.compute(&at.u, false);
-        apart.map(|apart| apart / (step * slope).abs())
+        let by = (step * slope).abs();
+        apart.map(|apart| Steepness {
+            peak_to_peak: apart / by,
+            multipliers: multipliers / by,
+        })
     }
 
     /// How much of an output is rounding of the states of the last pass.

@@ -46,7 +46,7 @@ const FARTHEST: f64 = 0.1;
 pub(super) fn event(run: &mut Run<'_>, zero: &Zero, kind: EventKind) -> Option<Event> {
     let at = &zero.root.located.point;
     let test = Test::of(zero.change.test);
-    let read = run.read(at)?;
+    let read = run.read_event(at)?;
     let mut event = Event {
         kind,
         point: read.point,
@@ -239,7 +239,9 @@ fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(C
 /// Keeps a touch of a level, solved again with more nodes until its value is known.
 pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
     let at = &touch.located.point;
-    let Some(mut read) = run.read(at) else { return };
+    let Some(mut read) = run.read_event(at) else {
+        return;
+    };
     let mut error = touch.error + SAFETY * read.shift.abs();
     if let Some((square, _)) = run.watched(&at.u, &touch.extreme) {
         let mut finer: Option<Equations> = None;

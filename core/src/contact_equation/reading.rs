@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
-use super::errors::everywhere;
+use super::errors::{Steepness, everywhere};
 use super::motion::{Motion, Within};
 use super::placement::Told;
 use super::run::Run;
@@ -181,8 +181,17 @@ impl Run<'_> {
         outputs.motions()
     }
 
-    /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them.
+    /// Reads an orbit with everything that is asked for, its errors as a finer solution shows them: those at its value.
     pub(super) fn read(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
+        self.read_with(at, true)
+    }
+
+    /// The same of an orbit at an event, whose value has an error of its own: multipliers have those of the orbit that it is of.
+    pub(super) fn read_event(&mut self, at: &CurvePoint) -> Option<ReadOrbit> {
+        self.read_with(at, false)
+    }
+
+    fn read_with(&mut self, at: &CurvePoint, at_value: bool) -> Option<ReadOrbit> {
         let (mut point, map) = self.read_plainly(at)?;
         let stiffness = self.stiffness();
         let Some(Finer { u: other, shift }) = self.corrected(at) else {
@@ -206,20 +215,18 @@ impl Run<'_> {
         let moves = apart > 0.0 || self.accuracy().peak_to_peak(&point.observed) > 0.0;
         let noise = if moves { self.noise(&point) } else { 0.0 };
         let size = self.size(&point, noise);
-        let steepness = self
-            .steepness(at, &point)
-            .unwrap_or_else(|| self.rise(&point));
-        let along = if shift == 0.0 {
-            0.0
-        } else {
-            steepness * shift.abs()
-        };
+        let of_map = map.as_ref().filter(|_| at_value && shift != 0.0);
+        let steepness = self.steepness(at, &point, of_map).unwrap_or(Steepness {
+            peak_to_peak: self.rise(&point),
+            multipliers: 0.0,
+        });
+        let [along, moved] = steepness.along(shift);
         let error = part_of(SAFETY * (apart + along) + noise, size);
         point.error = Some(stated(error));
         let mut spread = 0.0;
         if let Some(map) = &map {
             let parts = self.equations.skeleton.recurrence().parts;
-            (point.stability, spread) = stability(map, finer_map.as_ref(), parts);
+            (point.stability, spread) = stability(map, finer_map.as_ref(), parts, moved);
         }
         self.screened = Some(Screened {
             tails: self.tails(&at.u),
@@ -368,11 +375,16 @@ fn stated(error: f64) -> f64 {
     }
 }
 
-/// The multipliers of a map over one of so many parts, with what a finer solution changes in them; and the most that it changes in them or
-/// in the map.
-fn stability(map: &DMatrix<f64>, finer: Option<&DMatrix<f64>>, parts: usize) -> (Stability, f64) {
+/// The multipliers of a map over one of so many parts, with what a finer solution changes in them and how far they move along the branch to
+/// its value; and the most that it changes in them or in the map.
+fn stability(
+    map: &DMatrix<f64>,
+    finer: Option<&DMatrix<f64>>,
+    parts: usize,
+    along: f64,
+) -> (Stability, f64) {
     let found = multipliers(map, parts);
-    let apart = |finer| distance(&found, &multipliers(finer, parts));
+    let apart = |finer| along + distance(&found, &multipliers(finer, parts));
     let moved = finer.map_or(f64::INFINITY, apart);
     let of_map = |finer: &DMatrix<f64>| parts as f64 * (map - finer).norm();
     let spread = finer.map_or(f64::INFINITY, |finer| moved.max(of_map(finer)));

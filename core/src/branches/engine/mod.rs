@@ -57,7 +57,7 @@ const POINTS: usize = 3;
 /// A step that went too far is made again with this part of its length.
 const SHORTER: f64 = 0.3;
 /// A gap that would turn at this height beyond its level, in units of half of its range, does not pass it.
-const STOPPED: f64 = 1e-8;
+const STOPPED: f64 = 1e-12;
 
 /// The state of a walk along a branch.
 struct Engine {

@@ -13,7 +13,7 @@ use crate::branches::solve;
 use crate::cancel::Cancel;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::system::{System, Variable};
-use crate::{Branch, ContactEquation, FrequencyResponse, Shooting};
+use crate::{Branch, ContactEquation, FrequencyResponse, Shooting, Stop};
 
 crate::oscillator! {
     OneSided(x) {
@@ -242,7 +242,13 @@ fn events_agree(request: &FrequencyResponse) {
     let branch = request.clone().by(ContactEquation::new()).run().unwrap();
     let shooting = request.clone().by(Shooting::new().tolerance(1e-12));
     let exact = shooting.run().unwrap();
-    assert_eq!(branch.stopped, exact.stopped);
+    match [branch.stopped, exact.stopped] {
+        // It is found by steps that become ever shorter.
+        [Stop::PulledOn { value: a }, Stop::PulledOn { value: b }] => {
+            assert!((a - b).abs() < 1e-6, "{a} {b}");
+        }
+        [a, b] => assert_eq!(a, b),
+    }
     assert_eq!(branch.turns, []);
     let sorted = |branch: &Branch| {
         let events = branch.events.iter();
