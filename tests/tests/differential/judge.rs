@@ -212,13 +212,10 @@ impl Case {
         let name = "contact equation";
         let request = FrequencyResponse::of(system).by(ContactEquation::new());
         let request = request.from(from).to(to).max_points(POINTS[0]);
-        let branch = match request.run_with(|_| self.clock.flow()) {
-            Ok(branch) => branch,
-            Err(_) => {
-                self.report
-                    .count("branches by the contact equation that did not begin");
-                return None;
-            }
+        let Ok(branch) = request.run_with(|_| self.clock.flow()) else {
+            let what = "branches by the contact equation that did not begin";
+            self.report.count(what);
+            return None;
         };
         self.report.count("branches by the contact equation");
         let passage = Passage::of(name, &branch);
