@@ -134,8 +134,9 @@ fn go_on(
         let begun = start.clone();
         let mut newton = Newton::new(problem.equations());
         newton.remember_contraction(std::mem::take(&mut contraction));
-        let length = newton.norm().unknowns() + 1;
-        engine.seen.retain(|seen| seen.point.u.len() == length);
+        if let Start::At(halted) = &start {
+            engine.forget_others(problem, halted);
+        }
         let outcome = follow_until_stuck(
             problem,
             &mut newton,
@@ -168,7 +169,6 @@ fn go_on(
                 }
                 let mut resized = halted.clone();
                 problem.remap(&mut resized);
-                engine.forget_others(problem, &resized);
                 last = Some(halted);
                 Start::At(resized)
             }
@@ -182,7 +182,6 @@ fn go_on(
                 };
                 // What was found with the former unknowns stands.
                 problem.revert();
-                engine.forget_others(problem, &halted);
                 Start::At(halted)
             }
         };

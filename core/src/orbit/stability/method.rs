@@ -2,9 +2,6 @@
 
 use nalgebra::Complex;
 
-use super::hill::Hill;
-use super::koopman_hill::KoopmanHill;
-use super::monodromy::Monodromy;
 use super::orbit::Orbit;
 
 /// A way from an orbit to its multipliers.
@@ -56,10 +53,12 @@ impl Method {
     /// What computes it.
     pub(crate) fn engine(self) -> Box<dyn Floquet> {
         match self {
-            Self::Default => Box::new(Monodromy::new(false)),
-            Self::Monodromy => Box::new(Monodromy::new(true)),
-            Self::Hill(sorting) => Box::new(Hill::new(sorting)),
-            Self::KoopmanHill(projection) => Box::new(KoopmanHill::new(projection)),
+            Self::Default => Box::new(super::monodromy::Monodromy::new(false)),
+            Self::Monodromy => Box::new(super::monodromy::Monodromy::new(true)),
+            Self::Hill(sorting) => Box::new(super::hill::Hill::new(sorting)),
+            Self::KoopmanHill(projection) => {
+                Box::new(super::koopman_hill::KoopmanHill::new(projection))
+            }
         }
     }
 }

@@ -51,6 +51,7 @@ pub struct Affine {
     pieces: Vec<usize>,
     at: Vec<Option<usize>>,
     column: Vec<f64>,
+    propagator: Vec<f64>,
     /// The state at the end of a stretch.
     next: Vec<f64>,
     /// The flow of the reversed motion; made when it is needed.
@@ -98,8 +99,9 @@ impl Affine {
             rows_by: vec![[0.0; COEFFICIENTS]; most],
             pieces: vec![0; contacts],
             at: vec![None; contacts],
-            column: vec![0.0; order],
+            column: vec![0.0; 2 * model.basis.coordinates],
             next: vec![0.0; 2 * model.basis.coordinates],
+            propagator: vec![0.0; 4 * model.basis.coordinates.pow(2)],
             work: Work::default(),
             cancel: Cancel::new(),
             scalar: Scalar::new(&model),
@@ -168,7 +170,7 @@ impl Affine {
         let range = left.min(table.range());
         let at = &self.at;
         let begins = |exit: &table::ExitLevel| at[exit.contact] == Some(exit.level);
-        let hit = table.first_hit(&self.z, range, begins, rows);
+        let hit = table.first_hit(&self.z, range, begins);
         let cells = hit.map_or(range, |hit| hit.at);
         let last = hit.is_none() && range == left;
         let next = done + cells * table.cell;
@@ -189,6 +191,7 @@ impl Affine {
                 rows: &mut *rows,
                 rows_by: &mut self.rows_by[..table.rows],
                 column: &mut self.column,
+                propagator: &mut self.propagator,
             };
             tangent::advance(&self.model, table, &self.z, cells, tangent, workspace);
         }
@@ -261,12 +264,10 @@ impl Affine {
     fn rises(&mut self, contact: usize, level: usize, phase: f64) -> Result<bool, FlowError> {
         let combination = self.model.combination(&self.pieces, phase, false)?;
         let table = &self.model.at(combination).table;
-        let rows = &mut self.rows[..table.rows];
-        table.polynomials(0, &self.z, rows);
         let mut exits = table.exits.iter();
         let exit = exits.find(|exit| exit.contact == contact && exit.level == level);
-        Ok(exit
-            .is_some_and(|exit| crossing::derivatives(&table.distance(exit, rows), 0.0)[2] > 0.0))
+        let distance = exit.map(|exit| table.distance(exit, 0, &self.z));
+        Ok(distance.is_some_and(|distance| crossing::derivatives(&distance, 0.0)[2] > 0.0))
     }
 }
 

@@ -282,6 +282,7 @@ impl Model {
                 upper,
                 row: vec![0.0; self.basis.order()],
                 ends: Vec::new(),
+                series: Vec::new(),
                 bound: Vec::new(),
             };
             if piece > 0 {

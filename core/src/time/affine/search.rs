@@ -10,7 +10,7 @@
 //! [`crossing`](super::crossing).
 
 use super::crossing::first_zero;
-use super::table::{COEFFICIENTS, ExitLevel, Polynomial, Table};
+use super::table::{ExitLevel, Table};
 
 /// Cells of the largest table, and one more.
 const ENDS: usize = 17;
@@ -31,12 +31,11 @@ impl Table {
         z: &[f64],
         range: f64,
         begins: impl Fn(&ExitLevel) -> bool,
-        workspace: &mut [Polynomial],
     ) -> Option<Hit> {
         let mut first = None;
         let mut range = range;
         for (index, exit) in self.exits.iter().enumerate() {
-            let found = self.first_meeting(exit, z, range, begins(exit), workspace);
+            let found = self.first_meeting(exit, z, range, begins(exit));
             if let Some(at) = found.filter(|&at| first.is_none() || at < range) {
                 first = Some(Hit { exit: index, at });
                 range = at;
@@ -45,14 +44,7 @@ impl Table {
         first
     }
 
-    fn first_meeting(
-        &self,
-        exit: &ExitLevel,
-        z: &[f64],
-        range: f64,
-        begins: bool,
-        workspace: &mut [Polynomial],
-    ) -> Option<f64> {
+    fn first_meeting(&self, exit: &ExitLevel, z: &[f64], range: f64, begins: bool) -> Option<f64> {
         let width = self.cells + 1;
         let mut ends = [0.0; ENDS];
         for (column, factor) in exit.ends.chunks_exact(width).zip(z) {
@@ -79,8 +71,7 @@ impl Table {
             if a >= 0.0 && b > 0.0 && a + b > bound {
                 continue;
             }
-            self.polynomials(cell, z, workspace);
-            let distance = self.distance(exit, workspace);
+            let distance = self.distance(exit, cell, z);
             let to = (range - middle).min(0.5);
             let noise = self.noise(exit, z, cell);
             let found = first_zero(&distance, from, to, begins && cell == 0, noise);
@@ -89,19 +80,6 @@ impl Table {
             }
         }
         None
-    }
-
-    /// The polynomial of a distance from those of the rows.
-    pub(super) fn distance(&self, exit: &ExitLevel, rows: &[Polynomial]) -> Polynomial {
-        let mut sum = [0.0; COEFFICIENTS];
-        for (index, row) in rows.iter().enumerate() {
-            let weight = exit.row[self.entry(index)];
-            for (sum, x) in sum.iter_mut().zip(row) {
-                *sum += weight * x;
-            }
-        }
-        sum[0] += exit.row[self.constant()];
-        sum
     }
 
     /// The rounding error of a distance in a cell.

@@ -20,6 +20,7 @@
 //!
 //! Source of (1): Van Loan (1978), Computing integrals involving the matrix exponential, IEEE Trans. Automatic Control 23.
 
+use super::crossing::value_and_slope;
 use super::exponential::{Workspace, add_row_times, fill_derivatives, fill_series};
 use super::terms::Basis;
 
@@ -44,6 +45,8 @@ pub(super) struct ExitLevel {
     pub(super) row: Vec<f64>,
     /// Its values at the beginning and at the ends of cells, `cells + 1` of them for every entry of `z`.
     pub(super) ends: Vec<f64>,
+    /// Its polynomials, by cell and entry of `z`.
+    pub(super) series: Vec<Polynomial>,
     /// `|d''| <= bound . |z(0)|`
     pub(super) bound: Vec<f64>,
 }
@@ -89,11 +92,6 @@ impl Table {
         entry(self.coordinates, row)
     }
 
-    /// Position of the constant in `z`.
-    pub(super) fn constant(&self) -> usize {
-        2 * self.coordinates
-    }
-
     /// Phase of a cell for a fastest rate.
     pub(super) fn cell_for(rate: f64) -> f64 {
         CELL / rate
@@ -131,6 +129,28 @@ impl Table {
     /// Where the table ends, in cells.
     pub(super) fn range(&self) -> f64 {
         self.cells as f64 - 0.5
+    }
+
+    /// The polynomial of an exit level's distance in a cell, for a motion that begins at `z`.
+    pub(super) fn distance(&self, exit: &ExitLevel, cell: usize, z: &[f64]) -> Polynomial {
+        let mut sum = [[0.0; COEFFICIENTS]];
+        let series = &exit.series[cell * self.order..][..self.order];
+        add_combination(series, z, &mut sum);
+        sum[0]
+    }
+
+    /// Writes what a unit of each coordinate and of each velocity makes of all of them, at a place in a cell: `2 n` columns, one after the other.
+    /// `rate` is velocity by slope.
+    pub(super) fn propagator(&self, cell: usize, s: f64, rate: f64, out: &mut [f64]) {
+        let n = self.coordinates;
+        let series = &self.series[cell * self.rows * self.order..];
+        for (i, row) in series.chunks_exact(self.order).take(n).enumerate() {
+            for (column, polynomial) in out.chunks_exact_mut(2 * n).zip(row) {
+                let (value, slope) = value_and_slope(polynomial, s);
+                column[i] = value;
+                column[n + i] = slope * rate;
+            }
+        }
     }
 
     /// The polynomial of one row in a cell.
@@ -219,7 +239,9 @@ impl ExitLevel {
         }
         self.bound.clear();
         self.bound.resize(order, 0.0);
+        self.series.clear();
         for cell in series.chunks_exact(rows * order) {
+            self.add_distances(cell, rows, coordinates);
             for (m, bound) in self.bound.iter_mut().enumerate() {
                 let size = |row: usize| {
                     let weight = self.row[entry(coordinates, row)].abs();
@@ -228,6 +250,26 @@ impl ExitLevel {
                 *bound = bound.max((0..rows).map(size).sum());
             }
         }
+    }
+}
+
+impl ExitLevel {
+    /// Adds the polynomials of the distance in a cell, from those of its rows.
+    fn add_distances(&mut self, cell: &[Polynomial], rows: usize, coordinates: usize) {
+        let order = self.row.len();
+        let from = self.series.len();
+        self.series.resize(from + order, [0.0; COEFFICIENTS]);
+        let distances = &mut self.series[from..];
+        for (row, polynomials) in cell.chunks_exact(order).take(rows).enumerate() {
+            let weight = self.row[entry(coordinates, row)];
+            for (sum, polynomial) in distances.iter_mut().zip(polynomials) {
+                for (sum, x) in sum.iter_mut().zip(polynomial) {
+                    *sum += weight * x;
+                }
+            }
+        }
+        let constant = 2 * coordinates;
+        distances[constant][0] += self.row[constant];
     }
 }
 

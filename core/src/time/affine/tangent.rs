@@ -16,7 +16,7 @@
 use super::Switch;
 use super::crossing::value_and_slope;
 use super::model::Model;
-use super::table::{Polynomial, Table};
+use super::table::{COEFFICIENTS, Polynomial, Table};
 use crate::time::Tangent;
 
 /// What moving a tangent writes into.
@@ -25,6 +25,8 @@ pub(super) struct Workspace<'w> {
     pub(super) rows: &'w mut [Polynomial],
     pub(super) rows_by: &'w mut [Polynomial],
     pub(super) column: &'w mut [f64],
+    /// What a unit of each coordinate and velocity makes of all of them.
+    pub(super) propagator: &'w mut [f64],
 }
 
 /// Moves a tangent over some cells of a motion that begins at `z`.
@@ -40,28 +42,32 @@ pub(super) fn advance(
         rows,
         rows_by,
         column: start,
+        propagator,
     } = workspace;
     let n = model.basis.coordinates;
     let (cell, s) = table.place(cells);
     let rate = model.terms.base / table.cell;
     let homogeneous = homogeneous(tangent, n);
-    start.fill(0.0);
+    table.propagator(cell, s, rate, propagator);
     for (index, column) in tangent.columns.chunks_exact_mut(2 * n).enumerate() {
-        start[..2 * n].copy_from_slice(column);
-        table.polynomials(cell, start, rows);
-        let mut stretch = 0.0;
-        if index >= homogeneous {
-            table.add_derivatives(cell, z, rows);
-            table.polynomials(cell, z, rows_by);
-            stretch = model.terms_by.base / table.cell;
+        start.copy_from_slice(column);
+        column.fill(0.0);
+        for (unit, x) in propagator.chunks_exact(2 * n).zip(&*start) {
+            for (sum, u) in column.iter_mut().zip(unit) {
+                *sum += u * x;
+            }
         }
+        if index < homogeneous {
+            continue;
+        }
+        rows.fill([0.0; COEFFICIENTS]);
+        table.add_derivatives(cell, z, rows);
+        table.polynomials(cell, z, rows_by);
+        let stretch = model.terms_by.base / table.cell;
         for i in 0..n {
             let (value, slope) = value_and_slope(&rows[i], s);
-            column[i] = value;
-            column[n + i] = slope * rate;
-            if stretch != 0.0 {
-                column[n + i] += value_and_slope(&rows_by[i], s).1 * stretch;
-            }
+            column[i] += value;
+            column[n + i] += slope * rate + value_and_slope(&rows_by[i], s).1 * stretch;
         }
     }
 }

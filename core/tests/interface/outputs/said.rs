@@ -67,7 +67,7 @@ fn tables_have_columns_by_name_and_unit() {
         ("shaking_p2p [mm/s^2]", "shaking:p2p"),
         ("carried_crest", "carried:crest"),
         ("x_min [mm]", "x:min"),
-        ("ground_impulse", "ground:impulse"),
+        ("ground_impulse [N*s]", "ground:impulse"),
         ("ground_impacts", "ground:impacts"),
     ] {
         let expected = branch.measured(&wanted.parse().expect(wanted), &point);
