@@ -69,7 +69,9 @@ pub(super) fn output_error(
     }
     let change = motion.apart(&there);
     let noise = motion.apart(&best.output(problem, output, true)?);
-    let times = f64::max(change / apart, motion.peak_to_peak() / (2.0 * size));
+    // Of two orbits that are one nothing tells how an output follows the states.
+    let seen = if apart > 0.0 { change / apart } else { 0.0 };
+    let times = seen.max(motion.peak_to_peak() / (2.0 * size));
     let error = part * change + times * states * size + noise;
     Ok(part_of(error, motion.measure(noise)))
 }

@@ -20,6 +20,7 @@
 //! (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (the bordered determinant).
 
 mod approach;
+mod back;
 mod corner;
 mod corner_search;
 mod inside;
@@ -49,15 +50,10 @@ use crate::continuation::follow::{
     follow_until_stuck,
 };
 use crate::continuation::newton::{Newton, NewtonError};
-use crate::continuation::problem::Norm;
 use crate::event::{EventKind, Turn};
 
 /// Points that are remembered: a parabola goes through them.
 const POINTS: usize = 3;
-/// A step that went too far is made again with this part of its length.
-const SHORTER: f64 = 0.3;
-/// A gap that would turn at this height beyond its level, in units of half of its range, does not pass it.
-const STOPPED: f64 = 1e-12;
 
 /// The state of a walk along a branch.
 struct Engine {
@@ -270,50 +266,6 @@ impl Engine {
         }
         self.see(Seen::at(problem, at, self.falls));
         Continue::Continue(())
-    }
-
-    /// Why no equations are found behind the last point.
-    fn lost(&self, problem: &mut dyn BranchProblem) -> Stop {
-        let last = problem.kept().points.last().map(|point| point.value);
-        let stop = Stop::StepTooShort {
-            step: self.options.steps.smallest,
-            value: last.unwrap_or(self.options.from),
-            reason: NewtonError::NotFinite { iterations: 0 },
-        };
-        self.named(problem, stop)
-    }
-
-    /// Makes the step to a point again, shorter, if there was one. Not if a gap hardly passes its level any more.
-    fn go_back(&mut self, problem: &mut dyn BranchProblem, next: &CurvePoint) -> bool {
-        let last = self.seen.last().map(|seen| seen.point.clone());
-        if let Some(before) = last.filter(|last| last.u.len() == next.u.len()) {
-            if problem.slowest(&before.u) < STOPPED {
-                return false;
-            }
-            let step = Step {
-                before: &before,
-                next,
-            };
-            let norm = Norm::of(problem.equations());
-            let length = norm.length(before.scale, &step.difference());
-            self.back = Some((before, SHORTER * length));
-            self.refused = false;
-        }
-        true
-    }
-
-    /// After a change of unknowns, of the points before it only the one to go on from is known in them.
-    fn forget_others(&mut self, problem: &mut dyn BranchProblem, halted: &Halted) {
-        let last = if self.refused {
-            halted.previous.as_ref()
-        } else {
-            Some(&halted.point)
-        };
-        if self.seen.last().map(|seen| &seen.point) != last {
-            self.seen.clear();
-            let seen = last.map(|at| Seen::at(problem, at, self.falls));
-            self.seen.extend(seen);
-        }
     }
 
     /// Remembers a point.

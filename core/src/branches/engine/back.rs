@@ -1,0 +1,60 @@
+//! What a walk does where it cannot go on as it is: it goes back for a shorter step, or it ends; and what it remembers behind a change of
+//! unknowns.
+
+use super::Engine;
+use super::seen::Seen;
+use crate::branches::problem::BranchProblem;
+use crate::continuation::follow::{CurvePoint, Halted, Step, Stop};
+use crate::continuation::newton::NewtonError;
+use crate::continuation::problem::Norm;
+
+/// A step that went too far is made again with this part of its length.
+const SHORTER: f64 = 0.3;
+/// A gap that would turn at this height beyond its level, in units of half of its range, does not pass it.
+const STOPPED: f64 = 1e-12;
+
+impl Engine {
+    /// Why no equations are found behind the last point.
+    pub(super) fn lost(&self, problem: &mut dyn BranchProblem) -> Stop {
+        let last = problem.kept().points.last().map(|point| point.value);
+        let stop = Stop::StepTooShort {
+            step: self.options.steps.smallest,
+            value: last.unwrap_or(self.options.from),
+            reason: NewtonError::NotFinite { iterations: 0 },
+        };
+        self.named(problem, stop)
+    }
+
+    /// Makes the step to a point again, shorter, if there was one. Not if a gap hardly passes its level any more.
+    pub(super) fn go_back(&mut self, problem: &mut dyn BranchProblem, next: &CurvePoint) -> bool {
+        let last = self.seen.last().map(|seen| seen.point.clone());
+        if let Some(before) = last.filter(|last| last.u.len() == next.u.len()) {
+            if problem.slowest(&before.u) < STOPPED {
+                return false;
+            }
+            let step = Step {
+                before: &before,
+                next,
+            };
+            let norm = Norm::of(problem.equations());
+            let length = norm.length(before.scale, &step.difference());
+            self.back = Some((before, SHORTER * length));
+            self.refused = false;
+        }
+        true
+    }
+
+    /// After a change of unknowns, of the points before it only the one to go on from is known in them.
+    pub(super) fn forget_others(&mut self, problem: &mut dyn BranchProblem, halted: &Halted) {
+        let last = if self.refused {
+            halted.previous.as_ref()
+        } else {
+            Some(&halted.point)
+        };
+        if self.seen.last().map(|seen| &seen.point) != last {
+            self.seen.clear();
+            let seen = last.map(|at| Seen::at(problem, at, self.falls));
+            self.seen.extend(seen);
+        }
+    }
+}
