@@ -158,13 +158,9 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
             return Some(zero.change.kind);
         };
         let tells = zero.told || zero.least <= self.last_error();
-        let multipliers = &self.tests(&zero.root.located.point).multipliers;
-        let seen = moduli::seen_by_moduli(multipliers, place, tells)?;
-        Some(if seen == EventKind::PeriodDoubling {
-            self.watched[tested::DOUBLING].kind
-        } else {
-            seen
-        })
+        let doubling = self.watched[tested::DOUBLING].kind;
+        let tests = self.tests(&zero.root.located.point);
+        tests.seen_by_modulus(place, tells, doubling)
     }
 
     /// Prepares the equations that fit an orbit. Says whether there are any.

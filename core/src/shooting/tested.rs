@@ -112,6 +112,21 @@ impl Tests {
             Test::Modulus(place) => moduli::logarithm(&self.multipliers, place),
         }
     }
+
+    /// What happens where the modulus at a place was driven to one, if anything does that a determinant does not
+    /// [tell](moduli::seen_by_moduli). A multiplier of minus one has the name `doubling`.
+    pub(crate) fn seen_by_modulus(
+        &self,
+        place: usize,
+        tells: bool,
+        doubling: EventKind,
+    ) -> Option<EventKind> {
+        let seen = moduli::seen_by_moduli(&self.multipliers, place, tells)?;
+        Some(match seen {
+            EventKind::PeriodDoubling => doubling,
+            other => other,
+        })
+    }
 }
 
 #[cfg(test)]
