@@ -111,9 +111,9 @@ pub use branches::progress::{Progress, Stage};
 pub use branches::winding::Winding;
 pub use cancel::Cancel;
 pub use contact_equation::ContactEquation;
-pub use continuation::follow::Stop;
 pub use continuation::newton::NewtonError;
 pub use continuation::statistics::Statistics;
+pub use continuation::stop::Stop;
 pub use error::Error;
 pub use event::{EventKind, Side, Turn};
 #[doc(hidden)]

@@ -5,7 +5,7 @@
 //! orbits have, and that of the others. Where the determinant of the other block changes its sign, a branch of orbits
 //! crosses that do have them: the symmetry breaks, or the period doubles.
 //!
-//! Orbits that come back after a part of `1 / m` of the period ([`copies`](crate::balance::symmetry)) have harmonics that are multiples of `m`.
+//! Orbits that come back after a part of `1 / m` of the period ([`stride`](crate::balance::symmetry)) have harmonics that are multiples of `m`.
 //! The block of the others falls apart again: waves that are multiples of `m` couple harmonic `k` to those that are `k` or `-k` to
 //! the modulus `m`. A shift of `1 / m` of the period multiplies a class by `exp(2 pi i k / m)` and commutes with its block, which is
 //! that of a complex matrix and its conjugate: a determinant that is a square, and changes no sign. Two classes are real, that of the

@@ -16,6 +16,7 @@
 //! symmetry); Lamb and Melbourne (1999), Bifurcation from discrete rotating waves, section 2 (the map over a part of the period, of
 //! which the multipliers are powers).
 
+use crate::continuation::follow::Stop;
 use crate::event::EventKind;
 
 /// A permutation of coordinates with signs, `(S q)_i = s_i q_(p_i)`.
@@ -199,6 +200,15 @@ impl Recurrence {
             period,
             parts: 1,
             image: SignedPermutation::identity(),
+        }
+    }
+
+    /// Why a branch ends where it meets orbits that come back so.
+    pub(crate) fn joined_at(&self, value: f64) -> Stop {
+        Stop::Joined {
+            period: self.period,
+            symmetric: self.image.is_minus(),
+            value,
         }
     }
 

@@ -147,15 +147,12 @@ fn ended(
     from: f64,
     started: Instant,
 ) -> Result<Followed, Error> {
-    let joined = run.joined.as_ref().map(|joined| Stop::Joined {
-        period: joined.period,
-        symmetric: joined.image.is_minus(),
-        value: run.record.joint().unwrap_or(from),
-    });
-    let stopped = match outcome {
-        Ok(_) if joined.is_some() => joined.unwrap_or(Stop::Interrupted),
-        Ok(stopped) => stopped,
-        Err(reason) => {
+    let joined = run.joined.as_ref();
+    let joined = joined.map(|joined| joined.joined_at(run.record.joint().unwrap_or(from)));
+    let stopped = match (outcome, joined) {
+        (Ok(_), Some(joined)) => joined,
+        (Ok(stopped), None) => stopped,
+        (Err(reason), _) => {
             return Err(OrbitError::NoStart {
                 value: from,
                 reason,

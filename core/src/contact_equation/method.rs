@@ -19,7 +19,7 @@ use crate::branches::problem::{
 use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
 use crate::branches::switch::step_on_other_branch;
-use crate::continuation::follow::{Continue, CurvePoint, Halted, Step, Stop};
+use crate::continuation::follow::{Continue, CurvePoint, Halted, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
@@ -351,10 +351,8 @@ impl BranchProblem for ContactBranch<'_, '_> {
         }
         let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();
         self.run.record.events.push(event);
-        if meets && self.run.meets(at) {
-            return ZeroOutcome::Ends(Stop::Interrupted);
-        }
-        ZeroOutcome::Event
+        let end = meets.then(|| self.run.meets(at)).flatten();
+        end.map_or(ZeroOutcome::Event, ZeroOutcome::Ends)
     }
 
     fn seeks_touches(&self) -> bool {

@@ -15,7 +15,7 @@ use super::run::Run;
 use crate::branches::recurrence::{
     CyclicSymmetry, Recurrence, SignedPermutation, are_near, least, may_be_earlier,
 };
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Stop};
 use crate::shooting::breaks;
 
 /// Two states of a solution that differ by this part of the size are one, at least; the accuracy that is asked for tells more.
@@ -181,21 +181,21 @@ impl Run<'_> {
         breaks(&map, self.had().into_iter())
     }
 
-    /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the same orbits
-    /// again, looked at from elsewhere.
-    pub(super) fn meets(&mut self, u: &[f64]) -> bool {
+    /// Why the branch ends at the last event, if the orbit there is more regular than asked for: what follows is the same orbits again,
+    /// looked at from elsewhere.
+    pub(super) fn meets(&mut self, u: &[f64]) -> Option<Stop> {
         let given = self.equations.skeleton.recurrence();
         if !self.problem.may_be_earlier(given) && self.problem.asked.at_once.is_empty() {
-            return false;
+            return None;
         }
         self.equations.compute(u, false);
         let met = self.met(self.problem.same().max(NEAR));
-        if let (Some(event), true) = (self.record.events.last(), met.is_some()) {
-            // The orbits behind the point are those before it.
-            let after = event.after;
-            self.record.points.truncate(after);
-        }
+        let event = self.record.events.last()?;
+        let (after, value) = (event.after, event.point.value);
         self.joined = met;
-        self.joined.is_some()
+        let stop = self.joined.as_ref()?.joined_at(value);
+        // The orbits behind the point are those before it.
+        self.record.points.truncate(after);
+        Some(stop)
     }
 }

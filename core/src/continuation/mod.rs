@@ -11,5 +11,6 @@ mod position;
 pub mod problem;
 pub(crate) mod step;
 mod stepper;
+pub(crate) mod stop;
 #[cfg(test)]
 mod tests;

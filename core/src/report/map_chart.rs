@@ -3,8 +3,8 @@
 use hertzian_chart::{Chart, Colour, Raster, STEPS, Series};
 
 use crate::bifurcation::{Cell, CellVerdict, Map};
+use crate::report::export::map::unit;
 use crate::report::labels::{Labels, name_of};
-use crate::report::map::unit;
 use crate::report::prefix::with_unit;
 use crate::report::view::Frequency;
 

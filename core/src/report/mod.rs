@@ -1,6 +1,5 @@
 //! How results are drawn and written.
 
-mod branch;
 #[cfg(feature = "serde")]
 mod checkpoint;
 #[cfg(feature = "plot")]
@@ -13,7 +12,6 @@ pub(crate) mod error;
 pub mod export;
 #[cfg(feature = "plot")]
 mod labels;
-mod map;
 #[cfg(feature = "plot")]
 mod map_chart;
 #[cfg(feature = "plot")]

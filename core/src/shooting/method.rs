@@ -17,7 +17,7 @@ use crate::branches::progress::{Progress, See};
 use crate::branches::record::Record;
 use crate::branches::recurrence::{Recurrence, may_be_earlier};
 use crate::branches::switch::step_on_other_branch;
-use crate::continuation::follow::{Continue, CurvePoint, Step, Stop};
+use crate::continuation::follow::{Continue, CurvePoint, Step};
 use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
@@ -271,11 +271,8 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         }
         let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();
         self.run.record.events.push(event);
-        if meets && self.run.meets(&mut self.equations) {
-            // Which orbits were met is told by `Run::stopped`.
-            return ZeroOutcome::Ends(Stop::Interrupted);
-        }
-        ZeroOutcome::Event
+        let end = meets.then(|| self.run.meets(&mut self.equations)).flatten();
+        end.map_or(ZeroOutcome::Event, ZeroOutcome::Ends)
     }
 
     fn seeks_touches(&self) -> bool {

@@ -127,12 +127,8 @@ impl<'r> Run<'r> {
             .points
             .last()
             .map_or(options.from, |point| point.value);
-        if let Some(Recurrence { period, image, .. }) = &self.joined {
-            return Ok(Stop::Joined {
-                period: *period,
-                symmetric: image.is_minus(),
-                value: self.record.joint().unwrap_or(value),
-            });
+        if let Some(joined) = &self.joined {
+            return Ok(joined.joined_at(self.record.joint().unwrap_or(value)));
         }
         match (outcome, self.failure, failure) {
             (_, Some(reason), _) if self.record.points.is_empty() => {
@@ -157,19 +153,17 @@ impl<'r> Run<'r> {
         }
     }
 
-    /// Whether the orbit at the last event is more regular than asked for: then the branch ends there, and what follows is the
-    /// same orbits again, looked at from elsewhere.
-    pub(super) fn meets(&mut self, equations: &mut Equations) -> bool {
+    /// Why the branch ends at the last event, if the orbit there is more regular than asked for: what follows is the same orbits again,
+    /// looked at from elsewhere.
+    pub(super) fn meets(&mut self, equations: &mut Equations) -> Option<Stop> {
         let symmetries = &self.problem.symmetries;
-        let Some(event) = self.record.events.last() else {
-            return false;
-        };
+        let event = self.record.events.last()?;
         if !may_be_earlier(&equations.span.recurrence, symmetries)
             && self.problem.at_once.is_empty()
         {
-            return false;
+            return None;
         }
-        let after = event.after;
+        let (after, value) = (event.after, event.point.value);
         let u = equations.unknowns_of(&event.point.orbit.states, event.point.value);
         let same = self.same_state(equations).at_point();
         let state = event.point.orbit.state();
@@ -178,12 +172,13 @@ impl<'r> Run<'r> {
             Ok(None) if self.gains_symmetry(equations, &state, same) => {
                 equations.span.recurrence.clone()
             }
-            _ => return false,
+            _ => return None,
         };
         // The orbits behind the point are those before it.
         self.record.points.truncate(after);
+        let stop = recurrence.joined_at(value);
         self.joined = Some(recurrence);
-        true
+        Some(stop)
     }
 
     /// An orbit with everything that is read off it, and its map if the stability is wanted. With a flow that has a tolerance, it

@@ -1,4 +1,5 @@
-//! Odd symmetry, and where a branch loses it.
+//! Symmetries of orbits, and where a branch loses one: the odd one here, permutations of contacts in `contacts`, orbits that come back
+//! after a part of the period in `stride`.
 //!
 //! Let `S` take an orbit `q(tau)` to `-q(tau + pi)`. If `S` takes solutions of the system to solutions, there are solutions
 //! with `q = S q`, which have odd harmonics only. It does if, besides odd loads and even waves of the stiffness, it takes the

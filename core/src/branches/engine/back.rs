@@ -1,5 +1,4 @@
-//! What a walk does where it cannot go on as it is: it goes back for a shorter step, or it ends; and what it remembers behind a change of
-//! unknowns.
+//! What a walk does where it cannot go on as it is: it goes back to a point before, for a shorter step or for other unknowns, or it ends.
 
 use super::Engine;
 use super::seen::Seen;

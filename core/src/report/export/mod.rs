@@ -1,7 +1,9 @@
 //! Results as files that other programs read.
 
+mod csv;
 #[cfg(feature = "serde")]
 pub(crate) mod json;
+pub(crate) mod map;
 mod npy;
 pub(crate) mod table;
 

@@ -1,4 +1,4 @@
-//! How a map is written.
+//! A map as comma-separated values and as JSON.
 
 use std::path::Path;
 

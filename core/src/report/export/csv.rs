@@ -1,4 +1,4 @@
-//! How a branch is written.
+//! A branch as comma-separated values.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use crate::branches::branch::Branch;
 use crate::error::Error;
 use crate::report::error::FileError;
 
-use super::export::Table;
+use super::table::Table;
 
 impl Branch {
-    /// The orbits as a table with names of the columns, one row for each: see [`COLUMNS`](super::export::COLUMNS).
+    /// The orbits as a table with names of the columns, one row for each: see [`COLUMNS`](super::COLUMNS).
     pub fn to_csv(&self) -> String {
         let mut table = Table::of_model(&self.model).with_errors_of(self.accuracy_of());
         for point in &self.points {
@@ -18,7 +18,7 @@ impl Branch {
         table.to_csv()
     }
 
-    /// Writes the orbits as a table, one row for each: see [`COLUMNS`](super::export::COLUMNS).
+    /// Writes the orbits as a table, one row for each: see [`COLUMNS`](super::COLUMNS).
     ///
     /// # Errors
     /// If the file cannot be written.
