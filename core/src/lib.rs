@@ -121,6 +121,7 @@ pub use laws::emitted;
 pub use laws::generic;
 pub use model::error::ModelError;
 pub use model::request::RequestError;
+pub use model::valued::Valued;
 pub use model::{remarks, structure};
 #[doc(no_inline)]
 pub use nalgebra::Complex;

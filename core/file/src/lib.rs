@@ -26,6 +26,36 @@ pub fn write(path: impl AsRef<Path>, contents: impl AsRef<[u8]>) -> io::Result<(
     replace(path.as_ref(), |file| file.write_all(contents.as_ref()))
 }
 
+/// Writes a file piece by piece, by what `fill` does to it: for what is too long to be held. It takes the place of one that is there only
+/// when `fill` has gone well.
+///
+/// ```
+/// # let folder = std::env::temp_dir().join(format!("hertzian-filled-{}", std::process::id()));
+/// # std::fs::create_dir_all(&folder)?;
+/// use std::io::{BufWriter, Write};
+///
+/// let path = folder.join("numbers.txt");
+/// hertzian_file::write_with(&path, |file| {
+///     let mut to = BufWriter::new(file);
+///     for number in 0..3 {
+///         writeln!(to, "{number}")?;
+///     }
+///     to.flush()
+/// })?;
+/// assert_eq!(std::fs::read_to_string(&path)?, "0\n1\n2\n");
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), std::io::Error>(())
+/// ```
+///
+/// # Errors
+/// What the system or `fill` says. A file that was there is then as it was.
+pub fn write_with(
+    path: impl AsRef<Path>,
+    fill: impl FnOnce(&mut File) -> io::Result<()>,
+) -> io::Result<()> {
+    replace(path.as_ref(), fill)
+}
+
 /// Whether a file could be written there now. A file that is there is not changed, and none is left.
 ///
 /// # Errors

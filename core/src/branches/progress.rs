@@ -76,6 +76,8 @@ pub enum Stage {
     Settling,
     /// It looks for all solutions over two parameters, row by row: rows, of which the last is at this value of the second parameter.
     Map,
+    /// It computes the variants of a study: variants.
+    Study,
 }
 
 impl std::fmt::Display for Stage {
@@ -88,6 +90,7 @@ impl std::fmt::Display for Stage {
             Self::Basin => "basin",
             Self::Settling => "settling",
             Self::Map => "map",
+            Self::Study => "study",
         })
     }
 }
