@@ -9,7 +9,7 @@ use crate::attractors::{self, figures};
 use crate::built_in;
 use crate::install;
 use crate::misplaced::{self, Given};
-use crate::{map, multipliers, paper, program, response, show, work_precision};
+use crate::{map, multipliers, paper, program, response, show, study, work_precision};
 
 /// Vibration of oscillators whose forces are piecewise power laws: contacts that open, springs of any exponent, play, stops.
 ///
@@ -43,6 +43,7 @@ pub enum Task {
     Show(show::Options),
     Map(Box<map::Options>),
     Attractors(Box<attractors::options::Options>),
+    Study(study::options::Options),
     Multipliers(multipliers::Options),
     Paper(paper::options::Options),
     WorkPrecision(work_precision::options::Options),
@@ -86,6 +87,7 @@ pub fn main() -> ExitCode {
         Task::Show(options) => show::start(&options),
         Task::Map(options) => map::start(&options),
         Task::Attractors(options) => attractors::start(&options),
+        Task::Study(options) => study::start(&options),
         Task::Multipliers(options) => multipliers::start(&options),
         Task::Paper(options) => paper::start(&options),
         Task::WorkPrecision(options) => work_precision::start(&options),

@@ -10,11 +10,12 @@ use crate::command::Program;
 use crate::program;
 
 /// Subcommands that have a page of their own.
-const PAGES: [&str; 8] = [
+const PAGES: [&str; 9] = [
     "response",
     "show",
     "map",
     "attractors",
+    "study",
     "multipliers",
     "paper",
     "work-precision",

@@ -17,5 +17,6 @@ pub mod program;
 pub mod range;
 pub mod response;
 pub mod show;
+pub mod study;
 pub mod values;
 pub mod work_precision;

@@ -1,0 +1,16 @@
+//! The subcommand `study`: thousands of variants of an oscillator, on threads or in parts, as one table.
+
+pub mod options;
+mod read;
+pub mod run;
+
+use std::process::ExitCode;
+
+use crate::program::{self, Failed};
+
+/// Does what is asked for, and says by the exit code how it went.
+pub fn start(options: &options::Options) -> ExitCode {
+    program::run("hertzian study", options.quiet, |cancel, progress| {
+        run::run(options, cancel, progress).map_err(Failed::from)
+    })
+}

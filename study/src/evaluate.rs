@@ -1,0 +1,412 @@
+//! One variant: what is computed of it, and its rows.
+
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use hertzian::bifurcation::{Bifurcations, Cell, CellVerdict, Diagram, Reason, Settling};
+use hertzian::error::{ErrorKind, chain};
+use hertzian::observe::Wanted;
+use hertzian::{
+    Branch, Cancel, ContactEquation, Error, Event, FrequencyResponse, HarmonicBalance, OrbitMethod,
+    Point, Shooting, Valued,
+};
+
+use crate::plan::{Method, What};
+use crate::study::{Prepared, is_interrupted};
+use crate::table::{About, Value, kind};
+
+/// What came of a variant.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Found {
+    pub(crate) rows: Vec<Vec<Value>>,
+    /// The branches, where they are kept.
+    pub(crate) branches: Vec<Branch>,
+    pub(crate) failed: bool,
+}
+
+/// It was cancelled: nothing of the variant is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Cancelled;
+
+impl Prepared {
+    /// The rows of a variant, by its number from zero on. A variant that cannot be computed has one that says why.
+    pub fn rows(&self, index: usize) -> Vec<Vec<Value>> {
+        if index >= self.count() {
+            return Vec::new();
+        }
+        self.found(index, &Cancel::new())
+            .map_or_else(|_| Vec::new(), |found| found.rows)
+    }
+
+    /// As [`rows`](Self::rows), unless it is cancelled.
+    pub(crate) fn found(&self, index: usize, cancel: &Cancel) -> Result<Found, Cancelled> {
+        let mut of = Of {
+            study: self,
+            begin: self.beginning(index),
+            found: Found::default(),
+        };
+        let computed = catch_unwind(AssertUnwindSafe(|| of.compute(index, cancel)));
+        if cancel.is_cancelled() {
+            return Err(Cancelled);
+        }
+        let failed = match computed {
+            Ok(Ok(())) => None,
+            Ok(Err(error)) if error.kind() == ErrorKind::Cancelled => return Err(Cancelled),
+            Ok(Err(error)) => Some(chain(&error).to_string()),
+            // A broken promise between parts of the program: it must not cost the other variants.
+            Err(panic) => Some(format!("the program failed: {}", said(&*panic))),
+        };
+        if let Some(why) = failed {
+            of.found.rows.clear();
+            of.fail(&why);
+        }
+        Ok(of.found)
+    }
+
+    /// What every row of a variant begins with.
+    fn beginning(&self, index: usize) -> Vec<Value> {
+        let values = self.designed.values(index).into_iter().map(Value::Number);
+        std::iter::once(Value::count(index)).chain(values).collect()
+    }
+}
+
+/// What a panic said.
+fn said(panic: &(dyn std::any::Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("it panicked")
+}
+
+/// A variant that is computed.
+struct Of<'s> {
+    study: &'s Prepared,
+    begin: Vec<Value>,
+    found: Found,
+}
+
+impl Of<'_> {
+    fn compute(&mut self, index: usize, cancel: &Cancel) -> Result<(), Error> {
+        let asked = &self.study.plan.request;
+        let (system, omega) = self.study.variant(index);
+        let mut request = FrequencyResponse::of(&system)
+            .from(asked.from)
+            .to(asked.to)
+            .cancel(cancel);
+        if asked.vary != "omega" {
+            request = request.vary(&asked.vary);
+            if let Some(omega) = omega {
+                request = request.omega(omega);
+            }
+        }
+        if let Some(tolerance) = asked.tolerance {
+            request = request.tolerance(tolerance);
+        }
+        if let Some(period) = asked.period {
+            request = request.period(period);
+        }
+        if let Some(wanted) = asked.stability {
+            request = request.stability(wanted);
+        }
+        if let Some(points) = asked.max_points {
+            request = request.max_points(points);
+        }
+        let balance = match asked.what {
+            What::Solutions => Method::Shooting,
+            _ => Method::Balance,
+        };
+        match asked.method.unwrap_or(balance) {
+            Method::Balance => {
+                let balance = HarmonicBalance::new().bifurcations(asked.bifurcations);
+                self.by(request.by(balance), &system)
+            }
+            Method::Shooting => self.by(request.by(Shooting::new()), &system),
+            Method::ContactEquation => self.by(request.by(ContactEquation::new()), &system),
+        }
+    }
+
+    fn by<M: OrbitMethod>(
+        &mut self,
+        request: FrequencyResponse<M>,
+        system: &Valued,
+    ) -> Result<(), Error> {
+        match self.study.plan.request.what {
+            What::Response => {
+                let branch = request.run()?;
+                self.take(0, &branch)?;
+                self.keep(branch);
+            }
+            What::Bifurcations => {
+                let diagram = self.bifurcations(request)?;
+                for (number, found) in diagram.branches.iter().enumerate() {
+                    self.take(number, &found.branch)?;
+                }
+                self.omitted(&diagram);
+                for found in diagram.branches {
+                    self.keep(found.branch);
+                }
+            }
+            What::Solutions => self.solutions(&request, system)?,
+        }
+        if self.found.rows.is_empty() {
+            self.branch_row(About::Nothing, 0, Orbit::default());
+        }
+        Ok(())
+    }
+
+    fn bifurcations<M: OrbitMethod>(
+        &self,
+        request: FrequencyResponse<M>,
+    ) -> Result<Diagram, Error> {
+        let asked = &self.study.plan.request;
+        let method = asked.method.unwrap_or(Method::Balance);
+        match method {
+            Method::Balance => {
+                self.diagram(Bifurcations::starting_with(request).by(HarmonicBalance::new()))
+            }
+            Method::Shooting => {
+                self.diagram(Bifurcations::starting_with(request).by(Shooting::new()))
+            }
+            Method::ContactEquation => {
+                self.diagram(Bifurcations::starting_with(request).by(ContactEquation::new()))
+            }
+        }
+    }
+
+    fn diagram<M: OrbitMethod>(&self, mut request: Bifurcations<M>) -> Result<Diagram, Error> {
+        let asked = &self.study.plan.request;
+        if let Some(depth) = asked.depth {
+            request = request.depth(depth);
+        }
+        if let Some(period) = asked.max_period {
+            request = request.max_period(period);
+        }
+        if asked.cover {
+            request = request.cover(Settling::new());
+        }
+        request.run()
+    }
+
+    /// The rows of a branch.
+    fn take(&mut self, number: usize, branch: &Branch) -> Result<(), Error> {
+        if is_interrupted(branch) {
+            return Ok(());
+        }
+        let before = self.found.rows.len();
+        for event in &branch.events {
+            if self.study.keeps(event.kind) {
+                let orbit = self.event(branch, event)?;
+                self.branch_row(About::Event, number, orbit);
+            }
+        }
+        for wanted in &self.study.largest {
+            if let Some(point) = branch.largest(&wanted.to_string())? {
+                let orbit = self.orbit(branch, point, wanted.to_string())?;
+                self.branch_row(About::Largest, number, orbit);
+            }
+        }
+        for &value in &self.study.at {
+            for point in branch.at(value)? {
+                let orbit = self.orbit(branch, &point, String::new())?;
+                self.branch_row(About::At, number, orbit);
+            }
+        }
+        if self.found.rows.len() == before {
+            let orbit = Orbit {
+                ended: branch.stopped.to_string(),
+                period: Value::count(branch.period()),
+                ..Orbit::default()
+            };
+            self.branch_row(About::Nothing, number, orbit);
+        }
+        Ok(())
+    }
+
+    /// Bifurcations whose branches were not followed: those that begin nothing new are left out.
+    fn omitted(&mut self, diagram: &Diagram) {
+        for omitted in &diagram.omitted {
+            if matches!(omitted.reason, Reason::BranchEnds { .. } | Reason::Mirrored) {
+                continue;
+            }
+            let branch = &diagram.branches[omitted.branch].branch;
+            let event = &branch.events[omitted.event];
+            let orbit = Orbit {
+                kind: kind(event),
+                period: Value::count(event.point.orbit.period),
+                value: Value::Number(event.point.value),
+                error: Value::Number(event.error),
+                ended: omitted.reason.to_string(),
+                ..Orbit::default()
+            };
+            self.branch_row(About::NotFollowed, omitted.branch, orbit);
+        }
+        for (value, reason) in &diagram.missed {
+            let orbit = Orbit {
+                value: Value::Number(*value),
+                ended: reason.to_string(),
+                ..Orbit::default()
+            };
+            self.branch_row(About::NotFollowed, 0, orbit);
+        }
+    }
+
+    fn event(&self, branch: &Branch, event: &Event) -> Result<Orbit, Error> {
+        let orbit = self.orbit(branch, &event.point, kind(event))?;
+        // At the very value where the branch turns, an orbit is not known at all: the error there is that of the value.
+        let size_error = if event.kind.turns() {
+            Value::Missing
+        } else {
+            orbit.size_error
+        };
+        Ok(Orbit {
+            error: Value::Number(event.error),
+            size_error,
+            ..orbit
+        })
+    }
+
+    fn orbit(&self, branch: &Branch, point: &Point, kind: String) -> Result<Orbit, Error> {
+        let measured = |wanted: &Wanted| branch.measured(wanted, point).map(Value::from);
+        let measured = self.study.signals.iter().map(measured);
+        Ok(Orbit {
+            kind,
+            period: Value::count(point.orbit.period),
+            value: Value::Number(point.value),
+            error: Value::Missing,
+            measured: measured.collect::<Result<_, _>>()?,
+            size_error: point.error.into(),
+            verdict: point.stability.verdict.to_string(),
+            ended: branch.stopped.to_string(),
+        })
+    }
+
+    fn branch_row(&mut self, about: About, branch: usize, orbit: Orbit) {
+        if self.study.plan.request.what == What::Solutions {
+            return;
+        }
+        let mut row = self.begin.clone();
+        row.push(Value::text(about.name()));
+        row.push(Value::text(orbit.kind));
+        row.push(if about == About::Failed {
+            Value::Missing
+        } else {
+            Value::count(branch)
+        });
+        row.extend([orbit.period, orbit.value, orbit.error]);
+        let mut measured = orbit.measured;
+        measured.resize(self.study.signals.len(), Value::Missing);
+        row.extend(measured);
+        row.push(orbit.size_error);
+        row.push(Value::text(orbit.verdict));
+        row.push(Value::text(orbit.ended));
+        self.found.rows.push(row);
+    }
+
+    /// Keeps a branch, if that is asked for.
+    fn keep(&mut self, branch: Branch) {
+        if self.study.plan.keep.branches {
+            self.found.branches.push(branch);
+        }
+    }
+
+    /// A row for every value: a row of a map, whose second parameter is any that the variant has.
+    fn solutions<M: OrbitMethod>(
+        &mut self,
+        request: &FrequencyResponse<M>,
+        system: &Valued,
+    ) -> Result<(), Error> {
+        let values = &self.study.at;
+        let (name, value) = self.study.second(system);
+        let map = request.map_with(values, name, &[value], |_| ControlFlow::Continue(()))?;
+        for (&value, cell) in values.iter().zip(&map.cells) {
+            self.cell_row(value, cell);
+        }
+        Ok(())
+    }
+
+    fn cell_row(&mut self, value: f64, cell: &Cell) {
+        let failed = cell.reason.is_some();
+        let mut row = self.begin.clone();
+        row.push(Value::text(
+            if failed { About::Failed } else { About::Cell }.name(),
+        ));
+        row.push(Value::Number(value));
+        let counts = [
+            cell.stable,
+            cell.unstable,
+            cell.undecided,
+            cell.missed,
+            cell.motions,
+            cell.restless,
+        ];
+        row.extend(counts.map(|count| {
+            if failed {
+                Value::Missing
+            } else {
+                Value::count(count)
+            }
+        }));
+        row.push(cell.largest.into());
+        let periods: Vec<String> = cell.periods.iter().map(ToString::to_string).collect();
+        row.push(Value::text(periods.join(" ")));
+        let verdict = cell.verdict();
+        let verdict = if verdict == CellVerdict::Failed {
+            String::new()
+        } else {
+            verdict.to_string()
+        };
+        row.push(Value::text(verdict));
+        row.push(Value::text(
+            cell.reason
+                .as_ref()
+                .map(ToString::to_string)
+                .unwrap_or_default(),
+        ));
+        self.found.failed |= failed;
+        self.found.rows.push(row);
+    }
+
+    /// The row of a variant that could not be computed.
+    fn fail(&mut self, why: &str) {
+        self.found.failed = true;
+        if self.study.plan.request.what == What::Solutions {
+            let mut row = self.begin.clone();
+            row.push(Value::text(About::Failed.name()));
+            row.resize(self.study.columns.len() - 1, Value::Missing);
+            row.push(Value::text(why));
+            self.found.rows.push(row);
+            return;
+        }
+        let orbit = Orbit {
+            ended: why.to_owned(),
+            ..Orbit::default()
+        };
+        self.branch_row(About::Failed, 0, orbit);
+    }
+}
+
+/// What a row says of an orbit.
+struct Orbit {
+    kind: String,
+    period: Value,
+    value: Value,
+    error: Value,
+    measured: Vec<Value>,
+    size_error: Value,
+    verdict: String,
+    ended: String,
+}
+
+impl Default for Orbit {
+    fn default() -> Self {
+        Self {
+            kind: String::new(),
+            period: Value::Missing,
+            value: Value::Missing,
+            error: Value::Missing,
+            measured: Vec::new(),
+            size_error: Value::Missing,
+            verdict: String::new(),
+            ended: String::new(),
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Studies: their variants, their rows, and what is kept.
+
+mod common;
+mod kept;
+mod rows;
+mod variants;
