@@ -1,6 +1,6 @@
 //! What a study file says, put together in Rust.
 
-use crate::plan::{Design, Keep, Method, Request, Variants, What};
+use crate::plan::{Design, Keep, Method, Picture, Request, Shown, Variants, What, Which};
 use crate::spread::Spread;
 
 impl Variants {
@@ -100,6 +100,42 @@ impl Request {
     #[must_use]
     pub fn stability(mut self, wanted: bool) -> Self {
         self.stability = Some(wanted);
+        self
+    }
+}
+
+impl Picture {
+    /// A map of `stable`, the number of stable orbits, of their `largest` peak-to-peak, or of the `verdict` of all.
+    pub fn map(of: &str) -> Self {
+        Self {
+            what: Shown::Map,
+            of: Some(of.to_owned()),
+            ..Self::default()
+        }
+    }
+
+    /// How often the highest or the lowest event of a kind lies where.
+    pub fn histogram(kind: &str, which: Which) -> Self {
+        Self {
+            what: Shown::Histogram,
+            kind: Some(kind.to_owned()),
+            which,
+            ..Self::default()
+        }
+    }
+
+    /// Quantiles over what varies along the branches.
+    pub fn fan() -> Self {
+        Self {
+            what: Shown::Fan,
+            ..Self::default()
+        }
+    }
+
+    /// Whether curves of folds and doublings are followed and drawn over a map.
+    #[must_use]
+    pub fn tracks(mut self, wanted: bool) -> Self {
+        self.tracks = wanted;
         self
     }
 }

@@ -1,11 +1,20 @@
 //! What a study file asks for and cannot have, or would do nothing.
 
 use crate::error::StudyError;
-use crate::plan::{Method, Plan, Request, What};
+use crate::plan::{Format, Method, Plan, Request, What};
 
 /// What would do nothing, and what cannot be.
 pub(crate) fn check_request(plan: &Plan) -> Result<(), StudyError> {
-    let Plan { request, keep, .. } = plan;
+    let Plan {
+        request,
+        keep,
+        formats,
+        ..
+    } = plan;
+    if cfg!(not(feature = "parquet")) && formats.contains(&Format::Parquet) {
+        let message = "this program was built without `parquet`: build it with --features parquet";
+        return Err(StudyError::value("formats", message));
+    }
     let Request { from, to, what, .. } = *request;
     if !(from.is_finite() && to.is_finite() && from != to) {
         let message = format!("from = {from} and to = {to} are no range");

@@ -192,6 +192,14 @@ impl Designed {
         }
     }
 
+    /// The side of a grid over one parameter, with its name.
+    pub(crate) fn side(&self) -> Option<(&str, &[f64])> {
+        match (&self.way, &self.names[..]) {
+            (Way::Grid(sides), [name]) => Some((name, &sides[0])),
+            _ => None,
+        }
+    }
+
     /// All values that are known before, with the name of what has them.
     pub(crate) fn known<'d>(
         &'d self,

@@ -318,12 +318,12 @@ impl Of<'_> {
         let (name, value) = self.study.second(system);
         let map = request.map_with(values, name, &[value], |_| ControlFlow::Continue(()))?;
         for (&value, cell) in values.iter().zip(&map.cells) {
-            self.cell_row(value, cell);
+            self.cell_row(value, cell, &map.signal);
         }
         Ok(())
     }
 
-    fn cell_row(&mut self, value: f64, cell: &Cell) {
+    fn cell_row(&mut self, value: f64, cell: &Cell, signal: &str) {
         let failed = cell.reason.is_some();
         let mut row = self.begin.clone();
         row.push(Value::text(
@@ -346,6 +346,11 @@ impl Of<'_> {
             }
         }));
         row.push(cell.largest.into());
+        row.push(Value::text(if cell.largest.is_some() {
+            signal
+        } else {
+            ""
+        }));
         let periods: Vec<String> = cell.periods.iter().map(ToString::to_string).collect();
         row.push(Value::text(periods.join(" ")));
         let verdict = cell.verdict();

@@ -240,6 +240,7 @@ impl Prepared {
         let mut plan = self.plan.clone();
         plan.results = None;
         plan.formats.clear();
+        plan.pictures.clear();
         if Path::new(&plan.model).components().count() > 1 || plan.model.contains('.') {
             MODEL.clone_into(&mut plan.model);
         }

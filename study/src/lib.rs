@@ -38,7 +38,12 @@ mod error;
 mod evaluate;
 mod folder;
 mod merge;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod names;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod pictures;
 mod plan;
 mod run;
 mod spread;
@@ -49,7 +54,12 @@ mod write;
 pub use error::StudyError;
 pub use folder::Folder;
 pub use merge::Merged;
-pub use plan::{Design, Format, InstructionSet, Keep, Method, Plan, Request, Variants, What};
+#[cfg(feature = "mpi")]
+pub use mpi::Ranks;
+pub use plan::{
+    Design, Format, InstructionSet, Keep, Method, Picture, Plan, Request, Shown, Variants, What,
+    Which,
+};
 pub use run::{Part, Ran, Runner};
 pub use spread::{Spread, SpreadScale};
 pub use study::{Prepared, Study};

@@ -40,7 +40,11 @@ pub(crate) struct Source<'s> {
     folders: &'s [Folder],
 }
 
-impl Source<'_> {
+impl<'s> Source<'s> {
+    pub(crate) fn new(study: &'s Prepared, folders: &'s [Folder]) -> Self {
+        Self { study, folders }
+    }
+
     /// A block from the first folder that has it whole.
     fn read(&self, number: usize) -> Result<Block, Vec<String>> {
         let mut damaged = Vec::new();
@@ -94,10 +98,7 @@ impl Prepared {
         let Some(into) = folders.first().map(|folder| folder.path().to_path_buf()) else {
             return Ok(Merged::default());
         };
-        let source = Source {
-            study: self,
-            folders,
-        };
+        let source = Source::new(self, folders);
         let mut merged = self.survey(&source, &into)?;
         for &format in &self.plan.formats {
             let path = into.join(format!("results.{}", format.extension()));
@@ -106,7 +107,10 @@ impl Prepared {
                 Format::Csv => filled(&path, |to| write::csv(&source, to)),
                 Format::Jsonl => filled(&path, |to| write::json_lines(&source, to)),
                 Format::Npy => filled(&path, |to| write::npy(&source, &merged, to)),
-                Format::Parquet => filled(&path, |to| write::parquet(&source, to)),
+                #[cfg(feature = "parquet")]
+                Format::Parquet => filled(&path, |to| crate::parquet::parquet(&source, to)),
+                #[cfg(not(feature = "parquet"))]
+                Format::Parquet => Err(io::ErrorKind::Unsupported.into()),
             };
             written.map_err(|error| StudyError::io(&path, error))?;
             merged.files.push(path);

@@ -43,6 +43,71 @@ pub struct Plan {
     /// What is kept of that.
     #[serde(default)]
     pub keep: Keep,
+    /// Pictures of the table.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pictures: Vec<Picture>,
+}
+
+/// A picture of the table.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Picture {
+    /// What is drawn.
+    pub what: Shown,
+    /// The file, in the folder of the results. Default: `map-1.svg` and so on, with the number of the picture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<PathBuf>,
+    /// Of a map `stable`, `largest` or `verdict`; of a fan the signal. Default: the number of stable orbits, the first signal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
+    /// The kind of the events of a histogram. Default: `fold`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<String>,
+    /// Which of several events of a variant counts, or of several orbits at a value. Default: the highest.
+    #[serde(default)]
+    pub which: Which,
+    /// Quantiles of a histogram or a fan. Default: 5, 25, 50, 75 and 95 %.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quantiles: Option<Vec<f64>>,
+    /// Whether curves of folds and doublings are followed and drawn over a map. Default: no.
+    #[serde(default)]
+    pub tracks: bool,
+}
+
+/// What a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Shown {
+    /// Solutions over two parameters, cell by cell.
+    Map,
+    /// How often an event lies where.
+    #[default]
+    Histogram,
+    /// Quantiles over what varies along the branches.
+    Fan,
+}
+
+/// Which of several counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Which {
+    /// The highest.
+    #[default]
+    Highest,
+    /// The lowest.
+    Lowest,
+}
+
+impl std::fmt::Display for Which {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Highest => "highest",
+            Self::Lowest => "lowest",
+        })
+    }
 }
 
 impl Default for Plan {
@@ -61,6 +126,7 @@ impl Default for Plan {
                 ..Request::default()
             },
             keep: Keep::default(),
+            pictures: Vec::new(),
         }
     }
 }

@@ -86,6 +86,19 @@ struct Shared<'v> {
     failed: Mutex<Option<StudyError>>,
 }
 
+impl<'v> Shared<'v> {
+    fn new(ran: &Ran, see: See<'v>) -> Self {
+        Self {
+            see: Mutex::new(see),
+            done: AtomicUsize::new(ran.before),
+            total: ran.asked,
+            computed: AtomicUsize::new(0),
+            worked: Mutex::new(Duration::ZERO),
+            failed: Mutex::new(None),
+        }
+    }
+}
+
 impl<'r> Runner<'r> {
     /// All of a study, on as many threads as the machine runs at once.
     pub fn new(study: &'r Prepared, folder: &'r Folder) -> Self {
@@ -166,14 +179,7 @@ impl<'r> Runner<'r> {
         see: &mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send),
     ) -> Result<Ran, StudyError> {
         let started = Instant::now();
-        let shared = Shared {
-            see: Mutex::new(see),
-            done: AtomicUsize::new(ran.before),
-            total: ran.asked,
-            computed: AtomicUsize::new(0),
-            worked: Mutex::new(Duration::ZERO),
-            failed: Mutex::new(None),
-        };
+        let shared = Shared::new(&ran, see);
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)
             .build();
@@ -202,13 +208,33 @@ impl<'r> Runner<'r> {
         Ok(ran)
     }
 
-    /// Computes a block and keeps it, unless it is cancelled.
-    fn block(&self, number: usize, shared: &Shared<'_>) -> Result<(), StudyError> {
+    /// Computes the blocks that are given on this thread, until none is: `give` is told which block was kept last.
+    #[cfg(feature = "mpi")]
+    pub(crate) fn run_here(
+        &self,
+        mut give: impl FnMut(Option<usize>) -> Option<usize>,
+    ) -> Result<Ran, StudyError> {
+        let started = Instant::now();
+        let mut ran = Ran::default();
+        let mut nobody = |_: Progress<'_>| ControlFlow::Continue(());
+        let shared = Shared::new(&ran, &mut nobody);
+        let mut last = None;
+        while let Some(block) = give(last) {
+            last = self.block(block, &shared)?.then_some(block);
+        }
+        ran.computed = shared.computed.load(Ordering::Relaxed);
+        ran.worked = *lock(&shared.worked);
+        ran.elapsed = started.elapsed();
+        Ok(ran)
+    }
+
+    /// Computes a block and keeps it, unless it is cancelled: whether it is kept.
+    fn block(&self, number: usize, shared: &Shared<'_>) -> Result<bool, StudyError> {
         let mut block = Block::default();
         for variant in self.study.variants_of(number) {
             let started = Instant::now();
             let Ok(found) = self.study.found(variant, &self.cancel) else {
-                return Ok(());
+                return Ok(false);
             };
             for (place, branch) in found.branches.iter().enumerate() {
                 self.folder.write_branch(variant, place, branch)?;
@@ -221,7 +247,7 @@ impl<'r> Runner<'r> {
             .computed
             .fetch_add(block.seconds.len(), Ordering::Relaxed);
         *lock(&shared.worked) += Duration::from_secs_f64(block.seconds.iter().sum());
-        Ok(())
+        Ok(true)
     }
 
     /// Says that a variant more is done.

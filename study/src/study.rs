@@ -10,7 +10,8 @@ use crate::checks::check_request;
 use crate::design::{Designed, List};
 use crate::error::StudyError;
 use crate::names::Names;
-use crate::plan::{InstructionSet, Keep, Plan, Request, Variants, What};
+use crate::pictures;
+use crate::plan::{Format, InstructionSet, Keep, Picture, Plan, Request, Variants, What};
 use crate::spread::Spread;
 use crate::table::{Column, columns};
 
@@ -113,6 +114,20 @@ impl Study {
         self
     }
 
+    /// Pictures of the table.
+    #[must_use]
+    pub fn pictures(mut self, pictures: impl IntoIterator<Item = Picture>) -> Self {
+        self.plan.pictures = pictures.into_iter().collect();
+        self
+    }
+
+    /// Forms in which the table is written. Default: with commas.
+    #[must_use]
+    pub fn formats(mut self, formats: impl IntoIterator<Item = Format>) -> Self {
+        self.plan.formats = formats.into_iter().collect();
+        self
+    }
+
     /// What random numbers follow from. Default: 1.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
@@ -157,7 +172,7 @@ pub struct Prepared {
     pub(crate) largest: Vec<Wanted>,
     kinds: Option<Vec<EventKind>>,
     /// With the values that do not vary.
-    system: Arc<dyn System>,
+    pub(crate) system: Arc<dyn System>,
     values: Vec<f64>,
     /// The place of what varies among the parameters; that of the frequency is beyond them.
     places: Vec<usize>,
@@ -205,7 +220,7 @@ impl Prepared {
         plan.keep.signals = Some(signals.iter().map(ToString::to_string).collect());
         let shown: Vec<String> = signals.iter().map(ToString::to_string).collect();
         let places = designed.names.iter().map(|name| order(name)).collect();
-        Ok(Self {
+        let prepared = Self {
             columns: columns(plan.request.what, &designed.names, &shown),
             kinds: kinds(&plan.keep)?,
             system: Arc::clone(&study.system),
@@ -219,7 +234,9 @@ impl Prepared {
             values,
             places,
             block,
-        })
+        };
+        pictures::check(&prepared)?;
+        Ok(prepared)
     }
 
     /// How many variants there are.
@@ -263,9 +280,19 @@ impl Prepared {
 
     /// The system of a variant, and the frequency where a parameter is followed.
     pub(crate) fn variant(&self, index: usize) -> (Valued, Option<f64>) {
+        self.with(self.designed.values(index))
+    }
+
+    /// The same at a value of the only thing that varies from variant to variant.
+    pub(crate) fn at_second(&self, value: f64) -> (Valued, Option<f64>) {
+        self.with(vec![value])
+    }
+
+    /// The same at values of what varies from variant to variant.
+    fn with(&self, varying: Vec<f64>) -> (Valued, Option<f64>) {
         let mut values = self.values.clone();
         let mut omega = self.plan.request.omega;
-        for (place, value) in self.places.iter().zip(self.designed.values(index)) {
+        for (place, value) in self.places.iter().zip(varying) {
             match values.get_mut(*place) {
                 Some(of_parameter) => *of_parameter = value,
                 None => omega = Some(value),

@@ -105,6 +105,7 @@ pub(crate) fn columns(what: What, names: &[String], signals: &[String]) -> Vec<C
             columns.push(column(name, Whole));
         }
         columns.push(column("largest", Number));
+        columns.push(column("signal", Text));
         columns.push(column("periods", Text));
     } else {
         columns.push(column("kind", Text));

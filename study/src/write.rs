@@ -80,11 +80,3 @@ pub(crate) fn npy(source: &Source<'_>, merged: &Merged, to: &mut impl Write) -> 
         Ok(())
     })
 }
-
-/// Parquet.
-pub(crate) fn parquet(_: &Source<'_>, _: &mut impl Write) -> io::Result<()> {
-    Err(io::Error::new(
-        io::ErrorKind::Unsupported,
-        "this program has been built without the feature `parquet`",
-    ))
-}

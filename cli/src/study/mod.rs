@@ -1,6 +1,8 @@
 //! The subcommand `study`: thousands of variants of an oscillator, on threads or in parts, as one table.
 
 pub mod options;
+#[cfg(feature = "mpi")]
+mod ranks;
 mod read;
 pub mod run;
 

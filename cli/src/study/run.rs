@@ -60,17 +60,34 @@ pub fn run(options: &Options, cancel: &Cancel, progress: &mut Progress) -> Resul
         let folders = folders
             .iter()
             .map(|folder| Folder::existing(folder, &study));
-        let merged = study.merge(&folders.collect::<Result<Vec<_>, _>>()?)?;
-        return Ok(ended(&merged, None));
+        let folders = folders.collect::<Result<Vec<_>, _>>()?;
+        return table(&study, &folders, None, cancel, progress);
+    }
+    #[cfg(feature = "mpi")]
+    if let Some(ranks) = super::ranks::ranks(options) {
+        return super::ranks::run(&ranks, &study, &place, cancel, progress);
     }
     let folder = Folder::open(&place, &study)?;
     let ran = compute(options, &study, &folder, cancel, progress)?;
     if options.part.is_some() || ran.interrupted {
-        return Ok(kept(&ran, options));
+        return Ok(kept(&ran, options.part.is_some()));
     }
+    table(&study, &[folder], Some(&ran), cancel, progress)
+}
+
+/// Writes one table of all, and its pictures.
+pub(super) fn table(
+    study: &Prepared,
+    folders: &[Folder],
+    ran: Option<&Ran>,
+    cancel: &Cancel,
+    progress: &mut Progress,
+) -> Result<Ended, Failure> {
     progress.update(|| "one table of all".to_owned());
-    let merged = study.merge(&[folder])?;
-    Ok(ended(&merged, Some(&ran)))
+    let mut merged = study.merge(folders)?;
+    progress.update(|| "pictures".to_owned());
+    merged.files.extend(study.draw(folders, cancel)?);
+    Ok(ended(&merged, ran))
 }
 
 /// The folder of the results.
@@ -102,16 +119,23 @@ fn compute(
         .part(options.part.unwrap_or(Part::WHOLE))
         .threads(options.threads.unwrap_or(0).into())
         .cancel(cancel);
+    runner.run(&mut shown(progress))
+}
+
+/// Shows how many variants are done, and the time left.
+pub(super) fn shown(
+    progress: &mut Progress,
+) -> impl FnMut(hertzian::Progress<'_>) -> ControlFlow<()> + Send + '_ {
     let started = std::time::Instant::now();
     let mut before = None;
-    runner.run(&mut |done| {
+    move |done| {
         let total = done.total.unwrap_or(done.done);
         let before = *before.get_or_insert(done.done.saturating_sub(1));
         let each = started.elapsed() / (done.done - before).max(1) as u32;
         let left = each * total.saturating_sub(done.done) as u32;
         progress.update(|| format!("{} of {total} variants, {} left", done.done, clock(left)));
         ControlFlow::Continue(())
-    })
+    }
 }
 
 /// A time in hours, minutes and seconds.
@@ -125,13 +149,13 @@ fn clock(time: Duration) -> String {
 }
 
 /// What is said of a run without a table.
-fn kept(ran: &Ran, options: &Options) -> Ended {
+pub(super) fn kept(ran: &Ran, is_part: bool) -> Ended {
     let mut complaints = ran.damaged.clone();
     if ran.interrupted {
         complaints.push("interrupted: the same command goes on with what is missing".to_owned());
     }
     Ended {
-        summary: said(ran, options.part.is_some()),
+        summary: said(ran, is_part),
         complaints,
         complete: !ran.interrupted,
     }

@@ -40,14 +40,18 @@ impl Drop for Folder {
 
 /// So many variants of a linear oscillator, in blocks of four.
 pub fn study(count: usize) -> Prepared {
+    unprepared(count).prepare().expect("a study")
+}
+
+/// The same, before it is checked.
+pub fn unprepared(count: usize) -> Study {
     let variants = Variants::sobol(count)
         .over("k", Spread::uniform(3.0, 5.0))
         .over("drive", Spread::normal(1.0, 0.1));
     let keep = hertzian_study::Keep::new().at(&[1.0, 2.5]);
     let request = Request::response(0.5, 3.0).tolerance(1e-4).stability(false);
     let study = Study::of(&Linear::default()).variants(variants);
-    let study = study.request(request).keep(keep).block(4);
-    study.prepare().expect("a study")
+    study.request(request).keep(keep).block(4)
 }
 
 /// The largest displacement less the smallest of the linear oscillator.

@@ -1,6 +1,7 @@
 //! Studies: their variants, their rows, and what is kept.
 
 mod common;
+mod forms;
 mod kept;
 mod rows;
 mod variants;

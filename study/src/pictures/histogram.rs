@@ -1,0 +1,136 @@
+//! How often an event lies where: a histogram with quantiles.
+//!
+//! Bins are as wide as Freedman and Diaconis (1981) say: twice the distance of the quartiles over the cube root of the number.
+
+use std::io;
+
+use hertzian::chart::{Chart, Curve, Line, Run, Series};
+
+use super::{along, better, is, number, percent, place, quantile, quantiles};
+use crate::merge::Source;
+use crate::plan::Picture;
+use crate::table::Value;
+
+/// Bins, at least and at most.
+const BINS: [f64; 2] = [5.0, 60.0];
+
+/// The chart.
+pub(super) fn chart(source: &Source<'_>, picture: &Picture) -> io::Result<Chart> {
+    let study = source.study;
+    let kind = picture.kind.as_deref().unwrap_or("fold");
+    let mut places = places(source, picture, kind)?;
+    places.sort_by(f64::total_cmp);
+    let title = format!(
+        "{} {kind} of {} variants of {}",
+        picture.which,
+        places.len(),
+        hertzian::Model::of(&*study.system).name
+    );
+    let mut chart = Chart::new(title).x(along(study)).y("variants");
+    let (Some(&low), Some(&high)) = (places.first(), places.last()) else {
+        return Ok(chart.remark(format!("no variant has an event of kind {kind}")));
+    };
+    let (outline, most) = outline(&places, low, high);
+    let label = "variants".to_owned();
+    let run = Run {
+        line: Line::Stable,
+        points: outline.clone(),
+    };
+    let area = Series {
+        label: label.clone(),
+        points: outline,
+    };
+    chart = chart
+        .curve(Curve {
+            label,
+            runs: vec![run],
+        })
+        .area(area);
+    let mut said = Vec::new();
+    for part in quantiles(picture) {
+        let value = quantile(&places, part);
+        said.push(format!("{} {value:.6}", percent(part)));
+        let line = vec![[value, 0.0], [value, most]];
+        let label = if said.len() == 1 {
+            "quantiles".to_owned()
+        } else {
+            String::new()
+        };
+        chart = chart.reference(Series {
+            label,
+            points: line,
+        });
+    }
+    Ok(chart.remark(format!("quantiles: {}", said.join(", "))))
+}
+
+/// The place of the event of every variant that has it.
+fn places(source: &Source<'_>, picture: &Picture, kind: &str) -> io::Result<Vec<f64>> {
+    let columns = ["row", "kind", "value"].map(|name| place(source.study, name));
+    let mut places = Vec::new();
+    // Rows of a variant follow one after the other.
+    let mut last: Option<(Value, f64)> = None;
+    source.each(|row| {
+        let Some(value) = number(&row, columns[2]) else {
+            return Ok(());
+        };
+        if !is(&row, columns[0], "event") || !is(&row, columns[1], kind) {
+            return Ok(());
+        }
+        last = match last.take() {
+            Some((variant, known)) if variant == row[0] => {
+                Some((variant, better(picture.which, Some(known), value)))
+            }
+            before => {
+                places.extend(before.map(|(_, known)| known));
+                Some((row[0].clone(), value))
+            }
+        };
+        Ok(())
+    })?;
+    places.extend(last.map(|(_, known)| known));
+    Ok(places)
+}
+
+/// The outline of the bars, and the highest of them.
+fn outline(places: &[f64], low: f64, high: f64) -> (Vec<[f64; 2]>, f64) {
+    let count = places.len() as f64;
+    let width = 2.0 * (quantile(places, 0.75) - quantile(places, 0.25)) / count.cbrt();
+    let range = if high > low {
+        high - low
+    } else {
+        low.abs().max(1.0) * 1e-3
+    };
+    let bins = (range / width).clamp(BINS[0], BINS[1]).ceil();
+    let bins = if bins.is_nan() { BINS[0] } else { bins };
+    let mut counts = vec![0.0; bins as usize];
+    for value in places {
+        let bin = ((value - low) / range * bins) as usize;
+        counts[bin.min(bins as usize - 1)] += 1.0;
+    }
+    let at = |edge: usize| low + range * edge as f64 / bins;
+    let mut points = vec![[low, 0.0]];
+    for (bin, &count) in counts.iter().enumerate() {
+        points.extend([[at(bin), count], [at(bin + 1), count]]);
+    }
+    points.push([at(counts.len()), 0.0]);
+    (points, counts.into_iter().fold(0.0, f64::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_hold_every_value_once() {
+        let places: Vec<f64> = (0..1000).map(|index| f64::from(index) / 999.0).collect();
+        let (points, most) = outline(&places, 0.0, 1.0);
+        // Twice half of the range over ten: ten bins.
+        assert_eq!(points.len(), 22);
+        let sum: f64 = points[1..21].iter().step_by(2).map(|point| point[1]).sum();
+        assert_eq!((sum, most), (1000.0, 100.0));
+        // All in one place.
+        let (points, most) = outline(&[2.0, 2.0], 2.0, 2.0);
+        assert_eq!((points[1], most), ([2.0, 2.0], 2.0));
+    }
+}
