@@ -52,6 +52,7 @@ impl Harmonics {
                 .flat_map(|&k| (0..coordinates).flat_map(move |i| of(i, k)))
                 .collect(),
             group: 2 * coordinates,
+            chained: 0,
         }
     }
 }

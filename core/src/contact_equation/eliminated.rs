@@ -1,5 +1,5 @@
-//! What is left when forces and switches are eliminated from the equations of a pass: the map of the states over the period, and a step
-//! of Newton's method across a tangent.
+//! What is left when switches are eliminated too from the equations of a pass, in which forces are: the map of the states over the period,
+//! and a step of Newton's method across a tangent.
 //!
 //! Numbers of equations are those of [`equations`](super::equations).
 
@@ -78,11 +78,14 @@ impl Equations {
         if self.failed || !self.is_in_order() {
             return None;
         }
-        let (n, order) = (self.skeleton.unknowns(), self.skeleton.order);
+        if self.chain.singular().is_some() {
+            return None;
+        }
+        let (told, order) = (self.skeleton.told(), self.skeleton.order);
         let inner = &mut self.eliminated.inner;
-        let inner = inner.get_or_insert_with(|| Solver::of(n - order));
+        let inner = inner.get_or_insert_with(|| Solver::of(told - order));
         let image = &self.skeleton.recurrence().image;
-        let mut map = inner.map(&self.matrix, n, order, image)?;
+        let mut map = inner.map(&self.matrix, told, order, image)?;
         for i in 0..order {
             for j in 0..order {
                 map[(i, j)] *= self.unit(j) / self.unit(i);
@@ -95,25 +98,27 @@ impl Equations {
     /// `None` where the matrix is singular.
     pub(super) fn across(&mut self, u: &[f64], tangent: &[f64]) -> Option<Vec<f64>> {
         self.compute(u, true);
-        if self.failed {
+        if self.failed || self.chain.singular().is_some() {
             return None;
         }
-        let n = self.skeleton.unknowns();
-        let counts = self.skeleton.order + self.skeleton.switches.len();
+        let told = self.skeleton.told();
         let whole = &mut self.eliminated.whole;
-        let Solver { matrix, lu, .. } = whole.get_or_insert_with(|| Solver::of(n + 1));
-        for (row, entries) in self.matrix.chunks_exact(n + 1).enumerate() {
+        let Solver { matrix, lu, column } = whole.get_or_insert_with(|| Solver::of(told + 1));
+        for (row, entries) in self.matrix.chunks_exact(told + 1).enumerate() {
             matrix.row_mut(row).copy_from_slice(entries);
         }
-        let last = matrix.row_mut(n);
-        last.fill(0.0);
-        for column in (0..counts).chain([n]) {
-            last[column] = tangent[column];
-        }
+        let last = matrix.row_mut(told);
+        last[..told].copy_from_slice(&tangent[..told]);
+        last[told] = tangent[tangent.len() - 1];
         lu.factorise(matrix).ok()?;
         let mut step = self.residual.clone();
-        step.push(0.0);
-        lu.solve(matrix, &mut step);
+        self.chain.forward(&mut step);
+        column[..told].copy_from_slice(&step[..told]);
+        column[told] = 0.0;
+        lu.solve(matrix, column);
+        step[..told].copy_from_slice(&column[..told]);
+        self.chain.back(column, &mut step[told..]);
+        step.push(column[told]);
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
 }

@@ -12,16 +12,17 @@
 //! f - phi(g, g') = 0 at the nodes,    g = level at switches,    y_end - S y_begin = 0                        (2)
 //! ```
 //!
-//! with the image `S` of the coordinates after which the orbit comes back. Derivatives by all unknowns are carried along. With `X f` for the integral of (1), where everything is held but the length,
+//! with the image `S` of the coordinates after which the orbit comes back. Derivatives are carried along; forces are eliminated interval by
+//! interval ([`chain`](crate::continuation::chain)), so that they are those by the states at the beginning and by switches. With `X f` for the integral of (1), where everything is held but the length,
 //!
 //! ```text
 //! d(X f)/ds = X f / s + A int_0^(psi s) (psi - t / s) e^(A (psi s - t)) B f dt                                (3)
 //! ```
 //!
-//! The map of the states is what is left when forces and switches are eliminated: perturbed states have their own switches.
+//! The map of the states is what is left when switches are eliminated too: perturbed states have their own switches.
 //!
 //! ```text
-//! M = S^-1 (E_y - E_w W^-1 W_y),    rows E of the end, W of the others; columns y of states, w of the others  (4)
+//! M = S^-1 (E_y - E_w W^-1 W_y),    rows E of the end, W of switches; columns y of states, w of switches      (4)
 //! ```
 //!
 //! Source: the integral equation of the periodic contact force, Babitsky (1998), Theory of Vibro-Impact Systems and Applications,
@@ -33,14 +34,16 @@ use std::sync::Arc;
 
 use super::eliminated::Eliminated;
 use super::extremes::Extremes;
+use super::integrals::add;
 use super::moving_stiffness::as_contacts;
 use super::placement::Told;
 use super::room::Room;
-use super::skeleton::Skeleton;
+use super::skeleton::{Interval, Skeleton};
 use super::touches::Image;
 use super::values::Values;
 use crate::cancel::Cancel;
-use crate::continuation::jacobian::Jacobian;
+use crate::continuation::chain::Chain;
+use crate::continuation::jacobian::{Jacobian, Partition};
 use crate::continuation::problem::Problem;
 use crate::model::layout::Layout;
 use crate::system::{System, Variable};
@@ -118,6 +121,13 @@ pub(super) struct Passed {
     pub(super) stiffness: Vec<f64>,
 }
 
+/// What of a gap.
+#[derive(Debug, Clone, Copy)]
+enum Of {
+    Gap,
+    Slope,
+}
+
 /// The equations on one skeleton.
 pub(super) struct Equations {
     pub(super) setting: Setting,
@@ -130,9 +140,11 @@ pub(super) struct Equations {
     pub(super) reference: Vec<f64>,
     /// Weight of a phase, and of velocities, in the norm.
     pub(super) size: f64,
-    /// Residuals, and their derivatives by the extended unknowns row by row.
+    /// Residuals; derivatives of those that are not of a force at a node, by the unknowns that are none and the parameter, row by row, when
+    /// forces are eliminated; and how those are.
     pub(super) residual: Vec<f64>,
     pub(super) matrix: Vec<f64>,
+    pub(super) chain: Chain,
     pub(super) eliminated: Eliminated,
     pub(super) passed: Vec<Passed>,
     /// Of the last pass, when they are asked for.
@@ -172,6 +184,7 @@ impl Equations {
             size,
             residual: Vec::new(),
             matrix: Vec::new(),
+            chain: Chain::default(),
             eliminated: Eliminated::default(),
             passed: Vec::new(),
             extremes: OnceCell::new(),
@@ -197,7 +210,10 @@ impl Equations {
     fn resize(&mut self) {
         let n = self.skeleton.unknowns();
         self.residual = vec![0.0; n];
-        self.matrix = vec![0.0; n * (n + 1)];
+        let told = self.skeleton.told();
+        self.matrix = vec![0.0; told * (told + 1)];
+        let counts = self.skeleton.intervals.iter().map(Interval::forces);
+        self.chain = Chain::new(counts, self.skeleton.order, told);
         self.eliminated = Eliminated::default();
         self.column = vec![0.0; n];
         self.passed = vec![Passed::default(); self.skeleton.intervals.len()];
@@ -239,7 +255,7 @@ impl Equations {
         self.derived = derivatives;
         self.by_parameter = false;
         if derivatives {
-            self.matrix.fill(0.0);
+            self.chain.begin();
         }
         let (values, skeleton) = (&self.values, &self.skeleton);
         let omega = self.setting.at_omega(u[n]);
@@ -252,10 +268,11 @@ impl Equations {
             derivatives,
             residual: &mut self.residual,
             matrix: &mut self.matrix,
+            chain: &mut self.chain,
             room: &mut self.room,
         };
         pass.begin(&self.reference);
-        for (interval, passed) in skeleton.intervals.iter().zip(&mut self.passed) {
+        for (interval, passed) in self.passed.iter_mut().enumerate() {
             pass.go(interval, passed);
         }
         pass.close(&self.reference);
@@ -266,15 +283,13 @@ impl Equations {
 
     /// Equations (2) and (3) of [`skeleton`](super::skeleton).
     fn switches(&mut self, u: &[f64], derivatives: bool) {
-        let columns = self.skeleton.unknowns() + 1;
         for index in 0..self.skeleton.switches.len() {
-            let row = self.skeleton.slot(index);
             match self.skeleton.switches[index].told {
                 Told::Alone => {
+                    let row = self.skeleton.slot(index);
                     self.residual[row] = self.room.at_switch[index][0];
                     if derivatives {
-                        let of = &self.room.switch_rows[index * columns..][..columns];
-                        self.matrix[row * columns..][..columns].copy_from_slice(of);
+                        self.write_row(row, &[(index, Of::Gap, 1.0)]);
                     }
                 }
                 Told::First { other, bend } => {
@@ -287,14 +302,12 @@ impl Equations {
 
     /// Those of two switches that may meet.
     fn touching(&mut self, u: &[f64], [first, second]: [usize; 2], bend: f64, derivatives: bool) {
-        let columns = self.skeleton.unknowns() + 1;
+        let columns = self.skeleton.told() + 1;
         let rows = [first, second].map(|switch| self.skeleton.slot(switch));
-        let told = self.skeleton.told(first);
+        let told = self.skeleton.opened(first);
         let square = told.square(u[rows[1]]);
         let [half, by_unknown] = told.half(u[rows[1]]);
         let [a, b] = [first, second].map(|switch| self.room.at_switch[switch]);
-        let of = |rows: &[f64], switch: usize, column: usize| rows[switch * columns + column];
-        let room = &self.room;
         if half > 0.0 {
             self.residual[rows[0]] = 0.5 * (a[0] + b[0]);
             let slope = (b[0] - a[0]) / (2.0 * half);
@@ -302,11 +315,9 @@ impl Equations {
             if !derivatives {
                 return;
             }
-            for column in 0..columns {
-                let [x, y] = [first, second].map(|switch| of(&room.switch_rows, switch, column));
-                self.matrix[rows[0] * columns + column] = 0.5 * (x + y);
-                self.matrix[rows[1] * columns + column] = (y - x) / (2.0 * half);
-            }
+            let per = 0.5 / half;
+            self.write_row(rows[0], &[(first, Of::Gap, 0.5), (second, Of::Gap, 0.5)]);
+            self.write_row(rows[1], &[(first, Of::Gap, -per), (second, Of::Gap, per)]);
             self.matrix[rows[1] * columns + rows[1]] -= slope / half * by_unknown;
         } else {
             self.residual[rows[0]] = a[0] + bend * square;
@@ -314,11 +325,26 @@ impl Equations {
             if !derivatives {
                 return;
             }
-            for column in 0..columns {
-                self.matrix[rows[0] * columns + column] = of(&room.switch_rows, first, column);
-                self.matrix[rows[1] * columns + column] = of(&room.slope_rows, first, column);
-            }
+            self.write_row(rows[0], &[(first, Of::Gap, 1.0)]);
+            self.write_row(rows[1], &[(first, Of::Slope, 1.0)]);
             self.matrix[rows[0] * columns + rows[1]] += bend;
+        }
+    }
+
+    /// Writes derivatives of a sum of what gaps are at switches.
+    fn write_row(&mut self, row: usize, terms: &[(usize, Of, f64)]) {
+        let (order, columns) = (self.skeleton.order, self.skeleton.told() + 1);
+        let entries = &mut self.matrix[row * columns..][..columns];
+        entries.fill(0.0);
+        for &(switch, of, factor) in terms {
+            let [rows, forms] = match of {
+                Of::Gap => [&self.room.switch_rows, &self.room.gap_forms],
+                Of::Slope => [&self.room.slope_rows, &self.room.slope_forms],
+            };
+            add(entries, factor, &rows[switch * columns..][..columns]);
+            let form = &forms[switch * order..][..order];
+            self.chain
+                .read(row, self.room.read_at[switch], factor, form);
         }
     }
 
@@ -344,12 +370,15 @@ impl Equations {
         if !derivatives || self.setting.plain || self.last == u && self.by_parameter {
             return self.pass(u, derivatives);
         }
-        let n = self.skeleton.unknowns();
         let mut column = std::mem::take(&mut self.column);
         self.parameter_column(u, &mut column);
         self.pass(u, true);
-        for (row, slope) in column.iter().enumerate() {
-            self.matrix[row * (n + 1) + n] = *slope;
+        let told = self.skeleton.told();
+        if self.chain.singular().is_none() {
+            self.chain.set_parameter(&mut column);
+        }
+        for (row, slope) in column[..told].iter().enumerate() {
+            self.matrix[row * (told + 1) + told] = *slope;
         }
         self.column = column;
         self.by_parameter = true;
@@ -385,15 +414,20 @@ impl Problem for Equations {
         self.skeleton.unknowns()
     }
 
+    fn partition(&self) -> Partition {
+        Partition::chained(self.skeleton.unknowns(), self.skeleton.told())
+    }
+
     fn evaluate(&mut self, u: &[f64], residual: &mut [f64], jacobian: Option<&mut Jacobian>) {
         self.compute(u, jacobian.is_some());
         residual.copy_from_slice(&self.residual);
         let Some(jacobian) = jacobian else { return };
         // The parameter stands last in a row here as there.
-        let n = self.skeleton.unknowns();
-        for (row, entries) in self.matrix.chunks_exact(n + 1).enumerate() {
+        let told = self.skeleton.told();
+        for (row, entries) in self.matrix.chunks_exact(told + 1).enumerate() {
             jacobian.core_mut().row_mut(row).copy_from_slice(entries);
         }
+        jacobian.take_chain(&self.chain);
     }
 
     fn prepare(&mut self, u: &mut [f64]) {

@@ -246,8 +246,8 @@ impl Integrals {
         self.moves
     }
 
-    /// Adds the derivatives of what depends like a row on the states of some pairs at a target, by the forces of the interval. The same row
-    /// times `D` stands beside it.
+    /// Adds the derivatives of what depends like a row on the states of some pairs at a target, by the forces of the interval, contact by
+    /// contact. The same row times `D` stands beside it.
     pub(super) fn add_own(
         &self,
         of: &Loaded<'_>,
@@ -260,7 +260,7 @@ impl Integrals {
         let size = self.targets() * n;
         for (place, active) in of.active.iter().enumerate() {
             let moves = !of.values.contacts[active.contact].input.is_constant();
-            let entries = &mut entries[active.first..active.first + n];
+            let entries = &mut entries[place * n..(place + 1) * n];
             for r in pairs.clone() {
                 let tables = [&self.once, &self.twice];
                 let tables = tables.map(|of| &of[r * size + target * n..][..n]);

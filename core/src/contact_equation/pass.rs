@@ -2,12 +2,13 @@
 
 use super::block::row_times;
 use super::equations::Passed;
-use super::integrals::{Loaded, add, add_both};
+use super::integrals::{Loaded, add};
 use super::place::Place;
 use super::room::Room;
 use super::skeleton::{Active, Interval, Skeleton};
 use super::targets::Way;
 use super::values::{Instant, Values, pair};
+use crate::continuation::chain::Chain;
 use crate::law::{Derivatives, On};
 use crate::system::System;
 
@@ -21,12 +22,15 @@ pub(super) struct Pass<'p> {
     pub(super) omega: Option<f64>,
     pub(super) derivatives: bool,
     pub(super) residual: &'p mut [f64],
+    /// Derivatives of what is not a force at a node, by what is none, when forces are eliminated; and how those are.
     pub(super) matrix: &'p mut [f64],
+    pub(super) chain: &'p mut Chain,
     pub(super) room: &'p mut Room,
 }
 
 /// An interval at these unknowns.
 struct Stretch<'i> {
+    index: usize,
     interval: &'i Interval,
     from: Place,
     to: Place,
@@ -35,7 +39,7 @@ struct Stretch<'i> {
 }
 
 impl Stretch<'_> {
-    /// Adds the derivatives of what changes so with where the interval begins and ends.
+    /// Adds the derivatives of what changes so with where the interval begins and ends. The places of these are among the first columns.
     fn add_slopes(&self, [from, to, _]: [f64; 3], row: &mut [f64]) {
         for (unknown, slope) in self.from.slopes() {
             row[unknown] += from * slope;
@@ -47,8 +51,9 @@ impl Stretch<'_> {
 }
 
 impl Pass<'_> {
+    /// States where the period begins, switches, and the parameter.
     fn columns(&self) -> usize {
-        self.u.len()
+        self.skeleton.told() + 1
     }
 
     /// The states where the period begins. Unknown there are positions and velocities, whatever the modes are.
@@ -87,22 +92,33 @@ impl Pass<'_> {
                 continue;
             }
             let row = &mut self.matrix[i * columns..][..columns];
-            for (factor, by) in through.iter().zip(self.room.by.chunks_exact(columns)) {
+            row.fill(0.0);
+            let form = &mut self.room.rows[0];
+            for ((factor, by), form) in through
+                .iter()
+                .zip(self.room.by.chunks_exact(columns))
+                .zip(form)
+            {
+                *form = *factor;
                 if *factor != 0.0 {
                     add(row, *factor, by);
                 }
             }
+            let last = self.skeleton.intervals.len() - 1;
+            self.chain.read(i, last, 1.0, &self.room.rows[0]);
             row[place] -= sign;
         }
     }
 
     /// Over an interval. Where two contacts switch in another order than they are told in, its way is negative, and (1) goes back: to first
     /// order in it the forces do what they do in the right order.
-    pub(super) fn go(&mut self, interval: &Interval, passed: &mut Passed) {
+    pub(super) fn go(&mut self, index: usize, passed: &mut Passed) {
+        let interval = &self.skeleton.intervals[index];
         let from = self.skeleton.place(self.u, interval.from);
         let to = self.skeleton.place(self.u, interval.to);
         let time = (to.phase - from.phase) / self.values.base;
         let stretch = Stretch {
+            index,
             interval,
             from,
             to,
@@ -123,8 +139,11 @@ impl Pass<'_> {
         }
         passed.states.clear();
         passed.states.extend_from_slice(&self.room.y);
+        if self.derivatives {
+            self.chain.link_mut(index).clear();
+        }
         if time == 0.0 {
-            self.nowhere(interval);
+            self.nowhere(&stretch);
         } else {
             self.interior(&stretch, passed);
         }
@@ -134,15 +153,26 @@ impl Pass<'_> {
     }
 
     /// There is no way between two switches that do not take place: the forces there are zero.
-    fn nowhere(&mut self, interval: &Interval) {
-        let columns = self.columns();
-        for active in &interval.active {
-            for row in active.first..active.first + interval.nodes.count() {
-                self.residual[row] = self.u[row];
-                if self.derivatives {
-                    self.matrix[row * columns + row] = 1.0;
-                }
+    fn nowhere(&mut self, stretch: &Stretch<'_>) {
+        let interval = stretch.interval;
+        let first = interval.first();
+        for row in first..first + interval.forces() {
+            self.residual[row] = self.u[row];
+            if self.derivatives {
+                let [own, ..] = self.chain.link_mut(stretch.index).equation_mut(row - first);
+                own[row - first] = 1.0;
             }
+        }
+        self.room.by_next.fill(0.0);
+        self.pass_on(stretch);
+    }
+
+    /// Eliminates the forces of an interval, whose derivatives are written.
+    fn pass_on(&mut self, stretch: &Stretch<'_>) {
+        if self.derivatives {
+            let room = &mut *self.room;
+            self.chain.pass(stretch.index, &room.by, &mut room.by_next);
+            std::mem::swap(&mut room.by, &mut room.by_next);
         }
     }
 
@@ -289,9 +319,8 @@ impl Pass<'_> {
 
     /// Derivatives of a residual at a node.
     fn row(&mut self, stretch: &Stretch<'_>, at: usize, node: usize, row: usize) {
-        let (order, columns) = (self.skeleton.order, self.columns());
+        let order = self.skeleton.order;
         let psi = stretch.interval.nodes.targets[node];
-        let known = stretch.interval.active[0].first;
         let loaded = self.loaded(stretch);
         let room = &mut *self.room;
         let by = [-room.by_gap[at], -room.by_rate[at]];
@@ -300,7 +329,9 @@ impl Pass<'_> {
         for ((output, gap), rate) in output.iter_mut().zip(rows[0]).zip(rows[1]) {
             *output = by[0] * gap + by[1] * rate;
         }
-        let entries = &mut self.matrix[row * columns..][..columns];
+        let local = row - stretch.interval.first();
+        let link = self.chain.link_mut(stretch.index);
+        let [own, by_states, direct] = link.equation_mut(local);
         let of = &room.outputs[at];
         let by_phase = by[0] * of.by_phase[0] + by[1] * of.by_phase[1];
         let mut slopes = [(1.0 - psi) * by_phase, psi * by_phase, by[1] * of.by_omega];
@@ -309,28 +340,21 @@ impl Pass<'_> {
             let through = row_times(output, block.deviation);
             turned[2 * r..2 * r + 2].copy_from_slice(&through);
             let [c, k] = room.targets.kernel(node, r);
-            let through = [0, 1].map(|i| c * output[i] + k * through[i]);
-            let (one, other) = room.by[2 * r * columns..][..2 * columns].split_at(columns);
-            add_both(
-                [&one[..known], &other[..known]],
-                through,
-                &mut entries[..known],
-            );
-            entries[columns - 1] += through[0] * one[columns - 1] + through[1] * other[columns - 1];
             for i in 0..2 {
+                by_states[2 * r + i] = c * output[i] + k * through[i];
                 let by = room.targets.slopes(node, 2 * r + i);
                 for (to, by) in slopes.iter_mut().zip(by) {
                     *to += output[i] * by;
                 }
             }
         }
-        stretch.add_slopes(slopes, entries);
+        stretch.add_slopes(slopes, direct);
         if self.omega.is_some() {
-            entries[columns - 1] += slopes[2];
+            direct[direct.len() - 1] += slopes[2];
         }
         room.integrals
-            .add_own(&loaded, 0..order / 2, [output, turned], node, entries);
-        entries[row] += 1.0;
+            .add_own(&loaded, 0..order / 2, [output, turned], node, own);
+        own[local] += 1.0;
     }
 
     /// Goes over to the states at the end.
@@ -351,18 +375,19 @@ impl Pass<'_> {
         for (r, block) in self.values.linear.blocks.iter().enumerate() {
             let [c, k] = room.targets.kernel(target, r);
             let d = block.deviation;
-            let (one, other) = room.by[2 * r * columns..][..2 * columns].split_at(columns);
             for i in 0..2 {
                 let state = 2 * r + i;
-                let row = &mut room.by_next[state * columns..][..columns];
-                let unit = [0, 1].map(|j| f64::from(u8::from(i == j)));
-                let through = [0, 1].map(|j| c * unit[j] + k * d[i][j]);
-                row.fill(0.0);
-                add_both([one, other], through, row);
+                let [carried, driven] = self.chain.link_mut(stretch.index).state_mut(state);
+                carried.fill(0.0);
+                for j in 0..2 {
+                    carried[2 * r + j] = c * f64::from(u8::from(i == j)) + k * d[i][j];
+                }
+                let direct = &mut room.by_next[state * columns..][..columns];
+                direct.fill(0.0);
                 let slopes = room.targets.slopes(target, state);
-                stretch.add_slopes(slopes, row);
+                stretch.add_slopes(slopes, direct);
                 if self.omega.is_some() {
-                    row[columns - 1] += slopes[2];
+                    direct[columns - 1] += slopes[2];
                 }
                 if !active.is_empty() {
                     let [unit_row, turned, _] = &mut room.rows;
@@ -371,11 +396,11 @@ impl Pass<'_> {
                     turned.fill(0.0);
                     turned[2 * r..2 * r + 2].copy_from_slice(&d[i]);
                     room.integrals
-                        .add_own(&loaded, r..r + 1, [unit_row, turned], target, row);
+                        .add_own(&loaded, r..r + 1, [unit_row, turned], target, driven);
                 }
             }
         }
-        std::mem::swap(&mut room.by, &mut room.by_next);
+        self.pass_on(stretch);
     }
 
     /// Gap less level where an interval ends, and its slope. Everything that they depend on is in the states there.
@@ -411,6 +436,18 @@ impl Pass<'_> {
             }
             stretch.add_slopes([0.0, factor * by_phase, 0.0], row);
             row[columns - 1] += by_omega;
+        }
+        room.read_at[switch] = stretch.index;
+        let forms = [&mut room.gap_forms, &mut room.slope_forms];
+        for ((of, forms), factor) in [&*gap, &*rate]
+            .into_iter()
+            .zip(forms)
+            .zip([1.0, 1.0 / base])
+        {
+            let order = of.len();
+            for (to, of) in forms[switch * order..].iter_mut().zip(of) {
+                *to = factor * of;
+            }
         }
     }
 }

@@ -141,7 +141,7 @@ impl Plan {
         let told = self.planned.iter().enumerate();
         u.extend(
             told.map(|(index, planned)| match planned.placed.switch.told {
-                Told::Second { .. } => skeleton.told(index).unknown(planned.value),
+                Told::Second { .. } => skeleton.opened(index).unknown(planned.value),
                 _ => planned.value,
             }),
         );

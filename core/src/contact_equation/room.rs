@@ -8,7 +8,7 @@ use super::values::Output;
 /// Room for a pass.
 #[derive(Debug, Default)]
 pub(super) struct Room {
-    /// States at the last cut, and their derivatives by the extended unknowns, row by row.
+    /// States at the last cut, and their derivatives by the unknowns that are no forces and the parameter, row by row.
     pub(super) y: Vec<f64>,
     pub(super) by: Vec<f64>,
     pub(super) by_next: Vec<f64>,
@@ -31,15 +31,19 @@ pub(super) struct Room {
     pub(super) at_switch: Vec<[f64; 2]>,
     pub(super) switch_rows: Vec<f64>,
     pub(super) slope_rows: Vec<f64>,
+    /// The same as forms of the states behind an interval.
+    pub(super) gap_forms: Vec<f64>,
+    pub(super) slope_forms: Vec<f64>,
+    pub(super) read_at: Vec<usize>,
 }
 
 impl Room {
     pub(super) fn new(skeleton: &Skeleton) -> Self {
-        let (order, columns) = (skeleton.order, skeleton.unknowns() + 1);
+        let (order, columns) = (skeleton.order, skeleton.told() + 1);
         let most =
             |of: fn(&Interval) -> usize| skeleton.intervals.iter().map(of).max().unwrap_or(0);
         let nodes = most(|interval| interval.nodes.count());
-        let forces = most(|interval| interval.active.len() * interval.nodes.count());
+        let forces = most(Interval::forces);
         let states = || vec![0.0; order];
         let switches = skeleton.switches.len();
         Self {
@@ -61,6 +65,9 @@ impl Room {
             at_switch: vec![[0.0; 2]; switches],
             switch_rows: vec![0.0; switches * columns],
             slope_rows: vec![0.0; switches * columns],
+            gap_forms: vec![0.0; switches * order],
+            slope_forms: vec![0.0; switches * order],
+            read_at: vec![0; switches],
         }
     }
 }

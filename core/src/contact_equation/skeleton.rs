@@ -91,6 +91,16 @@ pub(super) struct Interval {
 }
 
 impl Interval {
+    /// Number of its forces.
+    pub(super) fn forces(&self) -> usize {
+        self.active.len() * self.nodes.count()
+    }
+
+    /// Place of the first of them among the unknowns.
+    pub(super) fn first(&self) -> usize {
+        self.active.first().map_or(0, |active| active.first)
+    }
+
     /// Half of the way from its beginning to its end.
     fn middle(&self) -> Mark {
         // Panels of one way have the same ends; a whole one has its own.
@@ -236,8 +246,7 @@ impl Skeleton {
 
     /// Extended unknowns as those of a finer skeleton: forces are interpolated.
     pub(super) fn interpolated(&self, finer: &Self, u: &[f64]) -> Vec<f64> {
-        let told = self.order + self.switches.len();
-        let mut to = u[..told].to_vec();
+        let mut to = u[..self.told()].to_vec();
         to.resize(finer.unknowns(), 0.0);
         to.push(u[u.len() - 1]);
         let parts = |interval: &Interval| {
@@ -351,7 +360,12 @@ impl Skeleton {
 
     /// Number of unknowns, without the parameter.
     pub(super) fn unknowns(&self) -> usize {
-        self.order + self.switches.len() + self.forces
+        self.told() + self.forces
+    }
+
+    /// Number of those that are no forces.
+    pub(super) fn told(&self) -> usize {
+        self.order + self.switches.len()
     }
 
     /// The place of a switch's unknown.
@@ -462,7 +476,7 @@ impl Skeleton {
     }
 
     /// How the way between a switch and the other one of its pair is told.
-    pub(super) fn told(&self, switch: usize) -> Opening {
+    pub(super) fn opened(&self, switch: usize) -> Opening {
         self.openings[switch]
     }
 

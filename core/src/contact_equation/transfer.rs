@@ -48,7 +48,7 @@ pub(super) fn transferred(
                     _ => short_of(&extremes, gaps, switch, [from, bend, new.length])?,
                 };
                 to[slot] = near[slot] + by;
-                to[new.slot(other)] = new.told(other).unknown(square);
+                to[new.slot(other)] = new.opened(other).unknown(square);
             }
             Told::Second { .. } => {}
         }

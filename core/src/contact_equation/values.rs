@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::block::{Block, Pair};
+use super::block::{Block, Pair, times};
 use super::linear::Linear;
 use crate::model::layout::{Layout, Term, constant};
 use crate::system::{Part, System};
@@ -152,6 +152,18 @@ impl Contact {
             base,
             by_omega,
         } = at;
+        let stands = self.gap.is_constant() && self.offset.is_constant();
+        if stands && self.gap.constant.len() == gap.len() {
+            // Most contacts: nothing but the states counts.
+            gap.copy_from_slice(&self.gap.constant);
+            rate.copy_from_slice(&self.rate.constant);
+            let offset = self.offset.constant.first().copied().unwrap_or(0.0);
+            return Output {
+                gap: dot(gap, states) - offset,
+                rate: dot(rate, states),
+                ..Output::default()
+            };
+        }
         self.gap.write(tau, 0, gap);
         self.rate.write(tau, 0, rate);
         let mut output = Output {
@@ -200,6 +212,13 @@ impl Wave {
     /// It does not change, on a pair that nothing holds: states are a parabola.
     pub(super) fn is_constant_on(&self, block: &Block) -> bool {
         self.harmonic == 0.0 && block.is_free()
+    }
+
+    /// These states after a time from rest.
+    fn parabola(&self, block: &Block, r: usize, time: f64) -> Pair {
+        let input = self.input[r].map(|x| x.re);
+        let moved = times(block.deviation, input);
+        [0, 1].map(|i| time * (input[i] + 0.5 * time * moved[i]))
     }
 }
 
@@ -321,7 +340,12 @@ impl Values {
     pub(super) fn add_resonant(&self, tau: f64, time: f64, states: &mut [f64]) {
         for wave in &self.load {
             for &r in &wave.resonant {
-                let [state, ..] = self.resonance(wave, r, [tau, time]);
+                let block = &self.linear.blocks[r];
+                let state = if wave.is_constant_on(block) {
+                    wave.parabola(block, r, time)
+                } else {
+                    self.resonance(wave, r, [tau, time])[0]
+                };
                 for i in 0..2 {
                     states[2 * r + i] += state[i];
                 }

@@ -1,4 +1,5 @@
-//! The Jacobian of a continuation problem: dense in a core of unknowns, block triangular in a tail, with a border.
+//! The Jacobian of a continuation problem: dense in a core of unknowns, block triangular in a tail, with a border; or with a
+//! [chain](super::chain) of unknowns that are eliminated before all others.
 //!
 //! High harmonics of an oscillator are almost free masses: their diagonal `(k Omega)^2 M` outweighs what couples them to each
 //! other and to the low ones. The tail `y` has its diagonal blocks `D`, and what the core `x` does to it,
@@ -17,6 +18,7 @@
 //! Iterative Analysis, chapter 4 (rates of consistently ordered matrices); the division into strongly and weakly coupled
 //! harmonics follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic balance method.
 
+use super::chain::Chain;
 use crate::numeric::linear::{Lu, Matrix, Singular, dot};
 
 /// Which unknowns are coupled densely, which by groups, and which are zero for ever.
@@ -30,6 +32,8 @@ pub struct Partition {
     pub(crate) tail: Vec<usize>,
     /// Unknowns in a group.
     pub(crate) group: usize,
+    /// Unknowns of a chain, which are the last; then there is no tail.
+    pub(crate) chained: usize,
 }
 
 impl Partition {
@@ -50,6 +54,16 @@ impl Partition {
             core: (0..unknowns).collect(),
             tail: Vec::new(),
             group: 1,
+            chained: 0,
+        }
+    }
+
+    /// The first unknowns in the core, the others in a chain.
+    pub(crate) fn chained(unknowns: usize, core: usize) -> Self {
+        Self {
+            unknowns,
+            chained: unknowns - core,
+            ..Self::dense(core)
         }
     }
 }
@@ -72,6 +86,10 @@ pub struct Jacobian {
     border: Vec<f64>,
     room: Vec<f64>,
     tail_room: Vec<f64>,
+    /// What is eliminated before, with the part of the border that belongs to it, and all units.
+    chain: Chain,
+    chain_border: Vec<f64>,
+    units: Vec<f64>,
 }
 
 impl Jacobian {
@@ -92,6 +110,9 @@ impl Jacobian {
             border: vec![0.0; tail],
             room: vec![0.0; order],
             tail_room: vec![0.0; tail],
+            chain: Chain::default(),
+            chain_border: vec![0.0; partition.chained],
+            units: vec![1.0; partition.unknowns + 1],
             partition,
         }
     }
@@ -104,7 +125,9 @@ impl Jacobian {
     /// Multiplications of a factorisation, about.
     pub(crate) fn operations(&self) -> u64 {
         let cube = |n: usize| (n as u64).pow(3) / 3;
-        cube(self.partition.core.len()) + self.groups.len() as u64 * cube(self.partition.group)
+        cube(self.partition.core.len())
+            + self.groups.len() as u64 * cube(self.partition.group)
+            + self.chain.operations()
     }
 
     pub(crate) fn clear(&mut self) {
@@ -117,6 +140,11 @@ impl Jacobian {
     /// The core, whose last row and column are the border.
     pub(crate) fn core_mut(&mut self) -> &mut Matrix {
         &mut self.core
+    }
+
+    /// Takes a chain over: its unknowns are eliminated, and the core is what is left of the other equations.
+    pub(crate) fn take_chain(&mut self, chain: &Chain) {
+        self.chain.take_over(chain);
     }
 
     /// One group of the tail.
@@ -151,6 +179,13 @@ impl Jacobian {
         gather(row, values, &self.partition.core);
         row[last] = values[self.partition.unknowns];
         gather(&mut self.border, values, &self.partition.tail);
+        if self.partition.chained > 0 {
+            self.chain_border
+                .copy_from_slice(&values[last..self.partition.unknowns]);
+            if self.chain_border.iter().any(|x| *x != 0.0) {
+                self.chain.take_row(&self.chain_border, row);
+            }
+        }
     }
 
     /// Measures every unknown in its unit, the parameter in the last one.
@@ -158,6 +193,7 @@ impl Jacobian {
         let (core, tail) = (&self.partition.core, &self.partition.tail);
         let (unknowns, group) = (self.partition.unknowns, self.partition.group);
         let last = core.len();
+        self.units.copy_from_slice(units);
         gather(&mut self.room, units, core);
         self.room[last] = units[unknowns];
         gather(&mut self.tail_room, units, tail);
@@ -184,6 +220,9 @@ impl Jacobian {
     /// # Errors
     /// [`Singular`], with the column in the core, or behind it for a group of the tail.
     pub(crate) fn factorise(&mut self) -> Result<(), Singular> {
+        if let Some(at) = self.chain.singular() {
+            return Err(at);
+        }
         let (order, group) = (self.partition.core.len(), self.partition.group);
         for (index, (matrix, lu)) in self.groups.iter_mut().zip(&mut self.group_lus).enumerate() {
             lu.factorise(matrix).map_err(|at| Singular {
@@ -219,6 +258,7 @@ impl Jacobian {
         let groups = self.groups.iter().zip(&self.group_lus);
         groups
             .map(|(matrix, lu)| lu.determinant(matrix))
+            .chain([self.chain.determinant()])
             .fold(self.lu.determinant(&self.core), |a, b| {
                 (a.0 * b.0, a.1 + b.1)
             })
@@ -226,6 +266,9 @@ impl Jacobian {
 
     /// Solves (1) in place, for an extended vector in the order of the unknowns.
     pub(crate) fn solve(&mut self, vector: &mut [f64]) {
+        if self.partition.chained > 0 {
+            return self.solve_chained(vector);
+        }
         let (core, tail) = (&self.partition.core, &self.partition.tail);
         let (unknowns, group) = (self.partition.unknowns, self.partition.group);
         gather(&mut self.tail_room, vector, tail);
@@ -253,6 +296,9 @@ impl Jacobian {
 
     /// Solves the transposed system in place.
     pub(crate) fn solve_transposed(&mut self, vector: &mut [f64]) {
+        if self.partition.chained > 0 {
+            return self.solve_chained_transposed(vector);
+        }
         let (core, tail) = (&self.partition.core, &self.partition.tail);
         let (unknowns, group) = (self.partition.unknowns, self.partition.group);
         let last = core.len();
@@ -281,6 +327,48 @@ impl Jacobian {
         for (from, &unknown) in self.tail_room.iter().zip(tail) {
             vector[unknown] = *from;
         }
+    }
+
+    /// The same where there is a chain.
+    fn solve_chained(&mut self, vector: &mut [f64]) {
+        let (core, unknowns) = (self.partition.core.len(), self.partition.unknowns);
+        self.chain.forward(vector);
+        self.room[..core].copy_from_slice(&vector[..core]);
+        self.room[core] = vector[unknowns] - dot(&self.chain_border, &vector[core..unknowns]);
+        self.lu.solve(&self.core, &mut self.room);
+        vector[..core].copy_from_slice(&self.room[..core]);
+        vector[unknowns] = self.room[core];
+        scale(&mut self.room[..core], &self.units);
+        self.room[core] *= self.units[unknowns];
+        let own = &mut vector[core..unknowns];
+        self.chain.back(&self.room, own);
+        for (x, unit) in own.iter_mut().zip(&self.units[core..]) {
+            *x /= unit;
+        }
+    }
+
+    /// The transposed system where there is a chain.
+    fn solve_chained_transposed(&mut self, vector: &mut [f64]) {
+        let (core, unknowns) = (self.partition.core.len(), self.partition.unknowns);
+        for (x, unit) in vector[core..unknowns].iter_mut().zip(&self.units[core..]) {
+            *x /= unit;
+        }
+        for (to, (x, unit)) in self.room.iter_mut().zip(vector.iter().zip(&self.units)) {
+            *to = x / unit;
+        }
+        self.room[core] = vector[unknowns] / self.units[unknowns];
+        self.chain.take_row(&vector[core..unknowns], &mut self.room);
+        scale(&mut self.room[..core], &self.units);
+        self.room[core] *= self.units[unknowns];
+        self.lu.solve_transposed(&self.core, &mut self.room);
+        let parameter = self.room[core];
+        vector[..core].copy_from_slice(&self.room[..core]);
+        vector[unknowns] = parameter;
+        let own = &mut vector[core..unknowns];
+        for (x, w) in own.iter_mut().zip(&self.chain_border) {
+            *x -= parameter * w;
+        }
+        self.chain.back_transposed(&self.room[..core], own);
     }
 
     /// All entries, before factorisation, as the matrix of (1).
@@ -370,6 +458,7 @@ mod tests {
             core: vec![0, 1, 2, 5, 6],
             tail: vec![3, 4, 7, 8],
             group: 2,
+            chained: 0,
         };
         for partition in [mixed, Partition::dense(4), Partition::dense(0)] {
             let absent: Vec<usize> = (0..partition.unknowns)
@@ -410,6 +499,7 @@ mod tests {
             core: vec![0],
             tail: vec![1, 2],
             group: 1,
+            chained: 0,
         };
         let mut jacobian = filled(partition);
         jacobian.group_mut(1).row_mut(0)[0] = 0.0;

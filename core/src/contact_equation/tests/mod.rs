@@ -4,6 +4,8 @@ mod jumps;
 mod moving_stiffness;
 mod regular;
 
+use nalgebra::DMatrix;
+
 use super::equations::{Equations, Setting};
 use super::gaps::Gaps;
 use super::placement::Resolution;
@@ -11,7 +13,9 @@ use super::plan::{Frame, Plan};
 use crate::branches::recurrence::Recurrence;
 use crate::branches::solve;
 use crate::cancel::Cancel;
+use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
+use crate::continuation::problem::Problem;
 use crate::system::{System, Variable};
 use crate::{Branch, ContactEquation, FrequencyResponse, Shooting, Stop};
 
@@ -140,9 +144,8 @@ fn derivatives_are_those_of_differences_of(
     recurrence: &Recurrence,
 ) {
     let (mut equations, u) = first_of(system, vary, omega, [12, panels], recurrence);
-    equations.compute(&u, true);
     let n = u.len() - 1;
-    let matrix = equations.matrix.clone();
+    let matrix = entries(&mut equations, &u);
     let mut at = |column: usize, step: f64| {
         let mut u = u.clone();
         u[column] += step;
@@ -155,13 +158,30 @@ fn derivatives_are_those_of_differences_of(
         let [a, b] = [at(column, h), at(column, -h)];
         for row in 0..n {
             let difference = (a[row] - b[row]) / (2.0 * h);
-            let exact = matrix[row * (n + 1) + column];
+            let exact = matrix[(row, column)];
             assert!(
                 (difference - exact).abs() < 1e-5 * (1.0 + exact.abs()),
                 "row {row} column {column}: {difference} {exact}"
             );
         }
     }
+}
+
+/// Derivatives of all residuals by all unknowns and the parameter, as what the solution with their factors inverts.
+fn entries(equations: &mut Equations, u: &[f64]) -> DMatrix<f64> {
+    let n = u.len() - 1;
+    let mut jacobian = Jacobian::new(equations.partition());
+    jacobian.clear();
+    equations.evaluate(u, &mut vec![0.0; n], Some(&mut jacobian));
+    let mut border = vec![0.0; n + 1];
+    border[n] = 1.0;
+    jacobian.set_border(&border);
+    jacobian.factorise().unwrap();
+    let mut inverse = DMatrix::identity(n + 1, n + 1);
+    for mut column in inverse.column_iter_mut() {
+        jacobian.solve(column.as_mut_slice());
+    }
+    inverse.try_inverse().unwrap()
 }
 
 #[test]

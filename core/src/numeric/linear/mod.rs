@@ -131,12 +131,29 @@ impl Clone for Matrix {
 ///
 /// Pivoting is partial. The pivot is compared relative to the largest entry of its row, so that equations in different
 /// units count alike.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Lu {
     pivots: Vec<usize>,
     scales: Vec<f64>,
     /// Of the diagonal of `U`.
     reciprocals: Vec<f64>,
+}
+
+impl Clone for Lu {
+    fn clone(&self) -> Self {
+        Self {
+            pivots: self.pivots.clone(),
+            scales: self.scales.clone(),
+            reciprocals: self.reciprocals.clone(),
+        }
+    }
+
+    /// Copies in place if the orders are the same.
+    fn clone_from(&mut self, source: &Self) {
+        self.pivots.clone_from(&source.pivots);
+        self.scales.clone_from(&source.scales);
+        self.reciprocals.clone_from(&source.reciprocals);
+    }
 }
 
 impl Lu {
@@ -147,6 +164,11 @@ impl Lu {
             scales: vec![0.0; order],
             reciprocals: vec![0.0; order],
         }
+    }
+
+    /// Order of its matrices.
+    pub fn order(&self) -> usize {
+        self.pivots.len()
     }
 
     /// Factorises in place.
