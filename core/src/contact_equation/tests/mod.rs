@@ -1,7 +1,9 @@
 //! Orbits against those of shooting, and derivatives against differences.
 
+mod grazings;
 mod jumps;
 mod moving_stiffness;
+mod order;
 mod regular;
 
 use nalgebra::DMatrix;

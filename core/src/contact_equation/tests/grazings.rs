@@ -1,0 +1,83 @@
+//! Touches of levels on random models, against shooting.
+
+use super::{OneSided, TwoMasses};
+use crate::branches::point::Event;
+use crate::system::System;
+use crate::testing::random::Random;
+use crate::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting};
+
+crate::oscillator! {
+    /// Equal or different stops on both sides.
+    Stopped(x) {
+        param up;
+        param down;
+        param stiffness;
+        law stop(gap) { gap > 0 => stiffness*gap^1.5, else => 0 }
+        ddot(x) + 0.08*dot(x) + x + stop(x - up) - stop(-x - down) = 0.1 + 0.5*cos(omega*t);
+    }
+}
+
+/// A model with a range of frequencies.
+fn drawn(random: &mut Random) -> (Box<dyn System>, [f64; 2]) {
+    let mut between = |low, high| random.between(low, high);
+    match between(0.0, 3.0) as usize {
+        0 => {
+            let model = OneSided {
+                alpha: between(1.0, 3.0),
+                load: between(0.8, 1.5),
+                drive: between(0.05, 0.3),
+            };
+            (Box::new(model), [0.7, 1.8])
+        }
+        1 => (
+            Box::new(TwoMasses {
+                gap: between(0.1, 0.6),
+            }),
+            [0.7, 2.2],
+        ),
+        _ => {
+            let model = Stopped {
+                up: between(0.3, 1.2),
+                down: between(0.3, 1.2),
+                stiffness: between(1.0, 8.0),
+            };
+            (Box::new(model), [0.5, 2.0])
+        }
+    }
+}
+
+fn touches(branch: &Branch) -> Vec<&Event> {
+    let is_touch = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
+    branch.events.iter().filter(is_touch).collect()
+}
+
+/// Each is where shooting has it, and the branch goes on to where that of shooting ends. `HERTZIAN_GRAZINGS` of them.
+#[test]
+fn touches_of_random_models_are_those_of_shooting() {
+    let asked = std::env::var("HERTZIAN_GRAZINGS").ok();
+    let asked = asked.and_then(|count| count.parse().ok()).unwrap_or(10);
+    let mut random = Random::seeded(21);
+    let (mut seen, mut wrong) = (0, Vec::new());
+    for model in 0.. {
+        if seen >= asked {
+            break;
+        }
+        let (system, [from, to]) = drawn(&mut random);
+        let request = FrequencyResponse::of(&*system).from(from).to(to);
+        let branch = request.clone().by(ContactEquation::new()).run().unwrap();
+        let exact = request.by(Shooting::new().tolerance(1e-12)).run().unwrap();
+        let (found, known) = (touches(&branch), touches(&exact));
+        let apart = |(a, b): (&&Event, &&Event)| (a.point.value - b.point.value).abs();
+        let apart = found.iter().zip(&known).map(apart).fold(0.0, f64::max);
+        let alike = (branch.stopped, found.len()) == (exact.stopped, known.len());
+        if !alike || apart > 1e-9 {
+            wrong.push(format!(
+                "model {model}: {apart:e}, {} {}",
+                branch.stopped, exact.stopped
+            ));
+        }
+        seen += known.len();
+    }
+    println!("{seen} touches");
+    assert_eq!(wrong, [""; 0]);
+}

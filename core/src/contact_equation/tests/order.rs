@@ -1,0 +1,60 @@
+//! How fast orbits converge with the nodes of a stretch, against shooting.
+
+use super::super::motion::Motion;
+use super::{OneSided, solved};
+use crate::system::System;
+use crate::{FrequencyResponse, Shooting};
+
+crate::oscillator! {
+    /// A stop that moves at another frequency than the load.
+    Moving(x) {
+        law stop(gap) { gap > 0 => 3*gap^1.5 + 0.2*gap*dot(gap), else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x - 0.3 - 0.1*cos(2*omega*t)) = 0.5*cos(omega*t);
+    }
+}
+
+crate::oscillator! {
+    /// A stop that is pressed on: the force jumps.
+    Pressed(x) {
+        law stop(gap) { gap > 0 => 4*gap + 0.3, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + stop(x - 0.5) = 0.2 + 0.5*cos(omega*t);
+    }
+}
+
+/// Parts of peak-to-peak that so many nodes leave out of it.
+const ALLOWED: [(usize, f64); 2] = [(24, 1e-9), (32, 1e-12)];
+
+#[test]
+fn a_stretch_is_known_to_twelve_digits_by_32_nodes() {
+    let one = |alpha: f64| -> Box<dyn System> {
+        Box::new(OneSided {
+            alpha,
+            load: 1.0,
+            drive: 0.3,
+        })
+    };
+    let systems: [(&str, Box<dyn System>, f64); 4] = [
+        ("1", one(1.0), 0.7),
+        ("3/2", one(1.5), 0.7),
+        ("jump", Box::new(Pressed {}), 1.2),
+        ("moving gap", Box::new(Moving {}), 0.9),
+    ];
+    let mut short = Vec::new();
+    for (name, system, omega) in &systems {
+        let shooting = FrequencyResponse::of(&**system).by(Shooting::new().tolerance(1e-14));
+        for (nodes, allowed) in ALLOWED {
+            let (mut equations, u) = solved(&**system, *omega, nodes);
+            equations.compute(&u, false);
+            let [low, high] = Motion::of(&equations).extremes().coordinates[0];
+            let mut begin = vec![0.0; 2];
+            Motion::of(&equations).at(0.0, &mut begin);
+            let exact = shooting.clone().near_state(&begin).orbit(*omega).unwrap();
+            let error = (high.value - low.value) / exact.peak_to_peak() - 1.0;
+            println!("{name}: {nodes} nodes, {error:.1e}");
+            if error.abs() > allowed {
+                short.push((*name, nodes, error));
+            }
+        }
+    }
+    assert_eq!(short, []);
+}
