@@ -37,7 +37,7 @@ pub fn law(runtime: &TokenStream, declaration: TokenStream) -> TokenStream {
 }
 
 /// The law of the model, its arguments those that were written, in their order.
-fn alone(model: &mut Model) -> Result<Law, Errors> {
+pub(crate) fn alone(model: &mut Model) -> Result<Law, Errors> {
     let place = Extent::at(model.name.span());
     let [law] = model.laws.as_slice() else {
         return Err(refuse(

@@ -8,7 +8,9 @@ use std::str::FromStr;
 use proc_macro2::{Span, TokenStream, TokenTree};
 
 use crate::ast::Form;
-use crate::ir::Model;
+use crate::errors::Errors;
+use crate::ir::{Law, Model};
+use crate::law_alone::alone;
 use crate::stages;
 
 /// A longer text is no model of one person, and reading it would take long.
@@ -42,6 +44,26 @@ impl fmt::Display for Fault {
 /// # Errors
 /// Everything that is wrong with the declaration, in the order of its discovery.
 pub fn compile_text(text: &str) -> Result<Model, Vec<Fault>> {
+    let tokens = tokens(text)?;
+    stages::read(inside(tokens, "oscillator"), Form::Model).map_err(|errors| placed(&errors))
+}
+
+/// Compiles a law without a model, as far as the checked law and the model that has its expressions. The macro may stand around it:
+/// `hertzian::law! { ... }`.
+///
+/// # Errors
+/// As [`compile_text`].
+pub fn compile_law_text(text: &str) -> Result<(Model, Law), Vec<Fault>> {
+    let tokens = tokens(text)?;
+    let compiled = stages::read(inside(tokens, "law"), Form::LawAlone);
+    let law = compiled.and_then(|mut model| {
+        let law = alone(&mut model)?;
+        Ok((model, law))
+    });
+    law.map_err(|errors| placed(&errors))
+}
+
+fn tokens(text: &str) -> Result<TokenStream, Vec<Fault>> {
     if text.len() > LONGEST_TEXT {
         let message =
             format!("this text has more than {LONGEST_TEXT} bytes: write what repeats as a loop");
@@ -51,24 +73,25 @@ pub fn compile_text(text: &str) -> Result<Model, Vec<Fault>> {
             column: 1,
         }]);
     }
-    let tokens = TokenStream::from_str(text).map_err(|fault| {
+    TokenStream::from_str(text).map_err(|fault| {
         let primes = primes::faults(text);
         if !primes.is_empty() {
             return primes;
         }
         let message = "this is not made of words, numbers and marks that close what they open";
         vec![at(message.to_owned(), fault.span())]
-    })?;
-    stages::read(inside(tokens), Form::Model).map_err(|errors| {
-        let faults = errors.faults().into_iter();
-        faults
-            .map(|fault| at(fault.to_string(), fault.span()))
-            .collect()
     })
 }
 
-/// What stands in the macro, if nothing else stands beside it.
-fn inside(tokens: TokenStream) -> TokenStream {
+fn placed(errors: &Errors) -> Vec<Fault> {
+    let faults = errors.faults().into_iter();
+    faults
+        .map(|fault| at(fault.to_string(), fault.span()))
+        .collect()
+}
+
+/// What stands in the macro of this name, if nothing else stands beside it.
+fn inside(tokens: TokenStream, called: &str) -> TokenStream {
     let all: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let is_word = |tree: &TokenTree, word| matches!(tree, TokenTree::Ident(name) if name == word);
     let is_mark =
@@ -83,7 +106,7 @@ fn inside(tokens: TokenStream) -> TokenStream {
     };
     match call {
         [name, mark, TokenTree::Group(group), end @ ..]
-            if is_word(name, "oscillator")
+            if is_word(name, called)
                 && is_mark(mark, '!')
                 && end.len() < 2
                 && end.iter().all(|tree| is_mark(tree, ';')) =>
@@ -124,6 +147,19 @@ mod tests {
         assert_eq!(faults.expect_err("`q` is unknown")[0].line, 2);
         assert!(compile_text(&format!("oscillator! {{ {MODEL} }} {MODEL}")).is_err());
         assert!(compile_text("oscillator!").is_err());
+    }
+
+    #[test]
+    fn a_law_may_stand_alone() {
+        let law = "Stop(gap, k > 0, n >= 1) { gap > 0 => k*gap^n, else => 0 }";
+        for text in [law.to_owned(), format!("hertzian::law! {{ {law} }}")] {
+            let (_, law) = compile_law_text(&text).expect("it is a law");
+            assert_eq!(law.arguments, ["k", "n"]);
+        }
+        let faults = compile_law_text("Stop(gap, k)\n{ gap > 0 => q*gap, else => 0 }");
+        assert_eq!(faults.expect_err("`q` is unknown")[0].line, 2);
+        assert!(compile_law_text("Line(gap, k) { k*gap }").is_err());
+        assert!(compile_law_text("").is_err());
     }
 
     #[test]

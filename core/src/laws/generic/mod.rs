@@ -24,7 +24,7 @@ pub use hertzian_contract::data::{LawData, LevelData, Node, PieceData};
 #[doc(hidden)]
 pub use law::InterpretedLaw;
 #[cfg(feature = "text")]
-pub use text::{Declaration, DeclarationError, Fault};
+pub use text::{Declaration, DeclarationError, Fault, law_from_text};
 
 /// A system whose laws are interpreted; everything else is the system's own, and so is a law that has no
 /// [data](Law::data), or data that do not describe it.

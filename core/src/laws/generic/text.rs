@@ -6,7 +6,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use hertzian_compiler::interpret::{Coefficients, Family, Member};
-use hertzian_compiler::text::compile_text;
+use hertzian_compiler::text::{compile_law_text, compile_text};
 
 pub use hertzian_compiler::text::Fault;
 
@@ -107,6 +107,23 @@ impl Declaration {
         let names = parameters.map(|parameter| parameter.name.as_ref());
         names.zip(self.values.iter().copied()).collect()
     }
+}
+
+/// A law declared by text: the same language as [`law!`](crate::law!), read at run time and interpreted.
+///
+/// ```
+/// use hertzian::generic::law_from_text;
+///
+/// let law = law_from_text("Stop(gap, k > 0) { gap > 0 => k*gap^1.5, else => 0 }")?;
+/// assert_eq!(law.facts().arguments[0].name, "k");
+/// # Ok::<(), hertzian::generic::DeclarationError>(())
+/// ```
+///
+/// # Errors
+/// Every fault, with its place in the text.
+pub fn law_from_text(text: &str) -> Result<Arc<dyn Law>, DeclarationError> {
+    let (mut model, law) = compile_law_text(text).map_err(|faults| DeclarationError { faults })?;
+    Ok(Arc::new(interpreted(Family::of(&mut model.dag, &law))))
 }
 
 impl System for Declaration {

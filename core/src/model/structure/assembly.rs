@@ -33,10 +33,12 @@ impl Assembly {
             Some((_, present)) if !present.is_finite() => return Err(not_finite(*present)),
             Some((name, present)) => Some(self.parameter(name, *present)?),
         };
+        let power = value.power;
         self.places.push(place);
         self.coefficients.push(Coefficient {
             factor: value.factor,
             parameter,
+            power,
         });
         Ok(())
     }
@@ -64,6 +66,18 @@ impl Assembly {
         self.values.push(value);
         self.parameters.push(ParameterFacts::new(name.to_owned()));
         Ok(index)
+    }
+
+    /// What is known of a parameter besides.
+    pub(super) fn know(&mut self, facts: &ParameterFacts) {
+        let Some(&index) = self.known.get(facts.name.as_ref()) else {
+            return;
+        };
+        let own = &mut self.parameters[index];
+        own.documentation.clone_from(&facts.documentation);
+        own.unit.clone_from(&facts.unit);
+        own.minimum = narrower(own.minimum, facts.minimum, |a, b| a > b);
+        own.maximum = narrower(own.maximum, facts.maximum, |a, b| a < b);
     }
 
     /// Adds the coefficients of a contact.
@@ -130,7 +144,15 @@ impl Assembly {
         facts: &ArgumentFacts,
         value: &Value,
     ) -> Result<(), StructureError> {
-        let Value { factor, parameter } = value;
+        let Value {
+            factor,
+            parameter,
+            power,
+        } = value;
+        // What the frequency makes of it is not known here.
+        if *power > 0 {
+            return Ok(());
+        }
         let present = parameter.as_ref().map_or(1.0, |(_, present)| *present);
         if !facts.admits(factor * present) {
             return Err(StructureError::Range {

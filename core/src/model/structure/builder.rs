@@ -3,16 +3,22 @@
 use super::assembly::Assembly;
 use super::{Contact, DMatrix, Structure, StructureError, Value};
 use crate::model::validate;
-use crate::system::{ContactFacts, OutputFacts, Part, Place, Signal, SystemFacts, Wave};
+use crate::system::{
+    ContactFacts, OutputFacts, ParameterFacts, Part, Place, Signal, SystemFacts, Wave,
+};
 
 /// A structure being described; nothing is checked before [`Builder::build`].
 #[derive(Debug)]
 pub struct Builder {
     pub(super) name: String,
     pub(super) matrices: [DMatrix<f64>; 3],
+    /// Damping matrices, each with what it is multiplied by.
+    pub(super) further: Vec<(DMatrix<f64>, Value)>,
+    pub(super) coordinates: Vec<String>,
+    pub(super) parameters: Vec<ParameterFacts>,
     pub(super) loads: Vec<(usize, Wave, Value)>,
     pub(super) contacts: Vec<Contact>,
-    pub(super) outputs: Vec<(String, Reading)>,
+    pub(super) outputs: Vec<(OutputFacts, Reading)>,
 }
 
 /// What an output of a structure is equal to.
@@ -71,7 +77,51 @@ impl Builder {
     #[must_use]
     pub fn output(mut self, name: &str, factors: impl Into<Vec<f64>>) -> Self {
         let reading = Reading::Positions(factors.into());
-        self.outputs.push((name.to_owned(), reading));
+        self.outputs
+            .push((OutputFacts::new(name.to_owned()), reading));
+        self
+    }
+
+    /// The unit of the output that was added last, for reports and pictures.
+    #[must_use]
+    pub fn unit(mut self, unit: &str) -> Self {
+        if let Some((facts, _)) = self.outputs.last_mut() {
+            facts.unit = unit.to_owned().into();
+        }
+        self
+    }
+
+    /// Names of the coordinates, which are `q1`, `q2`, .. otherwise. One that is left out keeps that name.
+    #[must_use]
+    pub fn coordinates(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        self.coordinates = names.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// What is known of a parameter: its documentation, its unit, and a range that its values must be in besides those of the
+    /// arguments that it is passed for.
+    #[must_use]
+    pub fn parameter(mut self, facts: ParameterFacts) -> Self {
+        self.parameters.push(facts);
+        self
+    }
+
+    /// A further damping matrix, multiplied by a parameter or by a power of the frequency, as a gyroscopic matrix by the speed of
+    /// rotation.
+    ///
+    /// ```
+    /// use hertzian::structure::{Builder, DMatrix, Structure, Value};
+    ///
+    /// // A disc that turns with the frequency of the excitation: its tilts about two axes are coupled.
+    /// let (one, none) = (DMatrix::identity(2, 2), DMatrix::zeros(2, 2));
+    /// let gyroscopic = DMatrix::from_row_slice(2, 2, &[0.0, 0.5, -0.5, 0.0]);
+    /// let disc: Builder = Structure::of(&one, &none, &one);
+    /// let disc = disc.damping(&gyroscopic, Value::from(1.0).times_omega(1)).build()?;
+    /// # Ok::<(), hertzian::structure::StructureError>(())
+    /// ```
+    #[must_use]
+    pub fn damping(mut self, matrix: &DMatrix<f64>, times: impl Into<Value>) -> Self {
+        self.further.push((matrix.clone(), times.into()));
         self
     }
 
@@ -79,7 +129,7 @@ impl Builder {
     #[must_use]
     pub fn force_output(mut self, name: &str, contact: usize) -> Self {
         self.outputs
-            .push((name.to_owned(), Reading::Force(contact)));
+            .push((OutputFacts::new(name.to_owned()), Reading::Force(contact)));
         self
     }
 
@@ -106,12 +156,18 @@ impl Builder {
             assembly.contact(index, contact, coordinates)?;
         }
         self.assemble_outputs(&mut assembly)?;
-        let contacts = (0..self.contacts.len()).map(ContactFacts::new);
-        let outputs = self.outputs.iter();
-        let outputs = outputs.map(|(name, _)| OutputFacts::new(name.clone()));
+        for known in &self.parameters {
+            assembly.know(known);
+        }
+        let contacts = self.contacts.iter().enumerate();
+        let contacts = contacts
+            .map(|(index, contact)| ContactFacts::new(index).unit(contact.unit.clone()))
+            .collect::<Vec<_>>();
+        let outputs = self.outputs.iter().map(|(facts, _)| facts.clone());
+        let names: Vec<String> = self.coordinate_names().collect();
         let facts = SystemFacts::new(self.name)
             .equation("M ddot(q) + C dot(q) + K q + contacts = loads")
-            .coordinates((1..=coordinates).map(|number| format!("q{number}")))
+            .coordinates(names)
             .parameters(assembly.parameters)
             .contacts(self.contacts.len(), contacts)
             .places(assembly.places)
@@ -130,7 +186,8 @@ impl Builder {
 
     fn assemble_outputs(&self, assembly: &mut Assembly) -> Result<(), StructureError> {
         let coordinates = self.matrices[0].nrows();
-        for (output, (name, reading)) in self.outputs.iter().enumerate() {
+        for (output, (facts, reading)) in self.outputs.iter().enumerate() {
+            let name = &facts.name;
             self.output_has_a_name(output, name, assembly)?;
             let wave = Wave::CONSTANT;
             match reading {
@@ -142,7 +199,7 @@ impl Builder {
                 }
                 Reading::Positions(factors) => {
                     return Err(StructureError::OutputSize {
-                        output: name.clone(),
+                        output: name.to_string(),
                         entries: factors.len(),
                         coordinates,
                     });
@@ -153,7 +210,7 @@ impl Builder {
                 }
                 Reading::Force(contact) => {
                     return Err(StructureError::NoContact {
-                        output: name.clone(),
+                        output: name.to_string(),
                         contact: *contact,
                         contacts: self.contacts.len(),
                     });
@@ -170,13 +227,10 @@ impl Builder {
         name: &str,
         assembly: &Assembly,
     ) -> Result<(), StructureError> {
-        let coordinates = 1..=self.matrices[0].nrows();
         let is_taken = self.outputs[..output]
             .iter()
-            .any(|(known, _)| known == name)
-            || coordinates
-                .into_iter()
-                .any(|number| name == format!("q{number}"))
+            .any(|(known, _)| known.name == name)
+            || self.coordinate_names().any(|known| known == name)
             || assembly.parameters.iter().any(|known| known.name == name);
         if name.is_empty() || name == "omega" || is_taken {
             return Err(StructureError::OutputName {
@@ -184,6 +238,14 @@ impl Builder {
             });
         }
         Ok(())
+    }
+
+    fn coordinate_names(&self) -> impl Iterator<Item = String> {
+        let name = |index: usize| {
+            let given = self.coordinates.get(index).cloned();
+            given.unwrap_or_else(|| format!("q{}", index + 1))
+        };
+        (0..self.matrices[0].nrows()).map(name)
     }
 
     fn assemble_matrices(&self, assembly: &mut Assembly) -> Result<(), StructureError> {
@@ -210,6 +272,23 @@ impl Builder {
                         },
                     };
                     assembly.add(place, &matrix[(row, column)].into())?;
+                }
+            }
+        }
+        for (matrix, times) in &self.further {
+            let (rows, columns) = matrix.shape();
+            if rows != coordinates || columns != coordinates {
+                return Err(StructureError::MatrixSize {
+                    matrix: "further damping",
+                    rows,
+                    columns,
+                    coordinates,
+                });
+            }
+            for column in 0..columns {
+                for row in (0..rows).filter(|row| matrix[(*row, column)] != 0.0) {
+                    let value = times.clone().times(matrix[(row, column)]);
+                    assembly.add(Place::Damping { row, column }, &value)?;
                 }
             }
         }

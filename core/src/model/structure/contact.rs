@@ -15,17 +15,24 @@ pub struct Contact {
     pub(super) gap: Vec<f64>,
     pub(super) force: Option<Vec<f64>>,
     pub(super) offset: Value,
+    pub(super) unit: String,
 }
 
 impl Contact {
     /// A contact that follows a law.
     pub fn new(law: impl Law + 'static) -> Self {
+        Self::of(Arc::new(law))
+    }
+
+    /// A contact that follows a law which others may share.
+    pub fn of(law: Arc<dyn Law>) -> Self {
         Self {
-            law: Arc::new(law),
+            law,
             arguments: Vec::new(),
             gap: Vec::new(),
             force: None,
             offset: 0.0.into(),
+            unit: String::new(),
         }
     }
 
@@ -43,5 +50,8 @@ impl Contact {
 
         /// What is subtracted from `direction . q`.
         offset(offset: impl Into<Value>) { self.offset = offset.into() }
+
+        /// The unit of its force, for reports and pictures.
+        unit(unit: impl Into<String>) { self.unit = unit.into() }
     }
 }

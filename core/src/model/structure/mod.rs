@@ -54,6 +54,8 @@ pub struct Structure {
 pub struct Value {
     factor: f64,
     parameter: Option<(String, f64)>,
+    /// By which power of the frequency it is multiplied.
+    power: u8,
 }
 
 /// The matrix of a structure with so many coordinates, from the square matrices of its elements, each of which stands at the coordinates
@@ -90,6 +92,7 @@ pub fn parameter(name: &str, value: f64) -> Value {
     Value {
         factor: 1.0,
         parameter: Some((name.to_owned(), value)),
+        power: 0,
     }
 }
 
@@ -98,6 +101,7 @@ impl From<f64> for Value {
         Self {
             factor: number,
             parameter: None,
+            power: 0,
         }
     }
 }
@@ -109,13 +113,29 @@ impl Value {
         self.factor *= factor;
         self
     }
+
+    /// The same multiplied by a power of the frequency `omega` of the excitation: 2 for the force of an unbalance, whose parameter is mass
+    /// times eccentricity.
+    #[must_use]
+    pub fn times_omega(mut self, power: u8) -> Self {
+        self.power = self.power.saturating_add(power);
+        self
+    }
+
+    /// Its number at a frequency, where parameters that are known have their values and others the one that was given.
+    pub fn at(&self, known: impl Fn(&str) -> Option<f64>, omega: f64) -> f64 {
+        let given = self.parameter.as_ref();
+        let parameter = given.map_or(1.0, |(name, value)| known(name).unwrap_or(*value));
+        self.factor * parameter * omega.powi(i32::from(self.power))
+    }
 }
 
-/// A coefficient of (1) or (2): a number, or a number times a parameter.
+/// A coefficient of (1) or (2): a number, times a parameter, times a power of the frequency.
 #[derive(Debug, Clone, Copy)]
 struct Coefficient {
     factor: f64,
     parameter: Option<usize>,
+    power: u8,
 }
 
 impl Structure {
@@ -124,6 +144,9 @@ impl Structure {
         Builder {
             name: "structure".to_owned(),
             matrices: [mass.clone(), damping.clone(), stiffness.clone()],
+            further: Vec::new(),
+            coordinates: Vec::new(),
+            parameters: Vec::new(),
             loads: Vec::new(),
             contacts: Vec::new(),
             outputs: Vec::new(),
@@ -153,26 +176,33 @@ impl System for Structure {
         values.copy_from_slice(&self.values);
     }
 
-    fn coefficients(&self, parameters: &[f64], _omega: f64, coefficients: &mut [f64]) {
+    fn coefficients(&self, parameters: &[f64], omega: f64, coefficients: &mut [f64]) {
         for (out, coefficient) in coefficients.iter_mut().zip(&self.coefficients) {
             let parameter = coefficient.parameter.map_or(1.0, |index| parameters[index]);
-            *out = coefficient.factor * parameter;
+            *out = coefficient.factor * parameter * omega.powi(i32::from(coefficient.power));
         }
     }
 
     fn coefficients_by(
         &self,
         variable: Variable,
-        _parameters: &[f64],
-        _omega: f64,
+        parameters: &[f64],
+        omega: f64,
         derivatives: &mut [f64],
     ) {
         for (out, coefficient) in derivatives.iter_mut().zip(&self.coefficients) {
-            let depends = match (variable, coefficient.parameter) {
-                (Variable::Parameter(by), Some(parameter)) => by == parameter,
-                _ => false,
+            let power = i32::from(coefficient.power);
+            *out = match (variable, coefficient.parameter) {
+                (Variable::Parameter(by), Some(parameter)) if by == parameter => {
+                    coefficient.factor * omega.powi(power)
+                }
+                (Variable::Omega, parameter) if power > 0 => {
+                    let parameter = parameter.map_or(1.0, |index| parameters[index]);
+                    let slope = f64::from(coefficient.power) * omega.powi(power - 1);
+                    coefficient.factor * parameter * slope
+                }
+                _ => 0.0,
             };
-            *out = if depends { coefficient.factor } else { 0.0 };
         }
     }
 
