@@ -9,6 +9,7 @@ use hertzian::{Branch, Point, export};
 use serde::Serialize;
 
 use super::backbone::Backbone;
+use super::structure::Reduction;
 
 /// What `--json` writes: results of the library as they are. `Branch::read_all` (`core/src/report/export/json.rs`) reads `version` and `branches`.
 #[derive(Debug, Serialize)]
@@ -27,6 +28,9 @@ pub struct Record<'r> {
     pub tracks: &'r [BifurcationCurve],
     /// Free oscillation and phase resonance.
     pub backbone: &'r Backbone,
+    /// What the reduction of a structure of many coordinates changes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction: Option<&'r Reduction>,
 }
 
 /// Whether a file can be written there; one that is there is not touched.

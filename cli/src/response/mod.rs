@@ -14,6 +14,7 @@ pub mod progress;
 pub mod resumed;
 pub mod run;
 pub mod search;
+pub mod structure;
 pub mod summary;
 
 use std::process::ExitCode;

@@ -12,6 +12,8 @@ use crate::misplaced::{Given, count};
 use crate::model::{ModelOptions, setting};
 use crate::range::RangeOptions;
 
+use super::structure::StructureOptions;
+
 /// Traces the periodic response of a mass on a power-law contact, or of a declared oscillator, says what is stable, and draws it.
 ///
 /// x'' + 2 zeta H(x) x' + H(x) sgn(x) |x|^alpha = drive cos(omega t) + load
@@ -34,6 +36,7 @@ use crate::range::RangeOptions;
         hertzian response --alpha 1 --by shooting --tolerance 1e-10\n  \
         hertzian response --model gear-pair --values 20     and what motions settle to at 20 values\n  \
         hertzian response --model FILE --plot tip:rms,stop:max --axis hz\n  \
+        hertzian response --structure plate.toml --from 700 --to 1500\n  \
         hertzian response --model FILE --plot tip --stack 5 --scale db --events fold,period-doubling\n\n\
         Where the branch turns back or ends early, that from the other end is followed too, and where there is no stable orbit,\n\
         those of what motions settle to; what was joined is said. --one-branch leaves that out.\n\n\
@@ -49,6 +52,10 @@ pub struct Options {
     #[command(flatten)]
     pub model: ModelOptions,
 
+    /// A structure of many coordinates
+    #[command(flatten)]
+    pub structure: StructureOptions,
+
     /// What varies, and how far
     #[command(flatten)]
     pub range: RangeOptions,
@@ -57,9 +64,10 @@ pub struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count)]
     pub period: usize,
 
-    /// How the orbits of the curve are computed; --bifurcations and --track go by shooting
-    #[arg(long, value_enum, value_name = "METHOD", default_value_t = By::Balance)]
-    pub by: By,
+    /// How the orbits of the curve are computed; --bifurcations and --track go by shooting [default: balance; contact-equation of a
+    /// --structure]
+    #[arg(long, value_enum, value_name = "METHOD")]
+    pub by: Option<By>,
 
     /// Harmonics per period of the excitation [default: from the tolerance]
     #[arg(long, value_name = "COUNT", value_parser = count)]
@@ -369,10 +377,20 @@ impl Options {
     fn of_the_balance(&self, given: &Given<'_>) -> Option<String> {
         let options = ["harmonics", "samples", "aft", "multipliers"];
         let mut options = options.into_iter().filter(|option| given.has(option));
-        let option = options.next().filter(|_| self.by != By::Balance)?;
+        let option = options.next().filter(|_| self.method() != By::Balance)?;
         Some(format!(
             "--{option} belongs to --by balance and would do nothing here"
         ))
+    }
+
+    /// How the orbits of the curve are computed.
+    pub fn method(&self) -> By {
+        let of_structures = self.structure.file.is_some();
+        self.by.unwrap_or(if of_structures {
+            By::ContactEquation
+        } else {
+            By::Balance
+        })
     }
 
     /// Name of what varies, as the models call it.

@@ -26,6 +26,7 @@ use super::panels;
 use super::progress::{Progress, Seen};
 use super::resumed;
 use super::search;
+use super::structure::{self, Reduced};
 use super::summary;
 use crate::look::Axis;
 use crate::model::FREQUENCY_VARIES;
@@ -107,21 +108,25 @@ pub fn run(
     progress: &mut Progress,
 ) -> Result<Outcome, Failure> {
     let options = &Options {
-        model: options.model.resolved().map_err(Failure::Option)?,
+        model: structure::resolved(options)
+            .model
+            .resolved()
+            .map_err(Failure::Option)?,
         ..options.clone()
     };
-    let (options, resumed) = &resumed::of(options)?;
-    let model = checked(options)?;
+    let (options, resumed) = resumed::of(options)?;
+    let (model, reduced) = checked(&options, cancel)?;
+    let options = &structure::with_accuracy(&options, &*model);
     let mut seen = Seen::new(progress, options);
     let mut note = None;
     let mut diagram = if let Some(branch) = resumed {
-        resumed::find(options, branch, &*model, cancel, &mut seen)?
+        resumed::find(options, &branch, &*model, cancel, &mut seen)?
     } else {
         let plain = request(options, &*model).cancel(cancel);
         let request;
         (request, note) = near::of(options, &*model, plain)?;
         let visit = |progress: hertzian::Progress<'_>| seen.see(progress);
-        match options.by {
+        match options.method() {
             By::Balance => covered::find(options, request, visit)?,
             By::Shooting => covered::find(options, request.by(Shooting::new()), visit)?,
             By::ContactEquation => {
@@ -169,6 +174,10 @@ pub fn run(
             diagram = found.diagram;
         }
     }
+    let reduction = match &reduced {
+        Some(reduced) => Some(reduced.of(&branches)?),
+        None => None,
+    };
     let record = Record {
         version: export::JSON_VERSION,
         branches: &branches,
@@ -177,10 +186,13 @@ pub fn run(
         at: &at,
         tracks: &tracks,
         backbone: &backbone,
+        reduction: reduction.as_ref(),
     };
     let written = write(options, &*model, &record, charts)?;
     Ok(Outcome {
-        summary: summary::of(options, &branches[0], &at, &written) + &further,
+        summary: summary::of(options, &branches[0], &at, &written)
+            + &reduction.map_or_else(String::new, |reduction| reduction.summary())
+            + &further,
         complete: is_complete(options, &branches[0], &diagram, cancel, &mut warnings)
             && all_drawn
             && all_panels,
@@ -210,16 +222,25 @@ fn drawn(
 }
 
 /// The model at the options, once everything that was asked for is checked.
-fn checked(options: &Options) -> Result<Box<dyn System>, Failure> {
+fn checked(
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<(Box<dyn System>, Option<Reduced>), Failure> {
     check(options)?;
     let varied = Varied {
         name: options.varied(),
         value: options.range.from,
     };
-    let model = model(&options.model, varied).map_err(|error| {
-        let path = options.model.file.clone().unwrap_or_default();
-        Failure::Model(path, error)
-    })?;
+    let (model, reduced) = if options.structure.file.is_some() {
+        let (model, reduced) = structure::read(options, cancel)?;
+        (model, Some(reduced))
+    } else {
+        let model = model(&options.model, varied).map_err(|error| {
+            let path = options.model.file.clone().unwrap_or_default();
+            Failure::Model(path, error)
+        })?;
+        (model, None)
+    };
     let known = Model::of(&*model);
     for wanted in &options.plot {
         known.check(wanted)?;
@@ -230,7 +251,7 @@ fn checked(options: &Options) -> Result<Box<dyn System>, Failure> {
     }
     search::check(options, &*model)?;
     bifurcations::check(options, &*model)?;
-    Ok(model)
+    Ok((model, reduced))
 }
 
 /// Where branches wind, which takes long and is seldom what was looked for.

@@ -1,0 +1,238 @@
+//! `--structure`: a structure of many coordinates from files, by few vectors.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use hertzian::System;
+use serde::Serialize;
+
+use super::options::Options;
+use super::run::Failure;
+
+/// A structure of many coordinates, and how it is reduced.
+#[derive(Debug, Clone, PartialEq, Default, Args)]
+pub struct StructureOptions {
+    /// A structure of many coordinates, described by this file, which names its matrices, loads, contacts and outputs; it is reduced to
+    /// few vectors, and what that changes is said
+    #[arg(
+        id = "structure",
+        long = "structure",
+        value_name = "FILE",
+        conflicts_with_all = ["file", "one_sided", "continuous", "alpha", "zeta", "load", "drive", "backbone", "search"]
+    )]
+    pub file: Option<PathBuf>,
+
+    /// Keep so many modes of it [default: all up to four times the highest frequency]
+    #[arg(long, value_name = "COUNT", requires = "structure", value_parser = crate::misplaced::count)]
+    pub modes: Option<usize>,
+
+    /// And static vectors of so many steps; none are modes alone [default: as many as the compliance needs, to a millionth]
+    #[arg(long, value_name = "COUNT", requires = "structure")]
+    pub steps: Option<usize>,
+
+    /// Keep the reduced structure in this file, and take it from there if it is one of the same structure
+    #[arg(long, value_name = "FILE", requires = "structure")]
+    pub reduced: Option<PathBuf>,
+}
+
+/// What the reduction has made of a structure, and what it changes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reduction {
+    /// Coordinates of the structure.
+    pub coordinates: usize,
+    /// Modes that are kept.
+    pub modes: usize,
+    /// Static vectors besides.
+    pub static_vectors: usize,
+    /// Angular frequencies of all of them.
+    pub frequencies: Vec<f64>,
+    /// Angular frequencies with the error of the compliance there, relative to the largest one.
+    pub compliance: Vec<[f64; 2]>,
+    /// Of each output the largest change of a peak-to-peak along the branches, as a part of it.
+    pub outputs: Vec<(String, f64)>,
+}
+
+/// A structure as it is used.
+pub struct Reduced {
+    #[cfg(feature = "sparse")]
+    whole: hertzian_structure::SparseStructure,
+    #[cfg(feature = "sparse")]
+    reduced: hertzian_structure::Reduced,
+}
+
+/// The options for whoever knows an oscillator from a file: a structure is one.
+pub fn resolved(options: &Options) -> Options {
+    let mut options = options.clone();
+    if let Some(path) = &options.structure.file {
+        options.model.file = Some(path.clone());
+    }
+    options
+}
+
+/// The same with the accuracy asked of the first output, where nothing else was asked for: coordinates of a reduced structure are
+/// amplitudes of its vectors.
+pub fn with_accuracy(options: &Options, model: &dyn System) -> Options {
+    let mut options = options.clone();
+    let first = model.facts().outputs.first();
+    if options.structure.file.is_some() && options.accuracy_of.is_none() {
+        options.accuracy_of = first.map(|output| output.name.to_string());
+    }
+    options
+}
+
+/// Without the feature `sparse` there are no structures.
+#[cfg(not(feature = "sparse"))]
+mod sparse {
+    use super::{Failure, Options, Reduced, Reduction};
+    use hertzian::{Branch, Cancel, System};
+
+    pub fn read(_: &Options, _: &Cancel) -> Result<(Box<dyn System>, Reduced), Failure> {
+        let message =
+            "this program was built without the feature `sparse`, which --structure needs";
+        Err(Failure::Option(message.to_owned()))
+    }
+
+    impl Reduced {
+        pub fn of(&self, _: &[Branch]) -> Result<Reduction, hertzian::Error> {
+            Ok(Reduction {
+                coordinates: 0,
+                modes: 0,
+                static_vectors: 0,
+                frequencies: Vec::new(),
+                compliance: Vec::new(),
+                outputs: Vec::new(),
+            })
+        }
+    }
+}
+
+#[cfg(feature = "sparse")]
+mod sparse {
+    use hertzian::{Branch, Cancel, Error, System};
+    use hertzian_structure::{self as structures, SparseStructure, file};
+
+    use super::{Failure, Options, Reduced, Reduction};
+
+    /// Orbits of a branch at which the error of the reduction is looked at, besides its events.
+    const LOOKED_AT: usize = 16;
+
+    /// The structure, reduced, with its parameters set.
+    ///
+    /// # Errors
+    /// If a file is at fault, or the structure cannot be reduced.
+    pub fn read(options: &Options, cancel: &Cancel) -> Result<(Box<dyn System>, Reduced), Failure> {
+        let path = options.structure.file.clone().unwrap_or_default();
+        let whole = file::read(path).map_err(failure)?;
+        let reduced = reduced(options, &whole, cancel)?;
+        let mut model = reduced.structure(&whole).map_err(Error::from)?;
+        if !options.over_frequency() {
+            // An unknown name is reported by the run itself.
+            let _ = model.set(options.varied(), options.range.from);
+        }
+        for (name, value) in &options.model.set {
+            model.set(name, *value)?;
+        }
+        Ok((Box::new(model), Reduced { whole, reduced }))
+    }
+
+    fn failure(error: impl std::fmt::Display) -> Failure {
+        Failure::Option(error.to_string())
+    }
+
+    fn reduced(
+        options: &Options,
+        whole: &SparseStructure,
+        cancel: &Cancel,
+    ) -> Result<structures::Reduced, Failure> {
+        let to = if options.over_frequency() {
+            options.range.from.max(options.range.to)
+        } else {
+            options.model.frequency()
+        };
+        let own = &options.structure;
+        if let Some(path) = own.reduced.as_ref().filter(|path| path.exists()) {
+            let at = |error| failure(format!("{}: {error}", path.display()));
+            let kept = structures::Reduced::read(path).map_err(at)?;
+            kept.is_of(whole).map_err(at)?;
+            if kept.to() < to {
+                let message = format!(
+                    "{}: it was made for frequencies up to {}, and {to} are asked for: remove it",
+                    path.display(),
+                    kept.to()
+                );
+                return Err(Failure::Option(message));
+            }
+            return Ok(kept);
+        }
+        let mut reduction = structures::Reduction::to(to).cancel(cancel);
+        if let Some(modes) = own.modes {
+            reduction = reduction.modes(modes);
+        }
+        if let Some(steps) = own.steps {
+            reduction = reduction.steps(steps);
+        }
+        let reduced = reduction.run(whole).map_err(failure)?;
+        if let Some(path) = &own.reduced {
+            reduced.write(path).map_err(failure)?;
+        }
+        Ok(reduced)
+    }
+
+    impl Reduced {
+        /// What the reduction changes along branches.
+        ///
+        /// # Errors
+        /// If an orbit cannot be read.
+        pub fn of(&self, branches: &[Branch]) -> Result<Reduction, Error> {
+            let mut outputs: Vec<(String, f64)> = Vec::new();
+            for branch in branches {
+                let step = branch.points.len().div_ceil(LOOKED_AT).max(1);
+                let points = branch.points.iter().step_by(step);
+                let events = branch.events.iter().map(|event| &event.point);
+                for point in points.chain(events) {
+                    for found in self.reduced.errors_at(&self.whole, branch, point)? {
+                        match outputs.iter_mut().find(|(name, _)| *name == found.name) {
+                            Some((_, worst)) => *worst = worst.max(found.error),
+                            None => outputs.push((found.name, found.error)),
+                        }
+                    }
+                }
+            }
+            let reduced = &self.reduced;
+            Ok(Reduction {
+                coordinates: reduced.coordinates(),
+                modes: reduced.modes(),
+                static_vectors: reduced.vectors() - reduced.modes(),
+                frequencies: reduced.frequencies(),
+                compliance: reduced.compliance_errors(),
+                outputs,
+            })
+        }
+    }
+}
+
+pub use sparse::read;
+
+impl Reduction {
+    /// For people.
+    pub fn summary(&self) -> String {
+        let up_to = |least: f64| {
+            let below = self.compliance.iter().filter(|[_, error]| *error <= least);
+            below.map(|[frequency, _]| *frequency).next_back()
+        };
+        let mut text = format!(
+            "reduction  {} modes and {} static vectors of {} coordinates",
+            self.modes, self.static_vectors, self.coordinates
+        );
+        if let Some(frequency) = up_to(1e-6) {
+            text += &format!("; compliances to a millionth up to {frequency:.4}");
+        }
+        text.push('\n');
+        for (name, error) in &self.outputs {
+            text += &format!(
+                "error      of {name} by the reduction: at most {error:.0e} of its peak-to-peak\n"
+            );
+        }
+        text
+    }
+}

@@ -1,0 +1,60 @@
+//! Symmetric sparse equations: `P A P^T = L D L^T` with a fill-reducing permutation.
+//!
+//! The number of negative entries of `D` is that of negative eigenvalues of `A` (Sylvester's law of inertia), which for
+//! `A = K - s^2 M` is the number of modes below `s`.
+//!
+//! Source: Davis (2006), Direct Methods for Sparse Linear Systems, chapters 4 and 7; Parlett (1998), The Symmetric Eigenvalue Problem,
+//! section 3.3 (slicing the spectrum).
+
+use sparse_ldlt::{LdltError, SparseLdlt};
+
+use crate::matrix::SparseMatrix;
+
+/// An order of elimination, of all matrices with the same places.
+#[derive(Debug, Clone)]
+pub(crate) struct Ordering(Vec<usize>);
+
+impl Ordering {
+    /// By approximate minimum degree. Matrices that are too large for it, which no memory would hold, keep their order.
+    pub(crate) fn of(pattern: &SparseMatrix) -> Self {
+        let (starts, rows, _) = pattern.parts();
+        let n = pattern.columns();
+        let short = |x: &usize| i32::try_from(*x).ok();
+        let starts: Option<Vec<i32>> = starts.iter().map(short).collect();
+        let rows: Option<Vec<i32>> = rows.iter().map(short).collect();
+        let found = starts.zip(rows).and_then(|(starts, rows)| {
+            let control = amd::Control::default();
+            amd::order(n as i32, &starts, &rows, &control).ok()
+        });
+        let order = found.map(|(order, ..)| order.into_iter().map(|x| x as usize).collect());
+        Self(order.unwrap_or_else(|| (0..n).collect()))
+    }
+}
+
+/// Factors of a symmetric matrix.
+#[derive(Debug)]
+pub(crate) struct Factor(SparseLdlt);
+
+impl Factor {
+    /// Of a matrix; it fails where a pivot is zero up to rounding.
+    pub(crate) fn of(matrix: &SparseMatrix, order: &Ordering) -> Result<Self, LdltError> {
+        let (starts, rows, values) = matrix.parts();
+        SparseLdlt::factor_perm(matrix.columns(), starts, rows, values, &order.0).map(Self)
+    }
+
+    /// `A^-1 b`; `b` has as many entries as `A` has rows.
+    pub(crate) fn solve(&self, b: &[f64]) -> Vec<f64> {
+        self.0.solve(b).unwrap_or_default()
+    }
+
+    /// The smallest magnitude of a pivot.
+    pub(crate) fn least_pivot(&self) -> f64 {
+        let pivots = self.0.d().iter().map(|pivot| pivot.abs());
+        pivots.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Negative eigenvalues of `A`.
+    pub(crate) fn negative(&self) -> usize {
+        self.0.d().iter().filter(|pivot| **pivot < 0.0).count()
+    }
+}

@@ -1,0 +1,326 @@
+//! A structure by few vectors, and what that changes.
+
+use std::io;
+use std::path::Path;
+
+use hertzian::structure::{Contact, DMatrix, Structure, StructureError, Value};
+use serde::{Deserialize, Serialize};
+
+use crate::description::{LoadKind, SparseStructure};
+
+/// A structure by few vectors: modes, and static responses besides them.
+///
+/// Its directions are in the order: of each contact that of its gap and that of its force, then loads, then outputs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reduced {
+    pub(crate) version: u32,
+    /// Of the structure that it is of.
+    pub(crate) fingerprint: u64,
+    pub(crate) coordinates: usize,
+    pub(crate) to: f64,
+    pub(crate) modes: usize,
+    /// Squares of frequencies.
+    pub(crate) squares: Vec<f64>,
+    pub(crate) damping: Vec<f64>,
+    pub(crate) gyroscopic: Vec<Vec<f64>>,
+    /// Of each direction the components of the vectors along it.
+    pub(crate) rows: Vec<Vec<f64>>,
+    pub(crate) checked: Vec<Checked>,
+}
+
+/// The error of the compliance at a frequency.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Checked {
+    pub(crate) frequency: f64,
+    /// Of each direction along which something is read, those along which something is driven.
+    pub(crate) errors: Vec<f64>,
+    /// The largest compliance.
+    pub(crate) largest: f64,
+}
+
+impl Checked {
+    /// The largest error, relative to the largest compliance.
+    pub(crate) fn relative(&self) -> f64 {
+        let worst = self.errors.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        if worst == 0.0 {
+            0.0
+        } else {
+            worst / self.largest
+        }
+    }
+}
+
+/// Why a reduced structure cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReducedError {
+    /// Its file cannot be read or written.
+    #[error("{0}")]
+    File(#[from] io::Error),
+    /// Its file holds something else.
+    #[error("it holds no reduced structure: {0}")]
+    Content(#[from] serde_json::Error),
+    /// It is of another version of this package.
+    #[error("it is of version {found}, and this reads version {known}")]
+    Version {
+        /// Of the file.
+        found: u32,
+        /// What is read.
+        known: u32,
+    },
+    /// It does not hold together.
+    #[error("its numbers do not fit each other")]
+    Sizes,
+    /// It is of a structure with other matrices or directions.
+    #[error(
+        "it is of another structure, or of this one before its matrices or directions were changed"
+    )]
+    Other,
+}
+
+impl Reduced {
+    pub(crate) const VERSION: u32 = 1;
+
+    /// How many of its vectors are modes of the structure.
+    pub fn modes(&self) -> usize {
+        self.modes
+    }
+
+    /// How many vectors are kept.
+    pub fn vectors(&self) -> usize {
+        self.squares.len()
+    }
+
+    /// Coordinates of the structure that it is of.
+    pub fn coordinates(&self) -> usize {
+        self.coordinates
+    }
+
+    /// Up to which frequency of the excitation it was made for, in radians per unit of time.
+    pub fn to(&self) -> f64 {
+        self.to
+    }
+
+    /// Angular frequencies of the vectors; the first are those of modes.
+    pub fn frequencies(&self) -> Vec<f64> {
+        let squares = self.squares.iter();
+        squares.map(|square| square.max(0.0).sqrt()).collect()
+    }
+
+    /// An entry of the damping matrix of its vectors, whose mass matrix is the identity.
+    pub fn damping(&self, row: usize, column: usize) -> f64 {
+        self.damping[row * self.vectors() + column]
+    }
+
+    /// The largest error of a compliance between two directions relative to the largest compliance, at frequencies that ascend.
+    pub fn compliance_errors(&self) -> Vec<[f64; 2]> {
+        let checked = self.checked.iter();
+        checked.map(|c| [c.frequency, c.relative()]).collect()
+    }
+
+    /// Compliance without damping between two directions by their places, at an angular frequency.
+    pub fn compliance(&self, read: usize, driven: usize, frequency: f64) -> f64 {
+        let pairs = self.rows[read].iter().zip(&self.rows[driven]);
+        let terms = pairs.zip(&self.squares);
+        terms
+            .map(|((d, b), square)| d * b / (square - frequency * frequency))
+            .sum()
+    }
+
+    /// How many directions are driven: those of contacts and of loads.
+    fn driven(structure: &SparseStructure) -> usize {
+        2 * structure.contacts.len() + structure.loads.len()
+    }
+
+    /// Error of the compliance between two directions at a frequency, interpolated between those where it was measured. Beyond them it
+    /// is the compliance that was left out at the last one.
+    pub fn compliance_error(&self, read: usize, driven: usize, frequency: f64) -> f64 {
+        let columns = self
+            .checked
+            .first()
+            .map_or(0, |c| c.errors.len() / self.rows.len().max(1));
+        let error = |c: &Checked| c.errors[read * columns + driven].abs();
+        let after = self.checked.partition_point(|c| c.frequency < frequency);
+        match (
+            after.checked_sub(1).map(|i| &self.checked[i]),
+            self.checked.get(after),
+        ) {
+            (Some(a), Some(b)) => {
+                let (low, high) = (
+                    error(a).max(f64::MIN_POSITIVE),
+                    error(b).max(f64::MIN_POSITIVE),
+                );
+                let part = (frequency - a.frequency) / (b.frequency - a.frequency);
+                // Errors grow with a power of the frequency.
+                (low.ln() + part * (high.ln() - low.ln())).exp()
+            }
+            (Some(c), None) | (None, Some(c)) => error(c),
+            (None, None) => 0.0,
+        }
+    }
+
+    /// The error that the reduction makes of the harmonics of a direction, to first order: the error of the compliance times the forces of
+    /// contacts and loads, whose amplitudes by harmonic are given for each driven direction.
+    pub fn response_error(&self, read: usize, omega: f64, forces: &[(usize, Vec<f64>)]) -> f64 {
+        let of = |(driven, amplitudes): &(usize, Vec<f64>)| -> f64 {
+            let amplitudes = amplitudes.iter().enumerate();
+            let terms = amplitudes.map(|(harmonic, amplitude)| {
+                let frequency = harmonic as f64 * omega;
+                self.compliance_error(read, *driven, frequency) * amplitude.abs()
+            });
+            terms.sum()
+        };
+        forces.iter().map(of).sum()
+    }
+
+    /// The structure by these vectors, with the loads, contacts and outputs of the whole one.
+    ///
+    /// # Errors
+    /// If names or arguments of laws cannot be used.
+    pub fn structure(&self, of: &SparseStructure) -> Result<Structure, StructureError> {
+        let m = self.vectors();
+        let stiffness = DMatrix::from_fn(m, m, |i, j| if i == j { self.squares[i] } else { 0.0 });
+        let damping = DMatrix::from_row_slice(m, m, &self.damping);
+        let names = (0..m).map(|i| match i.checked_sub(self.modes) {
+            None => format!("mode{}", i + 1),
+            Some(i) => format!("static{}", i + 1),
+        });
+        let mut builder = Structure::of(&DMatrix::identity(m, m), &damping, &stiffness)
+            .name(&of.name)
+            .coordinates(names);
+        for (matrix, gyroscopic) in self.gyroscopic.iter().zip(&of.gyroscopic) {
+            let matrix = DMatrix::from_row_slice(m, m, matrix);
+            builder = builder.damping(&matrix, gyroscopic.speed.clone());
+        }
+        let mut rows = self.rows.iter();
+        let mut next = || rows.next().cloned().unwrap_or_default();
+        for contact in &of.contacts {
+            let (gap, force) = (next(), next());
+            builder = builder.contact(
+                Contact::of(contact.law.clone())
+                    .arguments(contact.arguments.iter().cloned())
+                    .direction(gap)
+                    .force_direction(force)
+                    .offset(contact.offset.clone())
+                    .unit(of.force_unit.clone()),
+            );
+        }
+        for load in &of.loads {
+            let row = next();
+            let amplitude = match load.kind {
+                LoadKind::Force | LoadKind::Acceleration => load.amplitude.clone(),
+                LoadKind::Unbalance => load.amplitude.clone().times_omega(2),
+                LoadKind::Base => {
+                    let squared = f64::from(load.harmonic).powi(2);
+                    load.amplitude.clone().times_omega(2).times(squared)
+                }
+            };
+            let (sine, cosine) = load.phase.sin_cos();
+            for (index, factor) in row.into_iter().enumerate() {
+                let part = |by: f64| -> Value { amplitude.clone().times(by * factor) };
+                builder = builder.cosine(index, load.harmonic, part(cosine)).sine(
+                    index,
+                    load.harmonic,
+                    part(-sine),
+                );
+            }
+        }
+        for output in &of.outputs {
+            builder = builder.output(&output.name, next()).unit(&output.unit);
+        }
+        for (index, contact) in of.contacts.iter().enumerate() {
+            builder = builder
+                .force_output(&contact.name, index)
+                .unit(&of.force_unit);
+        }
+        for parameter in &of.parameters {
+            builder = builder.parameter(parameter.clone());
+        }
+        builder.build()
+    }
+
+    /// Writes it to a file, whole or not at all.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ReducedError> {
+        let text = serde_json::to_vec(self)?;
+        Ok(hertzian_file::write(path.as_ref(), &text)?)
+    }
+
+    /// Reads it from a file.
+    ///
+    /// # Errors
+    /// If the file holds something else.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReducedError> {
+        let text = std::fs::read(path)?;
+        let reduced: Self = serde_json::from_slice(&text)?;
+        if reduced.version != Self::VERSION {
+            return Err(ReducedError::Version {
+                found: reduced.version,
+                known: Self::VERSION,
+            });
+        }
+        if !reduced.fits() {
+            return Err(ReducedError::Sizes);
+        }
+        Ok(reduced)
+    }
+
+    fn fits(&self) -> bool {
+        let m = self.vectors();
+        let square = |matrix: &Vec<f64>| matrix.len() == m * m;
+        let rows = self.rows.iter().all(|row| row.len() == m);
+        let columns = self.checked.first().map_or(0, |c| c.errors.len());
+        self.modes <= m
+            && square(&self.damping)
+            && self.gyroscopic.iter().all(square)
+            && rows
+            && self.checked.iter().all(|c| c.errors.len() == columns)
+            && columns % self.rows.len().max(1) == 0
+    }
+
+    /// Whether it is of this structure.
+    ///
+    /// # Errors
+    /// If matrices or directions are others.
+    pub fn is_of(&self, structure: &SparseStructure) -> Result<(), ReducedError> {
+        let rows = Self::driven(structure) + structure.outputs.len();
+        if self.fingerprint != Self::fingerprint_of(structure) || rows != self.rows.len() {
+            return Err(ReducedError::Other);
+        }
+        Ok(())
+    }
+
+    /// A number that other matrices, damping or directions do not have (Fowler, Noll and Vo, FNV-1a of 64 bits).
+    pub(crate) fn fingerprint_of(structure: &SparseStructure) -> u64 {
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        let mut take = |word: u64| {
+            hash = (hash ^ word).wrapping_mul(0x0100_0000_01b3);
+        };
+        let matrices = [&structure.mass, &structure.stiffness].into_iter();
+        for matrix in matrices.chain(structure.gyroscopic.iter().map(|g| &g.matrix)) {
+            take(matrix.rows() as u64);
+            for (row, column, value) in matrix.triplets() {
+                take(row as u64);
+                take(column as u64);
+                take(value.to_bits());
+            }
+        }
+        for byte in format!("{:?}", structure.damping).bytes() {
+            take(u64::from(byte));
+        }
+        let contacts = structure.contacts.iter();
+        let contacts = contacts.flat_map(|c| [Some(&c.gap), c.force.as_ref()]);
+        let loads = structure.loads.iter().map(|load| Some(&load.direction));
+        let outputs = structure.outputs.iter().map(|o| Some(&o.direction));
+        for direction in contacts.chain(loads).chain(outputs) {
+            take(direction.map_or(0, |d| d.entries.len() as u64 + 1));
+            for (coordinate, factor) in direction.iter().flat_map(|d| &d.entries) {
+                take(*coordinate as u64);
+                take(factor.to_bits());
+            }
+        }
+        hash
+    }
+}

@@ -1,0 +1,5 @@
+//! Structures from files and their reduction, against closed forms and dense matrices.
+
+mod common;
+mod files;
+mod reduction;
