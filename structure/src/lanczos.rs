@@ -66,10 +66,12 @@ impl<'m> Basis<'m> {
         let before = self.size(&x)?;
         let mut coefficients = self.orthogonalise(&mut x);
         let left = self.size(&x)?;
-        if !(left > least * before) {
+        if left <= least * before {
             return Some(coefficients);
         }
-        x.iter_mut().for_each(|x| *x /= left);
+        for x in &mut x {
+            *x /= left;
+        }
         self.vectors.push(x);
         coefficients.push(left);
         Some(coefficients)
@@ -175,7 +177,7 @@ fn modes(pairs: &[Pair], basis: &Basis<'_>, shift: f64) -> (Vec<f64>, Vec<Vec<f6
     (squares, pairs.iter().map(shape).collect())
 }
 
-/// Between minus one and one, the same in every run (SplitMix64).
+/// Between minus one and one, the same in every run (`SplitMix64`).
 fn random(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut x = *seed;

@@ -1,6 +1,6 @@
 //! Arrays of numpy: directions and weights, and small matrices.
 //!
-//! Source: NEP 1, A Simple File Format for NumPy Arrays; numpy.lib.format, versions 1.0 to 3.0.
+//! Source: NEP 1, A Simple File Format for `NumPy` Arrays; numpy.lib.format, versions 1.0 to 3.0.
 
 use std::io::{self, Read};
 

@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::{LoadKind, SparseStructure};
 
+/// The last harmonics of a force that say how large those beyond are, and how many of these there are at most.
+const LAST: usize = 4;
+const MOST: usize = 10_000;
+
 /// A structure by few vectors: modes, and static responses besides them.
 ///
 /// Its directions are in the order: of each contact that of its gap and that of its force, then loads, then outputs.
@@ -160,15 +164,22 @@ impl Reduced {
     }
 
     /// The error that the reduction makes of the harmonics of a direction, to first order: the error of the compliance times the forces of
-    /// contacts and loads, whose amplitudes by harmonic are given for each driven direction.
+    /// contacts and loads, whose amplitudes by harmonic are given for each driven direction. Beyond the harmonics that are given, those of a
+    /// force with more than three are taken to fall with the square of their number.
     pub fn response_error(&self, read: usize, omega: f64, forces: &[(usize, Vec<f64>)]) -> f64 {
         let of = |(driven, amplitudes): &(usize, Vec<f64>)| -> f64 {
-            let amplitudes = amplitudes.iter().enumerate();
-            let terms = amplitudes.map(|(harmonic, amplitude)| {
-                let frequency = harmonic as f64 * omega;
-                self.compliance_error(read, *driven, frequency) * amplitude.abs()
-            });
-            terms.sum()
+            let error =
+                |harmonic: usize| self.compliance_error(read, *driven, harmonic as f64 * omega);
+            let terms = amplitudes.iter().enumerate();
+            let terms = terms.map(|(harmonic, amplitude)| error(harmonic) * amplitude.abs());
+            // A force whose slope jumps where a contact opens falls with the square of the harmonic.
+            let known = amplitudes.len();
+            let last = amplitudes[known - known.min(LAST)..].iter();
+            let last = last.fold(0.0, |m: f64, x| m.max(x.abs()));
+            let highest = self.checked.last().map_or(0.0, |c| c.frequency / omega) as usize;
+            let tail = (known..=highest.max(4 * known).min(MOST)).filter(|_| known > 2);
+            let tail = tail.map(|k| error(k) * last * (known as f64 / k as f64).powi(2));
+            terms.sum::<f64>() + tail.sum::<f64>()
         };
         forces.iter().map(of).sum()
     }
@@ -277,7 +288,7 @@ impl Reduced {
             && self.gyroscopic.iter().all(square)
             && rows
             && self.checked.iter().all(|c| c.errors.len() == columns)
-            && columns % self.rows.len().max(1) == 0
+            && columns.is_multiple_of(self.rows.len().max(1))
     }
 
     /// Whether it is of this structure.

@@ -18,7 +18,7 @@
 //!
 //! That no mode below a frequency is missed is known from the number of negative pivots of `K - s^2 M` ([`crate::factor`]).
 //!
-//! Source: MacNeal (1971), Comput. Struct. 1, 581 (residual flexibility); Wilson, Yuan and Dickens (1982), Earthq. Eng. Struct. Dyn. 10,
+//! Source: `MacNeal` (1971), Comput. Struct. 1, 581 (residual flexibility); Wilson, Yuan and Dickens (1982), Earthq. Eng. Struct. Dyn. 10,
 //! 813 (load-dependent vectors, Ritz); Craig and Ni (1989), J. Guid. Control Dyn. 12, 577.
 
 use hertzian::Cancel;
@@ -33,15 +33,15 @@ use crate::matrix::SparseMatrix;
 use crate::reduced::{Checked, Reduced};
 
 /// Modes are kept up to so many times the highest frequency of the excitation.
-const COVERED: f64 = 4.0;
+const COVERED: f64 = 16.0;
 /// More modes than this are asked for by their number.
 const MOST_MODES: usize = 200;
 /// Steps (1) at most.
 const MOST_STEPS: usize = 6;
 /// Multiples of the highest frequency of the excitation where (2) is measured; the vectors are enough where it is small at the first
 /// ones.
-const MULTIPLES: [f64; 7] = [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
-const ASKED: usize = 5;
+const MULTIPLES: [f64; 8] = [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
+const ASKED: usize = 6;
 /// A new vector must have this part of it besides the others.
 const DEPENDENT: f64 = 1e-7;
 /// A frequency that is this part of the excitation's, squared, is that of a rigid mode.
@@ -132,7 +132,7 @@ impl Reduction {
         }
     }
 
-    /// So many modes, instead of all up to four times the frequency of the excitation.
+    /// So many modes, instead of all up to sixteen times the frequency of the excitation.
     #[must_use]
     pub fn modes(mut self, modes: usize) -> Self {
         self.modes = Some(modes);
@@ -146,7 +146,7 @@ impl Reduction {
         self
     }
 
-    /// Error of the compliance between contacts, loads and outputs, relative to its static value, up to eight times the frequency of the
+    /// Error of the compliance between contacts, loads and outputs, relative to the largest of them, up to sixteen times the frequency of the
     /// excitation.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
@@ -302,21 +302,22 @@ impl<'r> Work<'r> {
         }
     }
 
+    /// How many modes are kept: all below a frequency, unless their number was asked for.
+    fn count(&self) -> Result<usize, ReductionError> {
+        if let Some(modes) = self.options.modes {
+            return Ok(modes.min(self.structure.coordinates()));
+        }
+        let (factor, frequency) = self.dynamic(COVERED * self.options.to)?;
+        let count = factor.negative();
+        if count > MOST_MODES {
+            return Err(ReductionError::ManyModes { count, frequency });
+        }
+        Ok(count.max(1))
+    }
+
     /// The modes that are kept.
     fn modes(&self) -> Result<(Vec<f64>, Vec<Vec<f64>>), ReductionError> {
-        let n = self.structure.coordinates();
-        let count = match self.options.modes {
-            Some(modes) => modes.min(n),
-            None => {
-                let frequency = COVERED * self.options.to;
-                let (factor, frequency) = self.dynamic(frequency)?;
-                let count = factor.negative();
-                if count > MOST_MODES {
-                    return Err(ReductionError::ManyModes { count, frequency });
-                }
-                count.max(1)
-            }
-        };
+        let count = self.count()?;
         let stop = || self.options.cancel.is_cancelled();
         let mass = &self.structure.mass;
         let found = lanczos::lowest(&self.factor, mass, self.shift, count, &stop);
@@ -334,23 +335,14 @@ impl<'r> Work<'r> {
                 *square = 0.0;
             }
         }
-        // A mode that the process has missed lies below the highest one that it has found.
-        if let Some(highest) = squares.last().filter(|_| self.options.modes.is_some()) {
-            let (factor, _) = self.dynamic(highest.max(least).sqrt() * (1.0 + ASIDE))?;
+        if let Some(highest) = squares.last().filter(|x| **x > 0.0) {
+            // As many as there are below the last one, which may have others of its frequency.
+            let (factor, frequency) = self.dynamic(highest.sqrt() * (1.0 - ASIDE))?;
             let expected = factor.negative();
-            let above = squares
-                .iter()
-                .filter(|x| **x < *highest * (1.0 - ASIDE))
-                .count();
-            if expected > count && above < count {
-                let (factor, _) = self.dynamic(highest.max(0.0).sqrt() * (1.0 - ASIDE))?;
-                let below = factor.negative();
-                if below > count {
-                    return Err(ReductionError::Modes {
-                        found: count,
-                        expected: below,
-                    });
-                }
+            let below = squares.iter().filter(|x| x.sqrt() < frequency);
+            let found = below.count();
+            if found != expected {
+                return Err(ReductionError::Modes { found, expected });
             }
         }
         Ok((squares, modes))

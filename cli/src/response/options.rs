@@ -64,8 +64,8 @@ pub struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count)]
     pub period: usize,
 
-    /// How the orbits of the curve are computed; --bifurcations and --track go by shooting [default: balance; contact-equation of a
-    /// --structure]
+    /// How the orbits of the curve are computed; --bifurcations and --track go by shooting [default: balance; of a --structure
+    /// shooting where its laws are made of straight lines, else contact-equation]
     #[arg(long, value_enum, value_name = "METHOD")]
     pub by: Option<By>,
 
@@ -386,11 +386,12 @@ impl Options {
     /// How the orbits of the curve are computed.
     pub fn method(&self) -> By {
         let of_structures = self.structure.file.is_some();
-        self.by.unwrap_or(if of_structures {
-            By::ContactEquation
+        let default = if of_structures {
+            By::Shooting
         } else {
             By::Balance
-        })
+        };
+        self.by.unwrap_or(default)
     }
 
     /// Name of what varies, as the models call it.

@@ -116,7 +116,7 @@ pub fn run(
     };
     let (options, resumed) = resumed::of(options)?;
     let (model, reduced) = checked(&options, cancel)?;
-    let options = &structure::with_accuracy(&options, &*model);
+    let options = &structure::completed(&options, &*model);
     let mut seen = Seen::new(progress, options);
     let mut note = None;
     let mut diagram = if let Some(branch) = resumed {

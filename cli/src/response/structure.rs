@@ -1,12 +1,13 @@
 //! `--structure`: a structure of many coordinates from files, by few vectors.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 use hertzian::System;
 use serde::Serialize;
 
-use super::options::Options;
+use super::options::{By, Options};
 use super::run::Failure;
 
 /// A structure of many coordinates, and how it is reduced.
@@ -22,7 +23,7 @@ pub struct StructureOptions {
     )]
     pub file: Option<PathBuf>,
 
-    /// Keep so many modes of it [default: all up to four times the highest frequency]
+    /// Keep so many modes of it [default: all up to sixteen times the highest frequency]
     #[arg(long, value_name = "COUNT", requires = "structure", value_parser = crate::misplaced::count)]
     pub modes: Option<usize>,
 
@@ -69,13 +70,28 @@ pub fn resolved(options: &Options) -> Options {
     options
 }
 
+/// How orbits are computed where nothing was asked for: by shooting where all motions are known in closed form between switches, else by the
+/// contact equation.
+fn method(is_affine: bool) -> By {
+    if is_affine {
+        By::Shooting
+    } else {
+        By::ContactEquation
+    }
+}
+
 /// The same with the accuracy asked of the first output, where nothing else was asked for: coordinates of a reduced structure are
 /// amplitudes of its vectors.
-pub fn with_accuracy(options: &Options, model: &dyn System) -> Options {
+pub fn completed(options: &Options, model: &dyn System) -> Options {
     let mut options = options.clone();
     let first = model.facts().outputs.first();
     if options.structure.file.is_some() && options.accuracy_of.is_none() {
         options.accuracy_of = first.map(|output| output.name.to_string());
+    }
+    if options.structure.file.is_some() && options.by.is_none() {
+        let laws = (0..model.facts().laws).map(|law| model.law(law).facts());
+        let is_affine = laws.flat_map(|law| &*law.pieces).all(|piece| piece.affine);
+        options.by = Some(method(is_affine));
     }
     options
 }
@@ -220,17 +236,18 @@ impl Reduction {
             let below = self.compliance.iter().filter(|[_, error]| *error <= least);
             below.map(|[frequency, _]| *frequency).next_back()
         };
+        let right = up_to(1e-6).map_or_else(String::new, |frequency| {
+            format!("; compliances to a millionth up to {frequency:.4}")
+        });
         let mut text = format!(
-            "reduction  {} modes and {} static vectors of {} coordinates",
+            "reduction  {} modes and {} static vectors of {} coordinates{right}\n",
             self.modes, self.static_vectors, self.coordinates
         );
-        if let Some(frequency) = up_to(1e-6) {
-            text += &format!("; compliances to a millionth up to {frequency:.4}");
-        }
-        text.push('\n');
         for (name, error) in &self.outputs {
-            text += &format!(
-                "error      of {name} by the reduction: at most {error:.0e} of its peak-to-peak\n"
+            // Writing to a string does not fail.
+            let _ = writeln!(
+                text,
+                "error      of {name} by the reduction: at most {error:.0e} of its peak-to-peak"
             );
         }
         text

@@ -114,20 +114,20 @@ impl Files {
             return SparseMatrix::from_triplets(shape.0, shape.1, entries)
                 .map_err(|source| FileError::Matrix { path, source });
         }
-        let file = self.open(&path)?;
+        let file = open(&path)?;
         market::read(BufReader::new(file)).map_err(|source| FileError::Market { path, source })
     }
 
     fn array(&self, name: &str) -> Result<npy::Array, FileError> {
         let path = self.folder.join(name);
-        let file = self.open(&path)?;
+        let file = open(&path)?;
         npy::read(BufReader::new(file)).map_err(|source| FileError::Npy { path, source })
     }
+}
 
-    fn open(&self, path: &Path) -> Result<File, FileError> {
-        File::open(path).map_err(|source| FileError::Read {
-            path: path.to_owned(),
-            source,
-        })
-    }
+fn open(path: &Path) -> Result<File, FileError> {
+    File::open(path).map_err(|source| FileError::Read {
+        path: path.to_owned(),
+        source,
+    })
 }

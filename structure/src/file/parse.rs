@@ -362,15 +362,15 @@ impl Reading<'_> {
             };
             return Err(self.at(key.span(), fault));
         }
-        let value = |name: &&str| match given.get(name) {
-            Some((_, value)) => self.value(value, ""),
-            None => {
-                let fault = FileFault::NoArgument {
-                    law: facts.name.to_string(),
-                    argument: (*name).to_owned(),
-                };
-                Err(self.at(text.name.span(), fault))
+        let value = |name: &&str| {
+            if let Some((_, value)) = given.get(name) {
+                return self.value(value, "");
             }
+            let fault = FileFault::NoArgument {
+                law: facts.name.to_string(),
+                argument: (*name).to_owned(),
+            };
+            Err(self.at(text.name.span(), fault))
         };
         known.iter().map(value).collect()
     }

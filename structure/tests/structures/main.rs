@@ -1,5 +1,6 @@
 //! Structures from files and their reduction, against closed forms and dense matrices.
 
 mod common;
+mod events;
 mod files;
 mod reduction;
