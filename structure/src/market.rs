@@ -246,23 +246,9 @@ fn entries<R: BufRead>(
                 found,
             });
         }
-        let refused = |source| MarketError::Entry { line, source };
         let (r, c) = (row - 1, column - 1);
-        if r >= rows || c >= columns {
-            return Err(refused(MatrixError::Outside {
-                row: r,
-                column: c,
-                rows,
-                columns,
-            }));
-        }
-        if !value.is_finite() {
-            return Err(refused(MatrixError::NotFinite {
-                row: r,
-                column: c,
-                value,
-            }));
-        }
+        let possible = can_stand(r, c, value, [rows, columns]);
+        possible.map_err(|source| MarketError::Entry { line, source })?;
         triplets.push((r, c, value));
         let sign = match mirror {
             Mirror::None => continue,
@@ -282,6 +268,26 @@ fn entries<R: BufRead>(
         });
     }
     Ok(triplets)
+}
+
+fn can_stand(
+    row: usize,
+    column: usize,
+    value: f64,
+    [rows, columns]: [usize; 2],
+) -> Result<(), MatrixError> {
+    if row >= rows || column >= columns {
+        return Err(MatrixError::Outside {
+            row,
+            column,
+            rows,
+            columns,
+        });
+    }
+    if !value.is_finite() {
+        return Err(MatrixError::NotFinite { row, column, value });
+    }
+    Ok(())
 }
 
 fn entry(text: &str) -> Option<(usize, usize, f64)> {
