@@ -4,15 +4,17 @@
 //! unknowns, equations (1) to (3) of [`system`](crate::system) read
 //!
 //! ```text
-//! z = (q, q', 1, cos h_1 tau, sin h_1 tau, cos h_2 tau, ...),    dz/dtau = A z                               (1)
-//! A = [ 0  I/nu  0 ;  M^-1 B / nu ;  0 0 (rotations by h_i) ],    nu = omega / divisor                       (2)
+//! z = (q, q', 1, cos h_1 tau, sin h_1 tau, cos h_2 tau, ...),    z' = A z                                    (1)
+//! A = [ 0  I  0 ;  M^-1 B ;  0 0 (rotations by h_i nu) ],    tau' = nu = omega / divisor                     (2)
 //! B = [ -K  -C  L ] + sum_c e s^T                                                                            (3)
 //! s = ( -k d,  -c d,  k delta + c nu delta_tau + (k g0 - f on the constant) )                                (4)
 //! ```
 //!
 //! where `delta` is the row of the offset's waves and `delta_tau` that of its derivative by phase. A constant and a wave need no
 //! particular solution in this form, so none can be large where the motion is small: rest, resonance and no stiffness at all
-//! are not special.
+//! are not special. A derivative is by time: where the frequency alone changes, the equations of the structure stay the same to the last bit. Divided
+//! by `nu`, every entry would be rounded anew, and roundings of the stiffest entries move a structure's slow oscillations by far more than
+//! one rounding error.
 //!
 //! Source: Van Loan (1978), Computing integrals involving the matrix exponential, IEEE Trans. Automatic Control 23.
 
@@ -24,7 +26,7 @@ use crate::numeric::linear::{Lu, Matrix, Singular};
 pub(super) struct Assembly {
     /// `A`, row by row.
     pub(super) matrix: Vec<f64>,
-    /// Its derivative by the variable asked for.
+    /// Its derivative by the variable asked for at a fixed phase: `nu (A / nu)_p`.
     pub(super) derivative: Vec<f64>,
     mass: Matrix,
     lu: Lu,
@@ -78,16 +80,14 @@ impl Assembly {
         self.divide_by_mass(basis);
         self.matrix.fill(0.0);
         for i in 0..n {
-            self.matrix[i * order + n + i] = 1.0 / nu;
+            self.matrix[i * order + n + i] = 1.0;
             let from = &self.accelerations[i * order..][..order];
-            for (out, x) in self.matrix[(n + i) * order..][..order].iter_mut().zip(from) {
-                *out = x / nu;
-            }
+            self.matrix[(n + i) * order..][..order].copy_from_slice(from);
         }
         for (index, &harmonic) in basis.harmonics.iter().enumerate() {
             let cosine = 2 * n + 1 + 2 * index;
-            self.matrix[cosine * order + cosine + 1] = -f64::from(harmonic);
-            self.matrix[(cosine + 1) * order + cosine] = f64::from(harmonic);
+            self.matrix[cosine * order + cosine + 1] = -f64::from(harmonic) * nu;
+            self.matrix[(cosine + 1) * order + cosine] = f64::from(harmonic) * nu;
         }
     }
 
@@ -106,7 +106,7 @@ impl Assembly {
         // B' - M' (M^-1 B): the accelerations are those in A.
         for i in 0..n {
             for k in 0..n {
-                let mass = terms_by.mass[i * n + k] * nu;
+                let mass = terms_by.mass[i * n + k];
                 for m in 0..order {
                     forces[i * order + m] -= mass * self.matrix[(n + k) * order + m];
                 }
@@ -129,11 +129,11 @@ impl Assembly {
         self.derivative.fill(0.0);
         let stretch = terms_by.base / nu;
         for i in 0..n {
-            self.derivative[i * order + n + i] = -stretch / nu;
+            self.derivative[i * order + n + i] = -stretch;
             for m in 0..order {
                 let entry = (n + i) * order + m;
                 self.derivative[entry] =
-                    self.accelerations[i * order + m] / nu - self.matrix[entry] * stretch;
+                    self.accelerations[i * order + m] - self.matrix[entry] * stretch;
             }
         }
     }
@@ -151,14 +151,32 @@ impl Assembly {
         }
     }
 
-    /// A rate that no coordinate exceeds: its Taylor coefficients in the phase fall faster than those of `exp(rate s)`. From
+    /// Units of `z` in which the entries of `A` are alike in size: coordinates count by the roots of their masses, velocities by the [rate](Self::rate) too, and
+    /// the constant and the waves by what they move.
+    pub(super) fn units(&self, basis: &Basis, terms: &Terms) -> Vec<f64> {
+        let (n, order) = (basis.coordinates, basis.order());
+        let rate = self.rate(basis, terms);
+        let mut units = vec![1.0; order];
+        for i in 0..n {
+            units[i] = 1.0 / scale(terms, n, i);
+            units[n + i] = rate * units[i];
+        }
+        let driven = |i: usize| {
+            let entries = &self.matrix[(n + i) * order + 2 * n..][..order - 2 * n];
+            entries.iter().fold(0.0_f64, |most, x| most.max(x.abs())) / units[n + i]
+        };
+        let driven = (0..n).map(driven).fold(0.0, f64::max);
+        if driven > 0.0 {
+            units[2 * n..].fill(rate / driven);
+        }
+        units
+    }
+
+    /// A rate that no coordinate exceeds: its Taylor coefficients in time fall faster than those of `exp(rate s)`. From
     /// `|x''| <= c |x'| + k |x|` with norms of `M^-1 C` and `M^-1 K`, in coordinates scaled by the roots of their masses.
     pub(super) fn rate(&self, basis: &Basis, terms: &Terms) -> f64 {
         let (n, order, nu) = (basis.coordinates, basis.order(), terms.base);
-        let scale = |i: usize| {
-            let mass = terms.mass[i * n + i].abs();
-            if mass > 0.0 { mass.sqrt() } else { 1.0 }
-        };
+        let scale = |i: usize| scale(terms, n, i);
         let norm = |first: usize| {
             let row = |i: usize| -> f64 {
                 let entries = &self.matrix[(n + i) * order + first..][..n];
@@ -167,11 +185,17 @@ impl Assembly {
             };
             (0..n).map(row).fold(0.0_f64, f64::max)
         };
-        let (stiffness, damping) = (norm(0) / nu, norm(n));
+        let (stiffness, damping) = (norm(0), norm(n));
         let own = 0.5 * damping + (0.25 * damping * damping + stiffness).sqrt();
-        let waves = basis.harmonics.last().map_or(1.0, |&h| f64::from(h));
+        let waves = nu * basis.harmonics.last().map_or(1.0, |&h| f64::from(h));
         if own > waves { own } else { waves }
     }
+}
+
+/// The root of the mass of a coordinate.
+fn scale(terms: &Terms, n: usize, i: usize) -> f64 {
+    let mass = terms.mass[i * n + i].abs();
+    if mass > 0.0 { mass.sqrt() } else { 1.0 }
 }
 
 /// `[-K -C L]` of (3).

@@ -44,7 +44,7 @@ pub(super) struct Workspace {
 #[derive(Debug, Clone)]
 pub(super) struct Pair {
     pub(super) value: Vec<f64>,
-    by: Vec<f64>,
+    pub(super) by: Vec<f64>,
 }
 
 impl Workspace {
@@ -72,12 +72,12 @@ impl Workspace {
         }
     }
 
-    pub(super) fn set(&mut self, matrix: &[f64], by: Option<&[f64]>, cell: f64) {
+    pub(super) fn set(&mut self, matrix: &[f64], by: Option<&[f64]>, time: f64) {
         for (out, x) in self.scaled.iter_mut().zip(matrix) {
-            *out = x * cell;
+            *out = x * time;
         }
         for (out, x) in self.scaled_by.iter_mut().zip(by.unwrap_or(&[])) {
-            *out = x * cell;
+            *out = x * time;
         }
     }
 
@@ -113,6 +113,12 @@ impl Workspace {
         }
     }
 
+    /// The exponential over the range of a table: to the end of its last cell.
+    pub(super) fn range(&self, out: &mut Pair, derivatives: bool) {
+        let last = &self.middles[self.middles.len() - 1];
+        out.set_product(last, &self.half, derivatives);
+    }
+
     /// The rows `e_i (A h)^k / k!`.
     pub(super) fn taylor(&mut self, table: &Table, derivatives: bool) {
         let order = table.order;
@@ -145,7 +151,7 @@ impl Workspace {
 
 impl Pair {
     /// (2)
-    fn set_product(&mut self, a: &Self, b: &Self, derivatives: bool) {
+    pub(super) fn set_product(&mut self, a: &Self, b: &Self, derivatives: bool) {
         sum(&a.value, &b.value, &mut self.value);
         add_products(&a.value, &b.value, &mut self.value);
         if derivatives {

@@ -1,7 +1,7 @@
 //! The flow of systems whose forces are piecewise affine: closed forms from switch to switch.
 //!
 //! While no gap leaves its piece, the motion is that of a linear system with constant coefficients, and is tabulated as series
-//! that end below rounding (`table`). The first meeting of a gap with an end of its piece is proven to be the first (`search`,
+//! that end below rounding (`table`); where a period has many of them, it is passed in longer steps (`ladder`, `modes`). The first meeting of a gap with an end of its piece is proven to be the first (`search`,
 //! `crossing`). There the state is continuous, and perturbations jump (`tangent`). One coordinate under one harmonic has the same
 //! in arrays of fixed size (`scalar`, `interval`).
 //!
@@ -12,7 +12,9 @@ mod crossing;
 mod equations;
 mod exponential;
 mod interval;
+mod ladder;
 mod model;
+mod modes;
 mod scalar;
 mod search;
 mod table;
@@ -26,7 +28,7 @@ use std::f64::consts::TAU;
 use self::crossing::value_and_slope;
 use self::model::Model;
 use self::scalar::{Scalar, Span};
-use self::table::{COEFFICIENTS, Polynomial, Table};
+use self::table::{COEFFICIENTS, ExitLevel, Polynomial, Table};
 use crate::cancel::Cancel;
 use crate::error::Error;
 use crate::system::{System, Variable};
@@ -52,6 +54,7 @@ pub struct Affine {
     at: Vec<Option<usize>>,
     column: Vec<f64>,
     propagator: Vec<f64>,
+    room: ladder::Room,
     /// The state at the end of a stretch.
     next: Vec<f64>,
     /// The flow of the reversed motion; made when it is needed.
@@ -102,6 +105,7 @@ impl Affine {
             column: vec![0.0; 2 * model.basis.coordinates],
             next: vec![0.0; 2 * model.basis.coordinates],
             propagator: vec![0.0; 4 * model.basis.coordinates.pow(2)],
+            room: ladder::Room::new(&model.basis),
             work: Work::default(),
             cancel: Cancel::new(),
             scalar: Scalar::new(&model),
@@ -164,12 +168,16 @@ impl Affine {
         let by = tangent.as_ref().and_then(|tangent| tangent.by);
         let phase = span.begin + done;
         let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
+        let leapt = self.leap(combination, span, done, state, tangent.as_deref_mut(), see);
+        if let Some(passed) = leapt {
+            return Ok(passed);
+        }
         let table = &self.model.at(combination).table;
         let rows = &mut self.rows[..table.rows];
         let left = (span.length - done) / table.cell;
         let range = left.min(table.range());
         let at = &self.at;
-        let begins = |exit: &table::ExitLevel| at[exit.contact] == Some(exit.level);
+        let begins = |exit: &ExitLevel| at[exit.contact] == Some(exit.level);
         let hit = table.first_hit(&self.z, range, begins);
         let cells = hit.map_or(range, |hit| hit.at);
         let last = hit.is_none() && range == left;
@@ -199,14 +207,7 @@ impl Affine {
             see(&piece);
         }
         self.work.steps += 1;
-        let switch = hit.map(|hit| {
-            let exit = &table.exits[hit.exit];
-            Switch {
-                contact: exit.contact,
-                level: exit.level,
-                upwards: exit.upper,
-            }
-        });
+        let switch = hit.map(|hit| Switch::over(&table.exits[hit.exit]));
         Ok(Passed {
             goes_on_at: (!last).then_some(next),
             cells,
@@ -367,6 +368,16 @@ struct Switch {
     contact: usize,
     level: usize,
     upwards: bool,
+}
+
+impl Switch {
+    fn over(exit: &ExitLevel) -> Self {
+        Self {
+            contact: exit.contact,
+            level: exit.level,
+            upwards: exit.upper,
+        }
+    }
 }
 
 /// A motion on one combination of pieces, from the phase where its table begins.

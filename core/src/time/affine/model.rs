@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 
 use super::equations::Assembly;
 use super::exponential::Workspace;
+use super::ladder::{self, Ladder};
 use super::table::{ExitLevel, Table};
 use super::terms::{Basis, Line, Terms};
 use crate::error::Error;
@@ -26,6 +27,7 @@ const FINEST: f64 = 1e8;
 pub(super) struct Combination {
     pub(super) pieces: Vec<usize>,
     pub(super) table: Table,
+    ladder: Option<Ladder>,
     /// The table belongs to the present values.
     filled: bool,
     /// Its derivatives do too, by the variable of the model.
@@ -273,6 +275,12 @@ impl Model {
         &self.combinations[index]
     }
 
+    /// The table of a combination, and the steps over many of its ranges, if they are worth it.
+    pub(super) fn ladder(&mut self, index: usize) -> Option<(&Table, &mut Ladder)> {
+        let Combination { table, ladder, .. } = &mut self.combinations[index];
+        ladder.as_mut().map(|ladder| (&*table, ladder))
+    }
+
     fn add(&mut self, pieces: &[usize]) -> usize {
         let mut exits = Vec::new();
         for (contact, &piece) in pieces.iter().enumerate() {
@@ -296,6 +304,7 @@ impl Model {
         self.combinations.push(Combination {
             pieces: pieces.to_vec(),
             table: Table::new(&self.basis, rows(&self.basis, self.moving), exits),
+            ladder: None,
             filled: false,
             differentiated: false,
         });
@@ -311,7 +320,8 @@ impl Model {
             self.lines_by[contact] = self.contacts[contact].lines_by[piece];
         }
         self.assembly.assemble(basis, terms, &self.lines);
-        let cell = Table::cell_for(self.assembly.rate(basis, terms));
+        let time = Table::time_for(self.assembly.rate(basis, terms));
+        let cell = time * terms.base;
         let resolved = cell * FINEST > std::f64::consts::TAU;
         if !resolved {
             return Err(FlowError::StepTooShort { phase, step: cell });
@@ -329,7 +339,15 @@ impl Model {
         let by = derivatives.then_some(&self.assembly.derivative[..]);
         combination
             .table
-            .fill(matrix, by, cell, &mut self.workspace);
+            .fill(matrix, by, [time, cell], &mut self.workspace);
+        let table = &combination.table;
+        if ladder::is_needed(table) {
+            let units = self.assembly.units(basis, terms);
+            let ladder = combination.ladder.get_or_insert_default();
+            ladder.fill(table, matrix, &units, &self.workspace, derivatives);
+        } else {
+            combination.ladder = None;
+        }
         combination.filled = true;
         combination.differentiated = derivatives;
         Ok(())

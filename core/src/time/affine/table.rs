@@ -1,7 +1,7 @@
 //! The motion on one combination of pieces, tabulated: exact at any phase, with few operations.
 //!
-//! From `dz/dtau = A z` ([`equations`](super::equations)) a coordinate is a row of `exp(A tau) z(0)`. About every multiple `j` of a
-//! phase `h` there is a cell that reaches half as far to either side, and in it, with `s` in units of `h`,
+//! From `z' = A z` ([`equations`](super::equations)) a coordinate is a row of `exp(A t) z(0)`. About every multiple `j` of a
+//! time `h` there is a cell that reaches half as far to either side, and in it, with `s` in units of `h`,
 //!
 //! ```text
 //! q_i(s) = sum_k X_ik (s - j)^k,    X_ik = e_i (A h)^k / k! exp(A h j) z(0)                                   (1)
@@ -58,6 +58,8 @@ pub(super) struct Table {
     pub(super) cells: usize,
     /// Phase of one cell.
     pub(super) cell: f64,
+    /// `h`
+    pub(super) time: f64,
     /// Coordinates.
     coordinates: usize,
     /// Tabulated rows: the coordinates, and the waves if an offset moves.
@@ -78,6 +80,7 @@ impl Table {
         Self {
             cells,
             cell: 0.0,
+            time: 0.0,
             coordinates: basis.coordinates,
             rows,
             order,
@@ -92,21 +95,22 @@ impl Table {
         entry(self.coordinates, row)
     }
 
-    /// Phase of a cell for a fastest rate.
-    pub(super) fn cell_for(rate: f64) -> f64 {
+    /// Time of a cell for a fastest rate.
+    pub(super) fn time_for(rate: f64) -> f64 {
         CELL / rate
     }
 
-    /// Fills the table from `A` and the rows of its exit levels, and its derivatives if that of `A` is given.
+    /// Fills the table from `A` and the rows of its exit levels, for cells of a time and the phase that passes in it, and its derivatives if that of
+    /// `A` is given.
     pub(super) fn fill(
         &mut self,
         matrix: &[f64],
         by: Option<&[f64]>,
-        cell: f64,
+        [time, cell]: [f64; 2],
         workspace: &mut Workspace,
     ) {
-        self.cell = cell;
-        workspace.set(matrix, by, cell);
+        (self.time, self.cell) = (time, cell);
+        workspace.set(matrix, by, time);
         workspace.exponentials(by.is_some());
         workspace.taylor(self, by.is_some());
         fill_series(&mut self.series, workspace);

@@ -4,6 +4,7 @@
 //! as said beside it (harmonic balance with Hill's determinant, Chebyshev collocation); none of them knows this library. Digits
 //! are those that both agree in. One run over the range finds every event, and each is within its stated error.
 
+mod beam;
 mod bearing;
 mod chain;
 mod gears;

@@ -1,6 +1,7 @@
 //! The flow against values known from elsewhere, against closed forms, and against an independent integration.
 
 mod conservation;
+mod ladder;
 mod linear;
 mod random;
 mod reference;
