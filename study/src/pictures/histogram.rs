@@ -4,7 +4,7 @@
 
 use std::io;
 
-use hertzian::chart::{Chart, Curve, Line, Run, Series};
+use hertzian::chart::{Chart, Series};
 
 use super::{along, better, is, number, percent, place, quantile, quantiles};
 use crate::merge::Source;
@@ -32,20 +32,11 @@ pub(super) fn chart(source: &Source<'_>, picture: &Picture) -> io::Result<Chart>
     };
     let (outline, most) = outline(&places, low, high);
     let label = "variants".to_owned();
-    let run = Run {
-        line: Line::Stable,
-        points: outline.clone(),
-    };
-    let area = Series {
-        label: label.clone(),
+    let bars = Series {
+        label,
         points: outline,
     };
-    chart = chart
-        .curve(Curve {
-            label,
-            runs: vec![run],
-        })
-        .area(area);
+    chart = chart.trace(bars.clone()).area(bars);
     let mut said = Vec::new();
     for part in quantiles(picture) {
         let value = quantile(&places, part);
