@@ -247,11 +247,17 @@ impl Prepared {
         if self.table.is_some() {
             plan.variants.file = Some(PathBuf::from(TABLE));
         }
+        let columns: Vec<&str> = self
+            .columns
+            .iter()
+            .map(|column| column.name.as_str())
+            .collect();
         let version = format!(
-            "hertzian {}, {}-{}\n",
+            "hertzian {}, {}-{}\ncolumns: {}\n",
             env!("CARGO_PKG_VERSION"),
             std::env::consts::ARCH,
-            std::env::consts::OS
+            std::env::consts::OS,
+            columns.join(" ")
         );
         let plan = toml::to_string(&plan).unwrap_or_default();
         let mut all = vec![
