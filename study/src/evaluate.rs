@@ -198,6 +198,18 @@ impl Of<'_> {
                 self.branch_row(About::Event, number, orbit);
             }
         }
+        for turn in &branch.turns {
+            if self.study.keeps(turn.kind) {
+                let orbit = Orbit {
+                    kind: turn.kind.to_string(),
+                    period: Value::count(branch.period()),
+                    value: Value::Number(turn.value),
+                    ended: branch.stopped.to_string(),
+                    ..Orbit::default()
+                };
+                self.branch_row(About::NotLocated, number, orbit);
+            }
+        }
         for wanted in &self.study.largest {
             if let Some(point) = branch.largest(&wanted.to_string())? {
                 let orbit = self.orbit(branch, point, wanted.to_string())?;

@@ -126,6 +126,8 @@ pub(crate) fn columns(what: What, names: &[String], signals: &[String]) -> Vec<C
 pub(crate) enum About {
     /// An event of a branch.
     Event,
+    /// A place where something like it was seen and not located.
+    NotLocated,
     /// An orbit at a value that was asked for.
     At,
     /// The orbit at which a signal is largest.
@@ -145,6 +147,7 @@ impl About {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Event => "event",
+            Self::NotLocated => "not-located",
             Self::At => "at",
             Self::Largest => "largest",
             Self::Cell => "cell",
