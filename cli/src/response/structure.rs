@@ -102,6 +102,10 @@ mod sparse {
     use super::{Failure, Options, Reduced, Reduction};
     use hertzian::{Branch, Cancel, System};
 
+    /// No structure.
+    ///
+    /// # Errors
+    /// Always.
     pub fn read(_: &Options, _: &Cancel) -> Result<(Box<dyn System>, Reduced), Failure> {
         let message =
             "this program was built without the feature `sparse`, which --structure needs";
@@ -109,6 +113,10 @@ mod sparse {
     }
 
     impl Reduced {
+        /// Nothing: there is no such structure.
+        ///
+        /// # Errors
+        /// Never.
         pub fn of(&self, _: &[Branch]) -> Result<Reduction, hertzian::Error> {
             Ok(Reduction {
                 coordinates: 0,
