@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io;
 
-use hertzian::chart::{Chart, Curve, Line, Run};
+use hertzian::chart::{Chart, Series};
 
 use super::{along, better, is, number, percent, place, quantile, quantiles};
 use crate::merge::Source;
@@ -63,18 +63,9 @@ pub(super) fn chart(source: &Source<'_>, picture: &Picture) -> io::Result<Chart>
                 .map_or(f64::NAN, |sizes| quantile(sizes, part));
             [study.at[at], size]
         });
-        let line = match (part - 0.5).abs() {
-            0.0 => Line::Stable,
-            part if part <= 0.25 => Line::Unstable,
-            _ => Line::Undecided,
-        };
-        let run = Run {
-            line,
-            points: points.collect(),
-        };
-        chart = chart.curve(Curve {
+        chart = chart.trace(Series {
             label: percent(part),
-            runs: vec![run],
+            points: points.collect(),
         });
     }
     Ok(chart)
