@@ -4,8 +4,7 @@
 //! to most distances, and the branch joins both sides: Garcia and San Paulo (2000). To make it your own, change the lever, the sample, or the
 //! excitation.
 
-use hertzian::chart::View;
-use hertzian::{Error, FrequencyResponse};
+use hertzian::{Error, FrequencyResponse, chart::View};
 
 hertzian::oscillator! {
     /// Tip above a surface
@@ -26,41 +25,24 @@ hertzian::oscillator! {
         /// stiffness of the contact
         param contact: nN/nm^1.5 = 0.2 in 0.0..;
 
-        law surface(gap) {
-            gap > 0 => contact*gap^1.5 - attraction/spacing^2,
-            else    => -attraction*(spacing - gap)^-2,
-        }
-        let mass = lever/resonance^2;
-        mass*(ddot(x) + resonance/quality*dot(x)) + lever*x + surface(x - distance) = lever*free/quality*cos(omega*t);
-        /// what the sample feels
-        output pressing = force(surface);
+        law surface(gap) { gap > 0 => contact*gap^1.5 - attraction/spacing^2, else => -attraction*(spacing - gap)^-2 }
+        lever/resonance^2*(ddot(x) + resonance/quality*dot(x)) + lever*x + surface(x - distance) = lever*free/quality*cos(omega*t);
     }
 }
 
 /// Follows the branch from both sides, and says what there is at 5 nm.
 pub fn main() -> Result<(), Error> {
-    let model = Approached::default();
-    let request = FrequencyResponse::of(&model).vary("distance").omega(1e6);
+    let request = FrequencyResponse::of(&Approached::default()).vary("distance");
     for (from, to) in [(14.0, -2.0), (-2.0, 14.0)] {
-        let branch = request.clone().from(from).to(to).run()?;
-        let begins = branch.points[0].stability.verdict;
-        println!(
-            "from {from} nm, where it is {begins}, {} folds:",
-            branch.folds().count()
-        );
+        let branch = request.clone().omega(1e6).from(from).to(to).run()?;
+        println!("from {from} nm {}:", branch.points[0].stability.verdict);
         for point in branch.at(5.0)? {
-            let [amplitude, force] = ["x:h1", "pressing:max"].map(str::parse);
-            let amplitude = branch.measured(&amplitude?, &point)?.unwrap_or(f64::NAN);
-            let force = branch.measured(&force?, &point)?.unwrap_or(f64::NAN);
-            println!(
-                "  at 5 nm amplitude {amplitude:.4} nm, force up to {force:.4} nN, {}",
-                point.stability.verdict
-            );
+            let amplitude = branch.describe_measured("x:h1", &point)?;
+            let force = branch.describe_measured("surface:max", &point)?;
+            println!("  {}, {amplitude}, {force}", point.stability.verdict);
         }
         let chart = branch.chart_of(&View::new().of("x:h1".parse()?))?;
-        let chart = chart.title("Tip above a surface, quality 400, free amplitude 10 nm");
         chart.write("approach.svg")?;
     }
-    println!("written approach.svg");
     Ok(())
 }

@@ -4,8 +4,7 @@
 //! varying compliance, after Sunnersjo (1978). Lengths are in units in which the load presses one ball by one, times in units of the
 //! mass on that spring. To make it your own, change the number of balls, the clearance, or add an unbalance on the right.
 
-use hertzian::chart::Chart;
-use hertzian::{Error, FrequencyResponse};
+use hertzian::{Error, FrequencyResponse, chart::Page, chart::View};
 
 hertzian::oscillator! {
     /// Shaft on eight balls
@@ -22,36 +21,26 @@ hertzian::oscillator! {
         law ball(gap) { gap > 0 => gap^1.5, else => 0 }
 
         ddot(y) + 2*zeta*dot(y) + for j in 0..8 {
-            let angle = cage + 2*pi*j/8;
-            cos(angle)*ball(y*cos(angle) + x*sin(angle) - clearance)
+            cos(cage + pi/4*j)*ball(y*cos(cage + pi/4*j) + x*sin(cage + pi/4*j) - clearance)
         } = load;
         ddot(x) + 2*zeta*dot(x) + for j in 0..8 {
-            let angle = cage + 2*pi*j/8;
-            sin(angle)*ball(y*cos(angle) + x*sin(angle) - clearance)
+            sin(cage + pi/4*j)*ball(y*cos(cage + pi/4*j) + x*sin(cage + pi/4*j) - clearance)
         } = 0;
     }
 }
 
-/// Traces the motion of the shaft along the load, `y`, and across it, `x`.
+/// Traces the motion of the shaft along the load, `y`, and across it, `x`, and draws the largest one: its path, and the forces of the balls.
 pub fn main() -> Result<(), Error> {
-    let model = Bearing::default();
-    let request = FrequencyResponse::of(&model).from(0.65).to(0.3);
+    let request = FrequencyResponse::of(&Bearing::default())
+        .from(0.65)
+        .to(0.3);
     let branch = request.tolerance(1e-3).run()?;
-    println!("{} points, {}", branch.points.len(), branch.stopped);
+    let mut page = Page::new(2).chart(branch.chart_of(&View::new().of("x".parse()?))?);
     if let Some(peak) = branch.largest("y")? {
-        let balls = 8.0 * 0.4 * peak.value / std::f64::consts::TAU;
-        println!(
-            "largest along the load: {:.4} at {:.4}, where balls pass {balls:.4} times a unit of time",
-            peak.peak_to_peak(),
-            peak.value,
-        );
+        println!("{} at {}", branch.describe_size(peak), peak.value);
+        page = page.chart(branch.path(["x", "y"], peak)?);
+        page = page.page(branch.panels(peak, &View::new().of("y".parse()?))?);
     }
-    Chart::new("Eight balls under a load along y, damping ratio 5 %, clearance 0.2")
-        .x("speed of the shaft ω")
-        .y("peak-to-peak of the shaft")
-        .curve(branch.curve("y")?)
-        .curve(branch.curve("x")?)
-        .write("ball_bearing.svg")?;
-    println!("written ball_bearing.svg");
+    page.write("ball_bearing.svg")?;
     Ok(())
 }

@@ -4,7 +4,8 @@
 //! Figure 8a of Wang, Zhang, Ying and Pang (2021), Appl. Sci. 11, 7722. To make it your own, change the equation, what varies, and the
 //! depth to which branches are followed.
 
-use hertzian::{Bifurcations, Error};
+use hertzian::chart::View;
+use hertzian::{Bifurcations, Error, EventKind};
 
 hertzian::oscillator! {
     /// Contact that opens
@@ -47,7 +48,9 @@ pub fn main() -> Result<(), Error> {
     for left in &diagram.omitted {
         println!("not followed: {left}");
     }
-    diagram.plot("bifurcations.svg")?;
+    // Where a level is touched, and where branches cross, is among what is printed.
+    let view = View::new().events([EventKind::Fold, EventKind::PeriodDoubling]);
+    diagram.chart_of(&view)?.write("bifurcations.svg")?;
     println!("written bifurcations.svg");
     Ok(())
 }

@@ -4,7 +4,7 @@
 //! and the resonance leans to lower frequencies. To make it your own, change the bolt, the preload, or the exponent of the joint.
 
 use hertzian::chart::{Frequency, Page, View};
-use hertzian::{Error, FrequencyResponse, Point};
+use hertzian::{Error, FrequencyResponse};
 
 hertzian::oscillator! {
     /// Bolted joint
@@ -31,24 +31,18 @@ hertzian::oscillator! {
     }
 }
 
-/// Traces the resonance, and draws the opening and the force between the faces.
+/// Traces the resonance, says where the joint begins to open, and draws the opening and the force between the faces.
 pub fn main() -> Result<(), Error> {
-    let model = BoltedJoint::default();
-    let request = FrequencyResponse::of(&model).from(1500.0).to(4500.0);
-    let branch = request.run()?;
-    for fold in branch.folds() {
-        println!("{}", branch.describe(fold));
-    }
-    let opens = |point: &&Point| point.observed.outputs[0].maximum > 0.0;
-    if let Some(point) = branch.points.iter().find(opens) {
-        let hertz = Frequency::Hertz.of(point.value);
-        println!("opens at {hertz:.1} Hz, {}", point.stability.verdict);
+    let request = FrequencyResponse::of(&BoltedJoint::default());
+    let branch = request.from(1500.0).to(4500.0).bifurcations(true).run()?;
+    for event in &branch.events {
+        let hertz = Frequency::Hertz.of(event.point.value);
+        println!("{}, {hertz:.1} Hz", branch.describe(event));
     }
     let view = View::new().frequency(Frequency::Hertz);
     let opening = branch.chart_of(&view.clone().of("opening:max".parse()?))?;
     let pressing = branch.chart_of(&view.of("pressing:max".parse()?))?;
     let page = Page::new(2).chart(opening).chart(pressing);
     page.write("bolted_joint.svg")?;
-    println!("written bolted_joint.svg");
     Ok(())
 }

@@ -4,8 +4,7 @@
 //! displacement of one against the other is an output, whose root mean square is what is measured. To make it your own, change the
 //! masses, the play, or the variation of the mesh.
 
-use hertzian::chart::{Frequency, View};
-use hertzian::{Error, FrequencyResponse};
+use hertzian::{Error, FrequencyResponse, chart::View};
 
 hertzian::oscillator! {
     /// Gears that turn freely
@@ -38,13 +37,9 @@ pub fn main() -> Result<(), Error> {
     let request = FrequencyResponse::of(&GearMesh::default());
     let branch = request.from(8e3).to(4e4).bifurcations(true).run()?;
     for event in &branch.events {
-        let rms = branch.measured(&"relative:rms".parse()?, &event.point)?;
-        println!("{}, rms {rms:?} um", branch.describe(event));
+        println!("{}", branch.describe(event));
     }
-    let view = View::new().of("relative:rms".parse()?);
-    let chart = branch.chart_of(&view.frequency(Frequency::Hertz))?;
-    let chart = chart.title("Gears that turn freely, stiffness of the mesh ± 20 %");
-    chart.write("gear_mesh.svg")?;
-    println!("written gear_mesh.svg");
+    let rms = branch.chart_of(&View::new().of("relative:rms".parse()?))?;
+    rms.write("gear_mesh.svg")?;
     Ok(())
 }

@@ -39,7 +39,9 @@ pub fn main() -> Result<(), Error> {
         label: "contact is lost".to_owned(),
         points: contact_is_lost(&branch.points),
     };
-    branch.chart().markers(lost).write("response.svg")?;
+    let chart = branch.chart().markers(lost);
+    let chart = chart.title("One-sided contact, force as gap^1.5: ζ = 0.032, W = 1, A = 0.1");
+    chart.write("response.svg")?;
     println!("written    response.svg");
     Ok(())
 }

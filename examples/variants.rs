@@ -3,8 +3,7 @@
 //! The play of a stop, its stiffness and the damping scatter as those of parts do that are made; of each variant the response is traced, in a
 //! few milliseconds. To make it your own, change what scatters, or let threads share the work: models and errors can be sent to them.
 
-use hertzian::chart::{Chart, Series};
-use hertzian::{Error, FrequencyResponse};
+use hertzian::{Error, FrequencyResponse, chart::Chart, chart::Series};
 
 hertzian::oscillator! {
     /// Part with a stop
@@ -24,30 +23,20 @@ hertzian::oscillator! {
 
 /// Traces all of them, and draws over the play where each jumps down as the frequency rises.
 pub fn main() -> Result<(), Error> {
+    // Evenly over a cube, by powers of the root of `x^4 = x + 1`.
+    let scatter = |index: i32, power| (f64::from(index) / 1.220_744_f64.powi(power)).fract() - 0.5;
     let mut jumps = Vec::new();
     for index in 1..=1000 {
-        // Evenly over a cube, by powers of the root of `x^4 = x + 1`.
-        let scatter =
-            |power: i32| (f64::from(index) / 1.220_744_084_605_76_f64.powi(power)).fract() - 0.5;
         let mut part = Part::default();
-        part.play *= 1.0 + 0.4 * scatter(1);
-        part.stop *= 1.0 + 0.5 * scatter(2);
-        part.damping *= 1.0 + 0.4 * scatter(3);
+        part.play *= 1.0 + 0.4 * scatter(index, 1);
+        part.stop *= 1.0 + 0.5 * scatter(index, 2);
+        part.damping *= 1.0 + 0.4 * scatter(index, 3);
         let request = FrequencyResponse::of(&part).from(95.0).to(150.0);
         let branch = request.tolerance(1e-3).stability(false).run()?;
         let folds = branch.folds().map(|fold| fold.point.value);
         jumps.extend(folds.reduce(f64::max).map(|jump| [part.play, jump]));
     }
-    println!("{} of 1000 variants jump", jumps.len());
-    let jumps = Series {
-        label: "jump".to_owned(),
-        points: jumps,
-    };
-    let chart = Chart::new("A thousand parts whose play, stop and damping scatter");
-    let chart = chart
-        .x("way to the stop [mm]")
-        .y("frequency of the jump ω [rad/s]");
-    chart.markers(jumps).write("variants.svg")?;
-    println!("written variants.svg");
-    Ok(())
+    let chart = Chart::new("A thousand variants").x("way to the stop [mm]");
+    let chart = chart.y("jump at ω [rad/s]").markers(Series::new("", jumps));
+    Ok(chart.write("variants.svg")?)
 }

@@ -124,7 +124,7 @@ fn panels_and_scales_are_drawn_or_refused_in_a_sentence() {
     assert!(said.contains("there are fold, period-doubling"), "{said}");
     let said = refused(&[&base[..], &["--stack", "2", "--plot", "x:rms"]].concat());
     assert!(
-        said.contains("are shown by their amplitudes, and rms is none"),
+        said.contains("are shown by their amplitudes: ask for x alone, not for its rms"),
         "{said}"
     );
     let said = refused(&[&base[..], &["--stack", "2", "--backbone"]].concat());

@@ -89,7 +89,13 @@ fn write_all(
     stability(text, branch)?;
     let solutions = at.iter().map(|point| {
         let value = Decimal::plain(point.value);
-        let size = branch.describe_size(point);
+        let asked = options.plot.iter();
+        let asked = asked.filter_map(|of| branch.describe_measured(&of.to_string(), point).ok());
+        let asked: Vec<String> = asked.collect();
+        let size = match asked[..] {
+            [] => branch.describe_size(point),
+            _ => asked.join(", "),
+        };
         let verdict = point.stability.verdict;
         format!("{} {value}: {size}, {verdict}", branch.varied)
     });
@@ -123,9 +129,13 @@ fn from_file(text: &mut String, path: &Path, options: &Options, branch: &Branch)
     let parameters = model.parameters.iter().zip(&point.parameters);
     let fixed = parameters
         .filter(|(parameter, _)| parameter.name != branch.varied)
-        .map(|(parameter, value)| format!("{} = {value}", parameter.name));
+        .map(|(parameter, value)| {
+            let said = format!("{} = {value} {}", parameter.name, parameter.unit);
+            said.trim_end().to_owned()
+        });
+    let unit = if model.units.is_empty() { "" } else { " rad/s" };
     let omega =
-        (!options.over_frequency()).then(|| format!("omega = {}", options.model.frequency()));
+        (!options.over_frequency()).then(|| format!("omega = {}{unit}", options.model.frequency()));
     writeln!(
         text,
         "{}\n",

@@ -113,6 +113,14 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
+impl Series {
+    /// Points under a name.
+    pub fn new(label: impl Into<String>, points: impl Into<Vec<[f64; 2]>>) -> Self {
+        let (label, points) = (label.into(), points.into());
+        Self { label, points }
+    }
+}
+
 /// A point with its name written beside it, where it covers nothing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Note {

@@ -43,9 +43,10 @@ pub enum Colour {
     Fault,
 }
 
-/// Hues that colour-blind readers tell apart, ordered so that neighbours differ in lightness.
+/// Hues that colour-blind readers tell apart, ordered so that neighbours differ in lightness; the first six are at lightnesses 94, 31, 67, 47,
+/// 78 and 0 of 100.
 const COLOURS: [&str; 12] = [
-    "#f7f0c8", "#0b3c6f", "#f0b428", "#1b7f5a", "#a8d8f0", "#000000", "#d55e00", "#c9e59a",
+    "#f7f0c8", "#104a86", "#dd9415", "#1b7f5a", "#8cc8ea", "#000000", "#d55e00", "#c9e59a",
     "#6a2c8c", "#e9a3c9", "#3f88c5", "#7a4a1e",
 ];
 

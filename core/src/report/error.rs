@@ -37,7 +37,7 @@ pub enum ViewError {
     },
     /// Harmonics are shown by their amplitudes.
     #[error(
-        "harmonics 1 to {count} of {name} are shown by their amplitudes, and {measure} is none"
+        "harmonics 1 to {count} of {name} are shown by their amplitudes: ask for {name} alone, not for its {measure}"
     )]
     NoAmplitude {
         /// The signal.

@@ -9,7 +9,7 @@ use crate::numeric::decimal::Decimal;
 use crate::orbit::observe::{Measure, SpectrumLine, Wanted};
 use crate::report::drawn::Drawn;
 use crate::report::unit::{in_unit, with};
-use crate::report::view::{Seen, View};
+use crate::report::view::{Frequency, Seen, View};
 
 /// Lines of a spectrum that are smaller than this part of the largest are not drawn, on a linear axis and on another.
 const SMALLEST: [f64; 2] = [1e-4, 1e-10];
@@ -48,17 +48,7 @@ impl Branch {
     /// As of [`chart_of`](Self::chart_of) and [`reading`](Self::reading).
     pub fn panels(&self, point: &Point, view: &View) -> Result<Page, Error> {
         let seen = view.on(self)?;
-        let value = short(seen.varied(point.value));
-        let name = if self.varied == "omega" {
-            seen.frequency.symbol()
-        } else {
-            self.varied.as_str()
-        };
-        let unit = match self.varied.as_str() {
-            "omega" => seen.frequency.unit(!self.model.units.is_empty()),
-            varied => self.model.unit_of_varied(varied),
-        };
-        let here = format!("{name} = {}", with(&value, unit));
+        let here = self.place_of(point, seen.frequency);
         let place = [seen.varied(point.value), seen.sizes(point)[0]];
         let response = self.chart_of(view)?.note(Note {
             label: format!("{here}, {}", point.stability.verdict),
@@ -80,6 +70,18 @@ impl Branch {
             .chart(self.spectrum(&seen, point, &here)?)
             .chart(motion);
         Ok(forces.into_iter().fold(page, Page::chart))
+    }
+
+    /// Where an orbit is along its branch, as titles say it: `ω = 0.5`.
+    pub(crate) fn place_of(&self, point: &Point, frequency: Frequency) -> String {
+        let (name, unit, value) = match self.varied.as_str() {
+            "omega" => {
+                let unit = frequency.unit(!self.model.units.is_empty());
+                (frequency.symbol(), unit, frequency.of(point.value))
+            }
+            varied => (varied, self.model.unit_of_varied(varied), point.value),
+        };
+        format!("{name} = {}", with(&short(value), unit))
     }
 
     /// The orbit whose place on the chart is nearest to a place on it, of which one has the axes: what somebody means who clicks there. `None`

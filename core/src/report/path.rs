@@ -5,11 +5,8 @@ use hertzian_chart::{Chart, Note, Series};
 use crate::branches::branch::Branch;
 use crate::branches::point::Point;
 use crate::error::Error;
-use crate::numeric::decimal::Decimal;
 use crate::report::unit::in_unit;
-
-/// Digits of the value in the title.
-const DIGITS: usize = 6;
+use crate::report::view::Frequency;
 
 impl Branch {
     /// An orbit in the plane of two signals, coordinates, outputs or forces of contacts by their names: the path of a shaft in its bearing, a
@@ -47,11 +44,8 @@ impl Branch {
         ];
         let points = together(&x, &y);
         let [across, up] = names.map(|name| in_unit(name, self.model.unit_of(name)));
-        let value = Decimal::rounded(point.value, DIGITS);
-        let title = format!(
-            "{} over {} at {} = {value}",
-            names[1], names[0], self.varied
-        );
+        let here = self.place_of(point, Frequency::Omega);
+        let title = format!("{} over {} at {here}", names[1], names[0]);
         let begin = points.first().map(|&point| Note {
             label: "beginning of the period".to_owned(),
             point,

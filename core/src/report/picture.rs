@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hertzian_chart::{Chart, ChartError, Curve, Run, Scale, Series};
 
-use crate::branches::branch::Branch;
+use crate::branches::branch::{Branch, Model};
 use crate::error::Error;
 use crate::event::EventKind;
 use crate::report::drawn::Drawn;
@@ -89,7 +89,28 @@ pub(crate) fn chart_of(
             chart = chart.curve(Curve { label, runs });
         }
     }
-    view.marked(chart, drawn)
+    plain(view.marked(chart, drawn), drawn)
+}
+
+/// Says of numbers without units that this is what they are.
+pub(crate) fn plain(chart: Chart, drawn: &[Drawn<'_>]) -> Chart {
+    let mut models = drawn.iter().map(|drawn| &drawn.seen.branch.model);
+    if models.all(Model::is_plain) {
+        return chart.remark(PLAIN);
+    }
+    chart
+}
+
+/// What is said of charts of a model that declares no units.
+pub(crate) const PLAIN: &str = "plain numbers: no units are declared";
+
+impl Model {
+    /// Whether nothing has a unit.
+    pub(crate) fn is_plain(&self) -> bool {
+        let parameters = self.parameters.iter().map(|parameter| &parameter.unit);
+        let outputs = self.outputs.iter().map(|output| &output.unit);
+        self.units.is_empty() && parameters.chain(outputs).all(String::is_empty)
+    }
 }
 
 /// The name of a harmonic, by its frequency.

@@ -103,7 +103,7 @@ fn decibels_of_a_linear_oscillator_are_those_of_its_receptance() {
         .chart_of(&view.scale(Scale::Decibel))
         .unwrap()
         .to_svg();
-    assert!(svg.contains("harmonic 1 of x [dB over 1 mm]"));
+    assert!(svg.contains("amplitude of harmonic 1 of x [dB over 1 mm]"));
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn what_has_no_place_is_refused_with_its_value() {
     // The second harmonic of a linear oscillator is nothing at all.
     let view = View::new().of("x:h1".parse().unwrap()).harmonics(2);
     let error = branch.chart_of(&view).unwrap_err();
-    let expected = "harmonics 1 to 2 of x are shown by their amplitudes, and harmonic 1 is none";
+    let expected = "harmonics 1 to 2 of x are shown by their amplitudes: ask for x alone, not for its amplitude of harmonic 1";
     assert_eq!(error.to_string(), expected);
     let view = View::new().of("x".parse().unwrap()).harmonics(400);
     let error = branch.chart_of(&view).unwrap_err().to_string();

@@ -3,6 +3,7 @@
 mod approach;
 mod bolted_joint;
 mod gear_mesh;
+mod reference;
 
 use hertzian::Orbit;
 

@@ -63,7 +63,7 @@ impl Measure {
             Self::Mean => "mean".to_owned(),
             Self::Rms => "rms".to_owned(),
             Self::CrestFactor => "crest factor".to_owned(),
-            Self::Amplitude(harmonic) => format!("harmonic {harmonic}"),
+            Self::Amplitude(harmonic) => format!("amplitude of harmonic {harmonic}"),
             Self::Phase(harmonic) => format!("phase of harmonic {harmonic}"),
             Self::Impulse => "impulse per period".to_owned(),
             Self::Impacts => "impacts per period".to_owned(),

@@ -40,7 +40,7 @@ fn axes_say_what_is_shown_and_in_which_unit() {
     let view = View::new().of("shaking:h2".parse().expect("a signal"));
     let other = chart(&branch, &view.frequency(Frequency::Hertz));
     for part in [
-        "harmonic 2 of shaking (what an accelerometer shows) [mm/s^2]",
+        "amplitude of harmonic 2 of shaking (what an accelerometer shows) [mm/s^2]",
         "excitation frequency [Hz]",
     ] {
         assert!(other.contains(part), "{part}");
