@@ -91,7 +91,7 @@ fn faults_are_said_with_their_places() {
             "m = {",
             "variants.over.m: no parameter `m`: there are k, drive",
         ),
-        ("design", "desing", "stiff.toml:3:1: unknown field `desing`"),
+        ("design", "scheme", "stiff.toml:3:1: unknown field `scheme`"),
         (
             "from = 3",
             "from = -3",
