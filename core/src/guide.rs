@@ -20,6 +20,9 @@ struct Attractors;
 #[doc = include_str!("../../docs/book/src/stability.md")]
 struct StabilityOfOrbits;
 
+#[doc = include_str!("../../docs/book/src/sensitivities.md")]
+struct Sensitivities;
+
 #[doc = include_str!("../../docs/book/src/measured-contact.md")]
 struct MeasuredContact;
 

@@ -35,6 +35,7 @@
 //! | curves of bifurcations in two parameters | [`FrequencyResponse::track`], [`Branch::track`] |
 //! | free oscillation, phase resonance | [`backbone`] |
 //! | motions in time, and what they settle to | [`time`]: histories, sections; [`attractors`]: sweeps, Lyapunov exponents, basins |
+//! | derivatives of all of that by parameters, orbits found again as these change | [`sensitivity`]: [`Branch::sensitivities`], [`Branch::event_sensitivities`] |
 //! | a structure given as matrices, with contacts | [`structure`], whose laws [`law!`] declares |
 //! | pictures and tables | `chart` (feature `plot`), [`export`] |
 //! | what can go wrong, and what is unusual about a system | [`error`], [`remarks`] |
@@ -90,6 +91,7 @@ mod numeric;
 mod orbit;
 mod report;
 mod response;
+pub mod sensitivity;
 #[cfg(feature = "serde")]
 mod serialise;
 pub mod shooting;
@@ -133,6 +135,7 @@ pub use report::export;
 #[doc(hidden)]
 pub use response::stages;
 pub use response::{FrequencyResponse, OrbitMethod, Resume};
+pub use sensitivity::Derivative;
 pub use shooting::Shooting;
 pub use system::System;
 

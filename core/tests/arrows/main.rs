@@ -70,6 +70,7 @@ const ROOMS: &[&str] = &[
     "shooting",
     "contact_equation",
     "response",
+    "sensitivity",
     "attractors",
     "bifurcation",
     "report",

@@ -1,0 +1,107 @@
+//! What is read off orbits at a fixed frequency.
+
+use hertzian::{FrequencyResponse, System};
+use hertzian_tests::{OneSided, TwoMasses};
+
+use super::{Make, assert_near, names, richardson, shot};
+
+/// Everything that is read off the orbits at a frequency, against differences by the frequency and all parameters.
+fn compare(name: &str, values: &[f64], omega: f64, range: [f64; 2], make: &Make) {
+    let model = make(values);
+    let branch = FrequencyResponse::of(model.as_ref()).stability(false);
+    let branch = branch.from(range[0]).to(range[1]).run().unwrap();
+    let variables = [vec!["omega".to_owned()], names(&branch)].concat();
+    let [mut unsettled, mut compared] = [0, 0];
+    for (index, point) in branch.at(omega).unwrap().iter().enumerate() {
+        let at = branch.sensitivities(point).unwrap();
+        assert_eq!(at.variables, variables);
+        for (which, variable) in variables.iter().enumerate() {
+            let value = at.values[which];
+            let step = 4e-3 * value.abs();
+            let read = |change: f64| {
+                let mut values = values.to_vec();
+                let mut omega = omega;
+                match which.checked_sub(1) {
+                    None => omega += change,
+                    Some(parameter) => values[parameter] += change,
+                }
+                let model = make(&values);
+                let request = shot(model.as_ref(), &point.orbit);
+                let orbit = request.orbit(omega).unwrap();
+                let branch = request
+                    .from(omega)
+                    .to(omega * 1.001)
+                    .max_points(2)
+                    .run()
+                    .unwrap();
+                let of = |measured: &hertzian::sensitivity::Measured| {
+                    if measured.name == "power" {
+                        return branch
+                            .complete(&orbit)
+                            .unwrap()
+                            .observed
+                            .input_power
+                            .unwrap();
+                    }
+                    let wanted = measured.name.parse().unwrap();
+                    branch.measured(&wanted, &orbit).unwrap().unwrap()
+                };
+                at.measured.iter().map(of).collect::<Vec<f64>>()
+            };
+            let steps = [1.0, -1.0, 0.5, -0.5, 0.25, -0.25].map(|part| part * step);
+            let all = steps.map(read);
+            for (row, measured) in at.measured.iter().enumerate() {
+                let at = |change: f64| {
+                    let place = steps.iter().position(|step| *step == change).unwrap();
+                    all[place][row]
+                };
+                let expected = richardson(step, at);
+                // A phase has turned by a whole turn, or a small amplitude passes zero: differences say nothing.
+                if expected.1 > 1e-4 * expected.0.abs() + 1e-9 {
+                    unsettled += 1;
+                    continue;
+                }
+                compared += 1;
+                // Harmonics are read off 1024 samples: what is folded into them is below 1e-12 of the motion.
+                let noise = 1e-12 * (1.0 + 1.0 / value.abs());
+                let what = format!("{name}, orbit {index}, {} by {variable}", measured.name);
+                assert_near(
+                    &what,
+                    measured.by[which],
+                    expected,
+                    measured.value / value,
+                    noise,
+                );
+            }
+        }
+    }
+    assert!(
+        compared > 100 && unsettled * 20 < compared,
+        "{unsettled} of {compared}"
+    );
+}
+
+#[test]
+fn of_figure_5b() {
+    let make = |v: &[f64]| -> Box<dyn System> {
+        let [zeta, alpha, load, drive] = [v[0], v[1], v[2], v[3]];
+        Box::new(OneSided {
+            zeta,
+            alpha,
+            load,
+            drive,
+        })
+    };
+    compare("5b", &[0.032, 1.5, 1.0, 0.1], 1.0, [0.6, 1.6], &make);
+}
+
+#[test]
+fn of_two_masses() {
+    let make = |v: &[f64]| -> Box<dyn System> {
+        Box::new(TwoMasses {
+            stop: v[0],
+            drive: v[1],
+        })
+    };
+    compare("two masses", &[100.0, 0.1], 0.7, [0.64, 0.77], &make);
+}
