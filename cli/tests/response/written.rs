@@ -111,7 +111,7 @@ fn an_orbit_is_drawn_in_the_plane_of_two_signals() {
     let outcome = run_with(&words).expect("a branch");
     assert!(outcome.complete, "{:?}", outcome.warnings);
     let drawn = std::fs::read_to_string(&page).expect("a page");
-    assert!(drawn.contains("speed over x at omega = 0.85"));
+    assert!(drawn.contains("speed over x at ω = 0.85"));
     // One name is no plane, and what is not there is said.
     let alone = command.replace("speed,x", "speed");
     let words: Vec<&str> = alone.split_whitespace().collect();
