@@ -152,28 +152,6 @@ impl Cycle {
         Ok(())
     }
 
-    /// Changes all parameters: levels may be in order at the end only in one order of the changes.
-    ///
-    /// # Errors
-    /// If the flow cannot have those values.
-    pub(super) fn set_all(&mut self, values: &[f64]) -> Result<(), FlowError> {
-        for _ in 0..values.len() {
-            let mut failed = None;
-            for (index, &value) in values.iter().enumerate() {
-                failed = self.set(Variable::Parameter(index), value).err().or(failed);
-            }
-            match failed {
-                None => return Ok(()),
-                Some(FlowError::Levels { .. }) => {}
-                Some(failure) => return Err(failure),
-            }
-        }
-        values
-            .iter()
-            .enumerate()
-            .try_for_each(|(index, &value)| self.set(Variable::Parameter(index), value))
-    }
-
     /// States at the beginnings of all segments, from what is known of an orbit.
     ///
     /// # Errors

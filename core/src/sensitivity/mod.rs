@@ -6,7 +6,6 @@
 
 mod cycle;
 mod error;
-mod follower;
 mod moments;
 mod place;
 mod scan;
@@ -15,7 +14,6 @@ mod slopes;
 use std::sync::Arc;
 
 pub use error::SensitivityError;
-pub use follower::{Followed, Follower, Target};
 
 use crate::branches::branch::{Branch, Model, Source};
 use crate::branches::point::{Event, Point};

@@ -40,7 +40,6 @@ const TOUCH: f64 = 1e-2;
 #[derive(Debug, Clone)]
 pub(super) struct Moving {
     pub(super) states: Vec<f64>,
-    pub(super) value: f64,
     pub(super) by: Vec<f64>,
 }
 
@@ -138,7 +137,7 @@ pub(super) fn fold(
     let (states, value) = split(&u);
     cycle.set(cycle.varied, value)?;
     let by = moves_of_fold(cycle, &states, variables)?;
-    Ok(Moving { states, value, by })
+    Ok(Moving { states, by })
 }
 
 /// (4) of [`cycle`](super::cycle)
@@ -232,7 +231,7 @@ pub(super) fn grazing(
                 slopes.distance_along(&at, contact, level, along)[0]
             })?;
             let by = grows[1..].iter().map(|by| -by / grows[0]).collect();
-            return Ok(Moving { states, value, by });
+            return Ok(Moving { states, by });
         }
         value += step.clamp(-0.01 * value.abs(), 0.01 * value.abs());
     }
