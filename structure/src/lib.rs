@@ -31,7 +31,7 @@
 //! |---|---|
 //! | matrices from entries, Matrix Market files, arrays of numpy | [`SparseMatrix`], [`market`], [`npy`] |
 //! | what acts on a structure and what it is read by | [`SparseStructure`] |
-//! | all of that from one file | [`file`] |
+//! | all of that from one file | [`mod@file`] |
 //! | few modes and vectors instead of all coordinates, and what that changes | [`Reduction`], [`Reduced`] |
 //!
 //! Coordinates are counted from zero, as in numpy.
