@@ -35,7 +35,7 @@
 //! | curves of bifurcations in two parameters | [`FrequencyResponse::track`], [`Branch::track`] |
 //! | free oscillation, phase resonance | [`backbone`] |
 //! | motions in time, and what they settle to | [`time`]: histories, sections; [`attractors`]: sweeps, Lyapunov exponents, basins |
-//! | derivatives of all of that by parameters, orbits found again as these change | [`sensitivity`]: [`Branch::sensitivities`], [`Branch::event_sensitivities`] |
+//! | derivatives of all of that by parameters | [`sensitivity`]: [`Branch::sensitivities`], [`Branch::event_sensitivities`] |
 //! | a structure given as matrices, with contacts | [`structure`], whose laws [`law!`] declares |
 //! | pictures and tables | `chart` (feature `plot`), [`export`] |
 //! | what can go wrong, and what is unusual about a system | [`error`], [`remarks`] |

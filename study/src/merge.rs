@@ -81,6 +81,9 @@ fn parsed(study: &Prepared, rows: &str) -> io::Result<Vec<Vec<Value>>> {
     let wrong = || io::Error::new(io::ErrorKind::InvalidData, "a row is no row of this study");
     let records = reader.into_records().map(|record| {
         let record = record.map_err(io::Error::other)?;
+        if record.len() != study.columns.len() {
+            return Err(wrong());
+        }
         let values = record.iter().zip(&study.columns);
         let values = values.map(|(text, column)| Value::read(text, column.kind).ok_or_else(wrong));
         values.collect::<io::Result<Vec<Value>>>()

@@ -115,9 +115,8 @@ impl Ranks {
                     cancel.cancel();
                 }
             }
-            let next = blocks
-                .next()
-                .filter(|_| !cancel.is_cancelled() && done != FAILED);
+            let goes_on = !cancel.is_cancelled() && done != FAILED;
+            let next = goes_on.then(|| blocks.next()).flatten();
             others -= usize::from(next.is_none());
             let next = next.map_or(NONE, |block| block as u64);
             world.process_at_rank(status.source_rank()).send(&next);

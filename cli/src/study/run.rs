@@ -131,7 +131,8 @@ pub(super) fn shown(
     move |done| {
         let total = done.total.unwrap_or(done.done);
         let before = *before.get_or_insert(done.done.saturating_sub(1));
-        let each = started.elapsed() / (done.done - before).max(1) as u32;
+        // Two threads may tell what they have counted in the other order.
+        let each = started.elapsed() / done.done.saturating_sub(before).max(1) as u32;
         let left = each * total.saturating_sub(done.done) as u32;
         progress.update(|| format!("{} of {total} variants, {} left", done.done, clock(left)));
         ControlFlow::Continue(())
