@@ -17,7 +17,7 @@ use crate::draw;
 use crate::model::Model;
 use crate::passage::{Passage, Walked, as_far, matched};
 use crate::report::{Kind, Report};
-use crate::truth::{Question, settles};
+use crate::truth::{Question, Settles, settles};
 
 /// Points of a branch by the balance and by shooting at most.
 const POINTS: [usize; 2] = [120, 80];
@@ -339,11 +339,14 @@ impl Case {
         let question = Question::of(&model, value, 1, model.size);
         let settled = settles(&question, SETTLING, || self.clock.flow().is_break());
         match settled {
-            Some(true) => self.find(Kind::NoStart, format!("{name} from {value:?}: {error}")),
-            Some(false) => self
+            Settles::Yes => self.find(Kind::NoStart, format!("{name} from {value:?}: {error}")),
+            Settles::Anywhere => self.report.count(
+                "branches without a start where nothing holds what motion from rest settles to",
+            ),
+            Settles::No => self
                 .report
                 .count("branches without a start where motion from rest does not settle"),
-            None => self
+            Settles::Unseen => self
                 .report
                 .count("branches without a start, and no time to see whether motion settles"),
         }

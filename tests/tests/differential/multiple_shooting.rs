@@ -15,15 +15,17 @@ pub const NEARER: f64 = 0.125;
 /// Where the orbit nearly touches a level, distances are made smaller so often at most.
 const NEARER_STILL: usize = 3;
 /// Motions that look for the orbit.
-const MOTIONS: usize = 12;
+const MOTIONS: usize = 24;
+/// The least part of a correction that is made.
+const SHORTEST: f64 = 0.01;
 /// A correction of the state below this is none.
 const CLOSED: f64 = 1e-11;
 /// A multiplier may be so large for each segment.
 const GROWTH: f64 = 100.0;
 /// An orbit so far from the guess, relative to its size, is sought again in more segments.
 const FAR: f64 = 1e-3;
-/// Segments of an orbit at most.
-const SEGMENTS: usize = 16;
+/// Segments of an orbit.
+const SEGMENTS: [usize; 5] = [1, 2, 4, 8, 16];
 
 /// Motions over a period, in segments of equal length.
 #[derive(Clone, Copy)]
@@ -51,9 +53,9 @@ impl<'a> Periodic<'a> {
         apart: f64,
         guess: impl Fn(f64) -> Result<State, Lost>,
     ) -> Result<(Self, Closed), Unsure> {
-        let (mut segments, mut reason) = (1, None);
-        let mut elsewhere = None;
-        loop {
+        let mut reason = None;
+        let mut nearest: Option<(f64, Self, Closed)> = None;
+        for segments in SEGMENTS {
             let there = Self {
                 motions,
                 time,
@@ -65,35 +67,36 @@ impl<'a> Periodic<'a> {
                 .map_err(Unsure::Lost)
                 .and_then(|states| there.closed(states, apart));
             match closed {
-                // Differences over a period of a large multiplier may be bounded by the force, so that it is not seen.
-                Ok(closed) if segments < SEGMENTS && there.went_far(&closed, &guess)? => {
-                    elsewhere.get_or_insert((there, closed));
-                    segments *= 2;
-                }
-                Ok(closed) => return Ok((there, closed)),
-                Err(unsure) => {
-                    // What was the matter where a multiplier allowed to see it.
-                    reason = match reason {
-                        None | Some(Unsure::Growing(_)) => Some(unsure),
-                        reason => reason,
-                    };
-                    segments *= 2;
-                    if segments > SEGMENTS {
-                        return elsewhere.ok_or(reason.unwrap_or(unsure));
+                Ok(closed) => {
+                    let far = there.correction(&closed, &guess)?;
+                    if nearest.as_ref().is_none_or(|known| far < known.0) {
+                        nearest = Some((far, there, closed));
+                    }
+                    // Differences over a period of a large multiplier may be bounded by the force, so that it is not seen; and of
+                    // several orbits the one that is meant is the nearest.
+                    if far <= FAR {
+                        break;
                     }
                 }
+                // What was the matter where a multiplier allowed to see it.
+                Err(unsure) => match reason {
+                    None | Some(Unsure::Growing(_)) => reason = Some(unsure),
+                    _ => {}
+                },
             }
         }
+        let (_, there, closed) = nearest.ok_or(reason.unwrap_or(Unsure::Singular))?;
+        Ok((there, closed))
     }
 
-    /// Whether the orbit is another one than the guess is near to.
-    fn went_far(
+    /// How far the positions are from those of the guess, relative to the sizes.
+    fn correction(
         &self,
         closed: &Closed,
         guess: impl Fn(f64) -> Result<State, Lost>,
-    ) -> Result<bool, Lost> {
+    ) -> Result<f64, Lost> {
         let by = self.difference(&closed.states[0], &guess(0.0)?);
-        Ok(by.rows(0, self.coordinates()).amax() > FAR)
+        Ok(by.rows(0, self.coordinates()).amax())
     }
 
     pub fn coordinates(&self) -> usize {
@@ -113,10 +116,11 @@ impl<'a> Periodic<'a> {
         DVector::from_iterator(2 * self.coordinates(), parts)
     }
 
-    fn moved<'b>(&self, state: &State, by: impl IntoIterator<Item = &'b f64>) -> State {
+    /// By this part of a difference.
+    fn moved<'b>(&self, state: &State, by: impl IntoIterator<Item = &'b f64>, part: f64) -> State {
         let mut moved = *state;
         for (i, by) in self.places().zip(by) {
-            moved[i] += by * self.motions.sizes[i];
+            moved[i] += part * by * self.motions.sizes[i];
         }
         moved
     }
@@ -155,8 +159,8 @@ impl<'a> Periodic<'a> {
             for column in 0..size {
                 let mut by = DVector::zeros(size);
                 by[column] = apart;
-                let ahead = self.course(segment, &self.moved(state, &by))?;
-                let behind = self.course(segment, &self.moved(state, &-by))?;
+                let ahead = self.course(segment, &self.moved(state, &by, 1.0))?;
+                let behind = self.course(segment, &self.moved(state, &by, -1.0))?;
                 let slope = self.difference(&ahead.state, &behind.state) / (2.0 * apart);
                 matrix.set_column(column, &slope);
                 alike &= ahead.switches == behind.switches;
@@ -200,6 +204,8 @@ impl<'a> Periodic<'a> {
             let slopes = self.slopes(states, apart)?;
             jacobian(&slopes).try_inverse().ok_or(Unsure::Singular)
         };
+        // The slopes are those here, and so much of a correction is made: the whole one where the force is sharp may lead farther away.
+        let (mut are_of_here, mut part) = (true, 1.0);
         let mut small = false;
         for _ in 0..MOTIONS {
             let by = -(&inverse * &open);
@@ -207,7 +213,7 @@ impl<'a> Periodic<'a> {
             let next = states
                 .iter()
                 .zip(parts)
-                .map(|(state, by)| self.moved(state, by));
+                .map(|(state, by)| self.moved(state, by, part));
             let next: Vec<_> = next.collect();
             let after = self.courses(&next)?;
             let gaps = self.open(&next, &after);
@@ -217,10 +223,14 @@ impl<'a> Periodic<'a> {
                 if small || was < CLOSED {
                     break;
                 }
-                inverse = renewed(&states)?;
-                let again = -(&inverse * &open);
-                if (&again - &by).amax() < 1e-6 * again.amax() {
-                    return Err(Unsure::Open(was));
+                if are_of_here {
+                    part *= 0.5;
+                    if part < SHORTEST {
+                        return Err(Unsure::Open(was));
+                    }
+                } else {
+                    inverse = renewed(&states)?;
+                    are_of_here = true;
                 }
                 continue;
             }
@@ -229,9 +239,11 @@ impl<'a> Periodic<'a> {
             if small {
                 break;
             }
-            if left > 0.2 * was {
+            are_of_here = left > 0.2 * was;
+            if are_of_here {
                 inverse = renewed(&states)?;
             }
+            part = f64::min(1.0, 2.0 * part);
         }
         let left = open.amax();
         let closed = Closed {

@@ -130,20 +130,24 @@ impl Passage {
     }
 }
 
-/// Two branches that both were cut at so many points, up to where the shorter one ends, which is an orbit of the longer one.
+/// Two branches, one or both of which were cut at so many points, up to where the shorter one ends, which is an orbit of the longer one.
 ///
 /// Rounding changes what an iteration leaves, the step control makes more of that from point to point, and after as many steps two
-/// walks along one curve are not equally far. What is compared is the curve: its orbits at a value, and its events as far as both go.
-/// `None` if neither ends on the other one.
+/// walks along one curve are not equally far; one may just have come to the end of the range. What is compared is the curve: its
+/// orbits at a value, and its events as far as both go. `None` if neither ends on the other one.
 pub fn as_far(one: &Walked<'_>, other: &Walked<'_>) -> Option<[Passage; 2]> {
-    if !(one.passage.cut && other.passage.cut) {
+    let [a, b] = [&one.passage, &other.passage];
+    let goes_on = |passage: &Passage| passage.cut || passage.whole;
+    if !(goes_on(a) && goes_on(b)) {
         return None;
     }
-    if let Some(shorter) = one.up_to(&other.passage) {
-        return Some([shorter, other.passage.clone()]);
+    if b.cut
+        && let Some(shorter) = one.up_to(b)
+    {
+        return Some([shorter, b.clone()]);
     }
-    let shorter = other.up_to(&one.passage)?;
-    Some([one.passage.clone(), shorter])
+    let shorter = a.cut.then(|| other.up_to(a))??;
+    Some([a.clone(), shorter])
 }
 
 /// A passage with its branch, values of which are so many times as large in the units of the passage, and positions.

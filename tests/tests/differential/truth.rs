@@ -93,6 +93,17 @@ impl<'a> Question<'a> {
         Ok(course.state)
     }
 
+    /// Whether the orbit that a state is on has a multiplier of one.
+    fn leaves_free(&self, state: &State) -> bool {
+        match self.truth(|part| self.after(state, part)) {
+            Ok(truth) => {
+                let mut multipliers = truth.multipliers.iter();
+                multipliers.any(|multiplier| (multiplier - 1.0).norm() <= truth.multiplier_error)
+            }
+            Err(unsure) => unsure == Unsure::Singular,
+        }
+    }
+
     /// The orbit near one, the states of which are given at parts of the time.
     pub fn truth(&self, guess: impl Fn(f64) -> Result<State, Lost>) -> Result<Truth, Unsure> {
         let motions = Motions::of(self.model, self.omega, self.sizes(), TOLERANCE);
@@ -145,8 +156,21 @@ impl<'a> Question<'a> {
     }
 }
 
-/// Whether a motion from rest comes to repeat itself within so many periods, to a part of its size.
-pub fn settles(question: &Question<'_>, periods: usize, until: impl Fn() -> bool) -> Option<bool> {
+/// What a motion from rest comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Settles {
+    /// To repeat itself.
+    Yes,
+    /// To repeat itself with a multiplier of one: where nothing holds it any more, every place is as good.
+    Anywhere,
+    /// To no such thing.
+    No,
+    /// There was no time to see it.
+    Unseen,
+}
+
+/// What a motion from rest comes to within so many periods, to a part of its size.
+pub fn settles(question: &Question<'_>, periods: usize, until: impl Fn() -> bool) -> Settles {
     const SETTLED: f64 = 1e-6;
     let motions = Motions::of(question.model, question.omega, question.sizes(), 1e-8);
     let there = Periodic {
@@ -158,21 +182,25 @@ pub fn settles(question: &Question<'_>, periods: usize, until: impl Fn() -> bool
     let mut still = 0;
     for _ in 0..periods {
         if until() {
-            return None;
+            return Settles::Unseen;
         }
         let Ok(course) = there.course(0, &state) else {
-            return Some(false);
+            return Settles::No;
         };
         let apart = there.difference(&course.state, &state).amax();
         let [least, most] = course.extremes[0];
         let size = (most - least) / question.size;
         still = if apart < SETTLED * size { still + 1 } else { 0 };
-        if still >= 5 {
-            return Some(true);
-        }
         state = course.state;
+        if still >= 5 {
+            return if question.leaves_free(&state) {
+                Settles::Anywhere
+            } else {
+                Settles::Yes
+            };
+        }
     }
-    Some(false)
+    Settles::No
 }
 
 /// The gear pair of Kahraman and Singh (1991) against event-driven shooting of another program, confirmed by Chebyshev collocation.
