@@ -13,9 +13,9 @@ use crate::misplaced::{Given, count};
 use crate::model::{FREQUENCY_VARIES, ModelOptions};
 use crate::program::{self, Ended, Failed};
 use crate::range::RangeOptions;
-use crate::response::files;
 use crate::response::model_file::Varied;
 use crate::response::models::model;
+use crate::response::places;
 use crate::response::progress::Progress;
 use crate::response::run::{Failure, page};
 use crate::values;
@@ -150,10 +150,10 @@ impl Options {
     fn check(&self) -> Result<(), Failure> {
         self.numbers().map_err(Failure::Option)?;
         for path in self.paths() {
-            files::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
+            places::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
         }
         let read = self.model.path();
-        if let Some(path) = files::shared(read.into_iter().chain(self.paths())) {
+        if let Some(path) = places::shared(read.into_iter().chain(self.paths())) {
             let message = format!("{} is asked for more than once", path.display());
             return Err(Failure::Option(message));
         }

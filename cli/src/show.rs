@@ -15,7 +15,7 @@ use hertzian::{Branch, Point, Verdict};
 use crate::look::{Axis, Look};
 use crate::map;
 use crate::program::{self, Ended, Failed};
-use crate::response::files;
+use crate::response::places;
 use crate::response::run::page;
 
 /// Says what is in a file that `response --json`, `response --keep` or `map --json` has written, and draws it. Nothing is computed.
@@ -172,7 +172,7 @@ fn unshared(options: &Options) -> Result<(), String> {
     let source = options.files.iter().map(PathBuf::as_path);
     let written = [&options.svg, &options.csv].into_iter().flatten();
     let paths = source.chain(written.map(PathBuf::as_path));
-    match files::shared(paths) {
+    match places::shared(paths) {
         Some(path) => Err(format!("{} is asked for more than once", path.display())),
         None => Ok(()),
     }

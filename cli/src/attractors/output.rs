@@ -7,6 +7,7 @@ use hertzian::export::{self, Npy};
 
 use super::run::Failure;
 use crate::response::files;
+use crate::response::places;
 
 /// What a task gives.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,7 +100,7 @@ pub fn check(prefix: &Path) -> Result<(), Failure> {
         return Err(Failure::Option(message.to_owned()));
     }
     for path in paths(prefix) {
-        files::check(&path).map_err(|error| Failure::File(path, error))?;
+        places::check(&path).map_err(|error| Failure::File(path, error))?;
     }
     Ok(())
 }

@@ -16,9 +16,9 @@ use super::options::{Options, Swept};
 use super::output::{self, Results};
 use super::{basin, history, lyapunov, phase, sweep};
 use crate::model::FREQUENCY_VARIES;
-use crate::response::files;
 use crate::response::model_file::{self, ModelError, Varied};
 use crate::response::models;
+use crate::response::places;
 use crate::response::progress::Progress;
 use crate::values::{self, MOST_ROWS, MOST_THREADS};
 
@@ -107,7 +107,7 @@ pub fn run(
     let written = output::paths(&options.out);
     let others = [options.model.path(), options.checkpoint.as_deref()];
     let written_paths = written.iter().map(PathBuf::as_path);
-    if let Some(path) = files::shared(others.into_iter().flatten().chain(written_paths)) {
+    if let Some(path) = places::shared(others.into_iter().flatten().chain(written_paths)) {
         let message = format!("{} is asked for more than once", path.display());
         return Err(Failure::Option(message));
     }

@@ -14,6 +14,7 @@ use hertzian::error::chain;
 
 use crate::program::{self, Ended, Failed};
 use crate::response::files;
+use crate::response::places;
 use crate::response::progress::Progress;
 use crate::values;
 use study::{Measured, decay, measure, oscillators};
@@ -66,7 +67,7 @@ pub fn run(
         values::counted("--harmonics", harmonics, 1..=MOST_HARMONICS)?;
     }
     let folder = &options.folder;
-    files::make_folder(folder)
+    places::make_folder(folder)
         .map_err(|error| format!("cannot write {}: {error}", folder.display()))?;
     let mut summary = String::new();
     writeln!(

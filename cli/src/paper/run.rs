@@ -16,6 +16,7 @@ use super::figures::FIGURES;
 use super::options::Options;
 use super::page;
 use crate::response::files;
+use crate::response::places;
 use crate::response::progress::Progress;
 
 /// A figure, what came of it, and the time it took.
@@ -50,7 +51,7 @@ pub fn run(
     progress: &mut Progress,
 ) -> Result<Vec<Drawn>, Failure> {
     let folder = &options.out;
-    files::make_folder(folder).map_err(|error| Failure(folder.clone(), error))?;
+    places::make_folder(folder).map_err(|error| Failure(folder.clone(), error))?;
     let asked: Vec<&'static Figure> = FIGURES
         .iter()
         .filter(|figure| options.only.is_empty() || options.only.iter().any(|id| id == figure.id))

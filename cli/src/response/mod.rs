@@ -10,6 +10,7 @@ pub mod models;
 pub mod near;
 pub mod options;
 pub mod panels;
+pub mod places;
 pub mod progress;
 pub mod resumed;
 pub mod run;

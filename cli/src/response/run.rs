@@ -23,6 +23,7 @@ use super::models::model;
 use super::near;
 use super::options::{By, Options};
 use super::panels;
+use super::places;
 use super::progress::{Progress, Seen};
 use super::resumed;
 use super::search;
@@ -298,10 +299,10 @@ fn check(options: &Options) -> Result<(), Failure> {
     }
     numbers(options).map_err(Failure::Option)?;
     for path in paths(options) {
-        files::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
+        places::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
     }
     let read = options.model.path();
-    if let Some(path) = files::shared(read.into_iter().chain(paths(options))) {
+    if let Some(path) = places::shared(read.into_iter().chain(paths(options))) {
         let message = format!("{} is asked for more than once", path.display());
         return Err(Failure::Option(message));
     }

@@ -24,6 +24,7 @@ use hertzian::export;
 
 use crate::program::{self, Ended};
 use crate::response::files;
+use crate::response::places;
 use crate::response::progress::Progress;
 use crate::values;
 use measure::{Limits, Measured, measure};
@@ -104,7 +105,7 @@ pub fn run(
     progress: &mut Progress,
 ) -> Result<Vec<Section>, Failure> {
     check(options).map_err(Failure::Option)?;
-    files::make_folder(&options.out).map_err(failed(&options.out))?;
+    places::make_folder(&options.out).map_err(failed(&options.out))?;
     let limits = Limits {
         repeats: options.repeats.get(),
         patience: options.patience,

@@ -1,5 +1,7 @@
 //! Results as files that other programs read.
 
+#[cfg(feature = "serde")]
+mod consistent;
 mod csv;
 #[cfg(feature = "serde")]
 pub(crate) mod json;
