@@ -16,10 +16,12 @@ use crate::attractors::basin::Fate;
 use crate::branches::point::Point;
 use crate::branches::progress::{Progress, Stage};
 use crate::error::Error;
+use crate::model::layout::Layout;
 use crate::model::validate;
 use crate::response::{FrequencyResponse, OrbitMethod};
 use crate::system::Variable;
 use crate::time;
+use crate::time::centred::{centre, centred};
 use crate::time::stroboscope::Stroboscope;
 
 /// Values that are chosen where something is lacking, at most.
@@ -227,13 +229,9 @@ impl<M: OrbitMethod> Search<'_, M> {
 
     /// Follows motions at a value, and takes in the branches of what they settle to.
     fn settle(&mut self, value: f64, settling: &Settling) {
-        let free = |point: &Point| point.stability.rigid > 0;
-        let mut points = self.points();
-        // Shifted along what does not hold it an orbit is another one.
-        if self.observer.interrupted || points.any(free) {
+        if self.observer.interrupted || self.drifts(value) {
             return;
         }
-        drop(points);
         let Settled {
             fates,
             orbits: found,
@@ -312,11 +310,27 @@ impl<M: OrbitMethod> Search<'_, M> {
         Ok(Settled { fates, orbits })
     }
 
-    /// The stroboscopic map at a value.
+    /// Whether an orbit that is shifted along what does not hold it is another one that a motion may settle to.
+    fn drifts(&self, value: f64) -> bool {
+        let system = &self.response.request.system;
+        let centred = || {
+            let (parameters, omega) = self.place(value).ok()?;
+            centre(
+                system.as_ref(),
+                &Layout::of(system.as_ref()),
+                &parameters,
+                omega,
+            )
+        };
+        let free = |point: &Point| point.stability.rigid > 0;
+        self.points().any(free) && centred().is_none()
+    }
+
+    /// The parameters and the frequency at a value.
     ///
     /// # Errors
-    /// If there is none.
-    fn map(&self, value: f64) -> Result<Stroboscope, Error> {
+    /// If what is varied is not usable.
+    fn place(&self, value: f64) -> Result<(Vec<f64>, f64), Error> {
         let request = &self.response.request;
         let variable = request.variable()?;
         let mut parameters = request.parameters();
@@ -324,10 +338,21 @@ impl<M: OrbitMethod> Search<'_, M> {
         if let Variable::Parameter(index) = variable {
             parameters[index] = value;
         }
+        Ok((parameters, omega))
+    }
+
+    /// The stroboscopic map at a value.
+    ///
+    /// # Errors
+    /// If there is none.
+    fn map(&self, value: f64) -> Result<Stroboscope, Error> {
+        let request = &self.response.request;
+        let (parameters, omega) = self.place(value)?;
         let options = time::Options::default()
             .tolerance(TOLERANCE)
             .cancel(&request.cancel);
         let flow = time::at(&request.system, &parameters, omega, options)?;
+        let flow = centred(flow, &request.system, &parameters, omega);
         Ok(Stroboscope::new(flow))
     }
 

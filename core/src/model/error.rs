@@ -55,9 +55,10 @@ pub enum ModelError {
         /// The direction, as a sum of coordinates.
         direction: String,
     },
-    /// Nothing holds the system along a direction: where its orbits are along it, shooting has no equation for.
+    /// Nothing holds the system along a direction, and its motion there is not known beforehand, since something damps it, or since the method
+    /// has no equation for it: the contact equation never has.
     #[error(
-        "nothing holds the system along {direction}, so that its orbits may be anywhere along it, and shooting finds none: the harmonic balance does"
+        "nothing holds the system along {direction}, so that its orbits may be anywhere along it: the harmonic balance finds them, and shooting does where nothing damps that motion"
     )]
     Free {
         /// The direction, as a sum of coordinates.

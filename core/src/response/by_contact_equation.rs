@@ -23,7 +23,9 @@ impl Follow for ContactEquation {
     }
 
     fn orbit(&self, request: &Request, value: f64) -> Result<Point, Error> {
-        let asked = Asked::of(request, &self.shooting()).problem(value, value)?;
+        let asked = Asked::of(request, &self.shooting())
+            .held()
+            .problem(value, value)?;
         let problem = ContactProblem::new(asked, request.tolerance);
         let guess = by_shooting::with_series(request, value)?;
         compute::orbit(&problem, &guess, value)
@@ -58,7 +60,7 @@ impl ContactEquation {
     /// # Errors
     /// If the request is not usable, or there is no contact equation of the system.
     pub(super) fn problem(self, request: &Request) -> Result<([f64; 2], ContactProblem), Error> {
-        let (range, asked) = Asked::of(request, &self.shooting()).ranged()?;
+        let (range, asked) = Asked::of(request, &self.shooting()).held().ranged()?;
         Ok((range, ContactProblem::new(asked, request.tolerance)))
     }
 

@@ -12,12 +12,14 @@ use crate::error::Error;
 use crate::model::error::ModelError;
 use crate::model::layout::Layout;
 use crate::model::request::RequestError;
+use crate::model::rigid::centre::Centre;
 use crate::model::rigid::{self, Place};
 use crate::model::validate;
 use crate::system::Variable;
 use crate::time;
 use crate::time::Options;
 use crate::time::affine::Affine;
+use crate::time::centred::centred;
 
 /// The dense matrix of more unknowns would take more than 300 megabytes.
 const MOST_UNKNOWNS: usize = 6000;
@@ -27,11 +29,22 @@ const MOST_UNKNOWNS: usize = 6000;
 pub(crate) struct Asked<'r> {
     pub(crate) request: &'r Request,
     pub(crate) shooting: &'r Shooting,
+    /// Systems that turn freely are refused.
+    held: bool,
 }
 
 impl<'r> Asked<'r> {
     pub(crate) fn of(request: &'r Request, shooting: &'r Shooting) -> Self {
-        Self { request, shooting }
+        Self {
+            request,
+            shooting,
+            held: false,
+        }
+    }
+
+    /// The same for a method whose equations are singular where nothing holds a system.
+    pub(crate) fn held(self) -> Self {
+        Self { held: true, ..self }
     }
 
     /// An orbit that is given is one of this system, and its value is that of what is varied here.
@@ -120,7 +133,12 @@ impl<'r> Asked<'r> {
             omega,
             variable,
         };
-        rigid::none(place, range)?;
+        let centre = if self.held {
+            rigid::none(place, range)?;
+            None
+        } else {
+            Centre::over(place, range)?
+        };
         let over = Over { place, range };
         let Permutations { at_once, later } = over.permutations();
         let mut symmetries = vec![over.cyclic()];
@@ -135,6 +153,7 @@ impl<'r> Asked<'r> {
             divisor: facts.divisor,
             period: self.request.period(),
             segments: self.shooting.segments.unwrap_or(self.request.period()),
+            rigid: centre.map_or(0, |centre| centre.multipliers()),
             symmetries,
             at_once,
             stability: self.request.stability,
@@ -212,7 +231,8 @@ impl<'r> Asked<'r> {
         Source {
             make: Box::new(move |tolerance| {
                 let options = Options::default().tolerance(tolerance).cancel(&cancel);
-                time::at(&system, &parameters, omega, options)
+                let flow = time::at(&system, &parameters, omega, options)?;
+                Ok(centred(flow, &system, &parameters, omega))
             }),
             exact,
             tolerance: self.tolerance(),

@@ -20,7 +20,6 @@ use crate::continuation::problem::{AsProblem, Problem};
 use crate::event::{EventKind, Turn};
 use crate::numeric::spectrum::{distance, eigenvalues};
 use crate::orbit::observe::Accuracy;
-use crate::orbit::stability::Stability;
 
 /// What rounding leaves in the value of a touch, where the distance from a level has a root to be told apart from.
 const TOUCHED: f64 = 2e-12;
@@ -242,7 +241,7 @@ fn compared(
         let spread = part * distance(&found, &there)
             + nearest.fold(f64::INFINITY, f64::min)
             + error_reference::moved(&map, &found, parts, noise * map.norm().max(1.0));
-        read.stability = Stability::of(found, spread);
+        read.stability = problem.stability(found, spread);
     }
     Some((read, error))
 }

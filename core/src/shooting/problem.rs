@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
+use nalgebra::Complex;
+
 use crate::branches::checkpoint::Keep;
 use crate::branches::recurrence::{CyclicSymmetry, SignedPermutation};
+use crate::branches::stability::Stability;
 use crate::cancel::Cancel;
 use crate::continuation::follow::FollowOptions;
 use crate::continuation::newton::NewtonOptions;
@@ -40,6 +43,8 @@ pub(crate) struct ShootingProblem {
     /// Period of the orbits in periods of the system.
     pub(crate) period: usize,
     pub(crate) segments: usize,
+    /// How many multipliers of the maps belong to a rigid motion, which is [taken out](crate::time::centred): they are zero there.
+    pub(crate) rigid: usize,
     /// Symmetries that orbits may have: of one that has them, no more is followed than the time after which it comes back.
     pub(crate) symmetries: Vec<CyclicSymmetry>,
     /// Coordinates that may be in each other's place at every time.
@@ -117,6 +122,15 @@ impl ShootingProblem {
             points: self.points,
             steps: self.steps,
             newton: self.newton(self.source.tolerance, ratio.max(narrow)),
+        }
+    }
+
+    /// The verdict that the multipliers of a map allow, largest first, where they are known to this error.
+    pub(crate) fn stability(&self, mut multipliers: Vec<Complex<f64>>, error: f64) -> Stability {
+        multipliers.truncate(multipliers.len().saturating_sub(self.rigid));
+        Stability {
+            rigid: self.rigid,
+            ..Stability::of(multipliers, error)
         }
     }
 

@@ -242,7 +242,7 @@ impl<'r> Run<'r> {
         point.stability = if found.is_empty() {
             Stability::unknown()
         } else {
-            Stability::of(found, spread)
+            problem.stability(found, spread)
         };
         Ok((point, Some(map)))
     }

@@ -11,6 +11,7 @@ pub mod history;
 pub mod poincare;
 pub mod stroboscope;
 
+pub(crate) mod centred;
 mod error;
 mod field;
 pub(crate) mod gap;

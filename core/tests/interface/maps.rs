@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use hertzian::bifurcation::{CellVerdict, Map, Reason};
+use hertzian::bifurcation::{Cell, CellVerdict, Map, Reason};
 use hertzian::error::ErrorKind;
 use hertzian::{Cancel, Error, FrequencyResponse, Shooting, Stage};
 
@@ -399,4 +399,56 @@ fn what_is_read_is_what_was_written() {
     assert!(refused(text.replace("[0.7,0.9]", "[0.7]")).contains("4 cells for 1 values"));
     assert!(refused("{\"version\":2,\"branches\":[]}".to_owned()).contains("no file of this kind"));
     std::fs::remove_file(&path).expect("removed");
+}
+
+hertzian::oscillator! {
+    /// Gears that turn freely, whose mesh is now stiffer and now softer.
+    Gears(pinion, wheel) {
+        param load;
+        param variation in 0.0..1.0;
+        law teeth(gap) { gap > 1 => gap - 1, -1 <= gap <= 1 => 0, gap < -1 => gap + 1 }
+        let force = (1 + variation*cos(omega*t))*teeth(pinion - wheel) + 1500/3e8^(1/2)*(dot(pinion) - dot(wheel));
+        1.5*ddot(pinion) + force = load;
+        3*ddot(wheel) - force = -load;
+        output relative = pinion - wheel;
+    }
+}
+
+hertzian::oscillator! {
+    /// The same by the displacement of one against the other: their masses make a reduced one of `1.5 3/(1.5 + 3)`.
+    Mesh(relative) {
+        param load;
+        param variation in 0.0..1.0;
+        law teeth(gap) { gap > 1 => gap - 1, -1 <= gap <= 1 => 0, gap < -1 => gap + 1 }
+        ddot(relative) + (1 + variation*cos(omega*t))*teeth(relative) + 1500/3e8^(1/2)*dot(relative) = load;
+    }
+}
+
+/// Torque and variation of the mesh where the resonance bends. How many orbits are stable is also known by integration from forty states by
+/// scipy (`examples/tests/integrated/reference.py`: its gears at 14000 rad/s, with lengths in units of the play and the resonance at one).
+#[test]
+fn gears_that_turn_freely_have_the_map_of_their_relative_motion() {
+    let of = |system: &dyn hertzian::System| {
+        let request = FrequencyResponse::of(system).by(Shooting::new());
+        let request = request
+            .vary("load")
+            .from(0.08)
+            .to(0.42)
+            .omega(1.4e4 / 3e8_f64.sqrt());
+        let map = request.map(&[0.1, 0.2, 0.4], "variation", &[0.1, 0.2, 0.3]);
+        map.unwrap()
+    };
+    let (load, variation) = (0.1, 0.1);
+    let gears = of(&Gears { load, variation });
+    let mesh = of(&Mesh { load, variation });
+    assert_eq!([&gears.signal, &mesh.signal], ["relative", "relative"]);
+    let stable: Vec<usize> = gears.cells.iter().map(|cell| cell.stable).collect();
+    assert_eq!(stable, [1, 1, 1, 2, 2, 2, 2, 2, 2]);
+    for (free, held) in gears.cells.iter().zip(&mesh.cells) {
+        let counts = |cell: &Cell| (cell.stable, cell.unstable, cell.undecided, cell.missed);
+        assert_eq!(counts(free), counts(held));
+        assert_eq!(free.periods, held.periods);
+        let (free, held) = (free.largest.unwrap(), held.largest.unwrap());
+        assert!((free - held).abs() < 1e-9 * held, "{free} {held}");
+    }
 }

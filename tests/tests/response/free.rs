@@ -182,10 +182,78 @@ fn unbalanced_gears_are_carried_away() {
     );
 }
 
-/// The equations of shooting are singular along the direction: it is refused by its name.
+/// By shooting too, whichever of the parameters is varied, a mass by which the centre depends on it among them.
 #[test]
-fn shooting_refuses_what_is_free() {
-    let error = FrequencyResponse::of(&FREE)
+fn free_gears_are_found_by_shooting_as_their_relative_motion() {
+    for (length, time) in [(1.0, 1.0), (1e-5, 1e-5), (1e-5, 1.0)] {
+        let (free, relative) = scaled(length, time);
+        for (name, from, to, at) in [
+            (
+                "omega",
+                0.4 / time,
+                2.0 / time,
+                [0.6, 0.9, 1.0, 1.5].map(|x| x / time),
+            ),
+            ("j2", 2.0, 0.4, [1.9, 1.3, 0.7, 0.5]),
+            (
+                "c",
+                0.05 / time,
+                0.5 / time,
+                [0.06, 0.1, 0.2, 0.4].map(|x| x / time),
+            ),
+        ] {
+            let of = |system: &dyn hertzian::System| {
+                let mut request = FrequencyResponse::of(system).by(Shooting::new());
+                request = request.from(from).to(to);
+                if name != "omega" {
+                    request = request.vary(name).omega(0.9 / time);
+                }
+                request.run().unwrap()
+            };
+            let (free, relative) = (of(&free), of(&relative));
+            let folds = [&free, &relative].map(|branch| branch.folds().count());
+            assert_eq!(folds[0], folds[1], "{name}");
+            for (free, relative) in free.folds().zip(relative.folds()) {
+                let apart = (free.point.value - relative.point.value).abs();
+                assert!(
+                    apart <= free.error + relative.error,
+                    "{name}: {free} {relative}"
+                );
+            }
+            for value in at {
+                let (free, relative) = (free.at(value).unwrap(), relative.at(value).unwrap());
+                assert_eq!(free.len(), relative.len(), "{name} {value}");
+                for (free, relative) in free.iter().zip(&relative) {
+                    agree(&free.stability, &relative.stability);
+                    let [a, b, va, vb] = free.orbit.state()[..] else {
+                        unreachable!()
+                    };
+                    let [u, v] = relative.orbit.state()[..] else {
+                        unreachable!()
+                    };
+                    let near = |x: f64, y: f64| (x - y).abs() <= 1e-8 * relative.peak_to_peak();
+                    assert!(
+                        near(a - b, u) && near((va - vb) * time, v * time),
+                        "{name} {value}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A damper to ground makes the turning part of what has to be found: shooting refuses that by the name of the direction.
+#[test]
+fn shooting_refuses_what_turns_against_a_damper() {
+    let model = Sprung {
+        m1: 1.0,
+        m2: 3.0,
+        k: 2.0,
+        c: 0.2,
+        ground: 0.3,
+        load: 0.7,
+    };
+    let error = FrequencyResponse::of(&model)
         .by(Shooting::new())
         .orbit(0.7)
         .unwrap_err();
@@ -210,7 +278,21 @@ fn a_free_pair_has_its_closed_form() {
             ground,
             load: 0.7,
         };
-        let point = FrequencyResponse::of(&model).orbit(0.8).unwrap();
+        let request = FrequencyResponse::of(&model);
+        let point = request.orbit(0.8).unwrap();
+        if ground == 0.0 && c > 0.0 {
+            // Where the centre of mass is, too.
+            let shot = request.clone().by(Shooting::new()).orbit(0.8).unwrap();
+            let states = shot.orbit.state();
+            for (coordinate, x) in states[..2].iter().enumerate() {
+                let (y, w) = point.orbit.state_at(coordinate, 0.0).unwrap();
+                let v = states[2 + coordinate];
+                assert!(
+                    (x - y).abs() < 1e-9 && (v - w).abs() < 1e-9,
+                    "{x} {y} {v} {w}"
+                );
+            }
+        }
         let (w, whole, reduced) = (0.8, 4.0, 0.75);
         let i = Complex::<f64>::i();
         let centre = 1.0 / (whole * (i * w * ground - w * w));

@@ -28,6 +28,7 @@
 //! Sources: Geradin and Rixen (2015), Mechanical Vibrations, section 2.6 (systems with rigid-body modes, self-equilibrated loads);
 //! Golub and Van Loan (2013), Matrix Computations, theorem 7.1.6 (deflation by an invariant subspace).
 
+pub(crate) mod centre;
 mod null_space;
 
 use nalgebra::DMatrix;
@@ -50,6 +51,8 @@ const REGULAR: f64 = 1e-10;
 /// The rigid motions of a system whose mean loads are in balance along them.
 #[derive(Debug, Clone)]
 pub(crate) struct Rigid {
+    /// `R (W^T M R)^-1 W^T`, the acceleration that loads give to the rigid motions
+    response: DMatrix<f64>,
     /// `P` of (2)
     projector: DMatrix<f64>,
     /// `M P`
@@ -68,7 +71,7 @@ pub(crate) struct Place<'a> {
     pub(crate) variable: Variable,
 }
 
-impl Place<'_> {
+impl<'a> Place<'a> {
     /// The coefficients at a value of the variable.
     pub(crate) fn coefficients(&self, value: f64) -> Vec<f64> {
         let (mut parameters, mut omega) = (self.parameters.to_vec(), self.omega);
@@ -80,6 +83,25 @@ impl Place<'_> {
         self.system
             .coefficients(&parameters, omega, &mut coefficients);
         coefficients
+    }
+
+    /// The same where the variable has another value, with room for the parameters.
+    pub(crate) fn moved<'p>(&self, value: f64, parameters: &'p mut [f64]) -> Place<'p>
+    where
+        'a: 'p,
+    {
+        let mut omega = self.omega;
+        match self.variable {
+            Variable::Omega => omega = value,
+            Variable::Parameter(index) => parameters[index] = value,
+        }
+        Place {
+            system: self.system,
+            layout: self.layout,
+            parameters,
+            omega,
+            variable: self.variable,
+        }
     }
 
     /// The value that the variable has there.
@@ -170,10 +192,12 @@ impl Rigid {
         if moved.determinant().abs() <= REGULAR * allowed {
             return None;
         }
-        let projector = right * moved.try_inverse()? * momentum;
+        let response = right * moved.try_inverse()? * left.transpose();
+        let projector = &response * mass;
         Some(Self {
             inertia: mass * &projector,
             projector,
+            response,
             complements: [right, undamped].map(null_space::complement),
         })
     }
@@ -244,17 +268,25 @@ pub(crate) fn held(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> 
 ///
 /// # Errors
 /// [`ModelError::CarriedAway`] or [`ModelError::Free`]
-pub(crate) fn none(place: Place<'_>, [from, to]: [f64; 2]) -> Result<(), Error> {
+pub(crate) fn none(place: Place<'_>, range: [f64; 2]) -> Result<(), Error> {
+    match free(place, range)? {
+        None => Ok(()),
+        Some(direction) => Err(ModelError::Free { direction }.into()),
+    }
+}
+
+/// A direction in which nothing holds a system throughout a range, as a sum of coordinates, if there is one.
+///
+/// # Errors
+/// [`ModelError::CarriedAway`]
+fn free(place: Place<'_>, [from, to]: [f64; 2]) -> Result<Option<String>, Error> {
     held(place, [from, to])?;
     let coefficients = LOOKED_AT.map(|part| place.coefficients(from + part * (to - from)));
-    Directions::of(place.layout, &coefficients).map_or(Ok(()), |directions| {
+    let directions = Directions::of(place.layout, &coefficients);
+    Ok(directions.map(|directions| {
         let names = &place.system.facts().coordinates;
-        let direction = directions.right.column(0);
-        Err(ModelError::Free {
-            direction: null_space::described(names, direction.as_slice()),
-        }
-        .into())
-    })
+        null_space::described(names, directions.right.column(0).as_slice())
+    }))
 }
 
 fn is_finite(values: &[f64]) -> bool {
