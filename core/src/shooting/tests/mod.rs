@@ -69,6 +69,7 @@ fn problem(parameters: [f64; 4], variable: Variable, omega: f64) -> ShootingProb
         divisor: 1,
         period: 1,
         segments: 1,
+        rigid: 0,
         symmetries: vec![CyclicSymmetry::none()],
         at_once: Vec::new(),
         stability: true,
