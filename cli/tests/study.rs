@@ -122,3 +122,23 @@ fn faults_are_said_with_their_places() {
     let error = study(&["--merge"], &file).expect_err("nothing there");
     assert!(error.contains("cannot use"), "{error}");
 }
+
+/// The table is worth more than its picture.
+#[test]
+fn a_picture_that_cannot_be_written_costs_no_summary() {
+    let folder = Folder::new("study-picture");
+    fs::write(folder.0.join("mine.txt"), MODEL).expect("written");
+    let file = folder.0.join("stiff.toml");
+    let picture = "[[pictures]]\nwhat = \"histogram\"\nfile = \"nowhere/fold.svg\"\n";
+    fs::write(&file, format!("{STUDY}{picture}")).expect("written");
+    let ended = study(&[], &file).expect("a study");
+    assert!(ended.summary.contains("rows       20"), "{ended:?}");
+    assert!(!ended.complete);
+    let said = &ended.complaints[..];
+    assert!(
+        said.len() == 1
+            && said[0].starts_with("pictures: cannot use ")
+            && said[0].contains("nowhere"),
+        "{said:?}"
+    );
+}

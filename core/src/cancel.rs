@@ -18,7 +18,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// assert!(cancel.is_cancelled());
 /// ```
 #[derive(Debug, Clone, Default)]
-pub struct Cancel(Arc<AtomicBool>);
+pub struct Cancel(Arc<Token>);
+
+#[derive(Debug, Default)]
+struct Token {
+    cancelled: AtomicBool,
+    parent: Option<Cancel>,
+}
 
 impl Cancel {
     /// A token that is not cancelled.
@@ -26,15 +32,40 @@ impl Cancel {
         Self::default()
     }
 
+    /// A token that is cancelled with this one, and can be without it: for a part of the work that may have to be stopped alone.
+    ///
+    /// ```
+    /// let whole = hertzian::Cancel::new();
+    /// let part = whole.child();
+    /// part.cancel();
+    /// assert!(part.is_cancelled() && !whole.is_cancelled());
+    /// ```
+    #[must_use]
+    pub fn child(&self) -> Self {
+        Self(Arc::new(Token {
+            cancelled: AtomicBool::new(false),
+            parent: Some(self.clone()),
+        }))
+    }
+
     /// Stops all that this token was given to.
     pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.cancelled.store(true, Ordering::Relaxed);
     }
 
     /// Whether that has happened.
     #[inline]
     pub fn is_cancelled(&self) -> bool {
         // Nothing else is read because of it, so that no order with other memory is needed.
-        self.0.load(Ordering::Relaxed)
+        let mut token = &self.0;
+        loop {
+            if token.cancelled.load(Ordering::Relaxed) {
+                return true;
+            }
+            match &token.parent {
+                Some(parent) => token = &parent.0,
+                None => return false,
+            }
+        }
     }
 }

@@ -6,7 +6,7 @@
 
 use std::io::{self, BufRead, Read};
 
-use crate::matrix::{MatrixError, SparseMatrix};
+use crate::matrix::{MatrixError, SparseMatrix, can_stand};
 
 /// A line that is longer than this many bytes holds no entry.
 const LONGEST: u64 = 1024;
@@ -268,26 +268,6 @@ fn entries<R: BufRead>(
         });
     }
     Ok(triplets)
-}
-
-fn can_stand(
-    row: usize,
-    column: usize,
-    value: f64,
-    [rows, columns]: [usize; 2],
-) -> Result<(), MatrixError> {
-    if row >= rows || column >= columns {
-        return Err(MatrixError::Outside {
-            row,
-            column,
-            rows,
-            columns,
-        });
-    }
-    if !value.is_finite() {
-        return Err(MatrixError::NotFinite { row, column, value });
-    }
-    Ok(())
 }
 
 fn entry(text: &str) -> Option<(usize, usize, f64)> {

@@ -39,6 +39,30 @@ pub enum MatrixError {
     },
 }
 
+/// Whether an entry can stand in a matrix of so many rows and columns.
+///
+/// # Errors
+/// If it stands outside, or is not finite.
+pub(crate) fn can_stand(
+    row: usize,
+    column: usize,
+    value: f64,
+    [rows, columns]: [usize; 2],
+) -> Result<(), MatrixError> {
+    if row >= rows || column >= columns {
+        return Err(MatrixError::Outside {
+            row,
+            column,
+            rows,
+            columns,
+        });
+    }
+    if !value.is_finite() {
+        return Err(MatrixError::NotFinite { row, column, value });
+    }
+    Ok(())
+}
+
 impl SparseMatrix {
     /// From entries `(row, column, value)`, counted from zero, in any order. Several at one place add up, as those of finite elements do.
     ///
@@ -61,17 +85,7 @@ impl SparseMatrix {
     ) -> Result<Self, MatrixError> {
         let mut entries = Vec::new();
         for (row, column, value) in triplets {
-            if row >= rows || column >= columns {
-                return Err(MatrixError::Outside {
-                    row,
-                    column,
-                    rows,
-                    columns,
-                });
-            }
-            if !value.is_finite() {
-                return Err(MatrixError::NotFinite { row, column, value });
-            }
+            can_stand(row, column, value, [rows, columns])?;
             entries.push((column, row, value));
         }
         // Stable, so that sums of entries do not depend on the method of sorting.

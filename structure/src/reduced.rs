@@ -83,7 +83,7 @@ pub enum ReducedError {
 }
 
 impl Reduced {
-    pub(crate) const VERSION: u32 = 1;
+    pub(crate) const VERSION: u32 = 2;
 
     /// How many of its vectors are modes of the structure.
     pub fn modes(&self) -> usize {
@@ -278,16 +278,21 @@ impl Reduced {
         Ok(reduced)
     }
 
+    /// Whether its numbers fit each other. JSON has none that are not finite.
     fn fits(&self) -> bool {
         let m = self.vectors();
-        let square = |matrix: &Vec<f64>| matrix.len() == m * m;
         let rows = self.rows.iter().all(|row| row.len() == m);
         let columns = self.checked.first().map_or(0, |c| c.errors.len());
-        self.modes <= m
-            && square(&self.damping)
-            && self.gyroscopic.iter().all(square)
+        let sound = |c: &Checked| c.errors.len() == columns && (c.largest > 0.0 || columns == 0);
+        let ascending = self.checked.is_sorted_by(|a, b| a.frequency < b.frequency);
+        (1..=m).contains(&self.modes)
+            && self.to > 0.0
+            && mirrored(&self.damping, m, 1.0)
+            && self.gyroscopic.iter().all(|g| mirrored(g, m, -1.0))
             && rows
-            && self.checked.iter().all(|c| c.errors.len() == columns)
+            && !self.checked.is_empty()
+            && self.checked.iter().all(sound)
+            && ascending
             && columns.is_multiple_of(self.rows.len().max(1))
     }
 
@@ -296,11 +301,18 @@ impl Reduced {
     /// # Errors
     /// If matrices or directions are others.
     pub fn is_of(&self, structure: &SparseStructure) -> Result<(), ReducedError> {
-        let rows = Self::driven(structure) + structure.outputs.len();
-        if self.fingerprint != Self::fingerprint_of(structure) || rows != self.rows.len() {
-            return Err(ReducedError::Other);
+        let driven = Self::driven(structure);
+        let rows = driven + structure.outputs.len();
+        let is_of = self.fingerprint == Self::fingerprint_of(structure)
+            && self.coordinates == structure.coordinates()
+            && self.rows.len() == rows
+            && self.gyroscopic.len() == structure.gyroscopic.len()
+            && self.checked.iter().all(|c| c.errors.len() == rows * driven);
+        if is_of {
+            Ok(())
+        } else {
+            Err(ReducedError::Other)
         }
-        Ok(())
     }
 
     /// A number that other matrices, damping or directions do not have (Fowler, Noll and Vo, FNV-1a of 64 bits).
@@ -321,6 +333,13 @@ impl Reduced {
         for byte in format!("{:?}", structure.damping).bytes() {
             take(u64::from(byte));
         }
+        // Directions one after the other do not say what each is of; a base moves the masses, where a force moves its direction.
+        take(structure.contacts.len() as u64);
+        take(structure.loads.len() as u64);
+        for load in &structure.loads {
+            let by_masses = matches!(load.kind, LoadKind::Base | LoadKind::Acceleration);
+            take(u64::from(by_masses));
+        }
         let contacts = structure.contacts.iter();
         let contacts = contacts.flat_map(|c| [Some(&c.gap), c.force.as_ref()]);
         let loads = structure.loads.iter().map(|load| Some(&load.direction));
@@ -334,4 +353,13 @@ impl Reduced {
         }
         hash
     }
+}
+
+/// Whether a matrix of so many rows, row by row, is its transpose times a sign.
+fn mirrored(matrix: &[f64], m: usize, sign: f64) -> bool {
+    let pairs = (0..m).flat_map(|i| (0..=i).map(move |j| (i * m + j, j * m + i)));
+    matrix.len() == m * m
+        && pairs
+            .into_iter()
+            .all(|(a, b)| matrix[a] == sign * matrix[b])
 }

@@ -408,10 +408,12 @@ impl<'r> Work<'r> {
             turn.view_mut((kept, kept + place), (m - kept, 1))
                 .copy_from(&vectors.column(of));
         }
-        let project = |matrix: &SparseMatrix| {
+        // Symmetric, or skew-symmetric by a sign of -1, to the last bit, as the matrix itself is up to rounding.
+        let project = |matrix: &SparseMatrix, sign: f64| {
             let images: Vec<Vec<f64>> = basis.vectors.iter().map(|v| matrix.times(v)).collect();
             let inner = DMatrix::from_fn(m, m, |i, j| lanczos::dot(&basis.vectors[i], &images[j]));
-            turn.transpose() * inner * &turn
+            let turned = turn.transpose() * inner * &turn;
+            0.5 * (&turned + sign * turned.transpose())
         };
         let row = |direction: &Vec<f64>| -> Vec<f64> {
             let inner = DMatrix::from_fn(1, m, |_, j| lanczos::dot(direction, &basis.vectors[j]));
@@ -424,11 +426,11 @@ impl<'r> Work<'r> {
             coordinates: structure.coordinates(),
             to: self.options.to,
             modes: kept,
-            damping: damping(&structure.damping, &all, &project),
+            damping: damping(&structure.damping, &all, &|matrix| project(matrix, 1.0)),
             gyroscopic: structure
                 .gyroscopic
                 .iter()
-                .map(|g| entries(&project(&g.matrix)))
+                .map(|g| entries(&project(&g.matrix, -1.0)))
                 .collect(),
             squares: all,
             rows: self.directions.rows.iter().map(row).collect(),

@@ -62,6 +62,8 @@ enum Cube {
 
 /// More variants than this cannot be counted by the names of their files.
 const MOST: usize = 1 << 32;
+/// Places of a Latin hypercube, one a variant and parameter, that are held: 256 MiB.
+const MOST_PLACES: usize = 1 << 26;
 /// Dimensions that there are direction numbers of.
 const DIMENSIONS: usize = 100;
 /// Streams of random numbers: those of variants have their number, those of dimensions begin here.
@@ -237,6 +239,13 @@ impl Cube {
     fn new(design: Design, seed: u64, count: usize, dimensions: usize) -> Result<Self, StudyError> {
         match design {
             Design::LatinHypercube => {
+                let places = count.saturating_mul(dimensions);
+                if places > MOST_PLACES {
+                    let message = format!(
+                        "a Latin hypercube of {count} variants over {dimensions} parameters has {places} places, more than {MOST_PLACES}: take design = \"sobol\""
+                    );
+                    return Err(StudyError::value("variants.count", message));
+                }
                 let parts = (0..dimensions).map(|dimension| {
                     let mut parts: Vec<u32> = (0..count as u64).map(|part| part as u32).collect();
                     parts.shuffle(&mut stream(seed, OF_DIMENSIONS + dimension as u64));

@@ -22,6 +22,7 @@ use std::time::Duration;
 use hertzian::Branch;
 
 use crate::error::StudyError;
+use crate::plan::Plan;
 use crate::study::Prepared;
 use crate::table::Value;
 
@@ -237,16 +238,6 @@ impl Prepared {
 
     /// What the study is, as files by their names: with them, and the program, it is run again.
     pub(crate) fn descriptions(&self) -> Vec<(&'static str, String)> {
-        let mut plan = self.plan.clone();
-        plan.results = None;
-        plan.formats.clear();
-        plan.pictures.clear();
-        if Path::new(&plan.model).components().count() > 1 || plan.model.contains('.') {
-            MODEL.clone_into(&mut plan.model);
-        }
-        if self.table.is_some() {
-            plan.variants.file = Some(PathBuf::from(TABLE));
-        }
         let columns: Vec<&str> = self
             .columns
             .iter()
@@ -259,9 +250,8 @@ impl Prepared {
             std::env::consts::OS,
             columns.join(" ")
         );
-        let plan = toml::to_string(&plan).unwrap_or_default();
         let mut all = vec![
-            ("study.toml", plan),
+            ("study.toml", self.described.clone()),
             (MODEL, self.model.clone()),
             ("version.txt", version),
         ];
@@ -278,6 +268,25 @@ impl Prepared {
         }
         hasher.finalize()
     }
+}
+
+/// A plan as the study file of its folder: without what does not touch the rows.
+///
+/// # Errors
+/// If a study file cannot hold it: without a text it would be taken for another study without one.
+pub(crate) fn described(plan: &Plan, has_table: bool) -> Result<String, StudyError> {
+    let mut plan = plan.clone();
+    plan.results = None;
+    plan.formats.clear();
+    plan.pictures.clear();
+    if Path::new(&plan.model).components().count() > 1 || plan.model.contains('.') {
+        MODEL.clone_into(&mut plan.model);
+    }
+    if has_table {
+        plan.variants.file = Some(PathBuf::from(TABLE));
+    }
+    let written = toml::to_string(&plan);
+    written.map_err(|error| StudyError::value("the study", format!("no file holds it: {error}")))
 }
 
 const MODEL: &str = "model.txt";

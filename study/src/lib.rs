@@ -37,6 +37,8 @@ mod design;
 mod error;
 mod evaluate;
 mod folder;
+#[cfg(any(feature = "mpi", test))]
+mod hand_out;
 mod merge;
 #[cfg(feature = "mpi")]
 mod mpi;

@@ -1,7 +1,8 @@
 //! A study over the ranks of MPI: rank 0 hands out numbers of blocks, the others compute and keep them in the folder that all share.
 //!
-//! Messages hold the number of a block, eight bytes: a rank asks by sending the block that it has done (or none), and is answered by the next
-//! one (or none). What is computed by whom does not matter to any row, since a block has its place by its number. Each rank computes on one
+//! Messages hold the number of a block, eight bytes: a rank asks by sending the block that it has kept (or none), and is answered by the next
+//! one (or none). One that cannot write, has no folder or is stopped says so, and its block is handed out again ([`HandOut`]). What is
+//! computed by whom does not matter to any row, since a block has its place by its number. Each rank computes on one
 //! thread: as many ranks are started as there are processors, and one for rank 0, which computes nothing.
 
 use std::ops::ControlFlow;
@@ -13,13 +14,14 @@ use hertzian::{Cancel, Progress, Stage};
 
 use crate::error::StudyError;
 use crate::folder::Folder;
+use crate::hand_out::{HandOut, Said};
 use crate::run::{Part, Ran, Runner};
 use crate::study::Prepared;
 
 /// No block, in a message.
 const NONE: u64 = u64::MAX;
-/// A rank cannot write what it has computed.
-const FAILED: u64 = u64::MAX - 1;
+/// A rank computes nothing more, and has not kept the block that it was given.
+const LEAVES: u64 = u64::MAX - 1;
 
 /// The ranks that were started together.
 pub struct Ranks {
@@ -58,71 +60,85 @@ impl Ranks {
         self.world().size() as usize
     }
 
-    /// Computes what is missing of a study, as rank 0 says; every rank calls this. What comes back of rank 0 is of all.
+    /// Computes what is missing of a study, as rank 0 says; every rank calls this with its own result of opening the folder, which comes
+    /// back. What comes back of rank 0 is of all.
     ///
     /// # Errors
-    /// If a block cannot be written; those that were are kept.
+    /// If the folder could not be opened, or a block cannot be written; those that were are kept. The other ranks have been told by then.
     pub fn run(
         &self,
         study: &Prepared,
-        folder: &Folder,
+        folder: Result<Folder, StudyError>,
         cancel: &Cancel,
         see: &mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send),
-    ) -> Result<Ran, StudyError> {
-        let runner = Runner::new(study, folder)
-            .part(Part::WHOLE)
-            .threads(1)
-            .cancel(cancel);
+    ) -> Result<(Ran, Folder), StudyError> {
         if self.rank() == 0 {
-            return Ok(self.hand_out(&runner, study, cancel, see));
+            return self.first(study, folder, cancel, see);
         }
         let world = self.world();
         let zero = world.process_at_rank(0);
-        let ask = |done: u64| {
-            zero.send(&done);
+        let ask = |said: u64| {
+            zero.send(&said);
             let (block, _) = zero.receive::<u64>();
             (block != NONE).then_some(block as usize)
         };
-        let ran = runner.run_here(|done| ask(done.map_or(NONE, |block| block as u64)));
-        if ran.is_err() {
-            ask(FAILED);
+        let ran = folder.and_then(|folder| {
+            let runner = runner(study, &folder, cancel);
+            let ran = runner.run_here(|kept| ask(kept.map_or(NONE, |block| block as u64)))?;
+            Ok((ran, folder))
+        });
+        let is_let_go = matches!(&ran, Ok((ran, _)) if !ran.interrupted);
+        if !is_let_go {
+            ask(LEAVES);
         }
         ran
     }
 
-    /// Answers until every rank has been told that there is nothing more.
-    fn hand_out(
+    /// Rank 0: hands out, and without a folder lets all others go.
+    fn first(
         &self,
-        runner: &Runner<'_>,
         study: &Prepared,
+        folder: Result<Folder, StudyError>,
         cancel: &Cancel,
         see: &mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send),
-    ) -> Ran {
+    ) -> Result<(Ran, Folder), StudyError> {
         let started = std::time::Instant::now();
-        let (missing, mut ran) = runner.missing();
-        let mut blocks = missing.into_iter();
+        let opened = folder.as_ref().ok();
+        let missing = opened.map(|folder| runner(study, folder, cancel).missing());
+        let (blocks, mut ran) = missing.unwrap_or_default();
+        let mut out = HandOut::new(blocks, self.count() - 1);
         let world = self.world();
-        let mut others = self.count() - 1;
-        while others > 0 {
-            let (done, status) = world.any_process().receive::<u64>();
-            if let Ok(block) = usize::try_from(done)
-                && done < FAILED
-            {
+        while !out.is_over() {
+            let (message, status) = world.any_process().receive::<u64>();
+            let rank = status.source_rank() as usize;
+            let said = match message {
+                NONE => Said::Asks,
+                LEAVES => Said::Leaves,
+                _ => Said::Kept,
+            };
+            if let (Said::Kept, Some(block)) = (said, out.held(rank)) {
                 ran.computed += study.variants_of(block).len();
                 let mut progress = Progress::new(Stage::Study, ran.before + ran.computed);
                 progress.total = Some(ran.asked);
                 if see(progress).is_break() {
-                    cancel.cancel();
+                    out.stop();
                 }
             }
-            let goes_on = !cancel.is_cancelled() && done != FAILED;
-            let next = goes_on.then(|| blocks.next()).flatten();
-            others -= usize::from(next.is_none());
-            let next = next.map_or(NONE, |block| block as u64);
-            world.process_at_rank(status.source_rank()).send(&next);
+            if cancel.is_cancelled() {
+                out.stop();
+            }
+            for (rank, block) in out.hear(rank, said) {
+                let block = block.map_or(NONE, |block| block as u64);
+                world.process_at_rank(rank as i32).send(&block);
+            }
         }
-        ran.interrupted = cancel.is_cancelled();
+        ran.interrupted = cancel.is_cancelled() || out.is_left();
         ran.elapsed = started.elapsed();
-        ran
+        Ok((ran, folder?))
     }
+}
+
+fn runner<'r>(study: &'r Prepared, folder: &'r Folder, cancel: &Cancel) -> Runner<'r> {
+    let runner = Runner::new(study, folder).part(Part::WHOLE);
+    runner.threads(1).cancel(cancel)
 }

@@ -78,6 +78,8 @@ type See<'v> = &'v mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send);
 
 /// What the threads share.
 struct Shared<'v> {
+    /// Ends this run: with the token of the caller, or alone.
+    cancel: Cancel,
     see: Mutex<See<'v>>,
     done: AtomicUsize,
     total: usize,
@@ -87,8 +89,9 @@ struct Shared<'v> {
 }
 
 impl<'v> Shared<'v> {
-    fn new(ran: &Ran, see: See<'v>) -> Self {
+    fn new(ran: &Ran, cancel: &Cancel, see: See<'v>) -> Self {
         Self {
+            cancel: cancel.child(),
             see: Mutex::new(see),
             done: AtomicUsize::new(ran.before),
             total: ran.asked,
@@ -125,14 +128,14 @@ impl<'r> Runner<'r> {
         self
     }
 
-    /// It ends when this token is cancelled; whole blocks are kept.
+    /// It ends when this token is cancelled; whole blocks are kept. The run itself never cancels it.
     #[must_use]
     pub fn cancel(mut self, cancel: &Cancel) -> Self {
         self.cancel = cancel.clone();
         self
     }
 
-    /// Computes what is missing. `see` is told after every variant how many are done.
+    /// Computes what is missing. `see` is told after every variant how many are done, and ends the run by breaking.
     ///
     /// # Errors
     /// If a block cannot be written; those that were are kept.
@@ -179,7 +182,7 @@ impl<'r> Runner<'r> {
         see: &mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send),
     ) -> Result<Ran, StudyError> {
         let started = Instant::now();
-        let shared = Shared::new(&ran, see);
+        let shared = Shared::new(&ran, &self.cancel, see);
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads)
             .build();
@@ -188,12 +191,12 @@ impl<'r> Runner<'r> {
             message: error.to_string(),
         })?;
         pool.broadcast(|_| {
-            while !self.cancel.is_cancelled()
+            while !shared.cancel.is_cancelled()
                 && let Some(block) = give()
             {
                 if let Err(error) = self.block(block, &shared) {
                     // What cannot be written now cannot be a moment later: the other threads need not compute what would be lost.
-                    self.cancel.cancel();
+                    shared.cancel.cancel();
                     lock(&shared.failed).get_or_insert(error);
                 }
             }
@@ -203,12 +206,12 @@ impl<'r> Runner<'r> {
         }
         ran.computed = shared.computed.load(Ordering::Relaxed);
         ran.worked = *lock(&shared.worked);
-        ran.interrupted = self.cancel.is_cancelled();
+        ran.interrupted = shared.cancel.is_cancelled();
         ran.elapsed = started.elapsed();
         Ok(ran)
     }
 
-    /// Computes the blocks that are given on this thread, until none is: `give` is told which block was kept last.
+    /// Computes the blocks that are given on this thread, until none is or it is cancelled: `give` is told which block was kept last.
     #[cfg(feature = "mpi")]
     pub(crate) fn run_here(
         &self,
@@ -217,10 +220,14 @@ impl<'r> Runner<'r> {
         let started = Instant::now();
         let mut ran = Ran::default();
         let mut nobody = |_: Progress<'_>| ControlFlow::Continue(());
-        let shared = Shared::new(&ran, &mut nobody);
+        let shared = Shared::new(&ran, &self.cancel, &mut nobody);
         let mut last = None;
         while let Some(block) = give(last) {
-            last = self.block(block, &shared)?.then_some(block);
+            if !self.block(block, &shared)? {
+                ran.interrupted = true;
+                break;
+            }
+            last = Some(block);
         }
         ran.computed = shared.computed.load(Ordering::Relaxed);
         ran.worked = *lock(&shared.worked);
@@ -233,14 +240,14 @@ impl<'r> Runner<'r> {
         let mut block = Block::default();
         for variant in self.study.variants_of(number) {
             let started = Instant::now();
-            let Ok(found) = self.study.found(variant, &self.cancel) else {
+            let Ok(found) = self.study.found(variant, &shared.cancel) else {
                 return Ok(false);
             };
             for (place, branch) in found.branches.iter().enumerate() {
                 self.folder.write_branch(variant, place, branch)?;
             }
             block.add(&found.rows, started.elapsed());
-            self.tell(shared);
+            Self::tell(shared);
         }
         self.folder.write(self.study, number, &block)?;
         shared
@@ -251,14 +258,14 @@ impl<'r> Runner<'r> {
     }
 
     /// Says that a variant more is done.
-    fn tell(&self, shared: &Shared<'_>) {
+    fn tell(shared: &Shared<'_>) {
         let mut progress = Progress::new(
             Stage::Study,
             1 + shared.done.fetch_add(1, Ordering::Relaxed),
         );
         progress.total = Some(shared.total);
         if (lock(&shared.see))(progress).is_break() {
-            self.cancel.cancel();
+            shared.cancel.cancel();
         }
     }
 }

@@ -9,6 +9,7 @@ use hertzian::{Branch, EventKind, System, Valued};
 use crate::checks::check_request;
 use crate::design::{Designed, List};
 use crate::error::StudyError;
+use crate::folder::described;
 use crate::names::Names;
 use crate::pictures;
 use crate::plan::{Format, InstructionSet, Keep, Picture, Plan, Request, Variants, What};
@@ -163,6 +164,8 @@ impl Study {
 pub struct Prepared {
     pub(crate) plan: Plan,
     pub(crate) model: String,
+    /// The plan as the study file of its folder.
+    pub(crate) described: String,
     pub(crate) table: Option<String>,
     pub(crate) designed: Designed,
     pub(crate) columns: Vec<Column>,
@@ -225,6 +228,7 @@ impl Prepared {
             kinds: kinds(&plan.keep)?,
             system: Arc::clone(&study.system),
             model: study.model.clone(),
+            described: described(&plan, study.table.is_some())?,
             table: study.table.clone(),
             plan,
             designed,

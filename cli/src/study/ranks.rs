@@ -18,7 +18,7 @@ pub(super) fn ranks(options: &Options) -> Option<Ranks> {
 /// Computes what this rank is given; rank 0 hands out, writes the table and sums up.
 ///
 /// # Errors
-/// If a file cannot be written.
+/// If the folder cannot be opened or a file cannot be written; the other ranks go on.
 pub(super) fn run(
     ranks: &Ranks,
     study: &Prepared,
@@ -26,8 +26,9 @@ pub(super) fn run(
     cancel: &Cancel,
     progress: &mut Progress,
 ) -> Result<Ended, Failure> {
-    let folder = Folder::open(folder, study)?;
-    let ran = ranks.run(study, &folder, cancel, &mut run::shown(progress))?;
+    // A rank without a folder must not leave in silence: the others would wait for it.
+    let folder = Folder::open(folder, study);
+    let (ran, folder) = ranks.run(study, folder, cancel, &mut run::shown(progress))?;
     if ranks.rank() > 0 {
         return Ok(Ended {
             summary: String::new(),

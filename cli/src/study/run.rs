@@ -86,8 +86,16 @@ pub(super) fn table(
     progress.update(|| "one table of all".to_owned());
     let mut merged = study.merge(folders)?;
     progress.update(|| "pictures".to_owned());
-    merged.files.extend(study.draw(folders, cancel)?);
-    Ok(ended(&merged, ran))
+    let drawn = study.draw(folders, cancel);
+    let fault = drawn.map(|files| merged.files.extend(files)).err();
+    let mut ended = ended(&merged, ran);
+    // The table is there: what cannot be drawn is said with it.
+    if let Some(error) = fault {
+        let said = format!("pictures: {}", chain(&error));
+        ended.complaints.push(said);
+        ended.complete = false;
+    }
+    Ok(ended)
 }
 
 /// The folder of the results.

@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use hertzian::structure::{Value, parameter};
 use hertzian_structure::{
-    Damping, Direction, Gyroscopic, Load, LoadKind, Ratios, Reduced, Reduction, ReductionError,
-    SparseMatrix, SparseStructure, StructureError,
+    Damping, Direction, Gyroscopic, Load, LoadKind, Ratios, Reduced, ReducedError, Reduction,
+    ReductionError, SparseMatrix, SparseStructure, StructureError,
 };
 use nalgebra::DMatrix;
+use serde_json::json;
 
 use crate::common::{bar, beam, dense};
 
@@ -240,6 +241,62 @@ fn a_reduced_structure_is_kept_in_a_file() {
     assert!(read.is_of(&driven(bar(50, false), 48)).is_err());
     std::fs::write(&path, "{}").unwrap();
     assert!(Reduced::read(&path).is_err());
+    std::fs::remove_file(&path).unwrap();
+}
+
+/// What was changed in a file so that its numbers do not fit each other is refused, and what is of another structure.
+#[test]
+fn a_changed_file_of_a_reduced_structure_is_refused() {
+    let n = 6;
+    let spins = [(0, 1, 0.3), (1, 0, -0.3)];
+    let spins = SparseMatrix::from_triplets(n, n, spins).unwrap();
+    let dampers = SparseMatrix::from_triplets(n, n, [(2, 2, 0.1)]).unwrap();
+    let of = |kind: LoadKind| {
+        bar(n, false)
+            .damping(Damping::Matrix(dampers.clone()))
+            .gyroscopic(Gyroscopic {
+                matrix: spins.clone(),
+                speed: parameter("speed", 1.0),
+            })
+            .load(Load::new(kind, Direction::at(n - 1), parameter("a", 0.1)))
+    };
+    let structure = of(LoadKind::Force);
+    let reduced = Reduction::to(3.0).modes(2).run(&structure).unwrap();
+    assert!(reduced.is_of(&structure).is_ok());
+    // A base moves the masses: its vectors are others.
+    assert!(reduced.is_of(&of(LoadKind::Base)).is_err());
+    let name = format!("hertzian-changed-{}.json", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    reduced.write(&path).unwrap();
+    let sound: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let changed = |pointer: &str, value: serde_json::Value| {
+        let mut all = sound.clone();
+        *all.pointer_mut(pointer).expect(pointer) = value;
+        std::fs::write(&path, all.to_string()).unwrap();
+        Reduced::read(&path)
+    };
+    for (pointer, value) in [
+        ("/damping/1", json!(7.0)),
+        ("/gyroscopic/0/0", json!(1.0)),
+        ("/gyroscopic/0/1", json!(9.0)),
+        ("/rows/0", json!([1.0])),
+        ("/modes", json!(0)),
+        ("/modes", json!(100)),
+        ("/to", json!(0.0)),
+        ("/checked", json!([])),
+        ("/checked/0/largest", json!(-1.0)),
+        ("/checked/1/frequency", json!(1e9)),
+        ("/checked/0/errors", json!([0.0, 0.0])),
+    ] {
+        let error = changed(pointer, value).expect_err(pointer);
+        assert!(matches!(error, ReducedError::Sizes), "{pointer}: {error}");
+    }
+    let older = changed("/version", json!(1)).expect_err("a version");
+    assert!(matches!(older, ReducedError::Version { found: 1, .. }));
+    for (pointer, value) in [("/coordinates", json!(7)), ("/gyroscopic", json!([]))] {
+        let other = changed(pointer, value).unwrap();
+        assert!(matches!(other.is_of(&structure), Err(ReducedError::Other)));
+    }
     std::fs::remove_file(&path).unwrap();
 }
 

@@ -84,6 +84,13 @@ pub(crate) fn check(study: &Prepared) -> Result<(), StudyError> {
                     "a map needs what = \"solutions\", and a grid over one parameter besides what varies along the rows",
                 );
             }
+            Shown::Map if cells(study) > MOST_CELLS => {
+                let message = format!(
+                    "a map of {} cells: at most {MOST_CELLS} are drawn; draw parts of it, or fewer values",
+                    cells(study)
+                );
+                return refused(&message);
+            }
             Shown::Histogram if what == What::Solutions => {
                 return refused("a histogram needs events, which solutions have not");
             }
@@ -113,6 +120,15 @@ pub(crate) fn check(study: &Prepared) -> Result<(), StudyError> {
     }
     Ok(())
 }
+
+/// Cells of a map: values along the rows, times those of the grid.
+fn cells(study: &Prepared) -> usize {
+    let side = study.designed.side().map_or(0, |(_, side)| side.len());
+    study.at.len().saturating_mul(side)
+}
+
+/// Cells of a map that is drawn: all of them are held at once, and each is a rectangle of the picture.
+const MOST_CELLS: usize = 1 << 18;
 
 /// Quantiles that are shown.
 fn quantiles(picture: &Picture) -> Vec<f64> {

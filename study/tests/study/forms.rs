@@ -120,3 +120,18 @@ fn histograms_and_fans_say_their_quantiles() {
         assert!(refused.clone().pictures([picture]).prepare().is_err());
     }
 }
+
+#[test]
+fn a_map_of_too_many_cells_is_refused_before_anything_is_computed() {
+    let at: Vec<f64> = (0..1000).map(|n| 0.65 + 4e-4 * f64::from(n)).collect();
+    let study = Study::of(&OneSided::default())
+        .variants(Variants::grid().over("drive", Spread::even(0.02, 0.1, 1000)))
+        .request(Request::solutions(0.65, 1.05, &at));
+    assert!(study.prepare().is_ok());
+    let study = study.pictures([Picture::map("stable")]);
+    let error = study.prepare().expect_err("a map").to_string();
+    assert!(
+        error.contains("a map of 1000000 cells: at most 262144"),
+        "{error}"
+    );
+}

@@ -4,9 +4,9 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use crate::common::{Folder as Temporary, study};
+use crate::common::{Folder as Temporary, study, unprepared};
 use hertzian::Cancel;
-use hertzian_study::{Folder, Part, Prepared, Ran, Runner};
+use hertzian_study::{Folder, Part, Plan, Prepared, Ran, Runner};
 
 const COUNT: usize = 30;
 
@@ -104,6 +104,8 @@ fn an_interrupted_run_goes_on_and_computes_nothing_twice() {
         });
         let ran = ran.expect("a run");
         assert!(ran.interrupted);
+        // The token is the caller's: it goes on with other things.
+        assert!(!cancel.is_cancelled());
         assert_eq!(ran.before, before);
         // Whole blocks of four.
         assert_eq!(ran.computed, stop / 4 * 4);
@@ -112,6 +114,25 @@ fn an_interrupted_run_goes_on_and_computes_nothing_twice() {
     let ran = run(&study, &path, Part::WHOLE, 2);
     assert_eq!((ran.computed, ran.before), (COUNT - before, before));
     assert_eq!(merged(&study, &[&path]), expected);
+}
+
+#[test]
+fn a_run_ends_with_the_token_of_its_caller() {
+    let (study, folder) = (study(COUNT), Temporary::new("cancelled"));
+    let kept = Folder::open(folder.join("results"), &study).expect("a folder");
+    let cancel = Cancel::new();
+    let runner = Runner::new(&study, &kept).threads(1).cancel(&cancel);
+    let mut told = 0;
+    let ran = runner.run(&mut |_| {
+        told += 1;
+        if told == 6 {
+            cancel.cancel();
+        }
+        ControlFlow::Continue(())
+    });
+    let ran = ran.expect("a run");
+    assert!(ran.interrupted);
+    assert_eq!((ran.computed, told), (4, 6));
 }
 
 #[test]
@@ -156,6 +177,19 @@ fn a_folder_of_another_study_or_that_cannot_be_written_is_said() {
     assert!(format!("{error:?}").starts_with("cannot use "), "{error:?}");
 }
 
+/// Seeds beyond 2^63 - 1, up to which the format of the file promises whole numbers, are written and read too.
+#[test]
+fn studies_of_the_largest_seeds_are_told_apart() {
+    let folder = Temporary::new("seeds");
+    let of = |seed: u64| unprepared(COUNT).seed(seed).prepare().expect("a study");
+    let path = folder.join("results");
+    Folder::open(&path, &of(u64::MAX)).expect("a folder");
+    let text = fs::read_to_string(path.join("study.toml")).expect("a study");
+    let plan = Plan::parse(&text, Path::new("study.toml")).expect("a plan");
+    assert_eq!(plan.seed, u64::MAX);
+    assert!(Folder::open(&path, &of(u64::MAX - 1)).is_err());
+}
+
 /// A block that cannot be written ends the run; those that were written stay.
 #[test]
 fn what_cannot_be_written_loses_nothing_else() {
@@ -164,10 +198,12 @@ fn what_cannot_be_written_loses_nothing_else() {
     let kept = Folder::open(&path, &study).expect("a folder");
     // A folder stands where the file of block 3 is to be.
     fs::create_dir(path.join("blocks/00000003.csv")).expect("a folder");
-    let runner = Runner::new(&study, &kept).threads(1);
+    let cancel = Cancel::new();
+    let runner = Runner::new(&study, &kept).threads(1).cancel(&cancel);
     let error = runner
         .run(&mut |_| ControlFlow::Continue(()))
         .expect_err("no file");
+    assert!(!cancel.is_cancelled());
     assert!(format!("{error:?}").contains("00000003.csv"), "{error:?}");
     fs::remove_dir(path.join("blocks/00000003.csv")).expect("removed");
     let ran = run(&study, &path, Part::WHOLE, 1);

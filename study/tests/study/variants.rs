@@ -177,6 +177,12 @@ fn what_cannot_be_is_said() {
             Variants::sobol(0).over("k", Spread::uniform(3.0, 4.0)),
             "0 is not between 1",
         ),
+        (
+            Variants::latin_hypercube(1 << 26)
+                .over("k", Spread::uniform(3.0, 4.0))
+                .over("drive", Spread::uniform(0.0, 1.0)),
+            "over 2 parameters has 134217728 places, more than 67108864",
+        ),
         (Variants::sobol(10), "nothing varies"),
         (k(Spread::list(&[1.0])), "are for a grid"),
         (k(Spread::even(1.0, 2.0, 3)), "`count` here is for a grid"),
