@@ -8,7 +8,8 @@ use hertzian_cli::response::options::Multipliers;
 
 use serde_json::Value;
 
-use crate::{Folder, all, coarse, options, read, run_with};
+use super::{all, coarse, options, read, run_with};
+use crate::folder::Folder;
 
 #[test]
 fn without_arguments_it_is_figure_5b() {

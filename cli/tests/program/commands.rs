@@ -1,7 +1,5 @@
 //! The program as a whole: its subcommands, what belongs to an installation, and models by their names.
 
-mod folder;
-
 use std::process::{Command, Output};
 
 use clap::CommandFactory;
@@ -11,7 +9,7 @@ use hertzian_cli::built_in::MODELS;
 use hertzian_cli::command::Program;
 use hertzian_cli::response::models::OneSidedHertz;
 
-use folder::Folder;
+use crate::folder::Folder;
 
 fn hertzian(arguments: &str) -> Output {
     let words = arguments.split_whitespace();

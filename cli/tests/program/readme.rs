@@ -12,7 +12,7 @@ use hertzian_cli::response::progress::Progress;
 use hertzian_cli::response::run::run;
 use serde_json::Value;
 
-const README: &str = include_str!("../../README.md");
+const README: &str = include_str!("../../../README.md");
 
 /// The lines between the line after this one and the end of its block.
 fn block(before: &str) -> Vec<&'static str> {

@@ -1,13 +1,11 @@
 //! Branches that are kept while they are followed, resumed when the program was killed, shown, and begun near.
 
-mod folder;
-
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use hertzian::{Branch, Stop};
 
-use folder::Folder;
+use crate::folder::Folder;
 
 fn hertzian(arguments: &[&str]) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_hertzian"));

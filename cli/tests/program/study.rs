@@ -1,12 +1,10 @@
 //! The subcommand `study`: a file of a model of one's own, in parts, merged, and what is said of faults.
 
-mod folder;
-
 use std::fs;
 use std::path::Path;
 
+use crate::folder::Folder;
 use clap::Parser;
-use folder::Folder;
 use hertzian::Cancel;
 use hertzian_cli::program::Ended;
 use hertzian_cli::response::progress::Progress;

@@ -1,7 +1,5 @@
 //! The programs `response` and `attractors`: what does not go together is refused, and what takes long can be ended.
 
-mod folder;
-
 use hertzian::Cancel;
 use std::path::Path;
 use std::sync::Mutex;
@@ -11,7 +9,7 @@ use hertzian_cli::attractors;
 use hertzian_cli::response;
 use hertzian_cli::response::progress::Progress;
 
-use folder::Folder;
+use crate::folder::Folder;
 
 fn response_options(command: &str) -> Result<response::options::Options, clap::Error> {
     let words = std::iter::once("response").chain(command.split_whitespace());

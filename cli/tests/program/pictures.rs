@@ -1,10 +1,8 @@
 //! Charts by the program: scales, events by choice, harmonics upon each other, several files, waterfalls, panels.
 
-mod folder;
-
 use std::process::Command;
 
-use folder::Folder;
+use crate::folder::Folder;
 
 /// What the program prints, and what it complains of.
 fn run(args: &[&str]) -> (bool, String) {

@@ -11,7 +11,7 @@ use hertzian_cli::response::progress::Progress;
 use hertzian_cli::response::run::run;
 use serde_json::Value;
 
-const CHAPTER: &str = include_str!("../../docs/book/src/files.md");
+const CHAPTER: &str = include_str!("../../../docs/book/src/files.md");
 
 /// The first and the last cell of every row of the table under a heading.
 fn table(heading: &str) -> Vec<(&'static str, &'static str)> {

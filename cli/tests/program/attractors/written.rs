@@ -4,7 +4,8 @@ use hertzian::{FrequencyResponse, Shooting, Verdict};
 use hertzian_cli::response::model_file::Varied;
 use hertzian_cli::response::models::model;
 
-use crate::{Folder, array, options, rows, run_in};
+use super::{array, options, rows, run_in};
+use crate::folder::Folder;
 
 /// States of periods 1, 2 and 3 computed independently from the closed-form flow, in 80-bit arithmetic confirmed with 60 digits.
 #[test]

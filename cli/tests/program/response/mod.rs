@@ -1,10 +1,6 @@
 //! The subcommand `response`: what it accepts, and what it writes and says.
 
 mod accepted;
-#[path = "../cancels/mod.rs"]
-mod cancels;
-#[path = "../folder/mod.rs"]
-mod folder;
 mod written;
 
 use hertzian::Cancel;
@@ -15,7 +11,7 @@ use hertzian_cli::response::progress::Progress;
 use hertzian_cli::response::run::{Failure, Outcome, run};
 use serde_json::Value;
 
-use folder::Folder;
+use crate::folder::Folder;
 
 /// What the words of a command line ask for.
 fn read(arguments: &[&str]) -> Result<Options, clap::Error> {

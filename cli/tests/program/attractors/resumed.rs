@@ -5,8 +5,9 @@ use hertzian_cli::attractors::options::Options;
 use hertzian_cli::attractors::run::{Failure, Outcome, run};
 use hertzian_cli::response::progress::Progress;
 
+use super::{options, rows, run_in};
 use crate::cancels::CancelsWhereWritten;
-use crate::{Folder, options, rows, run_in};
+use crate::folder::Folder;
 
 /// What the run that is killed computes, and where it keeps it.
 const TO_BE_KILLED: [&str; 7] = ["--basin", "--alpha", "1", "--drive", "1", "--grid", "128"];

@@ -7,7 +7,8 @@ use hertzian_cli::attractors::options::Options;
 use hertzian_cli::attractors::run::run;
 use hertzian_cli::response::progress::Progress;
 
-use crate::{Folder, array, options, read, rows, run_in};
+use super::{array, options, read, rows, run_in};
+use crate::folder::Folder;
 
 /// A figure, options that shorten it, and what its picture says.
 const SHORTER: [(&str, &[&str], &[&str]); 5] = [

@@ -1,8 +1,5 @@
 //! The subcommand `response` in planes: curves in two parameters, and where attractors are looked for; and `map`.
 
-mod cancels;
-mod folder;
-
 use std::ffi::OsString;
 
 use clap::Parser;
@@ -19,8 +16,8 @@ use hertzian_cli::response::search;
 use hertzian_cli::{map, show};
 use serde_json::Value;
 
-use cancels::CancelsWhereWritten;
-use folder::Folder;
+use crate::cancels::CancelsWhereWritten;
+use crate::folder::Folder;
 
 impl Folder {
     /// A file with this text.

@@ -7,8 +7,9 @@ use hertzian_cli::response::progress::Progress;
 use hertzian_cli::response::run::run;
 use serde_json::Value;
 
+use super::{all, check_csv, check_point, coarse, numbers, options, points, run_with};
 use crate::cancels::CancelsWhereWritten;
-use crate::{Folder, all, check_csv, check_point, coarse, numbers, options, points, run_with};
+use crate::folder::Folder;
 
 #[test]
 fn json_has_the_documented_names() {
@@ -448,5 +449,5 @@ fn signals_are_drawn_and_written_by_their_names() {
         let message = failure.expect_err("no such signal").to_string();
         assert!(message.contains(said), "{message}");
     }
-    assert!(crate::read(&["--plot", "head:power"]).is_err());
+    assert!(super::read(&["--plot", "head:power"]).is_err());
 }

@@ -1,10 +1,6 @@
 //! The subcommand `attractors`: what it accepts, what it writes, and how it goes on after it was ended.
 
 mod accepted;
-#[path = "../cancels/mod.rs"]
-mod cancels;
-#[path = "../folder/mod.rs"]
-mod folder;
 mod resumed;
 mod written;
 
@@ -14,7 +10,7 @@ use hertzian_cli::attractors::run::{Failure, Outcome, run};
 use hertzian_cli::command::{Program, Task};
 use hertzian_cli::response::progress::Progress;
 
-use folder::Folder;
+use crate::folder::Folder;
 
 impl Folder {
     fn read(&self, name: &str) -> Vec<u8> {
