@@ -85,14 +85,17 @@ pub(crate) fn seen_by_moduli(
     (!is_told).then_some(kind)
 }
 
-/// Number of complex multipliers outside of the unit circle.
-pub(crate) fn complex_outside(multipliers: &[Complex<f64>]) -> usize {
+/// Logarithms of the complex multipliers with a positive imaginary part.
+pub(crate) fn pairs(multipliers: &[Complex<f64>]) -> Vec<Complex<f64>> {
     let places = 0..multipliers.len();
-    let outside = places.filter(|place| {
-        logarithm(multipliers, *place) > 0.0
-            && crossing(multipliers, *place) == EventKind::NeimarkSacker
+    let pairs = places.filter(|place| {
+        multipliers[*place].im > 0.0 && crossing(multipliers, *place) == EventKind::NeimarkSacker
     });
-    outside.count()
+    let logarithms = pairs.map(|place| {
+        let angle = multipliers[place].arg();
+        Complex::new(logarithm(multipliers, place), angle)
+    });
+    logarithms.collect()
 }
 
 /// Whether an event is one of those recorded behind the same point, within the errors of both. A pair that passes has two test functions

@@ -3,6 +3,8 @@
 //! The engine knows the curve, test functions and what their changes of sign mean. A method knows its equations, how orbits are read
 //! off solutions, what errors it makes, and where its branches end because they become those of more regular orbits.
 
+use nalgebra::Complex;
+
 use super::engine::Walk;
 use super::extreme::Extreme;
 use super::record::{Kept, Record};
@@ -160,8 +162,8 @@ pub(crate) trait BranchProblem {
     /// Value of a test function, unknown where the orbit cannot be looked at.
     fn test(&mut self, index: usize, at: &CurvePoint) -> TestValue;
 
-    /// Number of complex multipliers outside of the unit circle, where moduli are watched.
-    fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
+    /// Logarithms of the complex multipliers with a positive imaginary part, where moduli are watched.
+    fn pairs(&mut self, at: &CurvePoint) -> Option<Vec<Complex<f64>>> {
         let _ = at;
         None
     }

@@ -1,6 +1,6 @@
 //! The contact equation as the engine of branches sees it.
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use super::equations::Equations;
 use super::events;
@@ -252,9 +252,9 @@ impl BranchProblem for ContactBranch<'_, '_> {
         TestValue::plain(self.tests(at).value(tested::Test::watched(index)))
     }
 
-    fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
+    fn pairs(&mut self, at: &CurvePoint) -> Option<Vec<Complex<f64>>> {
         let watches = !self.watched.is_empty();
-        watches.then(|| moduli::complex_outside(&self.tests(at).multipliers))
+        watches.then(|| moduli::pairs(&self.tests(at).multipliers))
     }
 
     fn vanishing(&self) -> f64 {

@@ -1,5 +1,7 @@
 //! Shooting as the engine of branches sees it.
 
+use nalgebra::Complex;
+
 use super::equations::Equations;
 use super::events;
 use super::gap_extremes::GapExtremes;
@@ -157,9 +159,9 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         TestValue::plain(self.tests(at).value(tested::Test::watched(index)))
     }
 
-    fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
+    fn pairs(&mut self, at: &CurvePoint) -> Option<Vec<Complex<f64>>> {
         let watches = !self.watched.is_empty();
-        watches.then(|| moduli::complex_outside(&self.tests(at).multipliers))
+        watches.then(|| moduli::pairs(&self.tests(at).multipliers))
     }
 
     fn vanishing(&self) -> f64 {

@@ -17,6 +17,7 @@ mod grazing;
 mod halved;
 mod hidden;
 mod interrupted;
+mod meeting;
 mod mirrored;
 mod symmetry;
 mod table;

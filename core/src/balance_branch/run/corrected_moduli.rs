@@ -9,6 +9,8 @@
 //!
 //! agrees with the verdicts at both ends: what changes between them is found, and what does not is not.
 
+use nalgebra::Complex;
+
 use super::Run;
 use super::event_monitor::EventMonitor;
 use crate::balance::resolution::resize;
@@ -108,19 +110,19 @@ impl<'a> Run<'a> {
         plain + (1.0 - s) * d(index) + s * d(index + 1)
     }
 
-    /// Number of complex multipliers outside of the unit circle at an orbit, where multipliers are looked at.
-    pub(super) fn complex_outside(
+    /// Logarithms of the complex multipliers of an orbit with a positive imaginary part, where multipliers are looked at.
+    pub(super) fn pairs(
         &self,
         monitor: &mut EventMonitor<'a>,
         at: &[f64],
-    ) -> Option<usize> {
+    ) -> Option<Vec<Complex<f64>>> {
         let multipliers = monitor.multipliers.as_mut()?;
         let last = self.record.points.iter().rev().take(POINTS);
         let here = last.clone().find(|point| like(point, at) == at);
         let known = here.map(|point| &point.stability.multipliers);
         Some(match known.filter(|known| !known.is_empty()) {
-            Some(known) => moduli::complex_outside(known),
-            None => moduli::complex_outside(multipliers.at(at)),
+            Some(known) => moduli::pairs(known),
+            None => moduli::pairs(multipliers.at(at)),
         })
     }
 

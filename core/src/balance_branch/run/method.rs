@@ -1,5 +1,7 @@
 //! Harmonic balance as the engine of branches sees it.
 
+use nalgebra::Complex;
+
 use super::Run;
 use super::crossed::CROSSED;
 use super::event_monitor::{EventMonitor, Found, Test as OfOrbit};
@@ -73,9 +75,9 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         TestValue::plain(modulus)
     }
 
-    fn complex_outside(&mut self, at: &CurvePoint) -> Option<usize> {
+    fn pairs(&mut self, at: &CurvePoint) -> Option<Vec<Complex<f64>>> {
         let mut monitor = std::mem::take(&mut self.run.monitor);
-        let found = self.run.complex_outside(&mut monitor, &at.u);
+        let found = self.run.pairs(&mut monitor, &at.u);
         self.run.monitor = monitor;
         found
     }

@@ -18,6 +18,7 @@
 //! function, uses it with a bound on the first derivative.
 
 use super::Engine;
+use super::meeting::Meeting;
 use super::seen::{Seen, changes, signs};
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
 use crate::continuation::follow::{CurvePoint, Step};
@@ -50,17 +51,15 @@ impl Engine {
     ) -> Vec<Seen> {
         let mut parts = vec![a, b];
         if let Some(earlier) = earlier {
-            for test in tests(problem) {
-                if is_hidden(problem, &parts, test)
-                    || is_conjugate(problem, [earlier, &parts[0]], test)
-                {
+            for sought in sought_from(problem, &parts[0]) {
+                if sought.is_seen(problem, &parts, earlier) {
                     continue;
                 }
                 let points = [earlier, &parts[0], &parts[parts.len() - 1]];
-                match self.dip(problem, newton, points, test) {
+                match self.dip(problem, newton, points, sought) {
                     Some(Dip::Last(found)) => insert(newton, &mut parts, found),
                     // Found as the last step, when it was that.
-                    Some(Dip::Before(_)) if self.divided.contains(&(after - 1, test)) => {}
+                    Some(Dip::Before(_)) if sought.is_among(&self.divided, after - 1) => {}
                     Some(Dip::Before(found)) => {
                         let parts = [earlier.clone(), found, parts[0].clone()];
                         self.record_pair(problem, newton, &parts, after - 1);
@@ -123,9 +122,9 @@ impl Engine {
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         points: [&Seen; 3],
-        test: Test,
+        sought: Sought,
     ) -> Option<Dip> {
-        let values = points.map(|seen| seen.value(test));
+        let values = points.map(|seen| sought.value(seen));
         let sign = values[1].mantissa.signum();
         let alike = |value: &TestValue| sign * value.mantissa > 0.0;
         if points[0].point.u.len() != points[1].point.u.len() || !values.iter().all(alike) {
@@ -140,16 +139,17 @@ impl Engine {
             place: places[i],
             height: heights[i],
         });
-        let noise = match test {
-            Test::Slope => points[1].point.narrowness() * problem.vanishing(),
-            Test::Watched(index) => problem.noise(index).max(problem.vanishing()),
+        let noise = match sought {
+            Sought::Test(Test::Slope) => points[1].point.narrowness() * problem.vanishing(),
+            Sought::Test(Test::Watched(index)) => problem.noise(index).max(problem.vanishing()),
+            Sought::Meeting(_) => 0.0,
         };
         for first in [1, 0] {
             let descent = Descent {
                 between: [points[first], points[first + 1]],
                 from: places[first],
                 whole: lengths[first],
-                test,
+                sought,
                 sign,
                 reference,
             };
@@ -194,7 +194,10 @@ impl Engine {
                 // A part without a value would hide what changes its sign there.
                 return None;
             }
-            let height = descent.sign * seen.value(descent.test).relative_to(descent.reference);
+            let height = descent.sign * descent.sought.value(&seen).relative_to(descent.reference);
+            if height.is_nan() {
+                return None;
+            }
             if height < 0.0 {
                 return Some(seen);
             }
@@ -261,6 +264,56 @@ fn tests(problem: &dyn BranchProblem) -> impl Iterator<Item = Test> + use<> {
     [Test::Slope].into_iter().chain(watched)
 }
 
+/// A function that may pass zero twice within a step.
+#[derive(Debug, Clone, Copy)]
+enum Sought {
+    Test(Test),
+    /// That of two pairs of multipliers, whose moduli tell it afterwards.
+    Meeting(Meeting),
+}
+
+/// All that are looked at from an orbit on.
+fn sought_from(problem: &dyn BranchProblem, seen: &Seen) -> Vec<Sought> {
+    let moduli = moduli(problem).next();
+    let meetings = moduli.map(|index| Meeting::all(seen, problem.noise(index)));
+    let meetings = meetings.into_iter().flatten().map(Sought::Meeting);
+    tests(problem).map(Sought::Test).chain(meetings).collect()
+}
+
+/// The moduli of multipliers among what is watched.
+fn moduli(problem: &dyn BranchProblem) -> impl Iterator<Item = usize> + use<'_> {
+    let watched = problem.watched().iter().enumerate();
+    let moduli = watched.filter(|(_, watched)| watched.kind == EventKind::NeimarkSacker);
+    moduli.map(|(index, _)| index)
+}
+
+impl Sought {
+    fn value(self, seen: &Seen) -> TestValue {
+        match self {
+            Self::Test(test) => seen.value(test),
+            Self::Meeting(meeting) => meeting.value(seen),
+        }
+    }
+
+    /// Whether the parts of a step show already what it would tell.
+    fn is_seen(self, problem: &dyn BranchProblem, parts: &[Seen], earlier: &Seen) -> bool {
+        match self {
+            Self::Test(test) => {
+                is_hidden(problem, parts, test) || is_conjugate(problem, [earlier, &parts[0]], test)
+            }
+            Self::Meeting(_) => {
+                let mut moduli = moduli(problem);
+                moduli.any(|index| is_hidden(problem, parts, Test::Watched(index)))
+            }
+        }
+    }
+
+    /// Whether a step behind so many points was divided for it.
+    fn is_among(self, divided: &[(usize, Test)], after: usize) -> bool {
+        matches!(self, Self::Test(test) if divided.contains(&(after, test)))
+    }
+}
+
 /// Whether a test function has one sign at both ends of a step and the other one inside.
 fn is_hidden(problem: &dyn BranchProblem, parts: &[Seen], test: Test) -> bool {
     let [first, inner @ .., last] = parts else {
@@ -307,7 +360,7 @@ struct Descent<'s> {
     /// Where it begins, and its length.
     from: f64,
     whole: f64,
-    test: Test,
+    sought: Sought,
     sign: f64,
     reference: f64,
 }

@@ -10,7 +10,8 @@
 //! | Neimark-Sacker | the [moduli](crate::branches::moduli) of multipliers, where more of them pass one than the others explain |
 //! | others | what the method gives: [`BranchProblem::watched`] |
 //!
-//! 1. A step is [divided](inside) where a function passes zero twice in it, as far as three points tell.
+//! 1. A step is [divided](inside) where a function passes zero twice in it, as far as three points tell, or two pairs of multipliers
+//!    [meet](meeting).
 //! 2. What changes its sign in a part is [located](zero) and read.
 //! 3. A step that [leaps](leap) over two folds is made again, shorter.
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
@@ -26,6 +27,7 @@ mod corner_search;
 mod inside;
 mod inside_touch;
 mod leap;
+mod meeting;
 mod seen;
 #[cfg(test)]
 mod tests;

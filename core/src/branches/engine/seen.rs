@@ -1,5 +1,7 @@
 //! Points of a branch with their test functions, and what changes of sign between two of them mean.
 
+use nalgebra::Complex;
+
 use crate::branches::problem::{BranchProblem, Change, Test, TestValue};
 use crate::continuation::follow::CurvePoint;
 use crate::event::EventKind;
@@ -10,8 +12,9 @@ use crate::event::EventKind;
 pub(super) struct Seen {
     pub(super) point: CurvePoint,
     pub(super) values: Vec<TestValue>,
-    /// Complex multipliers outside of the unit circle.
-    pub(super) complex: Option<usize>,
+    /// Logarithms of the complex multipliers with a positive imaginary part.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub(super) pairs: Option<Vec<Complex<f64>>>,
     /// Whether the parameter falls, as the last slope says that is no rounding: where a branch is vertical, as with orbits of any size at a
     /// parametric resonance of a linear stretch, no sign of a slope means anything.
     pub(super) falls: Option<bool>,
@@ -26,14 +29,20 @@ impl Seen {
     ) -> Self {
         let values = (0..problem.watched().len()).map(|index| problem.test(index, point));
         let values = values.collect();
-        let complex = problem.complex_outside(point);
+        let pairs = problem.pairs(point);
         let slope = point.known_slope(problem.vanishing());
         Self {
             point: point.clone(),
             values,
-            complex,
+            pairs,
             falls: slope.map(|slope| slope < 0.0).or(falls),
         }
+    }
+
+    /// Number of pairs outside of the unit circle.
+    fn outside(&self) -> Option<usize> {
+        let pairs = self.pairs.as_ref()?.iter();
+        Some(pairs.filter(|pair| pair.re > 0.0).count())
     }
 
     pub(super) fn value(&self, test: Test) -> TestValue {
@@ -101,7 +110,7 @@ pub(super) fn changes(problem: &dyn BranchProblem, a: &Seen, b: &Seen) -> Vec<Ch
     }
     // Every other change of sign takes one multiplier across the unit circle, and none that is complex.
     let explained = moduli.len() <= changes.len() && (changes.len() - moduli.len()) % 2 == 0;
-    if !explained || a.complex != b.complex {
+    if !explained || a.outside() != b.outside() {
         changes.append(&mut moduli);
     }
     changes

@@ -1,0 +1,117 @@
+//! Pairs of multipliers that meet and may part across the unit circle.
+//!
+//! Where two pairs come together, their moduli part as a square root does, and what they are at successive points tells nothing of what
+//! they come to in between. With the logarithms `l_1`, `l_2` of both, `s = Re (l_1 + l_2) / 2` and `(l_1 - l_2)^2 / 4 = p + i q` are smooth
+//! all along, and so is
+//!
+//! ```text
+//! F = s^4 - s^2 p - q^2 / 4 = Re l_1 Re l_2 (s^2 + (Im l_1 - Im l_2)^2 / 4)                                    (1)
+//! ```
+//!
+//! which is negative where one pair is inside of the circle and the other one outside.
+//!
+//! Source: (1) is the part of the bialternate product, Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria,
+//! chapter 4, that belongs to two pairs beside each other.
+
+use nalgebra::Complex;
+
+use super::seen::Seen;
+use crate::branches::problem::TestValue;
+
+/// Two pairs of multipliers of one orbit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Meeting {
+    /// Logarithms of the multipliers with a positive imaginary part.
+    pairs: [Complex<f64>; 2],
+    /// To which logarithms of moduli are known.
+    noise: f64,
+}
+
+impl Meeting {
+    /// All of an orbit.
+    pub(super) fn all(seen: &Seen, noise: f64) -> Vec<Self> {
+        let pairs = seen.pairs.as_deref().unwrap_or_default();
+        let mut all = Vec::new();
+        for (i, one) in pairs.iter().enumerate() {
+            all.extend(pairs[..i].iter().map(|other| Self {
+                pairs: [*one, *other],
+                noise,
+            }));
+        }
+        all
+    }
+
+    /// (1) at another orbit, of the two pairs that these are nearest to.
+    pub(super) fn value(&self, seen: &Seen) -> TestValue {
+        let among = seen.pairs.as_deref().unwrap_or_default();
+        let Some([a, b]) = self.nearest(among) else {
+            return TestValue::UNKNOWN;
+        };
+        let s = 0.5 * (a.re + b.re);
+        if s.abs() <= self.noise {
+            return TestValue::UNKNOWN;
+        }
+        let half = 0.5 * (a - b);
+        let Complex { re: p, im: q } = half * half;
+        TestValue::plain(s * s * (s * s - p) - 0.25 * q * q)
+    }
+
+    /// The two that are nearest together: where both have moved the same way, one may be the nearest of each.
+    fn nearest(&self, among: &[Complex<f64>]) -> Option<[Complex<f64>; 2]> {
+        let [one, other] = self.pairs;
+        let places = (0..among.len()).flat_map(|i| (0..among.len()).map(move |j| [i, j]));
+        let apart = |[i, j]: &[usize; 2]| (among[*i] - one).norm() + (among[*j] - other).norm();
+        places
+            .filter(|[i, j]| i != j)
+            .min_by(|x, y| apart(x).total_cmp(&apart(y)))
+            .map(|places| places.map(|place| among[place]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::continuation::follow::CurvePoint;
+    use crate::continuation::problem::Scale;
+
+    fn at(pairs: [Complex<f64>; 2]) -> Seen {
+        Seen {
+            point: CurvePoint {
+                u: vec![0.0],
+                tangent: vec![1.0],
+                scale: Scale::UNIT,
+            },
+            values: Vec::new(),
+            pairs: Some(pairs.to_vec()),
+            falls: None,
+        }
+    }
+
+    /// `l = s + 0.9 i +- d^(1/2)`: the moduli have kinks where `d` vanishes, (1) is a parabola of a `d` that goes straight.
+    #[test]
+    fn where_pairs_meet_the_function_is_smooth() {
+        let s = -0.03;
+        let pairs = |d: Complex<f64>| {
+            let root = d.sqrt();
+            let mean = Complex::new(s, 0.9);
+            at([mean + root, mean - root])
+        };
+        let meeting = Meeting::all(&pairs(Complex::new(-1e-4, 1e-5)), 1e-9)[0];
+        let way = |t: f64| Complex::new(-1e-4 + 2e-3 * t, 1e-5 - 1e-5 * t);
+        let value = |t: f64| meeting.value(&pairs(way(t))).mantissa;
+        for t in [0.0, 0.2, 0.5, 0.8] {
+            let third = value(t + 0.2) - 3.0 * value(t + 0.1) + 3.0 * value(t) - value(t - 0.1);
+            assert!(
+                third.abs() < 1e-12 * value(0.0).abs().max(1e-6),
+                "{third:e}"
+            );
+            let apart = way(t).sqrt().re.abs() > -s;
+            assert_eq!(value(t) < 0.0, apart, "{t}");
+        }
+        let unknown = Meeting {
+            noise: 0.1,
+            ..meeting
+        };
+        assert!(!unknown.value(&pairs(way(0.5))).is_known());
+    }
+}
