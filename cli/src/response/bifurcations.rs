@@ -18,6 +18,7 @@ use super::progress::Seen;
 use super::run::{Failure, in_range};
 use super::search::basin;
 use super::summary;
+use super::value::{self, of_varied};
 
 /// Sizes of orbits in a larger ratio than this are drawn over decades.
 const DECADES: f64 = 50.0;
@@ -221,7 +222,11 @@ impl Found {
         };
         let [x, y] = &track.names;
         let title = summary::title(options, model, &track.names);
-        let mut chart = Chart::new(title).x(x).y(y);
+        let axis = |name: &str| match self.unit(name) {
+            "" => name.to_owned(),
+            unit => format!("{name} [{unit}]"),
+        };
+        let mut chart = Chart::new(title).x(axis(x)).y(axis(y));
         let mut special = Vec::new();
         for track in &self.tracks {
             chart = chart.trace(Series {
@@ -239,6 +244,12 @@ impl Found {
             }
         }
         Ok(chart)
+    }
+
+    /// The unit of a parameter, or of the frequency.
+    fn unit(&self, name: &str) -> &str {
+        let first = self.diagram.branches.first();
+        first.map_or("", |first| first.branch.model.unit_of_varied(name))
     }
 
     /// Orbits of very different sizes are drawn over decades.
@@ -305,7 +316,11 @@ impl Found {
                 "curve      {kind}, period {period}: {count} points in {x}, {y}; {begin} and {end}"
             )?;
             for special in &track.special {
-                let [a, b] = special.values.map(|value| Decimal::rounded(value, 9));
+                let place = |number: usize| {
+                    let value = Decimal::rounded(special.values[number], 9);
+                    value::with(self.unit(&track.names[number]), value)
+                };
+                let [a, b] = [place(0), place(1)];
                 let error = special.error;
                 writeln!(
                     text,
@@ -326,7 +341,9 @@ impl Found {
 pub fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt::Result {
     let from = match branch.origin {
         Origin::Event { branch, .. } => format!(", from branch {}", branch + 1),
-        Origin::Attractor { value } => format!(", found at {value}"),
+        Origin::Attractor { value } => {
+            format!(", found at {}", of_varied(&branch.branch, value))
+        }
         Origin::OtherEnd => ", from the other end".to_owned(),
         _ => String::new(),
     };
@@ -342,8 +359,8 @@ pub fn describe(text: &mut String, number: usize, branch: &DiagramBranch) -> fmt
     for turn in &branch.branch.turns {
         writeln!(
             text,
-            "  unlocated at {:.6}: a test function changes its sign, and was not driven to zero",
-            turn.value
+            "  unlocated at {}: a test function changes its sign, and was not driven to zero",
+            of_varied(&branch.branch, format_args!("{:.6}", turn.value))
         )?;
     }
     Ok(())

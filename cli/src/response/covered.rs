@@ -10,6 +10,7 @@ use hertzian::{Error, FrequencyResponse, OrbitMethod, Progress, Stop};
 
 use super::bifurcations::describe;
 use super::options::Options;
+use super::value::in_diagram;
 
 /// How the range of a request is searched, unless one branch alone is wanted.
 ///
@@ -87,20 +88,26 @@ fn write_branches(text: &mut String, diagram: &Diagram) -> fmt::Result {
 /// None: writing to a string does not fail.
 pub fn write_search(text: &mut String, diagram: &Diagram, varied: &str) -> fmt::Result {
     for searched in &diagram.searched {
-        writeln!(text, "searched   {varied} {}", describe_search(searched))?;
+        let value = in_diagram(diagram, Decimal::rounded(searched.value, 6));
+        writeln!(
+            text,
+            "searched   {varied} {value}: {}",
+            describe_search(searched)
+        )?;
     }
     for (value, reason) in &diagram.missed {
-        let value = Decimal::plain(*value);
+        let value = in_diagram(diagram, Decimal::plain(*value));
         writeln!(text, "missed     {varied} {value}: {reason}")?;
     }
     for [low, high] in &diagram.uncovered {
         let [low, high] = [low, high].map(|value| Decimal::rounded(*value, 6));
+        let high = in_diagram(diagram, high);
         writeln!(text, "no orbit   {varied} from {low} to {high}")?;
     }
     Ok(())
 }
 
-/// As `1.2: 4 motions: 3 to period 1 on branch 2; 1 chaotic`.
+/// As `of 4 motions 3 settle to period 1 on branch 2, 1 are chaotic`.
 fn describe_search(searched: &Searched) -> String {
     let mut parts = Vec::new();
     for (number, orbit) in searched.orbits.iter().enumerate() {
@@ -130,6 +137,6 @@ fn describe_search(searched: &Searched) -> String {
             parts.push(format!("{count} {what}"));
         }
     }
-    let (value, count) = (Decimal::rounded(searched.value, 6), searched.fates.len());
-    format!("{value}: of {count} motions {}", parts.join(", "))
+    let count = searched.fates.len();
+    format!("of {count} motions {}", parts.join(", "))
 }

@@ -8,6 +8,7 @@ use hertzian::export::Decimal;
 use hertzian::{Branch, Event, EventKind, Point, System, Verdict};
 
 use super::options::{Aft, Options};
+use super::value::of_varied;
 use crate::model::ModelOptions;
 
 /// As many folds, turns and changes of stability are listed one by one; more of them are counted.
@@ -88,7 +89,7 @@ fn write_all(
     folds(text, branch)?;
     stability(text, branch)?;
     let solutions = at.iter().map(|point| {
-        let value = Decimal::plain(point.value);
+        let value = of_varied(branch, Decimal::plain(point.value));
         let asked = options.plot.iter();
         let asked = asked.filter_map(|of| branch.describe_measured(&of.to_string(), point).ok());
         let asked: Vec<String> = asked.collect();
@@ -178,7 +179,7 @@ fn range(text: &mut String, branch: &Branch) -> fmt::Result {
             branch.points.len(),
             branch.varied,
             Decimal::rounded(first.value, 6),
-            Decimal::rounded(last.value, 6),
+            of_varied(branch, Decimal::rounded(last.value, 6)),
         )?;
     }
     writeln!(text, "ended      {}", branch.stopped)
@@ -187,7 +188,7 @@ fn range(text: &mut String, branch: &Branch) -> fmt::Result {
 fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
     let folds = branch.folds().map(|fold| {
         let point = &fold.point;
-        let value = Decimal::to_error(point.value, fold.error);
+        let value = of_varied(branch, Decimal::to_error(point.value, fold.error));
         let size = branch.describe_size(point);
         format!(
             "{} {value} (error {:.0e}), {size}",
@@ -196,7 +197,8 @@ fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
     });
     list(text, "fold", folds)?;
     let turns = branch.turns.iter().map(|turn| {
-        let (varied, value) = (&branch.varied, Decimal::rounded(turn.value, 6));
+        let varied = &branch.varied;
+        let value = of_varied(branch, Decimal::rounded(turn.value, 6));
         match turn.kind {
             EventKind::Fold => {
                 format!("{varied} {value}, not confirmed as a fold: the slope jumps")
@@ -213,7 +215,7 @@ fn folds(text: &mut String, branch: &Branch) -> fmt::Result {
             format!(
                 "{} {} (error {:.0e}), broken: a branch without it crosses",
                 branch.varied,
-                Decimal::to_error(event.point.value, event.error),
+                of_varied(branch, Decimal::to_error(event.point.value, event.error)),
                 event.error
             )
         });
@@ -239,13 +241,13 @@ fn stability(text: &mut String, branch: &Branch) -> fmt::Result {
                     "{from} before the {} at {} {}, {to} after it",
                     event.kind,
                     branch.varied,
-                    Decimal::rounded(event.point.value, 6)
+                    of_varied(branch, Decimal::rounded(event.point.value, 6))
                 ),
                 None => format!(
                     "{from} until {} {}, {to} from {}",
                     branch.varied,
-                    Decimal::rounded(before.value, 6),
-                    Decimal::rounded(behind.value, 6)
+                    of_varied(branch, Decimal::rounded(before.value, 6)),
+                    of_varied(branch, Decimal::rounded(behind.value, 6))
                 ),
             }
         })

@@ -14,4 +14,5 @@ mod readme;
 mod refusals;
 mod response;
 mod study;
+mod tasks;
 mod work_precision;

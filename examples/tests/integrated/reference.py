@@ -165,8 +165,8 @@ def gear_orbits(starts, random):
 
 
 def gear_tasks(random):
-    starts = [[1 + 1.5*random.normal(), 1.5*random.normal()] for _ in range(14)]
-    counts = [len(settled(gears(1.4e4, load, variation), starts[:10])) for load in (1e3, 2e3, 4e3) for variation in (0.1, 0.2, 0.3)]
+    starts = [[1 + 1.5*random.normal(), 1.5*random.normal()] for _ in range(40)]
+    counts = [len(settled(gears(1.4e4, load, variation), starts)) for load in (1e3, 2e3, 4e3) for variation in (0.1, 0.2, 0.3)]
     return {"orbits": gear_orbits(starts[:10], random), "doublings": [doubling(3.35e4, 3.4e4), doubling(3.52e4, 3.57e4)], "stable": counts}
 
 
@@ -322,7 +322,7 @@ def cantilever_task(omega, starts):
     def load(omega, t):
         return 1.57e-6*0.05*omega**2*np.cos(t)*weights
     system = structure(mass, 4e-5*stiffness, stiffness, lambda q: abs(q[4] - 1)**1.5*last, load, lambda q: q[4] - 1)(omega)
-    orbits = system.orbits([np.concatenate([size*np.linspace(0, 1, 5), np.zeros(5)]) for size in starts])
+    orbits = system.orbits([np.concatenate([size*(np.arange(1, 6)/5)**1.8, np.zeros(5)]) for size in starts])
     return {"omega": omega, "orbits": system.described(
         orbits, lambda t, y, sides: np.array([y[4], np.maximum(y[4] - 1, 0)**1.5]), ["tip", "impact"])}
 
@@ -368,6 +368,7 @@ def main():
     orbits("approach", 5, tip_task(random, 5.0))
     orbits("bolted_joint", 2500, joint_task(random, 2500.0))
     orbits("beam", 3.9, beam_task(3.9, (0.5, 1.0, 2.0, -2.0)))
+    orbits("cantilever", 600, cantilever_task(600.0, (0.3, 3.0, -2.9)))
     for values in ((0.5, 20.0, 2e-3), (0.42, 24.0, 1.7e-3), (0.58, 16.0, 2.3e-3)):
         print("variants", *[" ".join(map(str, values)), "", "jump", "omega"], repr(variant(*values)["jump"]), sep="\t", flush=True)
 

@@ -262,8 +262,9 @@ fn faults_of_a_file_are_said_once_with_what_to_write_instead() {
     }
 }
 
-/// Gears that turn freely, which shooting has no equation for. As long as the teeth press, the mesh is linear: by an integration of its own over a
-/// period, of `r'' = -3/2 (k (1 + cos(omega t)/5) r + c r')`, the determinant of the derivative plus one vanishes at these frequencies.
+/// Gears that turn freely. As long as the teeth press, the mesh is linear, `r'' = -3/2 (k (1 + cos(omega t)/5) r + c r')`, and has motions of twice the
+/// period where Hill's determinant of odd multiples of half the frequency vanishes, here of 24 of them in 40 digits. What shooting states of an
+/// error is without the rounding of a motion over a period, some dozen units in the last place.
 #[test]
 fn doublings_of_what_nothing_holds_are_found() {
     let folder = Folder::new("free");
@@ -281,10 +282,11 @@ fn doublings_of_what_nothing_holds_are_found() {
     assert_eq!(doublings.len(), 2);
     for (event, exact) in doublings
         .iter()
-        .zip([33_721.404_775_401_5, 35_452.857_836_518_1])
+        .zip([33_721.404_775_409_11, 35_452.857_836_518_27])
     {
         let [value, error] = [&event["point"]["value"], &event["error"]].map(Value::as_f64);
         let apart = (value.expect("a number") - exact).abs();
-        assert!(apart <= error.expect("a number") && apart < 1e-6, "{event}");
+        let error = error.expect("a number");
+        assert!(apart <= error + 1e-13 * exact && error < 1e-9, "{event}");
     }
 }

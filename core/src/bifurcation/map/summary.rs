@@ -93,15 +93,19 @@ impl Map {
             return Ok(());
         };
         let [along, across] = &self.names;
-        let unit = self.model.unit_of(&self.signal);
-        let space = if unit.is_empty() { "" } else { " " };
+        let with = |value: Decimal, unit: &str| match unit {
+            "" => value.to_string(),
+            unit => format!("{value} {unit}"),
+        };
+        let varied =
+            |name: &str, value: f64| with(Decimal::plain(value), self.model.unit_of_varied(name));
+        let size = with(Decimal::rounded(size, 6), self.model.unit_of(&self.signal));
         writeln!(
             f,
-            "largest stable: peak-to-peak of {} {}{space}{unit} at {along} = {}, {across} = {}",
+            "largest stable: peak-to-peak of {} {size} at {along} = {}, {across} = {}",
             self.signal,
-            Decimal::rounded(size, 6),
-            Decimal::plain(value),
-            Decimal::plain(other)
+            varied(along, value),
+            varied(across, other)
         )
     }
 }
