@@ -1,4 +1,5 @@
-//! The verdict on one orbit: multipliers, and how far they can be trusted.
+//! Multipliers of one orbit as exactly as its verdict needs them, and how far they can be trusted. The verdict that follows from both is
+//! `Stability::of` in `branches/stability.rs`.
 //!
 //! Two errors are estimated: that of the method, by the method itself; and that of the orbit, by the change of the multipliers
 //! when the orbit is corrected for what its harmonics and samples leave out ([`truncation`](crate::balance::truncation)). The
