@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-#[path = "../../tests/declarations/shown.rs"]
+#[path = "../../tests/all/declarations/shown.rs"]
 mod shown;
 
 /// How many files hold all cases.
