@@ -29,7 +29,7 @@ const DEFAULT_POINTS: usize = 100_000;
 const BATCH: usize = 1000;
 
 /// The test that a process for one set runs.
-const ON_ONE_SET: &str = "generated_interpreted_and_dual_numbers_agree";
+const ON_ONE_SET: &str = "agreement::generated_interpreted_and_dual_numbers_agree";
 
 #[test]
 fn they_agree_on_the_other_instruction_sets() {
