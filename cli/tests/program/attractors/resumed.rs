@@ -78,7 +78,7 @@ fn a_basin_that_was_killed_goes_on_to_the_same_bytes() {
     run_in(&folder, "whole", &whole).expect("basins");
     let test = std::env::current_exe().expect("this program");
     let mut child = std::process::Command::new(test)
-        .args(["--exact", "resumed::a_run_that_is_killed"])
+        .args(["--exact", "attractors::resumed::a_run_that_is_killed"])
         .env(CHECKPOINT, file("part.log"))
         .stdout(std::process::Stdio::null())
         .spawn()
