@@ -370,25 +370,28 @@ fn of_cubic([[x, v], [y, w]]: [[f64; 2]; 2], time: f64) -> f64 {
     (1.0 + 2.0 * s) * t * t * x + s * t * t * v + s * s * (3.0 - 2.0 * s) * y - s * s * t * w
 }
 
-/// Extremes that are short of a level stand where two intervals meet: rounding says whether they are seen within one.
+/// Extremes that are short of a level stand where two intervals meet: rounding says whether they are seen within one. They are those of
+/// pairs of switches in one place.
 fn add_short(motion: &Motion<'_>, contact: usize, found: &mut Vec<GapExtreme>) {
     let skeleton = &motion.equations.skeleton;
-    for interval in 1..motion.intervals() {
-        let [from, to] = motion.phases(interval);
-        let before = skeleton.intervals[interval - 1].ends;
-        let Some(switch) = before.map(|switch| skeleton.switches[switch]) else {
+    for (first, switch) in skeleton.switches.iter().enumerate() {
+        let Told::First { other, .. } = switch.told else {
             continue;
         };
-        let nowhere = to <= from && matches!(switch.told, Told::First { .. });
-        if switch.contact != contact || !nowhere {
+        let intervals = [first, other].map(|switch| skeleton.before(switch));
+        let [Some(before), Some(between)] = intervals else {
+            continue;
+        };
+        let phase = motion.phases(before)[1];
+        if switch.contact != contact || phase < motion.phases(between)[1] {
             continue;
         }
-        found.retain(|extreme| (extreme.phase - from).abs() > SEEN_TWICE);
+        found.retain(|extreme| (extreme.phase - phase).abs() > SEEN_TWICE);
         found.push(GapExtreme {
             contact,
-            interval: interval - 1,
-            phase: from,
-            gap: motion.gap(contact, interval - 1, from)[0],
+            interval: before,
+            phase,
+            gap: motion.gap(contact, before, phase)[0],
             maximum: switch.rises,
         });
     }

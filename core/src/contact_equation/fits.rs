@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::gaps::is_lonely;
 use super::motion::{GapExtreme, Motion};
-use super::placement::Told;
+use super::placement::{Switch, Told};
 use super::plan;
 use super::run::{Run, SAME};
 
@@ -28,6 +28,39 @@ impl Equations {
     pub(super) fn is_in_order(&self) -> bool {
         let ways = self.passed.iter().map(|passed| passed.phases);
         ways.into_iter().all(|[from, to]| to >= from - BACK)
+    }
+
+    /// Whether the step from the last orbit to these unknowns has led over the end of a stretch whose switches are told each by itself, or over
+    /// a touch and a change of order. A shorter one ends between them, where the pair, or the order, can be told anew.
+    pub(super) fn is_beyond_touch(&self, u: &[f64]) -> bool {
+        let [before, _] = &self.known;
+        let same = before.len() == u.len();
+        self.has_overtaken(u) || same && self.has_touched_out_of_order(u, before)
+    }
+
+    /// Whether two switches of one gap have passed each other at these unknowns, which makes them those of no motion: a stretch has ended
+    /// in the step to them.
+    fn has_overtaken(&self, u: &[f64]) -> bool {
+        let skeleton = &self.skeleton;
+        (0..skeleton.switches.len()).any(|first| {
+            let switches = skeleton.switches.iter().copied();
+            let second = plan::next_of_gap(switches, first);
+            second.is_some_and(|second| skeleton.phase(u, second) < skeleton.phase(u, first) - BACK)
+        })
+    }
+
+    /// Whether a gap has touched its level since an orbit in these unknowns, while switches of different gaps have changed their order. Those
+    /// between the two of a pair leave it before they meet; a touch is located by equations that have all of them in their order.
+    fn has_touched_out_of_order(&self, u: &[f64], before: &[f64]) -> bool {
+        let skeleton = &self.skeleton;
+        let touched = |switch: &Switch| {
+            let Told::First { other, .. } = switch.told else {
+                return false;
+            };
+            let [now, then] = [u, before].map(|u| u[skeleton.slot(other)]);
+            (now > 0.0) != (then > 0.0)
+        };
+        !self.is_in_order() && skeleton.switches.iter().any(touched)
     }
 }
 
@@ -59,10 +92,13 @@ impl Run<'_> {
         let phases: Vec<f64> = (0..skeleton.switches.len())
             .map(|switch| skeleton.phase(u, switch))
             .collect();
-        let ways = phases.windows(2).map(|pair| pair[1] - pair[0]);
-        for (first, way) in ways.enumerate() {
-            let [a, b] = [skeleton.switches[first], skeleton.switches[first + 1]];
-            let same = (a.contact, a.level) == (b.contact, b.level) && a.rises != b.rises;
+        for (first, a) in skeleton.switches.iter().enumerate() {
+            let switches = skeleton.switches.iter().copied();
+            let Some(second) = plan::next_of_gap(switches, first) else {
+                continue;
+            };
+            let (b, way) = (&skeleton.switches[second], phases[second] - phases[first]);
+            let same = a.can_meet(b);
             let alone = a.told == Told::Alone && b.told == Told::Alone;
             let pair = matches!(a.told, Told::First { .. });
             if same && alone && way < plan::SHORTER || same && pair && way > plan::LONG {

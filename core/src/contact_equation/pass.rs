@@ -12,6 +12,10 @@ use crate::continuation::chain::Chain;
 use crate::law::{Derivatives, On};
 use crate::system::System;
 
+/// Time of an interval whose ends are in one place by chance, as where several gaps have their extremes at once. They move apart when unknowns
+/// change, and what changes with the time is divided by it.
+const HARDLY: f64 = 1e-150;
+
 /// A pass at unknowns.
 pub(super) struct Pass<'p> {
     pub(super) system: &'p dyn System,
@@ -116,7 +120,9 @@ impl Pass<'_> {
         let interval = &self.skeleton.intervals[index];
         let from = self.skeleton.place(self.u, interval.from);
         let to = self.skeleton.place(self.u, interval.to);
-        let time = (to.phase - from.phase) / self.values.base;
+        let way = (to.phase - from.phase) / self.values.base;
+        let nowhere = way == 0.0 && self.skeleton.is_within_pair(interval);
+        let time = if way == 0.0 { HARDLY } else { way };
         let stretch = Stretch {
             index,
             interval,
@@ -142,7 +148,7 @@ impl Pass<'_> {
         if self.derivatives {
             self.chain.link_mut(index).clear();
         }
-        if time == 0.0 {
+        if nowhere {
             self.nowhere(&stretch);
         } else {
             self.interior(&stretch, passed);
@@ -152,7 +158,7 @@ impl Pass<'_> {
         }
     }
 
-    /// There is no way between two switches that do not take place: the forces there are zero.
+    /// There is no way between the two switches of a pair that do not take place, wherever they are: the forces there are zero.
     fn nowhere(&mut self, stretch: &Stretch<'_>) {
         let interval = stretch.interval;
         let first = interval.first();

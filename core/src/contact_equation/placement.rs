@@ -35,6 +35,13 @@ pub(super) struct Switch {
     pub(super) told: Told,
 }
 
+impl Switch {
+    /// Whether it may meet the next one of its gap: at one level, the other way.
+    pub(super) fn can_meet(&self, next: &Self) -> bool {
+        (self.contact, self.level) == (next.contact, next.level) && self.rises != next.rises
+    }
+}
+
 /// A switch with the phase where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -21,6 +21,8 @@ pub(super) const LONG: f64 = 1.4;
 /// An extreme is watched from this `H` on until it is less than the other one.
 pub(super) const NEAR: f64 = -0.4;
 pub(super) const FAR: f64 = -1.0;
+/// Extremes of different gaps as near as this are in one place.
+const TOGETHER: f64 = 1e-6;
 /// Extremes are watched as long as those of the other kind are farther than this phase, and from the other one on.
 pub(super) const TOO_NEAR: f64 = 0.3;
 pub(super) const LONELY: f64 = 0.45;
@@ -86,7 +88,7 @@ impl Plan {
             })
             .collect();
         pair_up(gaps, begin, &mut planned);
-        for (mut placed, square) in short.into_iter().flatten() {
+        for (mut placed, square) in nested(short) {
             placed.phase = within(placed.phase);
             let value = match placed.switch.told {
                 Told::Second { .. } => square,
@@ -195,21 +197,27 @@ fn force(law: &dyn Law, of: &Contact, piece: usize, [gap, rate]: [f64; 2]) -> f6
     force[0]
 }
 
-/// Makes pairs of switches with a short way between them, the shortest first.
+/// Makes pairs of successive switches of a gap with a short way between them, the shortest first. Those of other gaps may lie between:
+/// which of them do changes along a branch.
 fn pair_up(gaps: &Gaps<'_>, begin: f64, planned: &mut [Planned]) {
     loop {
-        let mut best: Option<(f64, usize)> = None;
-        for index in 1..planned.len() {
-            let [a, b] = [planned[index - 1].placed, planned[index].placed];
-            let same = (a.switch.contact, a.switch.level) == (b.switch.contact, b.switch.level);
+        let mut best: Option<(f64, [usize; 2])> = None;
+        for first in 0..planned.len() {
+            let switches = planned.iter().map(|planned| planned.placed.switch);
+            let Some(second) = next_of_gap(switches, first) else {
+                continue;
+            };
+            let [a, b] = [first, second].map(|index| planned[index].placed);
             let alone = a.switch.told == Told::Alone && b.switch.told == Told::Alone;
             let way = b.phase - a.phase;
-            if same && alone && a.switch.rises != b.switch.rises && way < SHORT {
-                best = best.filter(|best| best.0 <= way).or(Some((way, index)));
+            if alone && a.switch.can_meet(&b.switch) && way < SHORT {
+                let pair = Some((way, [first, second]));
+                best = best.filter(|best| best.0 <= way).or(pair);
             }
         }
-        let Some((way, second)) = best else { return };
-        let first = second - 1;
+        let Some((way, [first, second])) = best else {
+            return;
+        };
         let middle = planned[first].placed.phase + 0.5 * way;
         let contact = planned[first].placed.switch.contact;
         let half = 0.5 * way;
@@ -224,6 +232,14 @@ fn pair_up(gaps: &Gaps<'_>, begin: f64, planned: &mut [Planned]) {
         planned[second].placed.switch.told = Told::Second { other: first };
         planned[second].value = half * half;
     }
+}
+
+/// The next switch of the gap that one of these is of.
+pub(super) fn next_of_gap(switches: impl Iterator<Item = Switch>, first: usize) -> Option<usize> {
+    let mut later = switches.enumerate().skip(first);
+    let (_, own) = later.next()?;
+    let next = later.find(|(_, switch)| switch.contact == own.contact);
+    next.map(|(index, _)| index)
 }
 
 /// Where what is followed begins.
@@ -247,6 +263,25 @@ fn short_pairs(gaps: &Gaps<'_>, length: f64, extremes: &[GapExtreme]) -> Vec<[(P
         }
     }
     short
+}
+
+/// The switches of pairs in the order that they have where they are in one place: those of the gap that is nearest to its level, which
+/// touches it first, around the others.
+fn nested(mut short: Vec<[(Placed, f64); 2]>) -> Vec<(Placed, f64)> {
+    short.sort_by(|[_, a], [_, b]| b.1.total_cmp(&a.1));
+    for index in 1..short.len() {
+        let place = |pair: &[(Placed, f64); 2]| pair[0].0.phase;
+        let own = place(&short[index]);
+        let mut others = short[..index].iter().map(place);
+        if let Some(phase) = others.find(|phase| (phase - own).abs() < TOGETHER) {
+            for (placed, _) in &mut short[index] {
+                placed.phase = phase;
+            }
+        }
+    }
+    let firsts = short.iter().map(|[first, _]| *first);
+    let seconds = short.iter().rev().map(|[_, second]| *second);
+    firsts.chain(seconds).collect()
 }
 
 /// The two switches that watch an extreme which is short of a level by little, both at its phase, with `H`.

@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::equations::Equations;
 use super::errors::{Steepness, everywhere};
 use super::motion::{Motion, Within};
+use super::place::Opening;
 use super::placement::Told;
 use super::run::Run;
 use super::skeleton::Interval;
@@ -41,6 +42,10 @@ pub(super) struct Screened {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     stiffness: Vec<f64>,
     switches: usize,
+    /// Half of the shortest way between switches that may meet where the force jumps. Multipliers go as `1/r` with that, which is known as
+    /// well as the orbit, and their error as `1/r^2`.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    narrowest: f64,
     /// Of the motion across the tangent at any phase, and of what is varied. One number, as peak-to-peak, may be right by chance where
     /// its error changes sign.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
@@ -68,6 +73,7 @@ impl Screened {
         let Self {
             tails,
             stiffness,
+            narrowest,
             apart,
             shift,
             slope,
@@ -76,7 +82,8 @@ impl Screened {
             ..
         } = self;
         let numbers = [apart, shift, slope, error, spread];
-        let mut all = tails.iter().chain(stiffness);
+        let all = tails.iter().chain(stiffness);
+        let mut all = all.chain([narrowest]);
         all.all(|tail| *tail > 0.0 && tail.is_finite())
             && numbers.into_iter().all(|x| *x >= 0.0)
             && self.most.iter().all(|ratio| (1.0..=MOST).contains(ratio))
@@ -86,7 +93,7 @@ impl Screened {
     /// How many times as large errors may be where so much is left out: they are products of what the forces and what the rule of
     /// integration leave out. First those of the orbit, then those of its multipliers. `None` if so much more is left out that this says
     /// nothing.
-    fn grown(&mut self, [tails, stiffness]: [&[f64]; 2]) -> Option<[f64; 2]> {
+    fn grown(&mut self, [tails, stiffness]: [&[f64]; 2], narrowest: f64) -> Option<[f64; 2]> {
         if (tails.len(), stiffness.len()) != (self.tails.len(), self.stiffness.len()) {
             return None;
         }
@@ -96,11 +103,12 @@ impl Screened {
         };
         let forces = ratio(self.most[0], tails, &self.tails);
         let all = ratio(forces.max(self.most[1]), stiffness, &self.stiffness);
-        if all > MOST {
+        let narrower = (self.narrowest / narrowest).max(1.0);
+        if all * narrower > MOST {
             return None;
         }
         self.most = [forces, all];
-        Some([forces, all].map(|ratio| SAFETY * ratio * ratio))
+        Some([forces, all * narrower].map(|ratio| SAFETY * ratio * ratio))
     }
 }
 
@@ -232,6 +240,7 @@ impl Run<'_> {
             tails: self.tails(&at.u),
             stiffness,
             switches: switches(&self.equations),
+            narrowest: self.narrowest(&at.u),
             apart: everywhere.max(apart),
             shift: shift.abs(),
             slope: at.parameter_slope().abs(),
@@ -261,12 +270,13 @@ impl Run<'_> {
         }
         let (mut point, map) = self.read_plainly(at)?;
         let (tails, stiffness) = (self.tails(&at.u), self.stiffness());
+        let narrowest = self.narrowest(&at.u);
         let rise = self.rise(&point);
         let size = self.size(&point, 0.0);
         let same = |known: &&mut Screened| known.switches == switches(&self.equations);
         let known = self.screened.as_mut().filter(same);
         let grown = known.and_then(|known| {
-            let grown = known.grown([&tails, &stiffness])?;
+            let grown = known.grown([&tails, &stiffness], narrowest)?;
             Some((known, grown))
         });
         let Some((known, [grown, spreading])) = grown else {
@@ -323,6 +333,20 @@ impl Run<'_> {
         let intervals = self.equations.skeleton.intervals.iter();
         let pairs = intervals.zip(&self.equations.passed);
         self.left_out(pairs.map(|(interval, passed)| (interval, &passed.stiffness[..])))
+    }
+
+    /// Half of the shortest way between two switches that may meet where the force jumps; one if there is none.
+    fn narrowest(&self, u: &[f64]) -> f64 {
+        let skeleton = &self.equations.skeleton;
+        let ways = skeleton.switches.iter().filter_map(|switch| {
+            let Told::First { other, .. } = switch.told else {
+                return None;
+            };
+            let jumps = skeleton.opened(other) == Opening::Root;
+            let way = u[skeleton.slot(other)];
+            (jumps && way > 0.0).then_some(way)
+        });
+        ways.fold(1.0, f64::min)
     }
 
     /// What functions leave out on intervals, contact by contact, from their values at the nodes. What is less than their rounding is as

@@ -475,6 +475,25 @@ impl Skeleton {
             .then_some((told, self.slot(first), self.slot(second)))
     }
 
+    /// Whether an interval lies between the two switches of a pair, and nothing else does.
+    pub(super) fn is_within_pair(&self, interval: &Interval) -> bool {
+        let Cut::Switch(first) = interval.from.from else {
+            return false;
+        };
+        let Told::First { other, .. } = self.switches[first].told else {
+            return false;
+        };
+        let marks = [interval.from, interval.to].into_iter();
+        let mut cuts = marks.flat_map(|mark| [mark.from, mark.to]);
+        cuts.all(|cut| cut == Cut::Switch(first) || cut == Cut::Switch(other))
+    }
+
+    /// The interval that ends at a switch.
+    pub(super) fn before(&self, switch: usize) -> Option<usize> {
+        let mut intervals = self.intervals.iter();
+        intervals.position(|interval| interval.ends == Some(switch))
+    }
+
     /// How the way between a switch and the other one of its pair is told.
     pub(super) fn opened(&self, switch: usize) -> Opening {
         self.openings[switch]

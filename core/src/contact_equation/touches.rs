@@ -103,9 +103,12 @@ impl Run<'_> {
         let heights = skeleton.switches.iter().enumerate().map(|(index, switch)| {
             let contact = switch.contact;
             let size = 0.5 * self.range(&found, contact);
-            let [from, to] = motion.phases(index);
+            let Some(interval) = skeleton.before(index) else {
+                return f64::INFINITY;
+            };
+            let [from, to] = motion.phases(interval);
             let width = (to - from).min(SHORT);
-            let slope = |phase: f64| motion.gap(contact, index, phase)[1];
+            let slope = |phase: f64| motion.gap(contact, interval, phase)[1];
             let (before, rate) = (slope(to - width), slope(to));
             let change = (rate - before) / width;
             let slowed = rate * change < 0.0 && self.has_leap(contact, switch.level);

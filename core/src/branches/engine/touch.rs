@@ -113,6 +113,20 @@ impl Engine {
         }
     }
 
+    /// Remembers extremes of an orbit as those of the same one in other unknowns, in which it was not solved for.
+    pub(super) fn keep_gaps(&mut self, gaps: Option<Gaps>, there: Option<&CurvePoint>) {
+        if let (Some(gaps), Some(point)) = (gaps, there.cloned()) {
+            self.remember_gaps(Gaps { point, ..gaps });
+        }
+    }
+
+    fn remember_gaps(&mut self, gaps: Gaps) {
+        if self.gaps.len() == READ {
+            self.gaps.remove(0);
+        }
+        self.gaps.push(gaps);
+    }
+
     /// The extremes at a point, which are read once.
     pub(super) fn gaps_at(
         &mut self,
@@ -120,14 +134,12 @@ impl Engine {
         point: &CurvePoint,
     ) -> Option<Gaps> {
         let mut known = self.gaps.iter();
-        if let Some(known) = known.find(|gaps| gaps.point == *point) {
-            return Some(known.clone());
+        if let Some(known) = known.find(|gaps| gaps.point.u == point.u) {
+            let (point, extremes) = (point.clone(), known.extremes.clone());
+            return Some(Gaps { point, extremes });
         }
         let gaps = Gaps::at(problem, point)?;
-        if self.gaps.len() == READ {
-            self.gaps.remove(0);
-        }
-        self.gaps.push(gaps.clone());
+        self.remember_gaps(gaps.clone());
         Some(gaps)
     }
 }

@@ -1,6 +1,6 @@
 //! Touches of levels on random models, against shooting.
 
-use super::{OneSided, TwoMasses};
+use super::{OneSided, TwoMasses, events_agree};
 use crate::branches::point::Event;
 use crate::system::System;
 use crate::testing::random::Random;
@@ -14,6 +14,30 @@ crate::oscillator! {
         param stiffness;
         law stop(gap) { gap > 0 => stiffness*gap^1.5, else => 0 }
         ddot(x) + 0.08*dot(x) + x + stop(x - up) - stop(-x - down) = 0.1 + 0.5*cos(omega*t);
+    }
+}
+
+crate::oscillator! {
+    /// Switches of two gaps lie between those of a third one that closes.
+    Several(x, y) {
+        law stop(gap) { gap > 0 => 4*gap + 0.1*gap*dot(gap), else => 0 }
+        law between(gap) { gap > 0 => 3*gap^1.5, else => 0 }
+        law wall(gap) { gap > 0 => 5*gap^2, else => 0 }
+        law ground(gap) { gap > 0 => 2*gap, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + (x - y) + stop(x - 0.3) + between(x - y - 0.2) = 0.3*cos(omega*t);
+        ddot(y) + 0.05*dot(y) + 0.5*y - (x - y) + wall(y - 0.3) - between(x - y - 0.2)
+            - ground(-y - 0.1*cos(omega*t)) = 0.1*sin(2*omega*t);
+    }
+}
+
+crate::oscillator! {
+    /// Stops behind each other: their gaps have their extremes in one place.
+    Behind(x) {
+        law first(gap) { gap > 0 => 2*gap + 0.1*gap*dot(gap), else => 0 }
+        law second(gap) { gap > 0 => 3*gap^1.5, else => 0 }
+        law third(gap) { gap > 0 => 5*gap^2, else => 0 }
+        ddot(x) + 0.1*dot(x) + x + first(x - 0.4) + second(x - 0.43) + third(x - 0.45)
+            = 0.3*cos(omega*t) + 0.1*sin(2*omega*t);
     }
 }
 
@@ -55,7 +79,7 @@ fn touches(branch: &Branch) -> Vec<&Event> {
 #[test]
 fn touches_of_random_models_are_those_of_shooting() {
     let asked = std::env::var("HERTZIAN_GRAZINGS").ok();
-    let asked = asked.and_then(|count| count.parse().ok()).unwrap_or(10);
+    let asked = asked.and_then(|count| count.parse().ok()).unwrap_or(12);
     let mut random = Random::seeded(21);
     let (mut seen, mut wrong) = (0, Vec::new());
     for model in 0.. {
@@ -80,4 +104,18 @@ fn touches_of_random_models_are_those_of_shooting() {
     }
     println!("{seen} touches");
     assert_eq!(wrong, [""; 0]);
+}
+
+/// While a gap closes, switches of others leave the way between its own, and pass each other elsewhere.
+#[test]
+fn touches_among_switches_of_other_gaps() {
+    for [from, to] in [[0.6, 2.2], [2.2, 1.2]] {
+        events_agree(&FrequencyResponse::of(&Several {}).from(from).to(to));
+    }
+}
+
+/// Three gaps touch one after the other at one phase.
+#[test]
+fn touches_in_one_place() {
+    events_agree(&FrequencyResponse::of(&Behind {}).from(0.5).to(0.59));
 }
