@@ -166,7 +166,7 @@ fn go_on(
                     continue;
                 }
                 let mut resized = halted.clone();
-                let before = halted.previous.as_ref();
+                let before = halted.previous.as_ref().filter(|_| problem.seeks_touches());
                 let gaps = before.and_then(|before| engine.gaps_at(problem, before));
                 problem.remap(&mut resized);
                 engine.keep_gaps(gaps, resized.previous.as_ref());
