@@ -305,7 +305,13 @@ impl Skeleton {
         } else {
             let whole = self.length.min(TAU);
             let asked = self.placement.resolution.panels as f64 * way.length / whole;
-            asked.ceil().max(1.0) as usize
+            let asked = asked.ceil().max(1.0) as usize;
+            // Half of a period then has the nodes of the other half: what is its image stays that, and where this symmetry breaks branches cross.
+            if way.cuts == [Cut::Begin, Cut::End] {
+                asked.next_multiple_of(2)
+            } else {
+                asked
+            }
         };
         let [first, last] = way.cuts.map(|cut| self.steepness(system, contacts, cut));
         let [from, to] = way.cuts;

@@ -72,6 +72,15 @@ crate::oscillator! {
     }
 }
 
+crate::oscillator! {
+    /// A mass between two wells, with a stop that its small motions do not reach.
+    Wells(x, y) {
+        law stop(g) { g > 0 => 0.2*g^1.5, else => 0 }
+        2.09*ddot(x) + 0.038*dot(x) + 1.369*x^3 - 0.71*x + 0.448*(x - y) + 0.0138*dot(x - y) + stop(x - 0.79) = 0;
+        2.263*ddot(y) + 0.0137*dot(y) + 1.287*y - 0.448*(x - y) - 0.0138*dot(x - y) = 0.5775*cos(omega*t);
+    }
+}
+
 fn first(
     system: &dyn System,
     vary: Option<&str>,
@@ -284,6 +293,12 @@ fn events_agree(request: &FrequencyResponse) {
         assert_eq!(found.1, exact.1);
         assert!((found.0 - exact.0).abs() < 1e-9, "{found:?} {exact:?}");
     }
+}
+
+/// The symmetry of an orbit breaks whose equations do not have it, since there is a stop on one side that it does not reach.
+#[test]
+fn branches_cross_where_a_symmetry_breaks_beside_a_stop() {
+    events_agree(&FrequencyResponse::of(&Wells {}).from(1.1).to(0.966));
 }
 
 /// The pair of switches between which a gap is about to open: `H` passes zero, and the branch goes on.
