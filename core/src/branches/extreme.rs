@@ -25,6 +25,10 @@ pub(crate) fn force_jumps(system: &dyn System) -> bool {
 
 /// One extreme of a gap, seen from one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "independent facts, not states"
+)]
 pub(crate) struct Extreme {
     pub(crate) contact: usize,
     pub(crate) level: usize,
@@ -39,9 +43,40 @@ pub(crate) struct Extreme {
     pub(crate) jumps: bool,
     /// It is none, but the gap where the unknowns begin to tell the orbit.
     pub(crate) begins: bool,
+    /// It is seen from no level, but from the gap zero.
+    pub(crate) plain: bool,
+    /// Its form has no part of what the parameter does to a motion from given states: where a motion forgets its beginning, that tells all
+    /// orbits of one value alike.
+    pub(crate) of_states: bool,
 }
 
 impl Extreme {
+    /// One of a contact from a level, of which the rest is not known yet.
+    pub(crate) fn of(contact: usize, level: usize, size: f64, jumps: bool) -> Self {
+        Self {
+            contact,
+            level,
+            tau: 0.0,
+            maximum: false,
+            above: 0.0,
+            size,
+            jumps,
+            begins: false,
+            plain: false,
+            of_states: false,
+        }
+    }
+
+    /// The gap that it is seen from, one of these levels or zero.
+    pub(crate) fn origin(&self, levels: &[f64]) -> f64 {
+        if self.plain { 0.0 } else { levels[self.level] }
+    }
+
+    /// The gap itself of one that is seen from zero.
+    pub(crate) fn gap(&self) -> f64 {
+        self.above * self.size
+    }
+
     /// Whether the level is not crossed beside it: a maximum below, or a minimum above.
     pub(crate) fn is_clear(&self) -> bool {
         (self.above < 0.0) == self.maximum
@@ -156,6 +191,8 @@ mod tests {
             size: 1.0,
             jumps: false,
             begins: false,
+            plain: false,
+            of_states: false,
         }
     }
 

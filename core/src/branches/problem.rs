@@ -13,6 +13,7 @@ use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::{AsProblem, Problem};
 use crate::event::EventKind;
+use crate::laws::generic::narrow::Narrow;
 
 /// Value of a test function: `mantissa exp(exponent)`, since determinants of many unknowns leave the range of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -235,6 +236,17 @@ pub(crate) trait BranchProblem {
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         let _ = (u, extremes);
         false
+    }
+
+    /// The same of the gaps alone whose laws may have narrow places, seen from zero; where there are none nothing is read.
+    fn plain_extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        let _ = (u, extremes);
+        false
+    }
+
+    /// Adds the narrow places that the law of a contact has at a solution in a range of its gap.
+    fn narrow_places(&mut self, u: &[f64], contact: usize, range: [f64; 2], to: &mut Vec<Narrow>) {
+        let _ = (u, contact, range, to);
     }
 
     /// Adds gaps at fixed phases to the extremes, seen from levels where the force jumps, if the unknowns have a kink where such a gap

@@ -84,6 +84,8 @@ impl Run<'_> {
                     size,
                     jumps: facts.levels[level].force_jumps,
                     begins: false,
+                    plain: false,
+                    of_states: false,
                 }));
             }
         }

@@ -7,6 +7,8 @@ use super::gap_scan::{self, Room};
 use super::problem::ShootingProblem;
 use crate::branches::extreme::Extreme;
 use crate::branches::recurrence::Recurrence;
+use crate::laws::generic::narrow::Narrow;
+use crate::laws::generic::scales::Scales;
 use crate::model::layout::Layout;
 use crate::model::validate;
 use crate::time::Stretch;
@@ -36,6 +38,8 @@ pub(super) struct GapExtremes<'r> {
     levels: Vec<f64>,
     state: Vec<f64>,
     ends: [Vec<f64>; 2],
+    /// One entry per contact.
+    scales: Vec<Option<Scales>>,
 }
 
 impl<'r> GapExtremes<'r> {
@@ -46,7 +50,11 @@ impl<'r> GapExtremes<'r> {
             segments: part.recurrence.parts * part.segments,
         });
         let layout = Layout::of(problem.system.as_ref());
+        let system = problem.system.as_ref();
+        let contacts = layout.contacts.iter();
+        let scales = contacts.map(|of| Scales::of(system.law(of.law)));
         Self {
+            scales: scales.collect(),
             problem,
             gap: Gap::default(),
             coefficients: vec![0.0; layout.coefficients],
@@ -93,6 +101,24 @@ impl<'r> GapExtremes<'r> {
         law.levels(&self.arguments, &mut self.levels);
     }
 
+    /// Finds the extremes of the gap of a contact along a whole orbit, in order of phase. Returns its lowest and its highest value.
+    fn find_extremes(&mut self, u: &[f64], found: &mut Vec<gap_scan::Extreme>) -> Option<[f64; 2]> {
+        found.clear();
+        let [first, end] = &mut self.ends;
+        let room = Room {
+            state: &mut self.state,
+            first,
+            end,
+        };
+        let see = &mut |extreme| found.push(extreme);
+        gap_scan::extremes(&self.gap, &mut self.equations, u, room, see)?;
+        found.sort_by(|a, b| a.passed.total_cmp(&b.passed));
+        let gaps = found.iter().map(|extreme| extreme.gap);
+        Some(gaps.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+            [a.min(x), b.max(x)]
+        }))
+    }
+
     /// Writes the extremes of all gaps, from every level, in order of phase.
     pub(super) fn read(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> Option<()> {
         extremes.clear();
@@ -106,39 +132,53 @@ impl<'r> GapExtremes<'r> {
             if self.levels.is_empty() {
                 continue;
             }
-            found.clear();
-            let [first, end] = &mut self.ends;
-            gap_scan::extremes(
-                &self.gap,
-                &mut self.equations,
-                u,
-                Room {
-                    state: &mut self.state,
-                    first,
-                    end,
-                },
-                &mut |extreme| found.push(extreme),
-            )?;
-            found.sort_by(|a, b| a.passed.total_cmp(&b.passed));
-            let gaps = found.iter().map(|extreme| extreme.gap);
-            let (low, high) = gaps.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                (a.min(x), b.max(x))
-            });
-            let size = 0.5 * (high - low);
+            let [low, high] = self.find_extremes(u, &mut found)?;
             for (level, value) in self.levels.iter().enumerate() {
-                extremes.extend(found.iter().map(|extreme| Extreme {
-                    contact,
-                    level,
-                    tau: TAU * extreme.passed / whole,
-                    maximum: extreme.largest,
-                    above: (extreme.gap - value) / size,
-                    size,
-                    jumps: facts.levels[level].force_jumps,
-                    begins: false,
-                }));
+                let jumps = facts.levels[level].force_jumps;
+                let alike = Extreme::of(contact, level, 0.5 * (high - low), jumps);
+                extremes.extend(seen_from(*value, &found, whole, alike));
             }
         }
         Some(())
+    }
+
+    /// The same from zero, of the gaps alone whose laws may have narrow places. Says whether there are any.
+    pub(super) fn read_plain(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> Option<bool> {
+        extremes.clear();
+        if self.scales.iter().all(Option::is_none) {
+            return Some(false);
+        }
+        let u = &self.whole(u)[..];
+        let whole = self.equations.span.begins(self.equations.span.segments);
+        let mut found = Vec::new();
+        for contact in 0..self.scales.len() {
+            if self.scales[contact].is_none() {
+                continue;
+            }
+            self.set(contact, u[u.len() - 1]);
+            let [low, high] = self.find_extremes(u, &mut found)?;
+            let alike = Extreme {
+                plain: true,
+                ..Extreme::of(contact, 0, 0.5 * (high - low), false)
+            };
+            extremes.extend(seen_from(0.0, &found, whole, alike));
+        }
+        Some(true)
+    }
+
+    /// Adds the narrow places of the law of a contact in a range of its gap.
+    pub(super) fn narrow(
+        &mut self,
+        u: &[f64],
+        contact: usize,
+        range: [f64; 2],
+        to: &mut Vec<Narrow>,
+    ) {
+        self.set(contact, u[u.len() - 1]);
+        if let Some(scales) = &mut self.scales[contact] {
+            scales.set(&self.arguments, &self.levels);
+            scales.narrow(range, to);
+        }
     }
 
     /// Adds the gaps at the phases where segments begin, seen from the levels where the force jumps, to the extremes of an orbit.
@@ -232,7 +272,7 @@ impl<'r> GapExtremes<'r> {
         let order = state.len();
         let mut height = |value: f64| {
             self.set(extreme.contact, value);
-            self.gap.at(phase, &state).0 - self.levels[extreme.level]
+            self.gap.at(phase, &state).0 - extreme.origin(&self.levels)
         };
         let direct = (height(above) - height(below)) / (above - below);
         self.set(extreme.contact, u[last]);
@@ -246,7 +286,23 @@ impl<'r> GapExtremes<'r> {
             let (place, sign) = image.state_entry(index, order / 2);
             form[segment * order + place] = sign * by(index);
         }
-        form[last] = by(order) + direct / extreme.size;
+        let by_motion = if extreme.of_states { 0.0 } else { by(order) };
+        form[last] = by_motion + direct / extreme.size;
         Some(())
     }
+}
+
+/// Extremes of a gap over a whole orbit of this length, from a level.
+fn seen_from(
+    level: f64,
+    found: &[gap_scan::Extreme],
+    whole: f64,
+    alike: Extreme,
+) -> impl Iterator<Item = Extreme> + '_ {
+    found.iter().map(move |extreme| Extreme {
+        tau: TAU * extreme.passed / whole,
+        maximum: extreme.largest,
+        above: (extreme.gap - level) / alike.size,
+        ..alike
+    })
 }

@@ -24,6 +24,7 @@ use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::event::EventKind;
+use crate::laws::generic::narrow::Narrow;
 use crate::time::FlowError;
 
 /// Brackets of an event are narrowed until rounding stops it, or this is reached.
@@ -288,6 +289,17 @@ impl BranchProblem for ShootingBranch<'_, '_> {
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         let gaps = self.gaps();
         gaps.is_some_and(|gaps| gaps.read(u, extremes).is_some())
+    }
+
+    fn plain_extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        let gaps = self.gaps();
+        gaps.is_some_and(|gaps| gaps.read_plain(u, extremes) == Some(true))
+    }
+
+    fn narrow_places(&mut self, u: &[f64], contact: usize, range: [f64; 2], to: &mut Vec<Narrow>) {
+        if let Some(gaps) = self.gaps() {
+            gaps.narrow(u, contact, range, to);
+        }
     }
 
     fn extreme_form(&mut self, u: &[f64], extreme: &Extreme, range: f64, form: &mut [f64]) -> bool {

@@ -2,6 +2,8 @@
 
 use crate::balance::{Balance, gap_series};
 use crate::branches::extreme::Extreme;
+use crate::laws::generic::narrow::Narrow;
+use crate::laws::generic::scales::Scales;
 use crate::model::validate;
 use crate::numeric::fourier::crossings::{Crossing, CrossingFinder};
 use crate::numeric::fourier::series;
@@ -20,13 +22,18 @@ pub(super) struct GapExtremes<'a> {
     arguments: Vec<f64>,
     levels: Vec<f64>,
     turns: Vec<Crossing>,
+    /// One entry per contact.
+    scales: Vec<Option<Scales>>,
 }
 
 impl<'a> GapExtremes<'a> {
     pub(super) fn new(balance: Balance<'a>) -> Self {
         let harmonics = balance.gap_harmonics();
         let length = series::length(harmonics);
+        let contacts = balance.layout().contacts.iter();
+        let scales = contacts.map(|of| Scales::of(balance.system().law(of.law)));
         Self {
+            scales: scales.collect(),
             finder: CrossingFinder::new(harmonics),
             gap: vec![0.0; length],
             slope: vec![0.0; length],
@@ -71,55 +78,103 @@ impl<'a> GapExtremes<'a> {
     /// Gap less level at the phase of an extreme, with another value of the parameter.
     fn height(&mut self, u: &[f64], parameter: f64, extreme: &Extreme) -> f64 {
         self.balance.set(parameter);
+        self.set(extreme.contact);
         let (length, period) = (self.balance.length(), self.balance.resolution().period);
         let of = &self.balance.layout().contacts[extreme.contact];
-        let law = self.balance.system().law(of.law);
         let coefficients = self.balance.coefficients();
+        gap_series(of, coefficients, period, u, length, &mut self.gap);
+        series::value(&self.gap, extreme.tau) - extreme.origin(&self.levels)
+    }
+
+    /// Takes the arguments and levels of a contact.
+    fn set(&mut self, contact: usize) {
+        let of = &self.balance.layout().contacts[contact];
+        let law = self.balance.system().law(of.law);
         self.levels.resize(law.facts().levels.len(), 0.0);
         self.arguments.resize(of.argument_count, 0.0);
-        of.arguments(coefficients, &mut self.arguments);
+        of.arguments(self.balance.coefficients(), &mut self.arguments);
         law.levels(&self.arguments, &mut self.levels);
+    }
+
+    /// Finds where a gap turns. Returns its lowest and its highest value.
+    fn find_turns(&mut self, u: &[f64], contact: usize) -> [f64; 2] {
+        let (length, period) = (self.balance.length(), self.balance.resolution().period);
+        let of = &self.balance.layout().contacts[contact];
+        let coefficients = self.balance.coefficients();
         gap_series(of, coefficients, period, u, length, &mut self.gap);
-        series::value(&self.gap, extreme.tau) - self.levels[extreme.level]
+        series::differentiate(&self.gap, &mut self.slope);
+        self.turns.clear();
+        self.finder.sample(&self.slope);
+        self.finder.crossings(0.0, &mut self.turns);
+        let values = self.turns.iter().map(|at| series::value(&self.gap, at.tau));
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+            [a.min(x), b.max(x)]
+        })
+    }
+
+    /// The extremes that were found, from a level.
+    fn seen_from(&self, level: f64, alike: Extreme) -> impl Iterator<Item = Extreme> + '_ {
+        self.turns.iter().map(move |at| Extreme {
+            tau: at.tau,
+            maximum: !at.rising,
+            above: (series::value(&self.gap, at.tau) - level) / alike.size,
+            ..alike
+        })
     }
 
     /// Writes the extremes of all gaps, from every level, in order of phase.
     pub(super) fn read(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) {
         extremes.clear();
         self.balance.set(u[u.len() - 1]);
-        let (length, period) = (self.balance.length(), self.balance.resolution().period);
-        for (contact, of) in self.balance.layout().contacts.iter().enumerate() {
-            let law = self.balance.system().law(of.law);
-            self.levels.resize(law.facts().levels.len(), 0.0);
+        for contact in 0..self.balance.layout().contacts.len() {
+            self.set(contact);
             if self.levels.is_empty() {
                 continue;
             }
-            let coefficients = self.balance.coefficients();
-            self.arguments.resize(of.argument_count, 0.0);
-            of.arguments(coefficients, &mut self.arguments);
-            law.levels(&self.arguments, &mut self.levels);
-            gap_series(of, coefficients, period, u, length, &mut self.gap);
-            series::differentiate(&self.gap, &mut self.slope);
-            self.turns.clear();
-            self.finder.sample(&self.slope);
-            self.finder.crossings(0.0, &mut self.turns);
-            let values = self.turns.iter().map(|at| series::value(&self.gap, at.tau));
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                (a.min(x), b.max(x))
-            });
-            let size = 0.5 * (high - low);
+            let [low, high] = self.find_turns(u, contact);
+            let of = &self.balance.layout().contacts[contact];
+            let facts = self.balance.system().law(of.law).facts();
             for (level, value) in self.levels.iter().enumerate() {
-                extremes.extend(self.turns.iter().map(|at| Extreme {
-                    contact,
-                    level,
-                    tau: at.tau,
-                    maximum: !at.rising,
-                    above: (series::value(&self.gap, at.tau) - value) / size,
-                    size,
-                    jumps: law.facts().levels[level].force_jumps,
-                    begins: false,
-                }));
+                let jumps = facts.levels[level].force_jumps;
+                let alike = Extreme::of(contact, level, 0.5 * (high - low), jumps);
+                extremes.extend(self.seen_from(*value, alike));
             }
+        }
+    }
+
+    /// The same from zero, of the gaps alone whose laws may have narrow places. Says whether there are any.
+    pub(super) fn read_plain(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        extremes.clear();
+        let known = self.scales.iter().any(Option::is_some);
+        if known {
+            self.balance.set(u[u.len() - 1]);
+        }
+        for contact in 0..self.scales.len() {
+            if self.scales[contact].is_some() {
+                let [low, high] = self.find_turns(u, contact);
+                let alike = Extreme {
+                    plain: true,
+                    ..Extreme::of(contact, 0, 0.5 * (high - low), false)
+                };
+                extremes.extend(self.seen_from(0.0, alike));
+            }
+        }
+        known
+    }
+
+    /// Adds the narrow places of the law of a contact in a range of its gap.
+    pub(super) fn narrow(
+        &mut self,
+        u: &[f64],
+        contact: usize,
+        range: [f64; 2],
+        to: &mut Vec<Narrow>,
+    ) {
+        self.balance.set(u[u.len() - 1]);
+        self.set(contact);
+        if let Some(scales) = &mut self.scales[contact] {
+            scales.set(&self.arguments, &self.levels);
+            scales.narrow(range, to);
         }
     }
 }

@@ -23,6 +23,7 @@ use crate::continuation::locate::Located;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
 use crate::event::EventKind;
+use crate::laws::generic::narrow::Narrow;
 
 /// A branch by the balance at its present resolution.
 pub(super) struct BalanceBranch<'r, 'v> {
@@ -170,6 +171,14 @@ impl BranchProblem for BalanceBranch<'_, '_> {
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         self.gaps().read(u, extremes);
         true
+    }
+
+    fn plain_extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
+        self.gaps().read_plain(u, extremes)
+    }
+
+    fn narrow_places(&mut self, u: &[f64], contact: usize, range: [f64; 2], to: &mut Vec<Narrow>) {
+        self.gaps().narrow(u, contact, range, to);
     }
 
     fn extreme_form(&mut self, u: &[f64], extreme: &Extreme, range: f64, form: &mut [f64]) -> bool {

@@ -49,7 +49,8 @@ impl Engine {
         [a, b]: [Seen; 2],
         after: usize,
     ) -> Vec<Seen> {
-        let mut parts = vec![a, b];
+        let mut parts = self.through_narrow(problem, newton, [a, b]);
+        self.divide_parts(problem, newton, &mut parts);
         if let Some(earlier) = earlier {
             for sought in sought_from(problem, &parts[0]) {
                 if sought.is_seen(problem, &parts, earlier) {
@@ -70,8 +71,8 @@ impl Engine {
                     return parts;
                 }
             }
-            self.note_divided(problem, &parts, after);
         }
+        self.note_divided(problem, &parts, after);
         self.divided.retain(|(place, _)| *place + 1 >= after);
         let mut index = 0;
         while index + 1 < parts.len() {
@@ -83,6 +84,30 @@ impl Engine {
             index += 1;
         }
         parts
+    }
+
+    /// Divides parts of one step where a function passes zero twice in one of them, as far as three of their ends tell.
+    fn divide_parts(
+        &self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        parts: &mut Vec<Seen>,
+    ) {
+        let mut middle = 1;
+        while middle + 1 < parts.len() {
+            for sought in sought_from(problem, &parts[middle]) {
+                let points = [middle - 1, middle, middle + 1].map(|place| &parts[place]);
+                let (found, place) = match self.dip(problem, newton, points, sought) {
+                    Some(Dip::Last(found)) => (found, middle + 1),
+                    Some(Dip::Before(found)) => (found, middle),
+                    None => continue,
+                };
+                parts.insert(place, found);
+                middle += 1;
+                break;
+            }
+            middle += 1;
+        }
     }
 
     /// Notes for which test functions the parts of a step show what its ends do not.

@@ -10,8 +10,8 @@
 //! | Neimark-Sacker | the [moduli](crate::branches::moduli) of multipliers, where more of them pass one than the others explain |
 //! | others | what the method gives: [`BranchProblem::watched`] |
 //!
-//! 1. A step is [divided](inside) where a function passes zero twice in it, as far as three points tell, or two pairs of multipliers
-//!    [meet](meeting).
+//! 1. A step is [divided](inside) where a function passes zero twice in it, as far as three points tell, two pairs of multipliers
+//!    [meet](meeting), or an extreme of a gap passes a [narrow] place of its law.
 //! 2. What changes its sign in a part is [located](zero) and read.
 //! 3. A step that [leaps](leap) over two folds is made again, shorter.
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
@@ -28,6 +28,7 @@ mod inside;
 mod inside_touch;
 mod leap;
 mod meeting;
+mod narrow;
 mod seen;
 #[cfg(test)]
 mod tests;
@@ -84,6 +85,8 @@ struct Engine {
     back: Option<(CurvePoint, f64)>,
     /// The last points with the extremes of their gaps.
     gaps: Vec<Gaps>,
+    /// The last point with the extremes of the gaps whose laws may have narrow places.
+    plain: Option<Gaps>,
     /// Where levels are touched in the last step.
     touched: Vec<f64>,
 }
@@ -205,6 +208,7 @@ impl Engine {
             passed: None,
             back: None,
             gaps: Vec::new(),
+            plain: None,
             touched: Vec::new(),
         }
     }

@@ -5,6 +5,7 @@
 
 mod consistent;
 mod law;
+pub(crate) mod narrow;
 mod program;
 pub(crate) mod scales;
 #[cfg(test)]

@@ -28,7 +28,7 @@ use crate::law::Law;
 /// Beyond this operand a hyperbolic tangent is constant to rounding.
 const SATURATED: f64 = 20.0;
 /// Below the negative of this an exponential is nothing.
-const VANISHED: f64 = 60.0;
+pub(super) const VANISHED: f64 = 60.0;
 /// Samples may be farther apart by `e^(abs u / FADES)` where a function fades: as the sixth root of what is left of its slope.
 const FADES: f64 = 4.0;
 /// Powers of the distance from a level by which an operand that vanishes there is divided, at most.
@@ -42,7 +42,7 @@ const SAME: f64 = 1e-9;
 
 /// What is done with an operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Saturates,
     Grows,
     Oscillates,
@@ -113,6 +113,27 @@ impl Scales {
         self.pieces[piece].sharp.contains(&true)
     }
 
+    /// How many pieces there are, how many operands a piece has, what is done with one of them, and its values at gaps at rest: of a base their size.
+    pub(super) fn pieces(&self) -> usize {
+        self.pieces.len()
+    }
+
+    pub(super) fn features(&self, piece: usize) -> usize {
+        self.pieces[piece].kinds.len()
+    }
+
+    pub(super) fn kind(&self, piece: usize, feature: usize) -> Kind {
+        self.pieces[piece].kinds[feature]
+    }
+
+    pub(super) fn operand(&mut self, piece: usize, feature: usize, gap: &[f64]) -> Vec<f64> {
+        self.run(piece, gap, &vec![0.0; gap.len()]);
+        self.divide(piece, gap);
+        let values = self.values[feature * gap.len()..][..gap.len()].iter();
+        let of_base = self.kind(piece, feature) == Kind::Base;
+        values.map(|u| if of_base { u.abs() } else { *u }).collect()
+    }
+
     /// Whether the slope of the force jumps on a piece, where an operand changes its sign.
     pub(crate) fn bends(&self, piece: usize) -> bool {
         self.pieces[piece].kinds.contains(&Kind::Bends)
@@ -153,7 +174,7 @@ impl Scales {
     }
 
     /// The level at an end of a piece.
-    fn level(&self, piece: usize, side: usize) -> Option<f64> {
+    pub(super) fn level(&self, piece: usize, side: usize) -> Option<f64> {
         let index = if side == 0 {
             piece.checked_sub(1)?
         } else {

@@ -19,6 +19,7 @@ mod hidden;
 mod interrupted;
 mod meeting;
 mod mirrored;
+mod narrow;
 mod symmetry;
 mod table;
 mod torus;
