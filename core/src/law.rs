@@ -5,3 +5,14 @@
 //! at its ends. The example of [`system`](crate::system) has a law by hand.
 
 pub use hertzian_contract::law::*;
+
+/// Whether the stiffness is unbounded at a level, at values of the arguments. It may depend on an exponent, so it is not asked of the
+/// facts of the level.
+pub(crate) fn is_unbounded(facts: &LawFacts, level: usize, arguments: &[f64]) -> bool {
+    let below = facts.pieces[level].terms.iter();
+    let above = facts.pieces[level + 1].terms.iter();
+    let ends = below.map(|term| (term.of, term.upper));
+    let ends = ends.chain(above.map(|term| (term.of, term.lower)));
+    ends.into_iter()
+        .any(|(of, end)| of == Quantity::ByGap && end.value(arguments) < 0.0)
+}

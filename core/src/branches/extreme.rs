@@ -8,6 +8,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::continuation::follow::{CurvePoint, Step};
+use crate::law::{LawFacts, is_unbounded};
 use crate::system::System;
 
 /// An extreme of a gap is followed from one orbit to the next as long as it moves by less than this phase.
@@ -21,6 +22,19 @@ pub(crate) fn force_jumps(system: &dyn System) -> bool {
     contacts
         .flat_map(|contact| system.law(contact.law).facts().levels.iter())
         .any(|level| level.force_jumps)
+}
+
+/// Whether a branch may have a corner of any angle where a level of some contact is touched.
+pub(crate) fn corners(system: &dyn System) -> bool {
+    let contacts = system.facts().contacts.iter();
+    contacts
+        .flat_map(|contact| system.law(contact.law).facts().levels.iter())
+        .any(|level| level.force_jumps || level.unbounded_by_gap)
+}
+
+/// The same of one level of a law at values of its arguments. A slope may be bounded or not as an exponent is.
+pub(crate) fn is_corner(facts: &LawFacts, level: usize, arguments: &[f64]) -> bool {
+    facts.levels[level].force_jumps || is_unbounded(facts, level, arguments)
 }
 
 /// One extreme of a gap, seen from one level.
@@ -41,6 +55,8 @@ pub(crate) struct Extreme {
     pub(crate) size: f64,
     /// The force jumps at the level.
     pub(crate) jumps: bool,
+    /// The branch may have a corner of any angle where the level is touched: the force jumps, or its slope is unbounded.
+    pub(crate) corners: bool,
     /// It is none, but the gap where the unknowns begin to tell the orbit.
     pub(crate) begins: bool,
     /// It is seen from no level, but from the gap zero.
@@ -61,6 +77,7 @@ impl Extreme {
             above: 0.0,
             size,
             jumps,
+            corners: jumps,
             begins: false,
             plain: false,
             of_states: false,
@@ -190,6 +207,7 @@ mod tests {
             above,
             size: 1.0,
             jumps: false,
+            corners: false,
             begins: false,
             plain: false,
             of_states: false,

@@ -231,6 +231,11 @@ pub(crate) trait BranchProblem {
         false
     }
 
+    /// Whether the branch may have a corner of any angle where a level is touched: the force jumps there, or its slope is unbounded.
+    fn corners(&self) -> bool {
+        self.force_jumps()
+    }
+
     /// Writes the extremes of all gaps over the period of a solution, seen from all levels: in order of contacts, levels and phases.
     /// Says whether they could be read.
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {

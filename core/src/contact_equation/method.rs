@@ -369,6 +369,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
         extreme::force_jumps(self.run.problem.asked.system.as_ref())
     }
 
+    fn corners(&self) -> bool {
+        extreme::corners(self.run.problem.asked.system.as_ref())
+    }
+
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         self.run.extremes(u, extremes)
     }

@@ -286,6 +286,10 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         extreme::force_jumps(self.run.problem.system.as_ref())
     }
 
+    fn corners(&self) -> bool {
+        extreme::corners(self.run.problem.system.as_ref())
+    }
+
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         let gaps = self.gaps();
         gaps.is_some_and(|gaps| gaps.read(u, extremes).is_some())

@@ -168,6 +168,10 @@ impl BranchProblem for BalanceBranch<'_, '_> {
         extreme::force_jumps(self.run.context.system.as_ref())
     }
 
+    fn corners(&self) -> bool {
+        extreme::corners(self.run.context.system.as_ref())
+    }
+
     fn extremes(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         self.gaps().read(u, extremes);
         true

@@ -1,4 +1,4 @@
-//! Beyond a touch of a level at which the force jumps.
+//! Beyond a touch of a level at which the force jumps, or its slope is unbounded.
 //!
 //! An orbit whose extreme is by `h` beyond the level is there for a time that goes as the root of `h`, and the jump of the force gives it
 //! an impulse that does so too. With the equations `R(u) = 0` as they are without it, and `v` what the jump does to them,
@@ -18,6 +18,11 @@
 //! constant, the equations are as well conditioned as those of the touch. The orbit is sought from (2) with the matrix of the touch: one
 //! side is reached from the other with steps along the tangent, which bring `h` to what is wanted, and steps that solve (1).
 //!
+//! Where the force goes as `g^p` beyond the level, its impulse goes as `h^(p + 1/2)` in place of the root in (1). With `p` below a half the
+//! branch has the same corner. Below one its slope is continuous, but it goes to its limit as `h^(p - 1/2)`, which at `p = 0.6` is still a
+//! fortieth of what it is at a height of one when rounding hides `h`: no step of arc length sees that the branch bends. So such a touch is passed in the
+//! same way, where steps fail.
+//!
 //! By shooting the branch has a kink too where a gap passes such a level just where its unknowns begin to tell the orbit. Nothing
 //! happens to the orbit there, but Newton's method may fail beside it: it is passed in the same way.
 //!
@@ -34,10 +39,11 @@ use super::seen::Seen;
 use super::touch::touching;
 use super::{Engine, Looked};
 use crate::branches::extreme::{Extreme, passed};
-use crate::branches::problem::{BranchProblem, Touch};
+use crate::branches::problem::{BranchProblem, Change, Touch};
 use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Norm;
+use crate::event::EventKind;
 use crate::numeric::linear::dot;
 
 /// A corner is looked for as far ahead as so many times the step that failed.
@@ -91,7 +97,7 @@ impl Engine {
     ) -> bool {
         let looked = self.looked.take().filter(|looked| looked.at == at.u);
         let enough = |looked: &Looked| step > SHORTER * looked.step;
-        if !problem.force_jumps() || looked.as_ref().is_some_and(enough) {
+        if !problem.corners() || looked.as_ref().is_some_and(enough) {
             self.looked = looked;
             return false;
         }
@@ -220,42 +226,79 @@ impl Engine {
         let Corner {
             touch, end, begin, ..
         } = corner;
-        let (value, known) = (
-            touch.located.point.parameter(),
-            problem.record().events.len(),
-        );
+        let (value, error) = (touch.located.point.parameter(), touch.error);
+        let known = problem.record().events.len();
+        let all = |_: &Change| true;
         let mut from = before;
         for point in corner.way.iter().chain([end]) {
-            self.events_between(*problem, newton, [from, point], after);
+            self.events_between(*problem, newton, [from, point], after, all);
             from = point;
         }
-        // Multipliers are unbounded at the touch: what a series leaves of that beside it is none of its own.
-        problem.record_mut().drop_beside(known, value, ERRORS);
-        if !touch.extreme.begins {
-            let mut extremes = Vec::new();
-            problem.extremes(&touch.located.point.u, &mut extremes);
-            // On the side that is clear the branch is smooth up to the touch.
-            let comes_clear = end.u == touch.located.point.u;
-            let step = Step {
-                before: if comes_clear { before } else { next },
-                next: &touch.located.point,
-            };
-            let touch = Touch {
-                contacts: touching(&extremes),
-                turns: corner.turns(),
-                located: touch.located.clone(),
-                extreme: touch.extreme,
-                error: touch.error,
-                rate: touch.rate,
-                after,
-            };
-            problem.keep_touch(newton, step, &touch);
+        let mut turns = corner.turns();
+        if !touch.extreme.jumps {
+            turns &= !self.folds_within(*problem, newton, [end, begin], after);
         }
-        let known = problem.record().events.len();
+        // Multipliers are unbounded where the force jumps: what a series leaves of that beside the touch is none of its own.
+        problem.record_mut().drop_beside(known, value, ERRORS);
+        let mut first = problem.record().events.len();
         // The branch may have turned there.
         self.falls = None;
-        self.events_between(*problem, newton, [begin, next], after);
-        problem.record_mut().drop_beside(known, value, ERRORS);
+        self.events_between(*problem, newton, [begin, next], after, all);
+        problem.record_mut().drop_beside(first, value, ERRORS);
+        if touch.extreme.begins {
+            return;
+        }
+        // A fold and a turn that are not told apart are none.
+        let record = problem.record_mut();
+        if turns && let Some(place) = record.drop_fold_beside(known, [value, error]) {
+            turns = false;
+            first -= usize::from(place < first);
+        }
+        let behind = record.events.split_off(first);
+        let mut extremes = Vec::new();
+        problem.extremes(&touch.located.point.u, &mut extremes);
+        // On the side that is clear the branch is smooth up to the touch.
+        let comes_clear = end.u == touch.located.point.u;
+        let step = Step {
+            before: if comes_clear { before } else { next },
+            next: &touch.located.point,
+        };
+        let touch = Touch {
+            contacts: touching(&extremes),
+            turns,
+            located: touch.located.clone(),
+            extreme: touch.extreme,
+            error,
+            rate: touch.rate,
+            after,
+        };
+        problem.keep_touch(newton, step, &touch);
+        problem.record_mut().events.extend(behind);
+    }
+
+    /// What changes its sign between the two sides of a touch where slopes and multipliers are continuous, but change faster than a way of
+    /// points shows. Says whether the branch turns there by a fold, and not by its corner.
+    fn folds_within(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        sides: [&CurvePoint; 2],
+        after: usize,
+    ) -> bool {
+        let (events, turns) = {
+            let record = problem.record();
+            (record.events.len(), record.turns.len())
+        };
+        let is_zero = |change: &Change| change.kind != EventKind::BranchPoint;
+        self.events_between(problem, newton, sides, after, is_zero);
+        let record = problem.record_mut();
+        let mut place = 0;
+        record.turns.retain(|turn| {
+            place += 1;
+            place <= turns || turn.kind != EventKind::Fold
+        });
+        let mut found = record.events[events..].iter();
+        found.any(|event| event.kind == EventKind::Fold)
     }
 
     /// What changes its sign between two points that are not kept as a step.
@@ -265,6 +308,7 @@ impl Engine {
         newton: &mut Newton,
         ends: [&CurvePoint; 2],
         after: usize,
+        wanted: impl Fn(&Change) -> bool,
     ) {
         let [a, b] = ends.map(|point| {
             let seen = Seen::at(problem, point, self.falls);
@@ -272,12 +316,12 @@ impl Engine {
             seen
         });
         if self.ended.is_none() {
-            self.record_all(problem, newton, [&a, &b], after, |_| true);
+            self.record_all(problem, newton, [&a, &b], after, wanted);
         }
     }
 }
 
-/// The extremes that come to levels where the force jumps, the nearest first, with the length of the way to them.
+/// The extremes that come to levels where the branch may have a corner, the nearest first, with the length of the way to them.
 fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f64, Extreme)> {
     let mut extremes = Vec::new();
     let mut ahead: Vec<(f64, Extreme)> = Vec::new();
@@ -287,7 +331,7 @@ fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f6
         problem.add_beginnings(&at.u, &mut extremes);
     }
     for extreme in extremes {
-        if !extreme.jumps || extreme.above.abs() > NEAR {
+        if !extreme.corners || extreme.above.abs() > NEAR {
             continue;
         }
         let range = at.scale.parameter;

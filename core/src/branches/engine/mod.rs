@@ -364,9 +364,13 @@ impl Engine {
         } else {
             moduli::crossing(multipliers[1], b.0)
         };
+        // At a touch where the stiffness is unbounded multipliers change faster than can be resolved.
+        let mut touches = events.iter().filter(|event| event.after >= before);
+        let touch = touches.find(|event| matches!(event.kind, EventKind::Grazing { .. }));
+        let middle = 0.5 * (other.value + last.value);
         let turn = Turn {
             kind,
-            value: 0.5 * (other.value + last.value),
+            value: touch.map_or(middle, |touch| touch.point.value),
             test: f64::NAN,
             after: points.len() - 1,
         };

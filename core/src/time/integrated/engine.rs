@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::cancel::Cancel;
-use crate::law::{Quantity, TermFacts};
+use crate::law::{Quantity, TermFacts, is_unbounded};
 use crate::laws::generic::scales::{Scales, Sight};
 use crate::numeric::fourier::grading;
 use crate::numeric::linear::{Lu, Matrix};
@@ -293,24 +293,13 @@ impl<const S: usize> Engine<S> {
     /// are neither jumps nor unbounded derivatives. A state errs by parts of the largest one of the motion.
     pub(super) fn rounding(&self, contact: usize, level: usize) -> Option<f64> {
         let facts = self.field.law(contact).facts();
-        if facts.levels[level].force_jumps || self.is_unbounded(contact, level) {
+        let arguments = &self.field.contacts[contact].arguments;
+        if facts.levels[level].force_jumps || is_unbounded(facts, level, arguments) {
             return None;
         }
         let size = self.field.gap_size(contact, &self.here.sizes, self.phase());
         let level = self.field.contacts[contact].levels[level];
         Some(ROUNDING * (size + level.abs()))
-    }
-
-    /// Whether the stiffness is unbounded at a level. That may depend on an exponent, so it is not asked of the facts of the level.
-    fn is_unbounded(&self, contact: usize, level: usize) -> bool {
-        let facts = self.field.law(contact).facts();
-        let arguments = &self.field.contacts[contact].arguments;
-        let below = facts.pieces[level].terms.iter();
-        let above = facts.pieces[level + 1].terms.iter();
-        let ends = below.map(|term| (term.of, term.upper));
-        let ends = ends.chain(above.map(|term| (term.of, term.lower)));
-        ends.into_iter()
-            .any(|(of, end)| of == Quantity::ByGap && end.value(arguments) < 0.0)
     }
 
     /// The powers that make the force and its derivatives analytic at either end of each piece.

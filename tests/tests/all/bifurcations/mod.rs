@@ -23,5 +23,6 @@ mod narrow;
 mod symmetry;
 mod table;
 mod torus;
+mod unbounded;
 mod units;
 mod vertical;
