@@ -39,6 +39,16 @@ impl Record {
         event.map(|event| event.point.value).or_else(last)
     }
 
+    /// Has the last event, behind so many points, be where the branch ends on another one. It is what any branch point there is, that was not
+    /// located.
+    pub(crate) fn is_joint(&mut self, after: usize) {
+        if let Some(event) = self.events.last_mut() {
+            event.kind = EventKind::BranchPoint;
+        }
+        let same = |turn: &Turn| turn.after == after && turn.kind == EventKind::BranchPoint;
+        self.turns.retain(|turn| !same(turn));
+    }
+
     /// Drops a place that turned out to be where a level is touched.
     pub(crate) fn drop_turn(&mut self, turn: &Turn) {
         self.turns.retain(|other| other != turn);

@@ -196,6 +196,7 @@ impl Run<'_> {
         let stop = self.joined.as_ref()?.joined_at(value);
         // The orbits behind the point are those before it.
         self.record.points.truncate(after);
+        self.record.is_joint(after);
         Some(stop)
     }
 }

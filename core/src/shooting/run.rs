@@ -176,6 +176,7 @@ impl<'r> Run<'r> {
         };
         // The orbits behind the point are those before it.
         self.record.points.truncate(after);
+        self.record.is_joint(after);
         let stop = recurrence.joined_at(value);
         self.joined = Some(recurrence);
         Some(stop)

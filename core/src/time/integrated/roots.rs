@@ -4,7 +4,14 @@
 //! coefficients, and has at most as many zeros as they have changes of sign. So no zero is missed, however close it is to
 //! another one.
 //!
-//! Source: Lane and Riesenfeld (1981), Bounds on a polynomial, BIT 21, 112-117.
+//! A zero that is the only one takes ten values of the polynomial, which go by Horner's rule in `t = u/(1-u)` (1), or in `1/t` (2) in the other half:
+//!
+//! ```text
+//! sum_i c_i (n choose i) u^i (1-u)^(n-i) = (1-u)^n sum_i b_i t^i,    b_i = (n choose i) c_i       (1)
+//!                                        = u^n sum_i b_(n-i) t^-i                                 (2)
+//! ```
+//!
+//! Sources: Lane and Riesenfeld (1981), Bounds on a polynomial, BIT 21, 112-117. Farin (2002), Curves and Surfaces for CAGD, section 5.
 
 use crate::numeric::roots::{self, Place};
 
@@ -52,9 +59,44 @@ fn search(c: &[f64], [start, end]: [f64; 2], depth: usize) -> Option<f64> {
 
 /// The only zero, from the side where the polynomial is not positive.
 fn only(c: &[f64]) -> f64 {
-    let [a, b] = [(0.0, c[0]), (1.0, c[c.len() - 1])].map(|(x, value)| Place { x, value });
-    roots::closed(a, b, LOCATED, |u| value(c, u)).map_or(1.0, |bracket| bracket.end(false))
+    let degree = c.len() - 1;
+    let mut room = [0.0; MOST];
+    let weighted = &mut room[..c.len()];
+    for ((b, c), binomial) in weighted.iter_mut().zip(c).zip(&BINOMIALS[degree]) {
+        *b = c * binomial;
+    }
+    let value = |u: f64| {
+        let left = 1.0 - u;
+        if u <= 0.5 {
+            left.powi(degree as i32) * horner(weighted.iter().rev(), u / left)
+        } else {
+            u.powi(degree as i32) * horner(weighted.iter(), left / u)
+        }
+    };
+    let [a, b] = [(0.0, c[0]), (1.0, c[degree])].map(|(x, value)| Place { x, value });
+    roots::closed(a, b, LOCATED, value).map_or(1.0, |bracket| bracket.end(false))
 }
+
+/// A polynomial by Horner's rule, from the coefficient of its highest power.
+fn horner<'c>(coefficients: impl Iterator<Item = &'c f64>, t: f64) -> f64 {
+    coefficients.fold(0.0, |sum, b| sum * t + b)
+}
+
+/// `n choose i`: whole numbers below `2^53`.
+const BINOMIALS: [[f64; MOST]; MOST] = {
+    let mut rows = [[0.0; MOST]; MOST];
+    let mut n = 0;
+    while n < MOST {
+        rows[n][0] = 1.0;
+        let mut i = 1;
+        while i <= n {
+            rows[n][i] = rows[n - 1][i - 1] + rows[n - 1][i];
+            i += 1;
+        }
+        n += 1;
+    }
+    rows
+};
 
 /// The polynomial's value, by de Casteljau's scheme.
 pub(super) fn value(c: &[f64], u: f64) -> f64 {
@@ -100,6 +142,22 @@ mod tests {
         }
         for d in [0.04, 1e-4, 1e-8, 1e-12] {
             assert_eq!(first(&parabola(1.0, 0.37, d)), None);
+        }
+    }
+
+    /// The value by Horner's rule and that by de Casteljau's scheme have the same zero, in either half, up to the highest degree.
+    #[test]
+    fn both_ways_to_a_value_have_the_same_zero() {
+        for count in [2, 3, 9, 17, MOST] {
+            for zero in [1e-6, 0.2, 0.5, 0.7, 1.0 - 1e-6] {
+                // `zero - u`, with its degree raised.
+                let c: Vec<f64> = (0..count)
+                    .map(|i| zero - i as f64 / (count - 1) as f64)
+                    .collect();
+                let u = first(&c).unwrap();
+                assert!((u - zero).abs() < 2e-13, "{count} {zero}: {u}");
+                assert!(value(&c, u).abs() < 2e-13, "{count} {zero}: {u}");
+            }
         }
     }
 
