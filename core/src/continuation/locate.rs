@@ -17,6 +17,8 @@ pub(crate) struct Located {
     pub(crate) test: f64,
     /// Whether it was driven to zero; otherwise it jumps here.
     pub(crate) vanishes: bool,
+    /// By how much, as far as two points tell that are as near to each other as can be.
+    pub(crate) jump: f64,
 }
 
 /// Points closer together than this part of the arc length are the same.
@@ -63,6 +65,7 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
                 point,
                 test: value,
                 vanishes: true,
+                jump: 0.0,
             });
         }
         let place = Place { x, value };
@@ -74,9 +77,11 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
             break;
         }
     }
+    let jump = near.place.value.abs() + far.place.value.abs();
     let last = if bracket.near_is_best() { near } else { far };
     Some(Located {
         vanishes: false,
+        jump,
         test: last.place.value,
         point: last.point,
     })

@@ -164,6 +164,7 @@ impl Approach<'_> {
             point: CurvePoint { u, tangent, scale },
             test: extreme.above,
             vanishes: true,
+            jump: 0.0,
         };
         Some(Reached {
             located,

@@ -58,6 +58,8 @@ const NEAR: f64 = 0.2;
 const ERRORS: f64 = 3.0;
 /// Kinks where nothing touches are looked for where so short a step fails.
 const SHORTEST: f64 = 1e-3;
+/// Where the slope is unbounded the branch is smooth at last, and steps lead on unless they fail when they are so short.
+const BENDS_WITHIN: f64 = 1e-5;
 /// A walk that ends nearer to a touch than this ends there.
 const PULLED: f64 = 1e-5;
 
@@ -331,7 +333,8 @@ fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f6
         problem.add_beginnings(&at.u, &mut extremes);
     }
     for extreme in extremes {
-        if !extreme.corners || extreme.above.abs() > NEAR {
+        let bends = extreme.jumps || (extreme.corners && step < BENDS_WITHIN);
+        if !bends || extreme.above.abs() > NEAR {
             continue;
         }
         let range = at.scale.parameter;

@@ -305,6 +305,7 @@ impl Engine {
         let turned = self.events(problem, newton, step);
         if self.ended.is_none() {
             self.touches(problem, newton, step, turned);
+            place_turns(problem);
             self.explain_verdict(problem);
         }
         if self.ended.is_some() {
@@ -462,5 +463,28 @@ impl Engine {
         self.seen.clear();
         self.seen.extend(earlier.clone().into_iter().chain(ends));
         earlier
+    }
+}
+
+/// Multipliers that change their number outside of the unit circle in the last step, at no zero that was located, do so where a level is
+/// touched in it at which they jump, or nearly.
+fn place_turns(problem: &mut dyn BranchProblem) {
+    if !problem.corners() {
+        return;
+    }
+    let after = problem.points() - 1;
+    let record = problem.record_mut();
+    let in_step = record.events.iter().filter(|event| event.after == after);
+    let mut touches = in_step.filter(|event| matches!(event.kind, EventKind::Grazing { .. }));
+    let (Some(touch), None) = (touches.next(), touches.next()) else {
+        return;
+    };
+    let value = touch.point.value;
+    let of_multipliers =
+        |kind: EventKind| !matches!(kind, EventKind::Fold | EventKind::BranchPoint);
+    for turn in &mut record.turns {
+        if turn.after == after && of_multipliers(turn.kind) {
+            turn.value = value;
+        }
     }
 }

@@ -10,6 +10,9 @@ use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::AsProblem;
 use crate::event::{EventKind, Turn};
 
+/// Of a test function that is steep, and does not jump, at most this part is left beside its zero.
+const STEEP: f64 = 1e-3;
+
 /// What came of a change of sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Recorded {
@@ -155,7 +158,7 @@ impl<'s> Search<'s> {
         let Some(root) = self.root(problem, newton) else {
             return (ZeroOutcome::Unread, None);
         };
-        if !problem.vanishes(self.change, &root.located) {
+        if !problem.vanishes(self.change, &root.located) && !self.is_steep(&root.located) {
             return (ZeroOutcome::Unread, Some(root.located));
         }
         let value = root.located.point.parameter();
@@ -170,6 +173,13 @@ impl<'s> Search<'s> {
         };
         let kept = problem.keep(newton, self.step, &zero);
         (kept, Some(zero.root.located))
+    }
+
+    /// Whether a test function that is not driven to zero is continuous there all the same, and steep: on both sides little is left of it, as
+    /// near as points can be to each other.
+    fn is_steep(&self, located: &Located) -> bool {
+        let [a, b] = self.sizes();
+        located.jump > 0.0 && located.jump <= STEEP * a.min(b)
     }
 
     /// Where the test function changes its sign.
@@ -213,6 +223,7 @@ pub(crate) fn root<P: AsProblem + ?Sized>(
                 point: found.point,
                 test: found.test,
                 vanishes: true,
+                jump: 0.0,
             };
             let error = found.error;
             Some(Root { located, error })

@@ -65,7 +65,8 @@ fn no_sweep_steps_over_a_pair_of_folds() {
         let request = FIGURE_2B_BELOW.request(&*model).harmonics(10);
         let request = request.from(ends.0).to(ends.1).stability(false);
         let branch = request.run().unwrap();
-        assert_eq!(branch.folds().count(), 8, "{ends:?}");
+        let folds: Vec<f64> = branch.folds().map(|fold| fold.point.value).collect();
+        assert_eq!(folds.len(), 8, "{ends:?} {folds:?} {}", branch.stopped);
         assert!(branch.turns.is_empty());
     }
 }
