@@ -76,10 +76,11 @@ impl fmt::Display for EventKind {
 pub struct Turn {
     /// What would have happened where the test function vanishes.
     pub kind: EventKind,
-    /// What the branch varies, where the jump is; in the middle of the step between two points where it was not found.
+    /// What the branch varies, where the jump is. Where it was not found: at the touch of a level in the step, if there is one at which
+    /// multipliers jump or nearly do, or else in the middle between two points.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
-    /// Value of the test function beside the jump; not a number where it is unknown.
+    /// Value of the test function beside the jump, or before the step where that was not found; not a number where it is unknown.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub test: f64,
     /// Number of points of the branch before it.

@@ -54,29 +54,6 @@ impl Record {
         self.turns.retain(|other| other != turn);
     }
 
-    /// Drops those of the events from one on that their errors, so many times, do not tell apart from a touch at a value.
-    pub(crate) fn drop_beside(&mut self, first: usize, touch: f64, errors: f64) {
-        let mut place = 0;
-        self.events.retain(|event| {
-            place += 1;
-            place <= first || (event.point.value - touch).abs() > errors * event.error
-        });
-    }
-
-    /// Drops a fold among the events from one on that is no farther from a touch than the error of the latter. Says which one it was.
-    pub(crate) fn drop_fold_beside(
-        &mut self,
-        first: usize,
-        [touch, error]: [f64; 2],
-    ) -> Option<usize> {
-        let beside = |event: &Event| {
-            event.kind == EventKind::Fold && (event.point.value - touch).abs() <= error
-        };
-        let place = first + self.events.iter().skip(first).position(beside)?;
-        self.events.remove(place);
-        Some(place)
-    }
-
     /// The largest error that the multipliers of the last two points may have, or `least` if that is more.
     pub(crate) fn last_error(&self, least: f64) -> f64 {
         let last = self.points.iter().rev().take(2);

@@ -355,8 +355,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
         if of_modulus && moduli::is_recorded(&self.run.record.events, &event) {
             return ZeroOutcome::Nothing;
         }
-        let ends = matches!(event.kind, EventKind::BranchPoint | EventKind::Fold);
-        let meets = ends && self.run.joined.is_none();
+        let meets = event.kind == EventKind::BranchPoint && self.run.joined.is_none();
         self.run.record.events.push(event);
         let end = meets.then(|| self.run.meets(at)).flatten();
         end.map_or(ZeroOutcome::Event, ZeroOutcome::Ends)

@@ -17,7 +17,7 @@ pub(crate) struct Located {
     pub(crate) test: f64,
     /// Whether it was driven to zero; otherwise it jumps here.
     pub(crate) vanishes: bool,
-    /// By how much, as far as two points tell that are as near to each other as can be.
+    /// By how much, as two points tell that are as near to each other as can be; infinite where the search ended before.
     pub(crate) jump: f64,
 }
 
@@ -77,7 +77,11 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
             break;
         }
     }
-    let jump = near.place.value.abs() + far.place.value.abs();
+    let jump = if bracket.is_closed() {
+        near.place.value.abs() + far.place.value.abs()
+    } else {
+        f64::INFINITY
+    };
     let last = if bracket.near_is_best() { near } else { far };
     Some(Located {
         vanishes: false,

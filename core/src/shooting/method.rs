@@ -272,11 +272,12 @@ impl BranchProblem for ShootingBranch<'_, '_> {
                 return ZeroOutcome::Nothing;
             }
         }
-        // Where a branch ends on one of more regular orbits it also turns, and rounding may tell both apart.
         let ends = matches!(event.kind, EventKind::BranchPoint | EventKind::Fold);
         let meets = ends && self.run.joined.is_none();
         self.run.record.events.push(event);
-        let end = meets.then(|| self.run.meets(&mut self.equations)).flatten();
+        let end = meets
+            .then(|| self.run.meets(&mut self.equations, step))
+            .flatten();
         end.map_or(ZeroOutcome::Event, ZeroOutcome::Ends)
     }
 

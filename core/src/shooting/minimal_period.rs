@@ -7,10 +7,13 @@
 
 use super::equations::Equations;
 use crate::branches::recurrence::{CyclicSymmetry, Recurrence, are_near, least};
+use crate::numeric::linear::dot;
 use crate::time::FlowError;
 
 /// The same at a branch point: along a branch that turns there, states are known to the root of what the value is known to.
 const SAME_AT_POINT: f64 = 1e-4;
+/// Directions are opposite if the cosine of the angle between them is below minus this.
+const OPPOSITE: f64 = 0.5;
 
 /// By what part of the `size` of orbits two states differ at most that are one.
 #[derive(Debug, Clone, Copy)]
@@ -55,4 +58,40 @@ pub(super) fn earlier(
         let image = recurrence.image.of_states(&first, order / 2);
         Ok(are_near(&state, &image, most, omega))
     })
+}
+
+/// Whether what two orbits `u` and `other` of a branch have in addition to those that come back earlier, in this way, has opposite
+/// directions: the branch passes one that has nothing in addition between them.
+///
+/// # Errors
+/// If their motion cannot be computed.
+pub(super) fn passes_between(
+    equations: &mut Equations,
+    orbits: [&[f64]; 2],
+    earlier: &Recurrence,
+    symmetries: &[CyclicSymmetry],
+) -> Result<bool, FlowError> {
+    let given = equations.span.recurrence.clone();
+    let (order, omega) = (equations.order(), equations.frame.omega);
+    let way = symmetries.iter().find_map(|symmetry| {
+        let mut within = symmetry.within(&given);
+        let (steps, _) = within.find(|(_, recurrence)| recurrence == earlier)?;
+        Some((steps, symmetry.parts))
+    });
+    let Some((steps, parts)) = way else {
+        return Ok(false);
+    };
+    let mut additions = Vec::new();
+    for u in orbits {
+        let first = equations.states_of(u)[..order].to_vec();
+        let mut state = first.clone();
+        equations.pass(&mut state, u[u.len() - 1], [0, steps], parts)?;
+        let image = earlier.image.of_states(&first, order / 2);
+        for (i, (x, y)) in state.iter_mut().zip(&image).enumerate() {
+            *x = (*x - y) / if i < order / 2 { 1.0 } else { omega };
+        }
+        additions.push(state);
+    }
+    let [a, b] = [&additions[0], &additions[1]];
+    Ok(dot(a, b) < -OPPOSITE * (dot(a, a) * dot(b, b)).sqrt())
 }

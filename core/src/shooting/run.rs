@@ -6,7 +6,7 @@ use super::equations::Equations;
 use super::error_reference::ErrorReference;
 use super::extremes;
 use super::method::ShootingBranch;
-use super::minimal_period::{SameState, earlier};
+use super::minimal_period::{SameState, earlier, passes_between};
 use super::output_error::{At, Errors, output_error};
 use super::problem::ShootingProblem;
 use super::rest::Rest;
@@ -21,10 +21,11 @@ use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
 use crate::branches::record::Record;
 use crate::branches::recurrence::{Recurrence, may_be_earlier};
-use crate::continuation::follow::{FollowOptions, Start, Stop};
+use crate::continuation::follow::{FollowOptions, Start, Step, Stop};
 use crate::continuation::newton::NewtonError;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
+use crate::event::EventKind;
 use crate::model::request::RequestError;
 use crate::numeric::spectrum::distance;
 use crate::orbit::observe::Accuracy;
@@ -153,9 +154,9 @@ impl<'r> Run<'r> {
         }
     }
 
-    /// Why the branch ends at the last event, if the orbit there is more regular than asked for: what follows is the same orbits again,
-    /// looked at from elsewhere.
-    pub(super) fn meets(&mut self, equations: &mut Equations) -> Option<Stop> {
+    /// Why the branch ends at the last event, which was found in a step, if the orbit there is more regular than asked for: what follows is the
+    /// same orbits again, looked at from elsewhere. There it turns too, and rounding may tell its fold from its branch point.
+    pub(super) fn meets(&mut self, equations: &mut Equations, step: Step<'_>) -> Option<Stop> {
         let symmetries = &self.problem.symmetries;
         let event = self.record.events.last()?;
         if !may_be_earlier(&equations.span.recurrence, symmetries)
@@ -163,17 +164,22 @@ impl<'r> Run<'r> {
         {
             return None;
         }
-        let (after, value) = (event.after, event.point.value);
+        let (kind, after, value) = (event.kind, event.after, event.point.value);
         let u = equations.unknowns_of(&event.point.orbit.states, event.point.value);
         let same = self.same_state(equations).at_point();
         let state = event.point.orbit.state();
+        let is_fold = kind == EventKind::Fold;
         let recurrence = match earlier(equations, &u, same, symmetries) {
             Ok(Some(recurrence)) => recurrence,
-            Ok(None) if self.gains_symmetry(equations, &state, same) => {
+            Ok(None) if !is_fold && self.gains_symmetry(equations, &state, same) => {
                 equations.span.recurrence.clone()
             }
             _ => return None,
         };
+        let ends = [&step.before.u[..], &step.next.u];
+        if is_fold && !passes_between(equations, ends, &recurrence, symmetries).unwrap_or(false) {
+            return None;
+        }
         // The orbits behind the point are those before it.
         self.record.points.truncate(after);
         self.record.is_joint(after);

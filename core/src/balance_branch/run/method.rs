@@ -220,7 +220,8 @@ impl BranchProblem for BalanceBranch<'_, '_> {
 
     fn couple_fully_once(&mut self, on: bool) -> bool {
         let resolution = self.run.resolution;
-        if !self.run.has_tail() {
+        let coupled = self.balance.resolution().core == resolution.harmonics;
+        if !self.run.has_tail() || (on && coupled) {
             return false;
         }
         let core = if on {

@@ -39,6 +39,7 @@ use super::seen::Seen;
 use super::touch::touching;
 use super::{Engine, Looked};
 use crate::branches::extreme::{Extreme, passed};
+use crate::branches::point::Event;
 use crate::branches::problem::{BranchProblem, Change, Touch};
 use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::newton::Newton;
@@ -189,8 +190,9 @@ impl Engine {
             self.refused = true;
         }
         tried.end();
+        let found = nearest.is_some();
         self.passed = nearest.map(|(_, _, next)| next);
-        self.passed.is_some()
+        found
     }
 
     /// The search for the corner that an extreme leads to, on a way of some length.
@@ -230,56 +232,66 @@ impl Engine {
         } = corner;
         let (value, error) = (touch.located.point.parameter(), touch.error);
         let known = problem.record().events.len();
-        let all = |_: &Change| true;
+        // On the side that is clear the branch is smooth up to the touch.
+        let comes_clear = end.u == touch.located.point.u;
+        let mut turns = corner.turns();
+        let mut first = known;
         let mut from = before;
         for point in corner.way.iter().chain([end]) {
-            self.events_between(*problem, newton, [from, point], after, all);
+            self.events_between(*problem, newton, [from, point], after, |_| true);
             from = point;
         }
-        let mut turns = corner.turns();
+        if comes_clear {
+            first = problem.record().events.len();
+        }
         if !touch.extreme.jumps {
             turns &= !self.folds_within(*problem, newton, [end, begin], after);
         }
-        // Multipliers are unbounded where the force jumps: what a series leaves of that beside the touch is none of its own.
-        problem.record_mut().drop_beside(known, value, ERRORS);
-        let mut first = problem.record().events.len();
+        if !comes_clear {
+            first = problem.record().events.len();
+        }
         // The branch may have turned there.
         self.falls = None;
-        self.events_between(*problem, newton, [begin, next], after, all);
-        problem.record_mut().drop_beside(first, value, ERRORS);
-        if touch.extreme.begins {
+        self.events_between(*problem, newton, [begin, next], after, |_| true);
+        if self.ended.is_some() {
             return;
         }
-        // A fold and a turn that are not told apart are none.
         let record = problem.record_mut();
-        if turns && let Some(place) = record.drop_fold_beside(known, [value, error]) {
-            turns = false;
-            first -= usize::from(place < first);
+        let mut behind = record.events.split_off(first);
+        if touch.extreme.jumps {
+            // Multipliers are unbounded at the touch: what a series leaves of that beside it is none of its own.
+            drop_beside(&mut record.events, known, value);
+            drop_beside(&mut behind, 0, value);
         }
-        let behind = record.events.split_off(first);
-        let mut extremes = Vec::new();
-        problem.extremes(&touch.located.point.u, &mut extremes);
-        // On the side that is clear the branch is smooth up to the touch.
-        let comes_clear = end.u == touch.located.point.u;
-        let step = Step {
-            before: if comes_clear { before } else { next },
-            next: &touch.located.point,
-        };
-        let touch = Touch {
-            contacts: touching(&extremes),
-            turns,
-            located: touch.located.clone(),
-            extreme: touch.extreme,
-            error,
-            rate: touch.rate,
-            after,
-        };
-        problem.keep_touch(newton, step, &touch);
+        if turns {
+            // A fold and a turn that are not told apart are none.
+            let dropped = drop_fold_beside(&mut record.events, known, [value, error])
+                || drop_fold_beside(&mut behind, 0, [value, error]);
+            turns = !dropped;
+        }
+        if !touch.extreme.begins {
+            let mut extremes = Vec::new();
+            problem.extremes(&touch.located.point.u, &mut extremes);
+            let step = Step {
+                before: if comes_clear { before } else { next },
+                next: &touch.located.point,
+            };
+            let touch = Touch {
+                contacts: touching(&extremes),
+                turns,
+                located: touch.located.clone(),
+                extreme: touch.extreme,
+                error,
+                rate: touch.rate,
+                after,
+            };
+            problem.keep_touch(newton, step, &touch);
+        }
         problem.record_mut().events.extend(behind);
     }
 
-    /// What changes its sign between the two sides of a touch where slopes and multipliers are continuous, but change faster than a way of
-    /// points shows. Says whether the branch turns there by a fold, and not by its corner.
+    /// What changes its sign between the two sides of a touch where the force does not jump: slopes and multipliers may be continuous and change
+    /// faster than a way of points shows. Says whether the branch turns there by a fold, and not by its corner.
     fn folds_within(
         &mut self,
         problem: &mut dyn BranchProblem,
@@ -346,4 +358,26 @@ fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f6
     }
     ahead.sort_by(|a, b| a.0.total_cmp(&b.0));
     ahead
+}
+
+/// Drops those of the events from one on that their errors, so many times, do not tell apart from a touch at a value.
+fn drop_beside(events: &mut Vec<Event>, first: usize, touch: f64) {
+    let mut place = 0;
+    events.retain(|event| {
+        place += 1;
+        place <= first || (event.point.value - touch).abs() > ERRORS * event.error
+    });
+}
+
+/// Drops a fold among the events from one on that errors do not tell apart from a touch. Says whether there was one.
+fn drop_fold_beside(events: &mut Vec<Event>, first: usize, [touch, error]: [f64; 2]) -> bool {
+    let beside = |event: &Event| {
+        let apart = (event.point.value - touch).abs();
+        event.kind == EventKind::Fold && apart <= error + event.error
+    };
+    let place = events.iter().skip(first).position(beside);
+    if let Some(place) = place {
+        events.remove(first + place);
+    }
+    place.is_some()
 }

@@ -44,7 +44,7 @@ use zero::Recorded;
 pub(crate) use zero::{Aim, Search, is_crossing, root};
 
 use super::moduli;
-use super::point::Point;
+use super::point::{Event, Point};
 use super::problem::{BranchProblem, Change, Read, Test};
 use super::record::Kept;
 use super::stability::Verdict;
@@ -89,6 +89,8 @@ struct Engine {
     plain: Option<Gaps>,
     /// Where levels are touched in the last step.
     touched: Vec<f64>,
+    /// What changed its sign in the last step at no place that was found.
+    unlocated: Vec<Turn>,
 }
 
 /// Follows the branch from its start to its end.
@@ -160,12 +162,11 @@ fn go_on(
                 outcome: Outcome::Halted(halted),
                 ..
             }) => {
-                if let Some(passed) = engine.passed.take() {
-                    start = Start::At(Box::new(halted.moved_to(passed, options.steps.initial)));
-                    continue;
+                if let Some(stop) = engine.ended {
+                    return Ok(stop);
                 }
-                if let Some((point, step)) = engine.back.take() {
-                    start = Start::At(Box::new(halted.back_to(point, step)));
+                if let Some(from) = engine.moved(&halted) {
+                    start = from;
                     continue;
                 }
                 let mut resized = halted.clone();
@@ -210,6 +211,7 @@ impl Engine {
             gaps: Vec::new(),
             plain: None,
             touched: Vec::new(),
+            unlocated: Vec::new(),
         }
     }
 
@@ -245,6 +247,17 @@ impl Engine {
                 problem.onward(walk)
             }
         }
+    }
+
+    /// Where the walk goes on, if not from where it was halted: behind a corner, or from the point before the last one.
+    fn moved(&mut self, halted: &Halted) -> Option<Start> {
+        let moved = if let Some(passed) = self.passed.take() {
+            halted.clone().moved_to(passed, self.options.steps.initial)
+        } else {
+            let (point, step) = self.back.take()?;
+            halted.clone().back_to(point, step)
+        };
+        Some(Start::At(Box::new(moved)))
     }
 
     /// What follows from how a point was read.
@@ -305,7 +318,7 @@ impl Engine {
         let turned = self.events(problem, newton, step);
         if self.ended.is_none() {
             self.touches(problem, newton, step, turned);
-            place_turns(problem);
+            self.place_turns(problem);
             self.explain_verdict(problem);
         }
         if self.ended.is_some() {
@@ -314,6 +327,24 @@ impl Engine {
             Continue::Break(Halt::Resize)
         } else {
             Continue::Continue(())
+        }
+    }
+
+    /// Multipliers that cross the unit circle in the last step, at no place that was found, do so where the one level is touched in it
+    /// at which they jump, or nearly.
+    fn place_turns(&mut self, problem: &mut dyn BranchProblem) {
+        let after = problem.points() - 1;
+        let touch = corner_touch(problem, after);
+        let record = problem.record_mut();
+        for unlocated in self.unlocated.drain(..) {
+            let of_multipliers = matches!(
+                unlocated.kind,
+                EventKind::PeriodDoubling | EventKind::SymmetryBreaking | EventKind::NeimarkSacker
+            );
+            let place = record.turns.iter().position(|turn| *turn == unlocated);
+            if let (Some(place), Some((_, value)), true) = (place, touch, of_multipliers) {
+                record.turns[place].value = value;
+            }
         }
     }
 
@@ -365,15 +396,14 @@ impl Engine {
         } else {
             moduli::crossing(multipliers[1], b.0)
         };
+        let (place, middle) = (points.len() - 1, 0.5 * (other.value + last.value));
         // At a touch where the stiffness is unbounded multipliers change faster than can be resolved.
-        let mut touches = events.iter().filter(|event| event.after >= before);
-        let touch = touches.find(|event| matches!(event.kind, EventKind::Grazing { .. }));
-        let middle = 0.5 * (other.value + last.value);
+        let (after, value) = corner_touch(problem, before).unwrap_or((place, middle));
         let turn = Turn {
             kind,
-            value: touch.map_or(middle, |touch| touch.point.value),
+            value,
             test: f64::NAN,
-            after: points.len() - 1,
+            after,
         };
         problem.record_mut().turns.push(turn);
     }
@@ -466,25 +496,14 @@ impl Engine {
     }
 }
 
-/// Multipliers that change their number outside of the unit circle in the last step, at no zero that was located, do so where a level is
-/// touched in it at which they jump, or nearly.
-fn place_turns(problem: &mut dyn BranchProblem) {
-    if !problem.corners() {
-        return;
-    }
-    let after = problem.points() - 1;
-    let record = problem.record_mut();
-    let in_step = record.events.iter().filter(|event| event.after == after);
-    let mut touches = in_step.filter(|event| matches!(event.kind, EventKind::Grazing { .. }));
-    let (Some(touch), None) = (touches.next(), touches.next()) else {
-        return;
-    };
-    let value = touch.point.value;
-    let of_multipliers =
-        |kind: EventKind| !matches!(kind, EventKind::Fold | EventKind::BranchPoint);
-    for turn in &mut record.turns {
-        if turn.after == after && of_multipliers(turn.kind) {
-            turn.value = value;
-        }
+/// Where the one level is touched behind so many points, if a branch may have a corner where one is: the number of points before it, and the
+/// value.
+fn corner_touch(problem: &dyn BranchProblem, from: usize) -> Option<(usize, f64)> {
+    let touches = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
+    let events = problem.record().events.iter().filter(touches);
+    let mut found = events.filter(|event| event.after >= from);
+    match (problem.corners(), found.next(), found.next()) {
+        (true, Some(touch), None) => Some((touch.after, touch.point.value)),
+        _ => None,
     }
 }

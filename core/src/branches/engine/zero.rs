@@ -62,8 +62,10 @@ impl Engine {
             options: self.options.newton,
         };
         let recorded = search.record(problem, newton);
-        if let Recorded::Ends(stop) = recorded {
-            self.ended = Some(stop);
+        match recorded {
+            Recorded::Ends(stop) => self.ended = Some(stop),
+            Recorded::Turn(turn) if turn.value == search.middle() => self.unlocated.push(turn),
+            _ => {}
         }
         recorded
     }
@@ -115,10 +117,8 @@ impl<'s> Search<'s> {
             }
             ZeroOutcome::Unread => {}
         }
-        let [a, b] = self.step.parameters();
-        let middle = 0.5 * (a + b);
         let (value, test) = jump.map_or_else(
-            || (middle, self.ends[0].relative_to(self.reference())),
+            || (self.middle(), self.ends[0].relative_to(self.reference())),
             |jump| (jump.point.parameter(), jump.test),
         );
         let turn = Turn {
@@ -129,6 +129,11 @@ impl<'s> Search<'s> {
         };
         problem.record_mut().turns.push(turn);
         Recorded::Turn(turn)
+    }
+
+    fn middle(&self) -> f64 {
+        let [a, b] = self.step.parameters();
+        0.5 * (a + b)
     }
 
     /// Determinants are in units of the larger one of those at both ends.
@@ -158,7 +163,7 @@ impl<'s> Search<'s> {
         let Some(root) = self.root(problem, newton) else {
             return (ZeroOutcome::Unread, None);
         };
-        if !problem.vanishes(self.change, &root.located) && !self.is_steep(&root.located) {
+        if !problem.vanishes(self.change, &root.located) && !self.is_steep(problem, &root.located) {
             return (ZeroOutcome::Unread, Some(root.located));
         }
         let value = root.located.point.parameter();
@@ -175,11 +180,12 @@ impl<'s> Search<'s> {
         (kept, Some(zero.root.located))
     }
 
-    /// Whether a test function that is not driven to zero is continuous there all the same, and steep: on both sides little is left of it, as
-    /// near as points can be to each other.
-    fn is_steep(&self, located: &Located) -> bool {
+    /// Whether a test function that is not driven to zero is continuous there all the same, and steep, as beside a touch where the stiffness
+    /// is unbounded: on both sides little is left of it, as near as points can be to each other. Where the force jumps it may be a short jump.
+    fn is_steep(&self, problem: &dyn BranchProblem, located: &Located) -> bool {
         let [a, b] = self.sizes();
-        located.jump > 0.0 && located.jump <= STEEP * a.min(b)
+        let may_be = problem.corners() && !problem.force_jumps();
+        may_be && located.jump > 0.0 && located.jump <= STEEP * a.min(b)
     }
 
     /// Where the test function changes its sign.
