@@ -275,9 +275,7 @@ impl BranchProblem for ShootingBranch<'_, '_> {
         let ends = matches!(event.kind, EventKind::BranchPoint | EventKind::Fold);
         let meets = ends && self.run.joined.is_none();
         self.run.record.events.push(event);
-        let end = meets
-            .then(|| self.run.meets(&mut self.equations, step))
-            .flatten();
+        let end = meets.then(|| self.run.meets(&mut self.equations)).flatten();
         end.map_or(ZeroOutcome::Event, ZeroOutcome::Ends)
     }
 

@@ -21,7 +21,7 @@ use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
 use crate::branches::record::Record;
 use crate::branches::recurrence::{Recurrence, may_be_earlier};
-use crate::continuation::follow::{FollowOptions, Start, Step, Stop};
+use crate::continuation::follow::{FollowOptions, Start, Stop};
 use crate::continuation::newton::NewtonError;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
@@ -154,9 +154,9 @@ impl<'r> Run<'r> {
         }
     }
 
-    /// Why the branch ends at the last event, which was found in a step, if the orbit there is more regular than asked for: what follows is the
+    /// Why the branch ends at the last event, if the orbit there is more regular than asked for: what follows is the
     /// same orbits again, looked at from elsewhere. There it turns too, and rounding may tell its fold from its branch point.
-    pub(super) fn meets(&mut self, equations: &mut Equations, step: Step<'_>) -> Option<Stop> {
+    pub(super) fn meets(&mut self, equations: &mut Equations) -> Option<Stop> {
         let symmetries = &self.problem.symmetries;
         let event = self.record.events.last()?;
         if !may_be_earlier(&equations.span.recurrence, symmetries)
@@ -176,9 +176,15 @@ impl<'r> Run<'r> {
             }
             _ => return None,
         };
-        let ends = [&step.before.u[..], &step.next.u];
-        if is_fold && !passes_between(equations, ends, &recurrence, symmetries).unwrap_or(false) {
-            return None;
+        if is_fold {
+            // Of the whole step: a part of it may have the fold without the branch point.
+            let [from, to] = [after.checked_sub(1)?, after].map(|place| {
+                let point = self.record.points.get(place)?;
+                Some(equations.unknowns_of(&point.orbit.states, point.value))
+            });
+            let (from, to) = (from?, to?);
+            let passed = passes_between(equations, [&from, &to], &recurrence, symmetries);
+            passed.ok().filter(|passed| *passed)?;
         }
         // The orbits behind the point are those before it.
         self.record.points.truncate(after);
