@@ -255,15 +255,12 @@ impl BranchContext {
             from: a.value,
             to: b.value,
         };
-        let mut u = located
-            .filter(|located| located.vanishes)
-            .ok_or(lost)?
-            .point
-            .u;
+        let located = located.filter(|located| located.vanishes).ok_or(lost)?;
+        let mut u = located.point.u.clone();
         let last = u.len() - 1;
         u[last] = value;
         let mut evaluator = self.evaluator(balance.resolution());
-        let point = evaluator.read(&mut balance, newton, &u);
+        let point = evaluator.read(&mut balance, newton, &u, Some(&located.point));
         let error = evaluator.by_harmonics(point.error.unwrap_or(f64::INFINITY));
         Ok(Searched { point, error })
     }

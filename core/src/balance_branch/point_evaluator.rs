@@ -6,9 +6,11 @@ use crate::balance::truncation::{BEYOND, RefinedBalance};
 use crate::branches::observed::EXTREMES;
 use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
+use crate::continuation::follow::CurvePoint;
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
 use crate::numeric::fourier::series;
+use crate::numeric::spectrum::distance;
 use crate::orbit::observe::{Accuracy, Motion, Observed, Observer};
 use crate::orbit::stability::judge::Judge;
 use crate::orbit::stability::{Method, Stability};
@@ -21,6 +23,8 @@ const STILL: f64 = 10.0;
 const ROUNDINGS: f64 = 100.0;
 /// A branch less steep than this is at a fold that was located.
 const FOLD: f64 = 1e-6;
+/// Beside a fold it is less steep than this.
+const BESIDE: f64 = 0.1;
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
@@ -31,6 +35,7 @@ pub(crate) struct PointEvaluator<'a> {
     /// What errors of the coordinates are measured by.
     pub(super) units: Vec<f64>,
     pub(super) tangent: Vec<f64>,
+    beside_fold: bool,
     /// The last error, without what lies along the branch: near a fold no harmonics take that away soon.
     pub(crate) across: f64,
     /// The error is wanted, whether or not the stability is.
@@ -55,6 +60,7 @@ impl<'a> PointEvaluator<'a> {
             observer: Observer::default(),
             units: Vec::new(),
             tangent: Vec::new(),
+            beside_fold: false,
             across: f64::INFINITY,
             estimate,
             accuracy,
@@ -71,23 +77,24 @@ impl<'a> PointEvaluator<'a> {
         }
     }
 
-    /// Everything that is read off a solution, whose factors Newton's method holds.
+    /// Everything that is read off a solution, whose factors Newton's method holds; given as a point of its branch where that is known.
     pub(crate) fn read(
         &mut self,
         balance: &mut Balance<'_>,
         newton: &mut Newton,
         u: &[f64],
+        at: Option<&CurvePoint>,
     ) -> Point {
         let n = balance.unknowns();
         balance.set(u[n]);
         let wanted = self.estimate || self.judge.is_some();
         let corrected = wanted && self.finer.correct(u, newton);
-        let stability = self
-            .judge
-            .as_mut()
-            .map_or_else(Stability::unknown, |judge| {
-                judge.stability(balance, corrected.then_some(&self.finer), u)
-            });
+        let shift = if corrected {
+            self.shift(u, newton, at)
+        } else {
+            0.0
+        };
+        let stability = self.stability(balance, corrected, u, shift);
         let recurrence = balance
             .resolution()
             .recurrence(balance.layout().coordinates);
@@ -106,7 +113,7 @@ impl<'a> PointEvaluator<'a> {
         self.across = f64::INFINITY;
         let error = wanted.then(|| {
             if corrected {
-                self.error(&observed, balance, u, newton)
+                self.error(&observed, balance, u, newton, shift)
             } else {
                 f64::INFINITY
             }
@@ -130,6 +137,7 @@ impl<'a> PointEvaluator<'a> {
         balance: &mut Balance<'_>,
         u: &[f64],
         newton: &mut Newton,
+        shift: f64,
     ) -> f64 {
         // Of the orbit itself, before the correction is computed.
         let (left, rounding) = (newton.left_in_oscillation(), newton.rounding_size());
@@ -147,7 +155,9 @@ impl<'a> PointEvaluator<'a> {
         let farthest = largest(|motion| motion.maximum.abs().max(motion.minimum.abs()));
         let extremes = EXTREMES * f64::EPSILON * farthest;
         let unit = self.take_units(observed, size, STILL * (peak * left + extremes));
-        let shift = self.shift(u, newton);
+        // An orbit closed by integration is at this very value.
+        let refined = self.judge.as_ref().and_then(|judge| judge.refined.as_ref());
+        let shift = if refined.is_some() { 0.0 } else { shift };
         let truncation = self.truncation(balance, u, newton);
         if let Accuracy::Output(output) = self.accuracy {
             let of_coordinates = OfCoordinates {
@@ -182,13 +192,55 @@ impl<'a> PointEvaluator<'a> {
         unit
     }
 
+    /// The stability of a solution. The multipliers of the corrected orbit, which lies across the branch, are those of another value, and
+    /// beside a fold they change with it as its root does: they are taken where the tangent leads back to this very value.
+    fn stability(
+        &mut self,
+        balance: &Balance<'_>,
+        corrected: bool,
+        u: &[f64],
+        shift: f64,
+    ) -> Stability {
+        let Self {
+            judge,
+            finer,
+            tangent,
+            beside_fold,
+            ..
+        } = self;
+        let Some(judge) = judge else {
+            return Stability::unknown();
+        };
+        if shift != 0.0 {
+            finer.move_along(u, tangent, -shift);
+        }
+        let mut stability = judge.stability(balance, corrected.then_some(finer), u);
+        if shift != 0.0 {
+            finer.move_along(u, tangent, shift);
+            if *beside_fold && judge.refined.is_none() {
+                // What lies across the branch and what lies along it may cancel, and are taken by their sizes.
+                let across = judge.stability(balance, Some(finer), u);
+                let along = distance(&across.multipliers, &stability.multipliers);
+                stability = Stability::of(stability.multipliers, stability.error + along);
+            }
+        }
+        stability.beside(balance.rigid())
+    }
+
     /// How far along the tangent of the branch the corrected orbit, which lies across the branch, is from this very value. Not at a fold,
-    /// where there is no such way; its own error says where it lies. An orbit closed by integration is at this very value.
-    fn shift(&mut self, u: &[f64], newton: &mut Newton) -> f64 {
-        let refined = self.judge.as_ref().and_then(|judge| judge.refined.as_ref());
+    /// where there is no such way; its own error says where it lies.
+    /// Factors of the solution before the last update tell the tangent only where it hardly changes.
+    fn shift(&mut self, u: &[f64], newton: &mut Newton, at: Option<&CurvePoint>) -> f64 {
         let n = u.len() - 1;
         self.tangent.resize(u.len(), 0.0);
-        if refined.is_some() || newton.direction(&mut self.tangent) < FOLD {
+        let slope = if let Some(at) = at {
+            self.tangent.copy_from_slice(&at.tangent);
+            at.parameter_slope().abs()
+        } else {
+            newton.direction(&mut self.tangent)
+        };
+        self.beside_fold = slope < BESIDE;
+        if slope < FOLD {
             return 0.0;
         }
         let corrected = self.finer.extended().last();

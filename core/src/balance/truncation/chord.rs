@@ -16,8 +16,12 @@ use crate::continuation::newton::Newton;
 use crate::continuation::problem::Problem;
 use crate::numeric::fourier::series;
 
-/// Size of a correction, in parts of the oscillation, below which it needs no further steps: they change it by a part that is as small.
+/// Size of a correction, in parts of the oscillation, below which the Jacobian does not change with it.
 const SMALL: f64 = 1e-5;
+/// What contacts couple of the tail to its inertia, beyond which further steps are made however small the first is: they fall slowly, or
+/// grow. Up to it their sum is that of a geometric series.
+const STRONG: f64 = 0.5;
+const STRONGEST: f64 = 1.0 / (1.0 - STRONG);
 /// Harmonics up to which such steps are made in any case, and cost least: a contact that is always closed needs no more, however stiff
 /// it is beside the inertia of the tail.
 const FEW: usize = 12;
@@ -44,8 +48,9 @@ impl RefinedBalance<'_> {
         } else {
             SMALL
         };
-        if self.change() <= most {
-            return first;
+        let steps = 1.0 / (1.0 - self.coupled);
+        if self.change() <= NOTHING || (self.change() <= most && self.coupled <= STRONG) {
+            return first * steps.clamp(1.0, STRONGEST);
         }
         self.further.clone_from(&self.orbit);
         let error = match self.step_on(u, units, newton) {

@@ -26,8 +26,10 @@
 //! of the orbit there, each adds `d^2 / 2 c`, which counts where a harmonic meets a resonance and is a quarter of its period late.
 //!
 //! A contact that is stiffer than the inertia of the tail, and a Jacobian that changes with the orbit, as beside a resonance that is
-//! not resolved, make (1) a first step only. Where it is not small, or harmonics are few, more such steps are made with the residual of the finer balance,
-//! and what they do not settle is bounded by how fast they fall ([`chord`]).
+//! not resolved, make (1) a first step only. What the contacts couple of `v` is in the residual that `v` leaves in its own harmonics: as a part
+//! of the residual before, harmonic by harmonic, it tells how the next step would be to this one. Where it is large, where (1) is not small, or
+//! harmonics are few, more such steps are made with the residual of the finer balance, and what they do not settle is bounded by how fast they
+//! fall ([`chord`]).
 //!
 //! Source: the tail as a diagonal follows Grolet and Thouverez (2012), On a new harmonic selection technique for harmonic
 //! balance method, where the residual of omitted harmonics steers their number; (1) turns it into a corrected orbit.
@@ -75,15 +77,17 @@ pub(crate) struct RefinedBalance<'a> {
     beyond: Vec<f64>,
     /// The coarse balance, where contact forces are exact.
     plain: Option<Balance<'a>>,
-    /// Series of a contact force, and the length of its part that reaches the coarse harmonics.
+    /// Series of a contact force.
     force: Vec<f64>,
-    short: usize,
     /// The tail alone.
     without_core: Vec<f64>,
     /// The last orbit corrected further, and before its last step.
     further: Vec<f64>,
     before: Vec<f64>,
     change: f64,
+    /// Residual of the tail before it was added, and what contacts couple of it to its inertia.
+    alone: Vec<f64>,
+    coupled: f64,
 }
 
 impl<'a> RefinedBalance<'a> {
@@ -120,12 +124,13 @@ impl<'a> RefinedBalance<'a> {
             modes: Modes::default(),
             beyond: vec![0.0; coordinates],
             force: vec![0.0; series::length(balance.force_harmonics())],
-            short: series::length(plain.force_harmonics()),
             plain: (coarse.aft == Aft::Switched).then_some(plain),
             without_core: Vec::new(),
             further: Vec::new(),
             before: Vec::new(),
             change: f64::INFINITY,
+            alone: Vec::new(),
+            coupled: 0.0,
             balance,
         }
     }
@@ -172,10 +177,38 @@ impl<'a> RefinedBalance<'a> {
     fn sampled_tail(&mut self) -> Option<()> {
         self.balance.evaluate(&self.orbit, &mut self.residual, None);
         self.solve_tail()?;
+        self.alone.clone_from(&self.residual);
         self.balance.evaluate(&self.orbit, &mut self.residual, None);
+        self.measure_coupling(false);
         self.core.fill(0.0);
         self.add_core(1.0);
         Some(())
+    }
+
+    /// What contacts couple of the tail that was added to its inertia, from the residual that it leaves, or from the forces on it alone:
+    /// the next step of the tail to this one, harmonic by harmonic.
+    fn measure_coupling(&mut self, forces: bool) {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
+        let n = self.balance.layout().coordinates;
+        let (mut next, mut this) = (0.0, 0.0);
+        for entry in (coarse..fine).step_by(2) {
+            let [mut tail, mut before, mut left] = [0.0; 3];
+            for at in (0..n).flat_map(|i| [i * fine + entry, i * fine + entry + 1]) {
+                let own = if forces { self.alone[at] } else { 0.0 };
+                tail += self.orbit[at].powi(2);
+                before += self.alone[at].powi(2);
+                left += (self.residual[at] - own).powi(2);
+            }
+            if before > 0.0 {
+                this += tail;
+                next += tail * left / before;
+            }
+        }
+        self.coupled = if next > 0.0 {
+            (next / this).sqrt()
+        } else {
+            0.0
+        };
     }
 
     /// By contacts alone, where the orbit leaves no residual in the coarse harmonics.
@@ -197,14 +230,16 @@ impl<'a> RefinedBalance<'a> {
         self.add_core(-1.0);
         self.add_stiffness();
         self.solve_tail()?;
+        self.alone.clone_from(&self.residual);
         self.residual.fill(0.0);
         for index in 0..self.balance.alike.len() {
             let Alike { contact, count } = self.balance.alike[index];
-            let force = &mut self.force[..self.short];
-            self.balance.contact_force(&self.orbit, contact, force);
             self.balance
-                .add_in_direction(contact, count, force, &mut self.residual);
+                .contact_force(&self.orbit, contact, &mut self.force);
+            self.balance
+                .add_in_direction(contact, count, &self.force, &mut self.residual);
         }
+        self.measure_coupling(true);
         self.balance.keep_unknowns(&mut self.residual);
         self.add_stiffness_of_tail();
         self.add_core(1.0);
@@ -318,6 +353,21 @@ impl<'a> RefinedBalance<'a> {
         self.balance.set(self.orbit[last]);
         self.measure(u);
         self.orbit.iter().all(|x| x.is_finite())
+    }
+
+    /// Moves the corrected orbit along a direction of the coarse balance.
+    pub(crate) fn move_along(&mut self, u: &[f64], direction: &[f64], by: f64) {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
+        let last = self.orbit.len() - 1;
+        let rows = self.orbit[..last].chunks_exact_mut(fine);
+        for (to, along) in rows.zip(direction.chunks_exact(coarse)) {
+            for (to, along) in to.iter_mut().zip(along) {
+                *to += by * along;
+            }
+        }
+        self.orbit[last] += by * direction[direction.len() - 1];
+        self.balance.set(self.orbit[last]);
+        self.measure(u);
     }
 
     /// Adds `du` of (1), from the residual in the coarse harmonics.

@@ -28,7 +28,7 @@ impl<'a> Run<'a> {
         let at = &zero.root.located.point;
         let shift = self.crossing_shift(balance, newton, step, at, test);
         let error = BEYOND * shift + zero.root.error + ROUNDING * at.parameter().abs();
-        let point = self.evaluator.read(balance, newton, &at.u);
+        let point = self.evaluator.read(balance, newton, &at.u, None);
         let kind = if self.breaks_symmetry(at, test) {
             EventKind::SymmetryBreaking
         } else {

@@ -160,7 +160,9 @@ impl<'a> Run<'a> {
         } else {
             f64::INFINITY
         };
-        let point = self.evaluator.read(balance, newton, u);
+        let point = self
+            .evaluator
+            .read(balance, newton, u, Some(&located.point));
         self.record.events.push(Event {
             kind,
             error: unless_contradicted(error, kind, &point),

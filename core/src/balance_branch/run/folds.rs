@@ -35,7 +35,7 @@ impl Run<'_> {
         let (kind, after) = (zero.change.kind, zero.after);
         let u = &located.point.u;
         let error = self.evaluator.finer.fold_error(u, newton);
-        let point = self.evaluator.read(balance, newton, u);
+        let point = self.evaluator.read(balance, newton, u, None);
         let turns = |after: usize, value: f64| self.record.points[after - 1].value < value;
         let same_way = turns(after, point.value);
         let near = |other: &&Event| {

@@ -217,7 +217,7 @@ impl<'a> Run<'a> {
         at: &CurvePoint,
         visit: See<'_>,
     ) -> Read {
-        let point = self.evaluator.read(balance, newton, &at.u);
+        let point = self.evaluator.read(balance, newton, &at.u, Some(at));
         self.choose(&point, newton.contraction());
         let change = self.wanted != self.resolution;
         if self.wanted.harmonics > self.resolution.harmonics {
@@ -251,7 +251,7 @@ impl<'a> Run<'a> {
         let options = self.options.newton;
         let corrected = newton.correct(balance, &mut u, border, point.scale, options);
         let u = if corrected.is_ok() { &u } else { &point.u };
-        self.evaluator.read(balance, newton, u)
+        self.evaluator.read(balance, newton, u, Some(point))
     }
 
     /// Decides on the resolution of the next point, or of this one again.

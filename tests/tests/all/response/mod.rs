@@ -10,6 +10,7 @@ mod figures;
 mod first_orbits;
 mod free;
 mod given;
+mod left_out;
 mod reference;
 mod requests;
 mod robust;
