@@ -54,6 +54,27 @@ impl Record {
         self.turns.retain(|other| other != turn);
     }
 
+    /// Makes places of branch points and Neimark-Sacker bifurcations, from one event on, whose errors are unknown: they are of unknowns that do
+    /// not resolve the orbits there, such as few harmonics in a narrow place of a law, and may be theirs alone.
+    pub(crate) fn doubt_unknown(&mut self, first: usize) {
+        let of_equations =
+            |kind: EventKind| matches!(kind, EventKind::BranchPoint | EventKind::NeimarkSacker);
+        let (mut place, turns) = (0, &mut self.turns);
+        self.events.retain(|event| {
+            place += 1;
+            let kept = place <= first || event.error.is_finite() || !of_equations(event.kind);
+            if !kept {
+                turns.push(Turn {
+                    kind: event.kind,
+                    value: event.point.value,
+                    test: event.test,
+                    after: event.after,
+                });
+            }
+            kept
+        });
+    }
+
     /// The largest error that the multipliers of the last two points may have, or `least` if that is more.
     pub(crate) fn last_error(&self, least: f64) -> f64 {
         let last = self.points.iter().rev().take(2);

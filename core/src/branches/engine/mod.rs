@@ -24,6 +24,7 @@ mod approach;
 mod back;
 mod corner;
 mod corner_search;
+mod explained;
 mod inside;
 mod inside_touch;
 mod leap;
@@ -43,17 +44,13 @@ pub(crate) use walk::{Places, Walk};
 use zero::Recorded;
 pub(crate) use zero::{Aim, Search, is_crossing, root};
 
-use super::moduli;
-use super::point::{Event, Point};
 use super::problem::{BranchProblem, Change, Read, Test};
-use super::record::Kept;
-use super::stability::Verdict;
 use crate::continuation::follow::{
     Continue, CurvePoint, FollowOptions, Halt, Halted, Outcome, Start, Step, Stop, Visit, Walked,
     follow_until_stuck,
 };
 use crate::continuation::newton::{Newton, NewtonError};
-use crate::event::{EventKind, Turn};
+use crate::event::Turn;
 
 /// Points that are remembered: a parabola goes through them.
 const POINTS: usize = 3;
@@ -89,6 +86,8 @@ struct Engine {
     plain: Option<Gaps>,
     /// Where levels are touched in the last step.
     touched: Vec<f64>,
+    /// The last step was divided in a narrow place of a law.
+    in_narrow: bool,
     /// What changed its sign in the last step at no place that was found.
     unlocated: Vec<Turn>,
 }
@@ -211,6 +210,7 @@ impl Engine {
             gaps: Vec::new(),
             plain: None,
             touched: Vec::new(),
+            in_narrow: false,
             unlocated: Vec::new(),
         }
     }
@@ -330,84 +330,6 @@ impl Engine {
         }
     }
 
-    /// Multipliers that cross the unit circle in the last step, at no place that was found, do so where the one level is touched in it
-    /// at which they jump, or nearly.
-    fn place_turns(&mut self, problem: &mut dyn BranchProblem) {
-        let after = problem.points() - 1;
-        let touch = corner_touch(problem, after);
-        let record = problem.record_mut();
-        for unlocated in self.unlocated.drain(..) {
-            let of_multipliers = matches!(
-                unlocated.kind,
-                EventKind::PeriodDoubling | EventKind::SymmetryBreaking | EventKind::NeimarkSacker
-            );
-            let place = record.turns.iter().position(|turn| *turn == unlocated);
-            if let (Some(place), Some((_, value)), true) = (place, touch, of_multipliers) {
-                record.turns[place].value = value;
-            }
-        }
-    }
-
-    /// Says where a verdict changes that nothing recorded explains, if all events are looked for.
-    fn explain_verdict(&mut self, problem: &mut dyn BranchProblem) {
-        let mut watched = problem.watched().iter();
-        if !watched.any(|watched| watched.kind == EventKind::NeimarkSacker) {
-            return;
-        }
-        let jumps = problem.force_jumps();
-        let Kept {
-            points,
-            events,
-            turns,
-        } = problem.kept();
-        let decided = |point: &&Point| point.stability.verdict != Verdict::Undecided;
-        let Some(last) = points.last().filter(decided) else {
-            return;
-        };
-        // At first whatever is before it.
-        let first = || {
-            points[..points.len() - 1]
-                .iter()
-                .rposition(|point| decided(&point))
-        };
-        let before = self.decided.replace(points.len());
-        let Some(before) = before.or_else(|| first().map(|place| place + 1)) else {
-            return;
-        };
-        if before >= points.len() {
-            return;
-        }
-        let other = &points[before - 1];
-        // Multipliers jump at a touch where the force does, and nowhere else.
-        let explains = |kind: EventKind, after: usize| {
-            let touches = matches!(kind, EventKind::Grazing { .. });
-            after >= before && (jumps || !touches)
-        };
-        if other.stability.verdict == last.stability.verdict
-            || events.iter().any(|event| explains(event.kind, event.after))
-            || turns.iter().any(|turn| explains(turn.kind, turn.after))
-        {
-            return;
-        }
-        let multipliers = [other, last].map(|point| &point.stability.multipliers);
-        let [a, b] = multipliers.map(|multipliers| moduli::nearest(multipliers));
-        let kind = if a.1 < b.1 {
-            moduli::crossing(multipliers[0], a.0)
-        } else {
-            moduli::crossing(multipliers[1], b.0)
-        };
-        let (place, middle) = (points.len() - 1, 0.5 * (other.value + last.value));
-        // At a touch where the stiffness is unbounded multipliers change faster than can be resolved.
-        let (after, value) = corner_touch(problem, before).unwrap_or((place, middle));
-        let turn = Turn {
-            kind,
-            value,
-            test: f64::NAN,
-            after,
-        };
-        problem.record_mut().turns.push(turn);
-    }
-
     /// Locates what happened in a step, and in the one before where that shows only now. Says where the branch turned without a fold.
     fn events(
         &mut self,
@@ -424,13 +346,17 @@ impl Engine {
             return None;
         }
         let mut turned = None;
+        let known = problem.record().events.len();
         for pair in parts.windows(2) {
             let wanted = |_: &Change| true;
             let turn = self.record_all(problem, newton, [&pair[0], &pair[1]], after, wanted);
             turned = turned.or(turn);
             if self.ended.is_some() {
-                break;
+                return turned;
             }
+        }
+        if self.in_narrow {
+            problem.record_mut().doubt_unknown(known);
         }
         turned
     }
@@ -493,17 +419,5 @@ impl Engine {
         self.seen.clear();
         self.seen.extend(earlier.clone().into_iter().chain(ends));
         earlier
-    }
-}
-
-/// Where the one level is touched behind so many points, if a branch may have a corner where one is: the number of points before it, and the
-/// value.
-fn corner_touch(problem: &dyn BranchProblem, from: usize) -> Option<(usize, f64)> {
-    let touches = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
-    let events = problem.record().events.iter().filter(touches);
-    let mut found = events.filter(|event| event.after >= from);
-    match (problem.corners(), found.next(), found.next()) {
-        (true, Some(touch), None) => Some((touch.after, touch.point.value)),
-        _ => None,
     }
 }

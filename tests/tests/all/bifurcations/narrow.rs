@@ -74,10 +74,9 @@ fn branches(request: &FrequencyResponse, range: [f64; 2]) -> Vec<Branch> {
     found
 }
 
-/// In the order of their values: those of which it is known where they are.
+/// In the order of their values.
 fn sorted(branch: &Branch) -> Vec<&Event> {
-    let known = |event: &&Event| event.error.is_finite();
-    let mut events: Vec<&Event> = branch.events.iter().filter(known).collect();
+    let mut events: Vec<&Event> = branch.events.iter().collect();
     events.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
     events
 }
