@@ -6,6 +6,7 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
+use super::integrals::add;
 use super::method::VANISHED;
 use super::run::Run;
 use crate::branches::moduli::multipliers;
@@ -13,10 +14,11 @@ use crate::branches::point::{Event, Point};
 use crate::branches::problem::{Touch, Zero};
 use crate::branches::solve;
 use crate::branches::stability::Stability;
-use crate::continuation::follow::CurvePoint;
+use crate::continuation::follow::{CurvePoint, Step};
 use crate::continuation::newton::{Border, Newton, NewtonOptions};
 use crate::event::EventKind;
 use crate::numeric::linear::dot;
+use crate::numeric::roots::{self, Place};
 use crate::numeric::spectrum::distance;
 use crate::shooting::tested::{Test, Tests};
 
@@ -28,6 +30,10 @@ const FINER: usize = 4;
 const SECANTS: usize = 12;
 /// The first of them, in units of the orbit.
 const APART: f64 = 1e-6;
+/// Where a curve is solved for around a point at which branches cross, in this part of a step: the cubic through four points is as exact as
+/// the fourth power of that.
+const AROUND: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
+const BESIDE: f64 = 5e-3;
 /// What the last change is multiplied by.
 const SAFETY: f64 = 2.0;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -42,8 +48,13 @@ const OPTIONS: NewtonOptions = NewtonOptions {
 /// An orbit that moves farther, in units of the orbit, is another one.
 const FARTHEST: f64 = 0.1;
 
-/// The event at a zero of a test function, with the error that more nodes show.
-pub(super) fn event(run: &mut Run<'_>, zero: &Zero, kind: EventKind) -> Option<Event> {
+/// The event at a zero of a test function in a step, with the error that more nodes show.
+pub(super) fn event(
+    run: &mut Run<'_>,
+    step: Step<'_>,
+    zero: &Zero,
+    kind: EventKind,
+) -> Option<Event> {
     let at = &zero.root.located.point;
     let test = Test::of(zero.change.test);
     let read = run.read_event(at)?;
@@ -56,17 +67,19 @@ pub(super) fn event(run: &mut Run<'_>, zero: &Zero, kind: EventKind) -> Option<E
         contacts: 0,
         tangent: at.tangent.clone(),
     };
-    if zero.change.kind == EventKind::BranchPoint {
-        // The equations are singular there, and nothing is solved.
-        if let Some(map) = &read.finer {
-            let there = Tests::of(Some(map), at.parameter_slope()).value(test);
-            event.error += SAFETY * there.abs() / zero.steepness;
-        }
-        return Some(event);
-    }
-    let again = located_again(run, at, test);
+    let crosses = zero.change.kind == EventKind::BranchPoint;
+    let again = if crosses {
+        located_again(run, &along(at, step), test, crossing)
+    } else {
+        located_again(run, at, test, again)
+    };
     let Some(mut again) = again else {
-        event.error = f64::INFINITY;
+        event.error = if let (true, Some(map)) = (crosses, &read.finer) {
+            let there = Tests::of(Some(map), at.parameter_slope()).value(test);
+            event.error + SAFETY * there.abs() / zero.steepness
+        } else {
+            f64::INFINITY
+        };
         return Some(event);
     };
     let map = again.equations.map(&again.point.u);
@@ -87,8 +100,19 @@ struct Again {
     error: f64,
 }
 
+/// A point in the direction of a step: where branches cross, each of them has a tangent.
+fn along(at: &CurvePoint, step: Step<'_>) -> CurvePoint {
+    CurvePoint {
+        tangent: step.difference(),
+        ..at.clone()
+    }
+}
+
+/// Where a test function vanishes along the curve of equations near a point.
+type Locate = fn(&mut Equations, &CurvePoint, Test) -> Option<(CurvePoint, f64)>;
+
 /// Where a test function vanishes with more nodes, and more again until that does not change.
-fn located_again(run: &Run<'_>, at: &CurvePoint, test: Test) -> Option<Again> {
+fn located_again(run: &Run<'_>, at: &CurvePoint, test: Test, locate: Locate) -> Option<Again> {
     let mut found: Option<Again> = None;
     for _ in 0..FINER {
         let (from, point) = match &found {
@@ -105,7 +129,7 @@ fn located_again(run: &Run<'_>, at: &CurvePoint, test: Test) -> Option<Again> {
             tangent: there(&point.tangent),
             scale: point.scale,
         };
-        let Some((point, test)) = again(&mut next, &start, test) else {
+        let Some((point, test)) = locate(&mut next, &start, test) else {
             break;
         };
         let error = SAFETY * (point.parameter() - value).abs() + ROUNDING * value.abs();
@@ -160,7 +184,21 @@ struct Curve<'c> {
     form: Vec<f64>,
 }
 
-impl Curve<'_> {
+impl<'c> Curve<'c> {
+    fn new(equations: &'c mut Equations, start: &'c CurvePoint) -> Self {
+        let newton = Newton::new(equations);
+        let mut form = vec![0.0; start.u.len()];
+        newton
+            .norm()
+            .linear_form(start.scale, &start.tangent, &mut form);
+        Self {
+            equations,
+            newton,
+            start,
+            form,
+        }
+    }
+
     /// The point at an arc length, and the test function there.
     fn at(&mut self, s: f64, test: Test) -> Option<(CurvePoint, f64)> {
         let Self {
@@ -204,17 +242,7 @@ impl Curve<'_> {
 
 /// Where the test function vanishes along the curve of these equations, near a point of a coarser one.
 fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(CurvePoint, f64)> {
-    let newton = Newton::new(equations);
-    let mut form = vec![0.0; start.u.len()];
-    newton
-        .norm()
-        .linear_form(start.scale, &start.tangent, &mut form);
-    let mut curve = Curve {
-        equations,
-        newton,
-        start,
-        form,
-    };
+    let mut curve = Curve::new(equations, start);
     let (mut x0, mut x1) = (0.0, APART);
     let mut f0 = curve.at(x0, test)?.1;
     let (mut best, mut f1) = curve.at(x1, test)?;
@@ -234,6 +262,51 @@ fn again(equations: &mut Equations, start: &CurvePoint, test: Test) -> Option<(C
         }
     }
     Some((best, f1))
+}
+
+/// The same where branches cross: the equations are singular there, and are solved at four points around, whose cubic has the zero and the
+/// orbit at it.
+fn crossing(
+    equations: &mut Equations,
+    start: &CurvePoint,
+    test: Test,
+) -> Option<(CurvePoint, f64)> {
+    let mut curve = Curve::new(equations, start);
+    // An arc length times that of the direction.
+    let size = dot(&curve.form, &start.tangent);
+    let places = AROUND.map(|part| part * BESIDE * size);
+    let mut points = Vec::with_capacity(places.len());
+    for s in places {
+        points.push(curve.at(s, test)?);
+    }
+    let value = |s: f64| {
+        let pairs = lagrange(&places, s).into_iter().zip(&points);
+        pairs.map(|(l, (_, test))| l * test).sum::<f64>()
+    };
+    let [a, b] = [1, 2].map(|index: usize| Place {
+        x: places[index],
+        value: points[index].1,
+    });
+    let s = roots::root(a, b, VANISHED * size, value)?;
+    let mut point = CurvePoint {
+        u: vec![0.0; start.u.len()],
+        tangent: vec![0.0; start.u.len()],
+        scale: start.scale,
+    };
+    for (l, (other, _)) in lagrange(&places, s).into_iter().zip(&points) {
+        add(&mut point.u, l, &other.u);
+        add(&mut point.tangent, l, &other.tangent);
+    }
+    Some((point, value(s)))
+}
+
+/// The polynomials at a place that are one at one of these and zero at the others.
+fn lagrange(places: &[f64; 4], s: f64) -> [f64; 4] {
+    std::array::from_fn(|i| {
+        let others = (0..4).filter(|j| *j != i);
+        let factors = others.map(|j| (s - places[j]) / (places[i] - places[j]));
+        factors.product()
+    })
 }
 
 /// Keeps a touch of a level, solved again with more nodes until its value is known.

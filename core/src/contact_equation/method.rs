@@ -340,12 +340,12 @@ impl BranchProblem for ContactBranch<'_, '_> {
         Read::Refused
     }
 
-    fn keep(&mut self, _: &mut Newton, _: Step<'_>, zero: &Zero) -> ZeroOutcome {
+    fn keep(&mut self, _: &mut Newton, step: Step<'_>, zero: &Zero) -> ZeroOutcome {
         let of_modulus = zero.change.kind == EventKind::NeimarkSacker;
         let Some(kind) = self.kind(zero) else {
             return ZeroOutcome::Nothing;
         };
-        let Some(mut event) = events::event(self.run, zero, kind) else {
+        let Some(mut event) = events::event(self.run, step, zero, kind) else {
             return ZeroOutcome::Unread;
         };
         let at = &zero.root.located.point.u;
