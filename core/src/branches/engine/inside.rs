@@ -50,7 +50,7 @@ impl Engine {
         after: usize,
     ) -> Vec<Seen> {
         let mut parts = self.through_narrow(problem, newton, [a, b]);
-        self.in_narrow = parts.len() > 2;
+        self.doubted = parts.len() > 2;
         self.divide_parts(problem, newton, &mut parts);
         if let Some(earlier) = earlier {
             for sought in sought_from(problem, &parts[0]) {

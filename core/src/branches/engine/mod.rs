@@ -56,6 +56,10 @@ use crate::event::Turn;
 const POINTS: usize = 3;
 
 /// The state of a walk along a branch.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "independent facts, not states"
+)]
 struct Engine {
     options: FollowOptions,
     /// The last three points, the newest last, in their present unknowns.
@@ -87,7 +91,7 @@ struct Engine {
     /// Where levels are touched in the last step.
     touched: Vec<f64>,
     /// The last step was divided in a narrow place of a law.
-    in_narrow: bool,
+    doubted: bool,
     /// What changed its sign in the last step at no place that was found.
     unlocated: Vec<Turn>,
 }
@@ -210,7 +214,7 @@ impl Engine {
             gaps: Vec::new(),
             plain: None,
             touched: Vec::new(),
-            in_narrow: false,
+            doubted: false,
             unlocated: Vec::new(),
         }
     }
@@ -345,8 +349,9 @@ impl Engine {
         if self.ended.is_some() {
             return None;
         }
-        let mut turned = None;
+        // What was found in the step before is none of this one.
         let known = problem.record().events.len();
+        let mut turned = None;
         for pair in parts.windows(2) {
             let wanted = |_: &Change| true;
             let turn = self.record_all(problem, newton, [&pair[0], &pair[1]], after, wanted);
@@ -355,7 +360,7 @@ impl Engine {
                 return turned;
             }
         }
-        if self.in_narrow {
+        if self.doubted {
             problem.record_mut().doubt_unknown(known);
         }
         turned
