@@ -373,7 +373,7 @@ fn drop_beside(events: &mut Vec<Event>, first: usize, touch: f64) {
 fn drop_fold_beside(events: &mut Vec<Event>, first: usize, [touch, error]: [f64; 2]) -> bool {
     let beside = |event: &Event| {
         let apart = (event.point.value - touch).abs();
-        event.kind == EventKind::Fold && apart <= error + event.error
+        event.kind == EventKind::Fold && event.error.is_finite() && apart <= error + event.error
     };
     let place = events.iter().skip(first).position(beside);
     if let Some(place) = place {
