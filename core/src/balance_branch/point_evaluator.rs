@@ -25,6 +25,8 @@ const ROUNDINGS: f64 = 100.0;
 const FOLD: f64 = 1e-6;
 /// Beside a fold it is less steep than this.
 const BESIDE: f64 = 0.1;
+/// Multipliers change by at most so much along a unit of the branch, as far as their stated error is asked to tell.
+const STEEPEST: f64 = 30.0;
 
 /// Reads orbits of one resolution.
 #[derive(Debug)]
@@ -217,7 +219,8 @@ impl<'a> PointEvaluator<'a> {
         let mut stability = judge.stability(balance, corrected.then_some(finer), u);
         if shift != 0.0 {
             finer.move_along(u, tangent, shift);
-            if *beside_fold && judge.refined.is_none() {
+            let counts = STEEPEST * shift.abs() > stability.error;
+            if *beside_fold && counts && judge.refined.is_none() {
                 // What lies across the branch and what lies along it may cancel, and are taken by their sizes.
                 let across = judge.stability(balance, Some(finer), u);
                 let along = distance(&across.multipliers, &stability.multipliers);
