@@ -23,7 +23,7 @@
 //! fortieth of what it is at a height of one when rounding hides `h`: no step of arc length sees that the branch bends. So such a touch is passed in the
 //! same way, where steps fail.
 //!
-//! By shooting the branch has a kink too where a gap passes such a level just where its unknowns begin to tell the orbit. Nothing
+//! By shooting the branch has a kink too where a gap passes a level at which the force jumps just where its unknowns begin to tell the orbit. Nothing
 //! happens to the orbit there, but Newton's method may fail beside it: it is passed in the same way.
 //!
 //! If the force on the other side pulls the gap on, motions that pass the level go far away however slowly they pass it: then there is
