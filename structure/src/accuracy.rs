@@ -6,9 +6,9 @@
 //! sum_c sum_k E_yc(k w) |f_ck| + sum_l E_yl(h_l w) |b_l|                                                      (1)
 //! ```
 //!
-//! at most, with the errors `E` of the compliance and the harmonics `f_ck` of the forces that were computed. That forces change as well is
-//! left out: the estimate is of first order, and says too little where the stiffness of a contact is as large as one over the error
-//! of the compliance.
+//! at most, with the errors `E` of the compliance and the harmonics `f_ck` of the forces that were computed; for a rate `E` is multiplied by
+//! the frequency of its harmonic, for an acceleration by the square. That forces change as well is left out: the estimate is of first order,
+//! and says too little where the stiffness of a contact is as large as one over the error of the compliance.
 
 use hertzian::{Branch, Error, Point};
 
@@ -69,7 +69,7 @@ impl Reduced {
         let first = 2 * structure.contacts.len() + structure.loads.len();
         let outputs = structure.outputs.iter().enumerate();
         let errors = outputs.map(|(index, output)| {
-            let amplitude = self.response_error(first + index, base, &forces);
+            let amplitude = self.response_error(first + index, output.kind, base, &forces);
             let motion = branch.reading(&output.name, point)?.motion;
             let size = motion.peak_to_peak();
             Ok(OutputError {

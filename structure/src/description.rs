@@ -227,12 +227,37 @@ impl SparseContact {
     }
 }
 
-/// An output: a linear combination of coordinates, by its name.
+/// What an output takes along its direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OutputKind {
+    /// Coordinates.
+    #[default]
+    Displacement,
+    /// Their first derivatives by time.
+    Rate,
+    /// Their second derivatives by time, as the equations of motion give them: they jump where the force of a contact does.
+    Acceleration,
+}
+
+impl OutputKind {
+    /// How many derivatives by time it takes.
+    pub(crate) fn derivatives(self) -> i32 {
+        match self {
+            Self::Displacement => 0,
+            Self::Rate => 1,
+            Self::Acceleration => 2,
+        }
+    }
+}
+
+/// An output: a linear combination of coordinates, of rates or of accelerations, by its name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Output {
     pub(crate) name: String,
+    pub(crate) kind: OutputKind,
     pub(crate) direction: Direction,
     pub(crate) unit: String,
+    pub(crate) documentation: String,
 }
 
 /// A linear structure of many coordinates with contacts.
@@ -306,14 +331,44 @@ impl SparseStructure {
         self
     }
 
-    /// An output of this name.
+    /// An output of this name: the displacement along a direction.
     #[must_use]
-    pub fn output(mut self, name: &str, direction: Direction) -> Self {
+    pub fn output(self, name: &str, direction: Direction) -> Self {
+        self.output_of(name, OutputKind::Displacement, direction)
+    }
+
+    /// An output of this name: the displacement, the rate or the acceleration along a direction.
+    ///
+    /// ```
+    /// use hertzian_structure::{Direction, OutputKind, SparseMatrix, SparseStructure};
+    ///
+    /// let one = || SparseMatrix::from_triplets(2, 2, [(0, 0, 1.0), (1, 1, 1.0)]);
+    /// let apart = Direction::weighted([(1, 1.0), (0, -1.0)]);
+    /// let structure = SparseStructure::new(one()?, one()?)
+    ///     .output_of("closing", OutputKind::Rate, apart)
+    ///     .unit("mm/s")
+    ///     .about("how fast the masses part");
+    /// # structure.check()?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn output_of(mut self, name: &str, kind: OutputKind, direction: Direction) -> Self {
         self.outputs.push(Output {
             name: name.to_owned(),
+            kind,
             direction,
             unit: String::new(),
+            documentation: String::new(),
         });
+        self
+    }
+
+    /// What the output that was added last is; the first line is what charts say of it.
+    #[must_use]
+    pub fn about(mut self, documentation: &str) -> Self {
+        if let Some(output) = self.outputs.last_mut() {
+            documentation.clone_into(&mut output.documentation);
+        }
         self
     }
 

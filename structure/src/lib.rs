@@ -53,7 +53,8 @@ mod reduction;
 
 pub use accuracy::OutputError;
 pub use description::{
-    Damping, Direction, Gyroscopic, Load, LoadKind, Ratios, SparseContact, SparseStructure,
+    Damping, Direction, Gyroscopic, Load, LoadKind, OutputKind, Ratios, SparseContact,
+    SparseStructure,
 };
 pub use error::StructureError;
 pub use matrix::{MatrixError, SparseMatrix};

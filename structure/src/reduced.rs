@@ -6,7 +6,7 @@ use std::path::Path;
 use hertzian::structure::{Contact, DMatrix, Structure, StructureError, Value};
 use serde::{Deserialize, Serialize};
 
-use crate::description::{LoadKind, SparseStructure};
+use crate::description::{LoadKind, OutputKind, SparseStructure};
 
 /// The last harmonics of a force that say how large those beyond are, and how many of these there are at most.
 const LAST: usize = 4;
@@ -163,21 +163,36 @@ impl Reduced {
         }
     }
 
-    /// The error that the reduction makes of the harmonics of a direction, to first order: the error of the compliance times the forces of
-    /// contacts and loads, whose amplitudes by harmonic are given for each driven direction. Beyond the harmonics that are given, those of a
-    /// force with more than three are taken to fall with the square of their number.
-    pub fn response_error(&self, read: usize, omega: f64, forces: &[(usize, Vec<f64>)]) -> f64 {
+    /// The error that the reduction makes of the harmonics of what is read along a direction, to first order: the error of the compliance
+    /// times the forces of contacts and loads, whose amplitudes by harmonic are given for each driven direction, and times the frequency
+    /// for each derivative. Beyond the harmonics that are given, those of a force with more than three are taken to fall with the square of
+    /// their number. Beyond the last frequency that was looked at masses alone answer, and the error of an acceleration stays what it is.
+    pub fn response_error(
+        &self,
+        read: usize,
+        kind: OutputKind,
+        omega: f64,
+        forces: &[(usize, Vec<f64>)],
+    ) -> f64 {
+        let looked_at = self.checked.last().map_or(0.0, |c| c.frequency);
+        let derivatives = kind.derivatives();
         let of = |(driven, amplitudes): &(usize, Vec<f64>)| -> f64 {
-            let error =
-                |harmonic: usize| self.compliance_error(read, *driven, harmonic as f64 * omega);
+            let error = |harmonic: usize| {
+                let frequency = harmonic as f64 * omega;
+                let compliance = self.compliance_error(read, *driven, frequency);
+                compliance * frequency.min(looked_at).powi(derivatives)
+            };
             let terms = amplitudes.iter().enumerate();
             let terms = terms.map(|(harmonic, amplitude)| error(harmonic) * amplitude.abs());
             // A force whose slope jumps where a contact opens falls with the square of the harmonic.
             let known = amplitudes.len();
             let last = amplitudes[known - known.min(LAST)..].iter();
             let last = last.fold(0.0, |m: f64, x| m.max(x.abs()));
-            let highest = self.checked.last().map_or(0.0, |c| c.frequency / omega) as usize;
-            let tail = (known..=highest.max(4 * known).min(MOST)).filter(|_| known > 2);
+            let end = match kind {
+                OutputKind::Displacement => ((looked_at / omega) as usize).max(4 * known).min(MOST),
+                OutputKind::Rate | OutputKind::Acceleration => MOST,
+            };
+            let tail = (known..=end).filter(|_| known > 2);
             let tail = tail.map(|k| error(k) * last * (known as f64 / k as f64).powi(2));
             terms.sum::<f64>() + tail.sum::<f64>()
         };
@@ -237,7 +252,13 @@ impl Reduced {
             }
         }
         for output in &of.outputs {
-            builder = builder.output(&output.name, next()).unit(&output.unit);
+            let (name, row) = (&output.name, next());
+            let read = match output.kind {
+                OutputKind::Displacement => builder.output(name, row),
+                OutputKind::Rate => builder.rate_output(name, row),
+                OutputKind::Acceleration => builder.acceleration_output(name, row),
+            };
+            builder = read.unit(&output.unit).about(&output.documentation);
         }
         for (index, contact) in of.contacts.iter().enumerate() {
             builder = builder

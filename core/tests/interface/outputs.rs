@@ -3,12 +3,12 @@
 #[cfg(feature = "plot")]
 mod drawn;
 mod said;
+mod structures;
 
 use std::f64::consts::TAU;
 
 use hertzian::observe::{Reading, Wanted};
 
-use hertzian::structure::{Contact, DMatrix, Structure, parameter};
 use hertzian::{Branch, FrequencyResponse, Point, RequestError, Shooting};
 
 hertzian::oscillator! {
@@ -404,44 +404,6 @@ fn text_has_the_same_outputs() {
     assert_eq!(branch.model.force_units, ["N"]);
     for (a, b) in read.observed.outputs.iter().zip(&declared.observed.outputs) {
         close(a.peak_to_peak(), b.peak_to_peak(), 1e-9);
-    }
-}
-
-#[test]
-fn a_structure_has_outputs_by_vectors() {
-    hertzian::law! { Spring(gap, k) { gap > 0 => k*gap, else => 0 } }
-    let matrix = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 2.0]);
-    let builder = || {
-        let stop = Contact::new(Spring)
-            .arguments([100.0])
-            .direction([1.0, 0.0]);
-        Structure::of(&DMatrix::identity(2, 2), &(0.03 * &matrix), &matrix)
-            .cosine(1, 1, parameter("drive", 0.1))
-            .contact(stop.offset(0.2))
-            .output("apart", [1.0, -1.0])
-            .force_output("stop", 0)
-    };
-    let structure = builder().build().expect("it is sound");
-    let (branch, point) = at(&structure, 0.8);
-    let [apart, stop] = ["apart", "stop"].map(|name| branch.reading(name, &point).expect(name));
-    let [x, y] = [0, 1].map(|index| point.orbit.series(index).expect("a series"));
-    for (apart, (x, y)) in apart.series.iter().zip(x.iter().zip(y)) {
-        close(*apart, x - y, 1e-14);
-    }
-    close(
-        stop.motion.maximum,
-        point.observed.contacts[0].maximum_force,
-        1e-12,
-    );
-    for builder in [
-        builder().output("apart", [1.0, 0.0]),
-        builder().output("q1", [1.0, 0.0]),
-        builder().output("drive", [1.0, 0.0]),
-        builder().output("", [1.0, 0.0]),
-        builder().output("short", [1.0]),
-        builder().force_output("other", 1),
-    ] {
-        assert!(builder.build().is_err());
     }
 }
 

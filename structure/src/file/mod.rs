@@ -32,6 +32,12 @@
 //! [[output]]
 //! name = "tip"
 //! direction = { coordinates = [203] }
+//!
+//! [[output]]
+//! name = "shaking"
+//! kind = "acceleration"
+//! direction = { coordinates = [203] }
+//! about = "what an accelerometer at the tip shows"
 //! ```
 //!
 //! Coordinates are counted from zero, as in numpy. A direction of several coordinates without weights is their mean. Numbers can be names

@@ -14,10 +14,12 @@ use toml::Spanned;
 use super::Files;
 use super::error::{FileError, FileFault};
 use super::text::{
-    ContactText, DampingText, DirectionText, KindText, LoadText, ParameterText, Text, ValueText,
+    ContactText, DampingText, DirectionText, KindText, LoadText, ParameterText, TakenText, Text,
+    ValueText,
 };
 use crate::description::{
-    Damping, Direction, Gyroscopic, Load, LoadKind, Ratios, SparseContact, SparseStructure,
+    Damping, Direction, Gyroscopic, Load, LoadKind, OutputKind, Ratios, SparseContact,
+    SparseStructure,
 };
 use crate::market::MOST_COORDINATES;
 
@@ -94,9 +96,20 @@ impl Reading<'_> {
         for output in &read.output {
             self.take(&output.name)?;
             let direction = self.direction(&output.direction)?;
+            let (kind, per) = match output.kind {
+                TakenText::Displacement => (OutputKind::Displacement, ""),
+                TakenText::Rate => (OutputKind::Rate, "/s"),
+                TakenText::Acceleration => (OutputKind::Acceleration, "/s^2"),
+            };
+            let unit = match &output.unit {
+                Some(unit) => unit.clone(),
+                None if self.length.is_empty() => String::new(),
+                None => format!("{}{per}", self.length),
+            };
             structure = structure
-                .output(output.name.get_ref(), direction)
-                .unit(output.unit.as_deref().unwrap_or(&self.length));
+                .output_of(output.name.get_ref(), kind, direction)
+                .unit(&unit)
+                .about(&output.about);
         }
         structure.check().map_err(|source| FileError::Structure {
             path: self.files.path.clone(),

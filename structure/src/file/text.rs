@@ -147,10 +147,24 @@ pub struct ContactText {
     pub offset: Option<Spanned<ValueText>>,
 }
 
+/// What an output takes along its direction.
+#[derive(Debug, Default, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TakenText {
+    #[default]
+    Displacement,
+    Rate,
+    Acceleration,
+}
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OutputText {
     pub name: Spanned<String>,
+    #[serde(default)]
+    pub kind: TakenText,
     pub direction: Spanned<DirectionText>,
     pub unit: Option<String>,
+    #[serde(default)]
+    pub about: String,
 }

@@ -67,6 +67,23 @@ offset = "gap"
 [[output]]
 name = "x1"
 direction = { coordinates = [0], weights = [1e0] }
+
+[[output]]
+name = "closing"
+kind = "rate"
+direction = { coordinates = [0, 1], weights = [-1, 1] }
+about = "how fast the masses come together"
+
+[[output]]
+name = "shaking"
+kind = "acceleration"
+direction = { coordinates = [1] }
+
+[[output]]
+name = "felt"
+kind = "acceleration"
+direction = { coordinates = [1], weights = [1e-3] }
+unit = "m/s^2"
 "#;
 
 fn two(folder: &Folder) -> PathBuf {
@@ -88,7 +105,16 @@ fn a_description_gives_parameters_outputs_and_units() {
         .iter()
         .map(|o| (o.name.as_ref(), o.unit.as_ref()))
         .collect();
-    assert_eq!(names, [("x1", "mm"), ("stop", "N")]);
+    let expected = [
+        ("x1", "mm"),
+        ("closing", "mm/s"),
+        ("shaking", "mm/s^2"),
+        ("felt", "m/s^2"),
+        ("stop", "N"),
+    ];
+    assert_eq!(names, expected);
+    let about = facts.outputs[1].documentation.as_ref();
+    assert_eq!(about, "how fast the masses come together");
     let gap = facts.parameters.iter().find(|p| p.name == "gap").unwrap();
     assert_eq!(
         (gap.unit.as_ref(), gap.documentation.as_ref()),
@@ -145,6 +171,10 @@ fn faults_are_said_in_one_sentence_with_file_and_line() {
     assert!(said("drive = 0.1", "drive = nan").starts_with("two.toml:15:"));
     assert!(said("drive = 0.1", "omega = 0.1").contains("the name `omega` is taken"));
     assert!(said("\"mass.mtx\"", "\"none.mtx\"").contains("none.mtx"));
+    assert!(
+        said("kind = \"rate\"", "kind = \"speed\"")
+            .starts_with("two.toml:39: unknown variant `speed`, expected one of")
+    );
     let coordinates = "direction = { coordinates = [0] }";
     assert!(said(coordinates, "direction = { }").contains("a direction has `coordinates`"));
 }

@@ -3,4 +3,5 @@
 mod common;
 mod events;
 mod files;
+mod outputs;
 mod reduction;

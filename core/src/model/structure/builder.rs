@@ -24,8 +24,8 @@ pub struct Builder {
 /// What an output of a structure is equal to.
 #[derive(Debug, Clone)]
 pub(super) enum Reading {
-    /// A sum of coordinates, one factor for each.
-    Positions(Vec<f64>),
+    /// A sum of coordinates, rates or accelerations, one factor for each coordinate.
+    Along(fn(usize) -> Signal, Vec<f64>),
     /// The force of a contact.
     Force(usize),
 }
@@ -75,8 +75,43 @@ impl Builder {
 
     /// An output: the sum of the coordinates, each with its factor.
     #[must_use]
-    pub fn output(mut self, name: &str, factors: impl Into<Vec<f64>>) -> Self {
-        let reading = Reading::Positions(factors.into());
+    pub fn output(self, name: &str, factors: impl Into<Vec<f64>>) -> Self {
+        self.read(name, Reading::Along(Signal::Coordinate, factors.into()))
+    }
+
+    /// An output: the sum of the rates of the coordinates, each with its factor.
+    ///
+    /// ```
+    /// use hertzian::FrequencyResponse;
+    /// use hertzian::structure::{DMatrix, Structure};
+    ///
+    /// // x'' + 0.2 x' + x = 0.3 cos(t): at its resonance the rate has the amplitude 0.3/0.2.
+    /// let one = DMatrix::identity(1, 1);
+    /// let mass = Structure::of(&one, &(0.2 * &one), &one)
+    ///     .cosine(0, 1, 0.3)
+    ///     .rate_output("speed", [1.0])
+    ///     .unit("m/s")
+    ///     .about("speed of the mass")
+    ///     .build()?;
+    /// let request = FrequencyResponse::of(&mass);
+    /// let orbit = request.orbit(1.0)?;
+    /// let speed = request.measured(&"speed:h1".parse()?, &orbit)?;
+    /// assert!((speed.unwrap() - 1.5).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn rate_output(self, name: &str, factors: impl Into<Vec<f64>>) -> Self {
+        self.read(name, Reading::Along(Signal::Rate, factors.into()))
+    }
+
+    /// An output: the sum of the accelerations of the coordinates, each with its factor. They are what the equations of motion give, and
+    /// jump where the force of a contact does.
+    #[must_use]
+    pub fn acceleration_output(self, name: &str, factors: impl Into<Vec<f64>>) -> Self {
+        self.read(name, Reading::Along(Signal::Acceleration, factors.into()))
+    }
+
+    fn read(mut self, name: &str, reading: Reading) -> Self {
         self.outputs
             .push((OutputFacts::new(name.to_owned()), reading));
         self
@@ -87,6 +122,15 @@ impl Builder {
     pub fn unit(mut self, unit: &str) -> Self {
         if let Some((facts, _)) = self.outputs.last_mut() {
             facts.unit = unit.to_owned().into();
+        }
+        self
+    }
+
+    /// What the output that was added last is; the first line is what charts say of it.
+    #[must_use]
+    pub fn about(mut self, documentation: &str) -> Self {
+        if let Some((facts, _)) = self.outputs.last_mut() {
+            facts.documentation = documentation.to_owned().into();
         }
         self
     }
@@ -127,10 +171,8 @@ impl Builder {
 
     /// An output: the force of a contact, counted from zero in the order in which they were added.
     #[must_use]
-    pub fn force_output(mut self, name: &str, contact: usize) -> Self {
-        self.outputs
-            .push((OutputFacts::new(name.to_owned()), Reading::Force(contact)));
-        self
+    pub fn force_output(self, name: &str, contact: usize) -> Self {
+        self.read(name, Reading::Force(contact))
     }
 
     /// Checks the description and makes a system of it.
@@ -191,13 +233,13 @@ impl Builder {
             self.output_has_a_name(output, name, assembly)?;
             let wave = Wave::CONSTANT;
             match reading {
-                Reading::Positions(factors) if factors.len() == coordinates => {
+                Reading::Along(signal, factors) if factors.len() == coordinates => {
                     for (index, &factor) in factors.iter().enumerate() {
-                        let of = Signal::Coordinate(index);
+                        let of = signal(index);
                         assembly.add(Place::Output { output, of, wave }, &factor.into())?;
                     }
                 }
-                Reading::Positions(factors) => {
+                Reading::Along(_, factors) => {
                     return Err(StructureError::OutputSize {
                         output: name.to_string(),
                         entries: factors.len(),
