@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::cover::Settling;
 use super::diagram::{Diagram, Limits, Observer, Origin, Reason, Search};
-use crate::attractors::basin::{Basin, Basins, Visit};
+use crate::attractors::basin::{Basin, Basins, Moving, Visit};
 use crate::bifurcation::error::BifurcationError;
 use crate::branches::progress::Progress;
 use crate::cancel::Cancel;
@@ -341,7 +341,12 @@ impl<M: OrbitMethod> Bifurcations<M> {
         let flows = (0..basin.threads_wanted())
             .map(|_| time::at(&request.system, &parameters, omega, options.clone()));
         let flows = flows.collect::<Result<_, Error>>()?;
-        let found = basin.compute(flows, None, visit);
+        let moving = Moving {
+            flows,
+            parameters,
+            omega,
+        };
+        let found = basin.compute(moving, None, visit);
         found.map_err(|reason| BifurcationError::Search { value, reason }.into())
     }
 

@@ -17,3 +17,5 @@ mod resumed;
 mod structure;
 #[cfg(feature = "text")]
 mod text;
+#[cfg(feature = "serde")]
+mod whole;

@@ -14,7 +14,7 @@ hertzian::oscillator! {
 }
 
 hertzian::oscillator! {
-    Linear(x) {
+    pub Linear(x) {
         param zeta in 0.0..;
         param drive;
         law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap, else => 0 }

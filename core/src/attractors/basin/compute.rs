@@ -10,11 +10,12 @@ use super::grid::Grid;
 use super::recognise::Recogniser;
 use super::record::Block;
 use super::threads::Threads;
-use super::{Basin, BasinError, Basins, Visit};
+use super::{Basin, BasinError, Basins, Moving, Visit};
 use crate::attractors::log::{Log, LogError};
+use crate::branches::branch::Model;
 use crate::branches::progress::{Progress, Stage};
+use crate::time::FlowError;
 use crate::time::stroboscope::Stroboscope;
-use crate::time::{Flow, FlowError};
 
 /// Cells of a block: so many that a thread seldom waits for another, so few that little is lost when a run ends.
 const BLOCK: usize = 256;
@@ -35,10 +36,15 @@ struct Shared<'w> {
 pub(super) fn compute(
     basin: &Basin,
     grid: &Grid,
-    flows: Vec<Box<dyn Flow>>,
+    moving: Moving,
     log: Option<&mut Log>,
     visit: Visit<'_>,
 ) -> Result<Basins, BasinError> {
+    let Moving {
+        flows,
+        parameters,
+        omega,
+    } = moving;
     let threads = Threads::new(flows.len())?;
     let known = log.as_deref().map_or(&[][..], Log::records);
     let mut kept: Kept = known
@@ -58,6 +64,11 @@ pub(super) fn compute(
         visit: Mutex::new(visit),
     };
     let mut basins = Basins {
+        model: Model::of(basin.request.system.as_ref()),
+        parameters,
+        omega,
+        phase: basin.phase,
+        grid: grid.clone(),
         fates: vec![Fate::Unknown; grid.cells()],
         attractors: Vec::new(),
         periods: 0,

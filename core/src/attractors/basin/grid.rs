@@ -12,27 +12,33 @@
 /// assert_eq!(grid.cells(), 4096);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Grid {
     /// The state whose two entries are varied.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub start: Vec<f64>,
     /// The entry that varies along a row, from column to column.
     pub columns: Axis,
     /// The entry that varies from row to row.
     pub rows: Axis,
     /// The states of the cells, where they are given one by one.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub(super) states: Vec<Vec<f64>>,
 }
 
 /// One direction of a grid. Its cells divide the range evenly; motions start from their middles.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Axis {
     /// Which entry of the state: a coordinate, or with `entry >= n` its rate.
     pub entry: usize,
     /// Where the first cell begins.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub from: f64,
     /// Where the last one ends.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub to: f64,
     /// Number of cells.
     pub count: usize,
@@ -125,6 +131,13 @@ impl Grid {
         state.copy_from_slice(&self.start);
         state[self.columns.entry] = self.columns.middle(cell % self.columns.count);
         state[self.rows.entry] = self.rows.middle(cell / self.columns.count);
+    }
+
+    /// Whether its states have so many entries, of which two vary.
+    pub(crate) fn is_of(&self, order: usize) -> bool {
+        let entries = [self.columns.entry, self.rows.entry];
+        let mut given = std::iter::once(&self.start).chain(&self.states);
+        given.all(|state| state.len() == order) && entries.iter().all(|&entry| entry < order)
     }
 
     /// The cells in rounds, from coarse to fine; every cell is in one of them. Later rounds find most attractors known.

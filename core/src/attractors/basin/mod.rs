@@ -29,6 +29,7 @@ use std::ops::ControlFlow;
 
 use super::log::{Log, LogError};
 use super::request::Request;
+use crate::branches::branch::Model;
 use crate::branches::progress::Progress;
 use crate::cancel::Cancel;
 use crate::error::{Error, ErrorKind};
@@ -91,6 +92,19 @@ impl std::fmt::Debug for Basin {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Basins {
+    /// What the basins are of.
+    pub model: Model,
+    /// Values of all parameters, in the order of the model.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub parameters: Vec<f64>,
+    /// The excitation frequency, in radians per unit of time.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub omega: f64,
+    /// The phase at which motions start and are looked at.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    pub phase: f64,
+    /// The states from which motions start.
+    pub grid: Grid,
     /// What becomes of the motion of every cell, row by row; see [`Grid::state`].
     pub fates: Vec<Fate>,
     /// The periodic attractors that the motions settle to, by period, then by the first point.
@@ -203,7 +217,7 @@ impl Basin {
         &self,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
     ) -> Result<Basins, Error> {
-        Ok(self.compute(self.flows()?, None, &mut visit)?)
+        Ok(self.compute(self.moving()?, None, &mut visit)?)
     }
 
     /// As [`run_with`](Self::run_with), and goes on from what a log holds of this request; what is computed is added to it.
@@ -215,11 +229,11 @@ impl Basin {
         log: &mut Log,
         mut visit: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
     ) -> Result<Basins, Error> {
-        Ok(self.compute(self.flows()?, Some(log), &mut visit)?)
+        Ok(self.compute(self.moving()?, Some(log), &mut visit)?)
     }
 
-    /// A flow for each thread.
-    fn flows(&self) -> Result<Vec<Box<dyn Flow>>, Error> {
+    /// A flow for each thread, and at which values.
+    fn moving(&self) -> Result<Moving, Error> {
         let omega = self.request.omega.ok_or(RequestError::no_omega())?;
         self.check()?;
         let mut values = model::values(&self.request.system);
@@ -230,9 +244,12 @@ impl Basin {
                 values[index] = *value;
             }
         }
-        (0..self.threads)
-            .map(|_| self.request.flow(&values, omega))
-            .collect()
+        let flows = (0..self.threads).map(|_| self.request.flow(&values, omega));
+        Ok(Moving {
+            flows: flows.collect::<Result<_, Error>>()?,
+            parameters: values,
+            omega,
+        })
     }
 
     /// Whether the request is of a system with the same declaration, whatever its parameters are.
@@ -252,11 +269,11 @@ impl Basin {
     /// Computes the basins with one thread for each flow; all flows must be the same.
     pub(crate) fn compute(
         &self,
-        flows: Vec<Box<dyn Flow>>,
+        moving: Moving,
         log: Option<&mut Log>,
         visit: Visit<'_>,
     ) -> Result<Basins, BasinError> {
-        compute::compute(self, self.check()?, flows, log, visit)
+        compute::compute(self, self.check()?, moving, log, visit)
     }
 
     /// The grid of a request that can be used.
@@ -277,9 +294,7 @@ impl Basin {
             return fault("threads", "must be from 1 to 1024");
         }
         let order = 2 * self.request.system.facts().coordinates.len();
-        let mut given = std::iter::once(start).chain(states);
-        let fits = given.all(|state| state.len() == order);
-        if grid.cells() > 0 && (!fits || entries.iter().any(|&entry| entry >= order)) {
+        if grid.cells() > 0 && !grid.is_of(order) {
             return fault("grid", "must have the entries of a state");
         }
         if entries[0] == entries[1] {
@@ -306,6 +321,13 @@ impl Basin {
         }
         Ok(grid)
     }
+}
+
+/// Flows that are the same, one for each thread, and at which values of the parameters and of the frequency they are.
+pub(crate) struct Moving {
+    pub(crate) flows: Vec<Box<dyn Flow>>,
+    pub(crate) parameters: Vec<f64>,
+    pub(crate) omega: f64,
 }
 
 /// What is told of progress, from any thread.

@@ -336,8 +336,12 @@ impl Flow for Stuck {
 
 #[test]
 fn a_basin_without_a_motion_is_an_error() {
-    let flows: Vec<Box<dyn Flow>> = vec![Box::new(Stuck)];
-    let found = basin(4).compute(flows, None, &mut |_| ControlFlow::Continue(()));
+    let moving = Moving {
+        flows: vec![Box::new(Stuck)],
+        parameters: Vec::new(),
+        omega: 1.0,
+    };
+    let found = basin(4).compute(moving, None, &mut |_| ControlFlow::Continue(()));
     let reason = FlowError::Rests { phase: 0.0 };
     assert_eq!(found, Err(BasinError::Motion { reason }));
     let said = chain(&BasinError::Motion { reason }).to_string();

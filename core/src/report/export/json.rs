@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::branches::branch::Branch;
@@ -35,7 +36,7 @@ struct Read {
 ///
 /// # Errors
 /// If it cannot be read.
-pub(crate) fn contents(path: &Path) -> Result<Vec<u8>, FileError> {
+fn contents(path: &Path) -> Result<Vec<u8>, FileError> {
     std::fs::read(path).map_err(|source| FileError::Read {
         path: path.to_path_buf(),
         kind: source.kind(),
@@ -43,7 +44,7 @@ pub(crate) fn contents(path: &Path) -> Result<Vec<u8>, FileError> {
 }
 
 /// Why a text is none of what is read.
-pub(crate) fn refused(path: &Path, text: &[u8], source: &serde_json::Error) -> FileError {
+fn refused(path: &Path, text: &[u8], source: &serde_json::Error) -> FileError {
     let path = path.to_path_buf();
     // Where it ends within a number, the number is at fault.
     let begins = text.trim_ascii_start().starts_with(b"{");
@@ -59,7 +60,7 @@ pub(crate) fn refused(path: &Path, text: &[u8], source: &serde_json::Error) -> F
 ///
 /// # Errors
 /// If it is of another one, or none at all.
-pub(crate) fn check_version(path: &Path, text: &[u8]) -> Result<(), FileError> {
+fn check_version(path: &Path, text: &[u8]) -> Result<(), FileError> {
     let head = serde_json::from_slice(text).map_err(|source| refused(path, text, &source));
     let Head { version } = head?;
     is_read(path, version.unwrap_or(1))
@@ -75,6 +76,16 @@ fn is_read(path: &Path, version: u32) -> Result<(), FileError> {
         version,
         expected: JSON_VERSION,
     })
+}
+
+/// What a file of one object has, if it is of the version that is read.
+///
+/// # Errors
+/// If it cannot be read, is of another version, or has something else.
+pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, FileError> {
+    let text = contents(path)?;
+    check_version(path, &text)?;
+    serde_json::from_slice(&text).map_err(|source| refused(path, &text, &source))
 }
 
 /// Writes what a file has as JSON.

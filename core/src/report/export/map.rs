@@ -10,7 +10,7 @@ use crate::branches::branch::Model;
 use crate::error::Error;
 use crate::report::error::FileError;
 #[cfg(feature = "serde")]
-use crate::report::export::json::{JSON_VERSION, check_version, contents, refused, write};
+use crate::report::export::json::{JSON_VERSION, read, write};
 use crate::report::export::table::{line, maybe, number};
 use crate::report::unit::in_unit;
 
@@ -140,10 +140,7 @@ impl Map {
     /// If the file cannot be read, is none of these, ends early, is of another version, or has not as many cells as values.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let text = contents(path)?;
-        check_version(path, &text)?;
-        let read = serde_json::from_slice(&text);
-        let Read { map } = read.map_err(|source| refused(path, &text, &source))?;
+        let Read { map } = read(path)?;
         let [columns, rows] = [map.values[0].len(), map.values[1].len()];
         let counts = [map.cells.len(), map.branches.len(), map.lost.len()];
         if counts == [columns * rows, rows, rows] && columns * rows > 0 {

@@ -8,6 +8,8 @@ pub(crate) mod json;
 pub(crate) mod map;
 mod npy;
 pub(crate) mod table;
+#[cfg(feature = "serde")]
+mod whole;
 
 pub use crate::numeric::decimal::Decimal;
 pub use hertzian_file::{can_write, write};
