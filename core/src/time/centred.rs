@@ -8,11 +8,8 @@ use std::sync::Arc;
 use super::{Flow, FlowError, See, Tangent, Work};
 use crate::model::layout::Layout;
 use crate::model::rigid::Place;
-use crate::model::rigid::centre::Centre;
+use crate::model::rigid::centre::{Centre, Room};
 use crate::system::{System, Variable};
-
-/// Central differences by a parameter are taken over this part of its value: masses, by which the centre depends on it, are smooth.
-const STEP: f64 = 1e-5;
 
 /// A flow whose states have the rigid motion that is known.
 pub(crate) struct Centred {
@@ -22,6 +19,9 @@ pub(crate) struct Centred {
     parameters: Vec<f64>,
     omega: f64,
     centre: Centre,
+    /// The same for another variable, by which derivatives are asked for.
+    beside: Option<Centre>,
+    room: Room,
 }
 
 /// The flow itself, or that of a system that turns freely less its turning.
@@ -41,7 +41,9 @@ pub(crate) fn centred(
         layout,
         parameters: parameters.to_vec(),
         omega,
+        room: centre.room(),
         centre,
+        beside: None,
     })
 }
 
@@ -78,20 +80,16 @@ impl Centred {
         Centre::at(self.place(variable).moved(value, &mut parameters))
     }
 
-    /// How a state changes with a variable by the centre alone; zero where there is none beside the value.
-    fn slope(&self, variable: Variable, phase: f64, state: &[f64]) -> Vec<f64> {
-        let value = self.place(variable).value();
-        let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
-        let taken = |value: f64| {
-            let mut state = state.to_vec();
-            self.at(variable, value)?.take(phase, &mut state);
-            Some(state)
-        };
-        let (Some(below), Some(above)) = (taken(value - step), taken(value + step)) else {
-            return vec![0.0; state.len()];
-        };
-        let pairs = above.iter().zip(&below);
-        pairs.map(|(a, b)| (a - b) / (2.0 * step)).collect()
+    /// Adds how a state changes with a variable by the centre alone; nothing where there is none beside the value.
+    fn add_slope(&mut self, variable: Variable, phase: f64, state: &[f64], derivative: &mut [f64]) {
+        let is_of = |centre: &Centre| centre.variable() == variable;
+        if !is_of(&self.centre) && !self.beside.as_ref().is_some_and(is_of) {
+            self.beside = self.at(variable, self.place(variable).value());
+        }
+        let known = [Some(&self.centre), self.beside.as_ref()];
+        if let Some(centre) = known.into_iter().flatten().find(|centre| is_of(centre)) {
+            centre.add_slope(phase, state, derivative, &mut self.room);
+        }
     }
 }
 
@@ -119,6 +117,7 @@ impl Flow for Centred {
             Variable::Parameter(index) => self.parameters[index] = value,
         }
         self.centre = centre;
+        self.beside = None;
         Ok(())
     }
 
@@ -134,17 +133,14 @@ impl Flow for Centred {
             .advance(from, to, state, tangent.as_deref_mut(), see)?;
         if let Some(Tangent { columns, by }) = tangent {
             for column in columns.chunks_exact_mut(state.len()) {
-                self.centre.take_homogeneous(column);
+                self.centre.take_homogeneous(column, &mut self.room);
             }
             if let Some(variable) = *by {
                 let first = columns.len() - state.len();
-                let slope = self.slope(variable, to, state);
-                for (x, slope) in columns[first..].iter_mut().zip(slope) {
-                    *x += slope;
-                }
+                self.add_slope(variable, to, state, &mut columns[first..]);
             }
         }
-        self.centre.take(to, state);
+        self.centre.take(to, state, &mut self.room);
         Ok(())
     }
 
