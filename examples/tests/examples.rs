@@ -81,14 +81,35 @@ fn draws<E: Debug>(name: &str, main: fn() -> Result<(), E>) {
     let svg = std::fs::read_to_string(&picture).expect("a picture");
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
     assert!(!svg.contains("NaN") && !svg.contains("inf\""));
-    let labels = svg.split("aria-label=\"").skip(1);
-    let labels = labels.filter_map(|rest| rest.split('"').next());
-    let mut words: Vec<&str> = labels
-        .filter(|text| text.contains(char::is_alphabetic))
-        .collect();
+    let mut words = attributes(&svg, "aria-label");
+    words.retain(|text| text.contains(char::is_alphabetic));
     words.sort_unstable();
     words.dedup();
     assert!(words.len() >= 3, "a title and two axes: {words:?}");
+    let stored = Path::new(FOLDER).join("../docs/pictures");
+    let stored = stored.join(name).with_extension("svg");
+    if let Ok(stored) = std::fs::read_to_string(stored) {
+        is_drawn_like(&stored, &svg, name);
+    }
+}
+
+/// Values of an attribute, in their order.
+fn attributes<'s>(svg: &'s str, name: &str) -> Vec<&'s str> {
+    let begins = format!("{name}=\"");
+    let values = svg.split(&begins).skip(1);
+    values.filter_map(|rest| rest.split('"').next()).collect()
+}
+
+/// The picture in the documentation has the words and the colours of the one that is drawn. Digits of places may depend on the machine.
+fn is_drawn_like(stored: &str, drawn: &str, name: &str) {
+    for attribute in ["viewBox", "aria-label", "fill", "stroke", "stroke-dasharray"] {
+        let [mut stored, mut drawn] = [stored, drawn].map(|svg| attributes(svg, attribute));
+        for values in [&mut stored, &mut drawn] {
+            values.sort_unstable();
+            values.dedup();
+        }
+        assert_eq!(stored, drawn, "docs/pictures/{name}.svg is to be drawn again");
+    }
 }
 
 /// What an example prints: this program again, with the one test that runs it.

@@ -7,6 +7,7 @@ with differences from random starts, so that unstable ones are found too; `stabl
 fold is where the frequency has an extreme among the orbits that begin at given positions."""
 
 import platform
+from collections import defaultdict
 
 import numpy as np
 import scipy
@@ -15,6 +16,15 @@ from scipy.linalg import expm
 from scipy.optimize import brentq, minimize_scalar
 
 TAU = 2*np.pi
+
+
+def nearest(of, times, values, sign):
+    """The largest value times a sign, looked for more closely where it is the largest of these."""
+    for _ in range(4):
+        at = int(np.argmax(sign*values))
+        times = np.linspace(times[max(at - 1, 0)], times[min(at + 1, len(times) - 1)], 21)
+        values = of(times)
+    return sign*np.max(sign*values)
 
 
 class System:
@@ -49,7 +59,7 @@ class System:
     def signals(self, start, of, pieces=400, nodes=8):
         """Extremes and rms of `of(t, y, sides)`, a row for each signal, over a period: at Gauss nodes of many pieces between switches."""
         at, weights = np.polynomial.legendre.leggauss(nodes)
-        values, squares = [], 0.0
+        extremes, squares = defaultdict(list), 0.0
 
         def see(run, sides):
             nonlocal squares
@@ -58,13 +68,13 @@ class System:
             times = (ends[:-1, None] + half*(1 + at)).ravel()
             here = of(times, run.sol(times), sides)
             squares = squares + here**2 @ (half*weights).ravel()
-            times = np.concatenate([times, ends])
-            values.append(of(times, run.sol(times), sides))
+            times = np.sort(np.concatenate([times, ends]))
+            for number, row in enumerate(of(times, run.sol(times), sides)):
+                extremes[number].append([nearest(lambda t: of(t, run.sol(t), sides)[number], times, row, sign) for sign in (-1, 1)])
 
         self.flow(start, see)
-        values = np.concatenate(values, axis=1)
-        extremes = zip(values.min(axis=1), values.max(axis=1), np.sqrt(squares/self.period))
-        return [{"min": float(low), "max": float(high), "rms": float(rms)} for low, high, rms in extremes]
+        rows = zip(extremes.values(), np.sqrt(squares/self.period))
+        return [{"min": float(np.min(ends)), "max": float(np.max(ends)), "rms": float(rms)} for ends, rms in rows]
 
     def monodromy(self, start, size=1e-6):
         columns = []
@@ -268,7 +278,8 @@ class Affine(System):
         self.matrices, self.c, self.samples, self.step = matrices, c, samples, TAU/samples
         self.steps = [expm(self.step*matrix) for matrix in matrices]
 
-    def states(self, start):
+    def stretches(self, start):
+        """Where each begins, its side, its length and where it ends."""
         z = np.concatenate([start, [1.0, 0.0, 1.0]])
         slope = self.c @ (self.matrices[0] @ z)
         side = int(self.c @ z > 1 or (self.c @ z == 1 and slope > 0))
@@ -277,16 +288,28 @@ class Affine(System):
             ahead = self.steps[side] @ z
             while (self.c @ ahead > 1) != bool(side):
                 time = brentq(lambda t: self.c @ (expm(t*self.matrices[side]) @ z) - 1, 0, left, xtol=1e-15) if abs(self.c @ z - 1) > 1e-14 else left
-                z, left, side = expm(time*self.matrices[side]) @ z, left - time, 1 - side
-                yield z
+                end = expm(time*self.matrices[side]) @ z
+                yield z, side, time, end
+                z, left, side = end, left - time, 1 - side
                 ahead = expm(left*self.matrices[side]) @ z
+            yield z, side, left, ahead
             z = ahead
-            yield z
 
     def flow(self, start):
-        for z in self.states(start):
+        for *_, z in self.stretches(start):
             pass
         return z[:-3]
+
+    def extremes(self, start, entry, rate):
+        """Of an entry, whose derivative is another one: at the ends of stretches, and where the derivative vanishes."""
+        values = []
+        for z, side, length, end in self.stretches(start):
+            values.append(z[entry])
+            if z[rate]*end[rate] < 0:
+                def ahead(t):
+                    return expm(t*self.matrices[side]) @ z
+                values.append(ahead(brentq(lambda t: ahead(t)[rate], 0, length, xtol=1e-15))[entry])
+        return min(values), max(values)
 
 
 def beam_task(omega, starts):
@@ -307,8 +330,8 @@ def beam_task(omega, starts):
     orbits = system.orbits([np.concatenate([size*np.linspace(1, 0, 6)**2, np.zeros(6)]) for size in starts])
     described = []
     for y in orbits:
-        values = np.array([z[0] for z in system.states(y)])
-        described.append({"stable": system.is_stable(y), "tip": {"min": float(1e-3*values.min()), "max": float(1e-3*values.max())}})
+        low, high = system.extremes(y, 0, 6)
+        described.append({"stable": system.is_stable(y), "tip": {"min": float(1e-3*low), "max": float(1e-3*high)}})
     return {"omega": omega, "orbits": sorted(described, key=lambda orbit: orbit["tip"]["max"] - orbit["tip"]["min"])}
 
 
