@@ -102,13 +102,22 @@ fn attributes<'s>(svg: &'s str, name: &str) -> Vec<&'s str> {
 
 /// The picture in the documentation has the words and the colours of the one that is drawn. Digits of places may depend on the machine.
 fn is_drawn_like(stored: &str, drawn: &str, name: &str) {
-    for attribute in ["viewBox", "aria-label", "fill", "stroke", "stroke-dasharray"] {
+    for attribute in [
+        "viewBox",
+        "aria-label",
+        "fill",
+        "stroke",
+        "stroke-dasharray",
+    ] {
         let [mut stored, mut drawn] = [stored, drawn].map(|svg| attributes(svg, attribute));
         for values in [&mut stored, &mut drawn] {
             values.sort_unstable();
             values.dedup();
         }
-        assert_eq!(stored, drawn, "docs/pictures/{name}.svg is to be drawn again");
+        assert_eq!(
+            stored, drawn,
+            "docs/pictures/{name}.svg is to be drawn again"
+        );
     }
 }
 

@@ -1,5 +1,7 @@
 //! What motions settle to.
 
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use hertzian::attractors::basin::{Attractor, Axis, Basin, Basins, Grid};
@@ -10,6 +12,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{matrix, numbers, rows};
 use crate::compute::{Watch, compute};
+use crate::errors::exception;
 use crate::given::Given;
 
 /// One direction of a grid of initial states: an entry of the state, in so many cells from one value to another. Motions start from the
@@ -177,6 +180,35 @@ impl PyBasins {
 
 #[pymethods]
 impl PyBasins {
+    /// The basins of a file that `write` or the library has written.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let basins = py.detach(|| Basins::read(path)).map_err(exception)?;
+        let grid = &basins.grid;
+        let is_image = grid.given().is_empty();
+        let shape = is_image.then_some([grid.rows.count, grid.columns.count]);
+        Ok(Self::new(basins, shape))
+    }
+
+    /// Writes them as JSON.
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| self.basins.write(path)).map_err(exception)
+    }
+
+    /// Values of all parameters: dict of str and float.
+    #[getter]
+    fn parameters(&self) -> BTreeMap<&str, f64> {
+        let names = self.basins.model.parameters.iter();
+        let names = names.map(|parameter| parameter.name.as_str());
+        names.zip(self.basins.parameters.iter().copied()).collect()
+    }
+
+    /// The excitation frequency: float, in radians per unit of time.
+    #[getter]
+    fn omega(&self) -> f64 {
+        self.basins.omega
+    }
+
     /// What becomes of each motion: the number of its attractor, or a `Fate`: array of int of shape (states,), or (rows, columns) of a
     /// grid.
     #[getter]

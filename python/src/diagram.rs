@@ -3,13 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use hertzian::Error;
 use hertzian::bifurcation::{Diagram, Omitted, Origin, Searched, SettledTo};
-use hertzian::export::{JSON_VERSION, write};
-use hertzian::{Branch, Error};
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use serde::Serialize;
 
 use crate::arrays::matrix;
 use crate::branch::PyBranch;
@@ -35,49 +33,28 @@ impl PyDiagram {
     }
 }
 
-/// What is written of a diagram, as ``hertzian response --json`` does.
-#[derive(Serialize)]
-struct Written<'d> {
-    version: u32,
-    branches: Vec<&'d Branch>,
-    searched: &'d [Searched],
-    uncovered: &'d [[f64; 2]],
-}
-
 #[pymethods]
 impl PyDiagram {
-    /// The branches of a file that `write`, the library or ``hertzian response --json`` has written; what connects them is not in it. With a
-    /// model they can compute further orbits.
+    /// The diagram of a file that `write` or the library has written, or the branches of one by ``hertzian response --json``, which does not
+    /// say what connects them. With a model they can compute further orbits.
     #[staticmethod]
     #[pyo3(signature = (path, model=None))]
     fn read(py: Python<'_>, path: PathBuf, model: Option<&PyModel>) -> PyResult<Self> {
         let system = model.map(PyModel::system);
         let read = py.detach(|| -> Result<Diagram, Error> {
-            let mut branches = Branch::read_all(path)?;
+            let mut diagram = Diagram::read(path)?;
             if let Some(system) = &system {
-                let mut all = branches.iter_mut();
-                all.try_for_each(|branch| branch.attach(system))?;
+                let mut all = diagram.branches.iter_mut();
+                all.try_for_each(|found| found.branch.attach(system))?;
             }
-            Ok(branches.into())
+            Ok(diagram)
         });
         read.map(Self::new).map_err(exception)
     }
 
-    /// Writes its branches as JSON, and what was searched; `read` and the library read the branches back to the same bits.
+    /// Writes it as JSON; `read` and the library read it back to the same bits.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let diagram = &self.0;
-        let written = Written {
-            version: JSON_VERSION,
-            branches: diagram.branches.iter().map(|b| &b.branch).collect(),
-            searched: &diagram.searched,
-            uncovered: &diagram.uncovered,
-        };
-        let text = py.detach(|| serde_json::to_vec(&written));
-        let mut text = text.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        text.push(b'\n');
-        write(&path, text).map_err(|error| {
-            PyOSError::new_err(format!("{} cannot be written: {error}", path.display()))
-        })
+        py.detach(|| self.0.write(path)).map_err(exception)
     }
 
     /// The branches, in the order in which they were found: list of `DiagramBranch`.

@@ -26,7 +26,7 @@ ORBITS = [
 ]
 
 
-def test_motions_settle_to_the_exact_orbits(one_sided):
+def test_motions_settle_to_the_exact_orbits(one_sided, tmp_path):
     one_sided.set(drive=1.0)
     starts = np.array([points[0] for points, _ in ORBITS]) + 1e-3
     basins = one_sided.settle(starts, omega=1.0, longest=4)
@@ -40,6 +40,14 @@ def test_motions_settle_to_the_exact_orbits(one_sided):
         assert np.allclose(attractor.points, np.roll(points, -first, axis=0), atol=1e-9)
         assert min(abs(attractor.multipliers - multiplier)) < 1e-8
     assert basins.count(2) == 1 and basins.count(hertzian.Fate.ESCAPED) == 0
+    assert basins.parameters["drive"] == basins.omega == 1.0
+    path = tmp_path / "basins.json"
+    basins.write(path)
+    read = hertzian.Basins.read(path)
+    assert read == basins and read.fates.shape == (3,)
+    path.write_text(path.read_text().replace('"version":2', '"version":1'))
+    with pytest.raises(hertzian.FileError, match="is of version 1, and files of version 2 are read"):
+        hertzian.Basins.read(path)
 
 
 def test_the_orbit_of_an_attractor_is_an_orbit(one_sided):

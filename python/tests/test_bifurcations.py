@@ -49,6 +49,8 @@ def test_a_diagram_says_what_begins_where(one_sided, tmp_path):
     diagram.write(path)
     read = hertzian.Diagram.read(path, one_sided)
     assert [branch.branch for branch in read.branches] == [first.branch, second.branch]
+    assert [branch.depth for branch in read.branches] == [0, 1]
+    assert [omitted.reason for omitted in read.omitted] == [omitted.reason for omitted in diagram.omitted]
     assert "period 2" in diagram.to_svg()
 
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use hertzian::attractors::basin::{Axis, Basin, Basins, Fate, Grid};
 use hertzian::bifurcation::{Bifurcations, Diagram, Origin};
-use hertzian::{ContactEquation, Error, HarmonicBalance, OrbitMethod, Shooting, Stop};
+use hertzian::{Branch, ContactEquation, Error, HarmonicBalance, OrbitMethod, Shooting, Stop};
 
 use super::resumed::{Linear, texts};
 
@@ -99,10 +99,20 @@ fn is_kept<M: OrbitMethod>(method: M, name: &str) {
     whole.write(&scratch.0).expect("written");
     let read = Diagram::read(&scratch.0).expect("read");
     assert!(read == whole, "{name}");
+    // Who reads branches reads these; of branches alone nothing is known of what connects them.
+    let branches = Branch::read_all(&scratch.0).expect("branches");
+    assert!(
+        branches
+            .iter()
+            .eq(whole.branches.iter().map(|found| &found.branch))
+    );
     // What is written again is the same to the letter.
     let text = scratch.text();
     read.write(&scratch.0).expect("written");
     assert!(scratch.text() == text);
+    branches[0].write(&scratch.0).expect("written");
+    let alone = Diagram::read(&scratch.0).expect("read");
+    assert!(alone == vec![branches[0].clone()].into());
 }
 
 #[test]
@@ -139,18 +149,18 @@ fn what_is_no_diagram_is_refused() {
     // The first version wrote none.
     assert_eq!(said("{\"branches\":[]}"), OLDER);
     assert!(said(&text[..text.len() / 2]).contains("ends early"));
-    assert!(said("{\"version\":2,\"branches\":[]}").contains("missing field `diagram`"));
+    assert!(said("{\"version\":2,\"diagram\":{}}").contains("missing field `branches`"));
     let file = || serde_json::from_str::<serde_json::Value>(&text).expect("text");
     let mut begun = diagram.branches.iter();
     let begun = begun.position(|found| matches!(found.origin, Origin::Event { .. }));
     let begun = begun.expect("what begins at a doubling");
-    let event = format!("/diagram/branches/{begun}/origin/event");
+    let event = format!("/diagram/found/{begun}/origin/event");
     for (place, value, says) in [
         (format!("{event}/branch"), 99, "are not there"),
         (format!("{event}/event"), 99, "are not there"),
         ("/diagram/omitted/0/branch".into(), 99, "are not there"),
         (
-            "/diagram/branches/0/branch/events/0/after".into(),
+            "/branches/0/events/0/after".into(),
             9999,
             "does not belong together",
         ),

@@ -22,7 +22,10 @@ fn number(text: &str) -> f64 {
     text.parse().expect("a number")
 }
 
-/// Orbits of a branch are those of the table, in the order of their size, to this part of it.
+/// What is asked of peak-to-peak by default, relative.
+const TOLERANCE: f64 = 1e-6;
+
+/// Orbits of a branch are those of the table, in the order of their size, to this part of how far each signal moves.
 fn are_all(branch: &Branch, task: &str, signal: &str, within: f64) {
     let wanted = lines(task).filter(|line| !line[2].is_empty());
     let wanted: Vec<Line> = wanted.collect();
@@ -52,7 +55,6 @@ fn are_all(branch: &Branch, task: &str, signal: &str, within: f64) {
         let extent = branch.reading(signal, point).expect("a signal").motion;
         let bound = within * extent.peak_to_peak();
         let off = (measured - number(value)).abs();
-        eprintln!("{task} {orbit} {what}: {:e}", off / extent.peak_to_peak());
         assert!(off <= bound, "{task} {orbit} {what}: {measured}, {value}");
     }
 }
@@ -61,14 +63,19 @@ fn are_all(branch: &Branch, task: &str, signal: &str, within: f64) {
 fn gears() {
     let request = FrequencyResponse::of(&GearMesh::default());
     let branch = request.from(1.2e4).to(1.7e4).run();
-    are_all(&branch.expect("a branch"), "gear_mesh", "relative", 1e-5);
+    are_all(
+        &branch.expect("a branch"),
+        "gear_mesh",
+        "relative",
+        TOLERANCE,
+    );
 }
 
 #[test]
 fn balls() {
     let request = FrequencyResponse::of(&Bearing::default());
     let branch = request.from(0.52).to(0.48).run();
-    are_all(&branch.expect("a branch"), "ball_bearing", "y", 1e-5);
+    are_all(&branch.expect("a branch"), "ball_bearing", "y", TOLERANCE);
 }
 
 #[test]
@@ -77,7 +84,8 @@ fn a_tip_from_either_side() {
     let request = request.vary("distance").omega(1e6);
     for (from, to) in [(14.0, -2.0), (-2.0, 14.0)] {
         let branch = request.clone().from(from).to(to).run();
-        are_all(&branch.expect("a branch"), "approach", "x", 2e-5);
+        // The surface has 0.43 N/m where it is pressed most, by which an error of x of 14 nm is twice that part of its force, 0.62 nN.
+        are_all(&branch.expect("a branch"), "approach", "x", 2.0 * TOLERANCE);
     }
 }
 
@@ -85,7 +93,12 @@ fn a_tip_from_either_side() {
 fn a_joint() {
     let request = FrequencyResponse::of(&BoltedJoint::default());
     let branch = request.from(2000.0).to(3000.0).run();
-    are_all(&branch.expect("a branch"), "bolted_joint", "opening", 1e-5);
+    are_all(
+        &branch.expect("a branch"),
+        "bolted_joint",
+        "opening",
+        TOLERANCE,
+    );
 }
 
 /// As the example prints it: `at 3.9 peak-to-peak of tip 0.0025116964545824, unstable`.

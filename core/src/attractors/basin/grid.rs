@@ -117,6 +117,11 @@ impl Grid {
         }
     }
 
+    /// The states, where they are [given one by one](Self::of_states); none of a grid with rows and columns.
+    pub fn given(&self) -> &[Vec<f64>] {
+        &self.states
+    }
+
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.columns.count.saturating_mul(self.rows.count)

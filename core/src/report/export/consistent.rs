@@ -8,20 +8,17 @@ use crate::branches::point::{Event, Point};
 impl Branch {
     /// Itself, if its numbers belong together.
     pub(super) fn checked(self) -> serde_json::Result<Self> {
-        match self.unsound() {
-            None => Ok(self),
-            Some(reason) => Err(serde_json::Error::custom(reason)),
-        }
-    }
-
-    /// Why its numbers do not belong together, if they do not.
-    pub(super) fn unsound(&self) -> Option<String> {
         if !self.belongs_together() {
             let reason = "what it says of its model and of its events does not belong together";
-            return Some(reason.to_owned());
+            return Err(serde_json::Error::custom(reason));
         }
-        let at = self.disagrees()?;
-        Some(format!("the numbers of the orbit at {at} disagree"))
+        match self.disagrees() {
+            None => Ok(self),
+            Some(at) => {
+                let reason = format!("the numbers of the orbit at {at} disagree");
+                Err(serde_json::Error::custom(reason))
+            }
+        }
     }
 
     /// Whether names, units and contacts of the model are as many as there must be, and events lie on the branch.

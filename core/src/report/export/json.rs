@@ -36,7 +36,7 @@ struct Read {
 ///
 /// # Errors
 /// If it cannot be read.
-fn contents(path: &Path) -> Result<Vec<u8>, FileError> {
+pub(crate) fn contents(path: &Path) -> Result<Vec<u8>, FileError> {
     std::fs::read(path).map_err(|source| FileError::Read {
         path: path.to_path_buf(),
         kind: source.kind(),

@@ -1,24 +1,51 @@
-//! Diagrams and basins as JSON: an object with a `version` and what it is of.
+//! Diagrams and basins as JSON: an object with a `version` and what it is of. A diagram has its branches in a list as other files have,
+//! and what connects them beside it, so that who reads branches reads those of a diagram too.
 
 use std::path::Path;
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
 use crate::attractors::basin::{Basins, Fate};
-use crate::bifurcation::diagram::{Diagram, Origin, Reason};
+use crate::bifurcation::{Diagram, DiagramBranch, Omitted, Origin, Reason, Searched};
+use crate::branches::branch::Branch;
 use crate::error::Error;
+use crate::report::checkpoint;
 use crate::report::error::FileError;
-use crate::report::export::json::{JSON_VERSION, read, write};
+use crate::report::export::json::{JSON_VERSION, contents, read, write};
 
 #[derive(Serialize)]
 struct WrittenDiagram<'d> {
     version: u32,
-    diagram: &'d Diagram,
+    branches: Vec<&'d Branch>,
+    diagram: Connected,
 }
 
 #[derive(Deserialize)]
 struct ReadDiagram {
-    diagram: Diagram,
+    diagram: Option<Connected>,
+}
+
+/// A diagram but for its branches.
+#[derive(Serialize, Deserialize)]
+struct Connected {
+    found: Vec<Found>,
+    omitted: Vec<Omitted>,
+    #[serde(with = "crate::serialise")]
+    missed: Vec<(f64, Reason)>,
+    searched: Vec<Searched>,
+    #[serde(with = "crate::serialise")]
+    uncovered: Vec<[f64; 2]>,
+    #[serde(with = "crate::serialise")]
+    elapsed: Duration,
+}
+
+/// What a diagram says of a branch.
+#[derive(Serialize, Deserialize)]
+struct Found {
+    origin: Origin,
+    depth: usize,
+    mirrored: bool,
 }
 
 #[derive(Serialize)]
@@ -32,37 +59,79 @@ struct ReadBasins {
     basins: Basins,
 }
 
+impl Connected {
+    fn of(diagram: &Diagram) -> Self {
+        let found = diagram.branches.iter().map(|found| Found {
+            origin: found.origin,
+            depth: found.depth,
+            mirrored: found.mirrored,
+        });
+        Self {
+            found: found.collect(),
+            omitted: diagram.omitted.clone(),
+            missed: diagram.missed.clone(),
+            searched: diagram.searched.clone(),
+            uncovered: diagram.uncovered.clone(),
+            elapsed: diagram.elapsed,
+        }
+    }
+
+    /// The diagram of these branches; `None` if there are more, or fewer.
+    fn with(self, branches: Vec<Branch>) -> Option<Diagram> {
+        let fits = branches.len() == self.found.len();
+        let both = self.found.into_iter().zip(branches);
+        let branches = both.map(|(found, branch)| DiagramBranch {
+            origin: found.origin,
+            depth: found.depth,
+            branch,
+            mirrored: found.mirrored,
+        });
+        fits.then(|| Diagram {
+            branches: branches.collect(),
+            omitted: self.omitted,
+            missed: self.missed,
+            searched: self.searched,
+            uncovered: self.uncovered,
+            elapsed: self.elapsed,
+        })
+    }
+}
+
 impl Diagram {
-    /// Writes it as JSON: an object with a `version` and the `diagram`. Fields have the names that they have here, and numbers are
-    /// written as those of [a branch](crate::Branch::write).
+    /// Writes it as JSON: an object with a `version`, its `branches`, and as `diagram` what connects them. Fields have the names that they have
+    /// here, and numbers are written as those of [a branch](crate::Branch::write).
     ///
     /// # Errors
     /// If the file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let written = WrittenDiagram {
             version: JSON_VERSION,
-            diagram: self,
+            branches: self.branches.iter().map(|found| &found.branch).collect(),
+            diagram: Connected::of(self),
         };
         Ok(write(path.as_ref(), &written)?)
     }
 
     /// The diagram of a file that [`write`](Self::write) has written. It is equal to what was written, and its branches have no model:
-    /// [`attach`](crate::Branch::attach) gives one to each.
+    /// [`attach`](crate::Branch::attach) gives one to each. Of a file of [branches alone](crate::Branch::read_all) nothing is known of what
+    /// connects them.
     ///
     /// # Errors
     /// If the file cannot be read, is none of these, ends early, is of another version, or holds numbers that do not belong together.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
+        let branches = Branch::read_all(path)?;
+        if checkpoint::read(&contents(path)?).is_some() {
+            return Ok(branches.into());
+        }
         let ReadDiagram { diagram } = read(path)?;
-        if !diagram.belongs_together() {
-            return Err(apart(path, "branches and events that it names are not there").into());
-        }
-        let Self { branches, .. } = &diagram;
-        let unsound = branches.iter().find_map(|found| found.branch.unsound());
-        match unsound {
-            Some(reason) => Err(apart(path, &reason).into()),
-            None => Ok(diagram),
-        }
+        let Some(connected) = diagram else {
+            return Ok(branches.into());
+        };
+        let diagram = connected.with(branches);
+        let diagram = diagram.filter(Self::belongs_together);
+        let reason = "branches and events that it names are not there";
+        Ok(diagram.ok_or_else(|| apart(path, reason))?)
     }
 
     /// Whether the branches, events and orbits that are named by numbers are there.
