@@ -61,9 +61,14 @@ impl Convergence {
         change: f64::INFINITY,
     };
 
-    /// Takes the change of a sweep; whether the iteration is over, and how.
+    /// Takes the change of a sweep, in parts of the motion; whether the iteration is over, and how. From a change of more than the motion itself,
+    /// as where an iterate runs far up an exponential, the ratio to the next is none of a contraction.
     fn next(&mut self, change: f64, enough: f64) -> Option<Solved> {
-        let ratio = (change / self.change).min(1.0);
+        let ratio = if self.change <= 1.0 {
+            (change / self.change).min(1.0)
+        } else {
+            1.0
+        };
         let grows = self.sweep >= FIRST_SWEEPS && change > 0.9 * self.change;
         self.sweep += 1;
         self.change = change;
@@ -154,6 +159,7 @@ impl<const S: usize> Engine<S> {
                 // This change is from what was not the same step.
                 0 => f64::INFINITY,
                 1 => change,
+                _ if before > 1.0 => change,
                 _ => change * (change / before).min(1.0),
             };
             before = change;
@@ -324,6 +330,11 @@ impl<const S: usize> Engine<S> {
             self.trial.q[i] = end;
             self.batch.shift[0][i] = self.batch.q[i].map(|q| q - self.here.q[i]);
         }
+    }
+
+    /// Has errors relative to the motion as far as it is known: a trial that was not taken may have run far away from it.
+    pub(super) fn scale(&mut self) {
+        write_scales(&self.here.sizes, self.field.base(), &mut self.scales);
     }
 
     /// The error of the motion on this step in parts of the tolerance, from how fast its Legendre coefficients fall.

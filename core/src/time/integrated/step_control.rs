@@ -177,6 +177,7 @@ impl<const S: usize> Engine<S> {
         let (mut turned, mut landings) = (0, 0);
         for _ in 0..MOST_ATTEMPTS {
             self.count_step()?;
+            self.scale();
             let tried = match plan {
                 Plan::Span(width) => self.try_span(width, left, &mut turned)?,
                 Plan::Land(aim) if landings < MOST_LANDINGS => {

@@ -1,6 +1,7 @@
 //! How accurate motions are: the tolerance, the work that an exponent costs, and what is conserved.
 
 use super::*;
+use crate::oscillator;
 use crate::time::divergence::{Divergence, Integral};
 
 /// One-sided or not, exponent and load of the motions that are compared.
@@ -73,6 +74,50 @@ fn errors_are_proportional_to_the_tolerance() {
             .collect();
         let slope = slope(&points);
         assert!((slope - 1.0).abs() < 0.15, "{one_sided} {alpha}: {slope}");
+    }
+}
+
+oscillator! {
+    /// A mass that flies against a wall whose force is an exponential.
+    Wall(x) {
+        /// on which the force rises
+        param width > 0;
+        law wall(gap) { exp(gap/width) }
+        ddot(x) + wall(x) = 0;
+    }
+}
+
+/// `x = w (ln (1 / 2 w) - 2 ln cosh s)` with `s = t / 2 w` comes with the speed one and goes with it. In a step of free flight iterates run far
+/// up the exponential.
+#[test]
+fn a_flight_against_an_exponential_wall_is_as_accurate_as_asked_for() {
+    for width in [0.1_f64, 0.03, 0.01, 0.003] {
+        let model = Wall { width };
+        let exact = |t: f64| {
+            let s = t / (2.0 * width);
+            let logarithm = s.abs() + (-2.0 * s.abs()).exp().ln_1p() - 2.0_f64.ln();
+            let x = width * (-(2.0 * width).ln() - 2.0 * logarithm);
+            [x, -s.tanh()]
+        };
+        for tolerance in [1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12] {
+            let mut flow = Integrated::new(&model, &[width], 1.0, tolerance).unwrap();
+            let mut state = exact(-1.0);
+            let (mut worst, mut sample) = (0.0_f64, state);
+            let mut see = |stretch: &dyn Stretch| {
+                let to = stretch.phases().1;
+                stretch.state(to, &mut sample);
+                let there = exact(to - 1.0);
+                let apart = (0..2).map(|i| (sample[i] - there[i]).abs());
+                worst = apart.fold(worst, f64::max);
+            };
+            flow.advance(0.0, 2.0, &mut state, None, Some(&mut see))
+                .unwrap();
+            // Behind the wall what rates err by there has grown with the way.
+            assert!(
+                worst < 100.0 * tolerance,
+                "{width} {tolerance:e}: {worst:e}"
+            );
+        }
     }
 }
 
