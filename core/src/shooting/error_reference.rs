@@ -27,7 +27,7 @@ const FINEST: f64 = 1e-14;
 /// By how much an error may be larger than a tolerance.
 const SAFETY: f64 = 10.0;
 /// Rounding errors of a flow over a period, together, in units of the largest state.
-const ROUNDING: f64 = 50.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 50.0 * f64::EPSILON;
 /// Disturbance of a closed form, in the same units.
 const DISTURBANCE: f64 = 1e-9;
 /// An update of this size leaves the square of it.

@@ -3,6 +3,8 @@
 //! The test functions are those of [`tested`](super::tested). A place is reported if it solves the equations and the function was
 //! driven to zero there; its error is what an error reference makes of it.
 
+use nalgebra::DMatrix;
+
 use super::equations::Equations;
 use super::error_reference::{self, ErrorReference};
 use super::method::VANISHED;
@@ -169,12 +171,14 @@ impl Run<'_> {
             }
         };
         self.work += others.flow.work();
-        // A modulus is not driven to zero by more than its rounding.
-        let rounding = match Test::of(change.test) {
-            Test::Modulus(_) => (rounding + root.located.test.abs()) / zero.steepness,
-            _ => 0.0,
+        // What the search leaves of a test function, and what rounding makes of it.
+        let test = root.located.test.abs();
+        let left = match Test::of(change.test) {
+            Test::Modulus(_) => rounding + test,
+            Test::Plus => test + rounding_of_plus(equations, &root.located.point.u),
+            Test::Slope | Test::Bordered => 0.0,
         };
-        let error = error + rounding;
+        let error = error + left / zero.steepness;
         Some(Event {
             kind,
             point: read,
@@ -185,6 +189,30 @@ impl Run<'_> {
             tangent: root.located.point.tangent.clone(),
         })
     }
+}
+
+/// What rounding of a map `M` leaves in `det(M + I)`, also where that vanishes: with the singular values `s` of `M + I`,
+///
+/// ```text
+/// |d det| <= |adj(M + I)| |d M|,    |adj(M + I)|^2 = sum_i prod_(j != i) s_j^2                                  (1)
+/// ```
+///
+/// in Frobenius norms. That the orbit is rounded too is seen from the other equations.
+///
+/// Source: Ipsen and Rehman (2008), Perturbation bounds for determinants and characteristic polynomials, SIAM Journal on Matrix Analysis
+/// and Applications 30, section 2.
+fn rounding_of_plus(equations: &mut Equations, u: &[f64]) -> f64 {
+    let Ok(map) = equations.map(u, &mut |_| {}) else {
+        return f64::INFINITY;
+    };
+    let by = error_reference::ROUNDING * map.norm();
+    let (rows, columns) = map.shape();
+    let singular = (map + DMatrix::identity(rows, columns)).singular_values();
+    let minors = (0..rows).map(|i| {
+        let others = singular.iter().enumerate().filter(|(j, _)| *j != i);
+        others.map(|(_, value)| value * value).product::<f64>()
+    });
+    by * minors.sum::<f64>().sqrt()
 }
 
 /// An event of some equations with its errors, and the error of its value: a part of what it is in others.
