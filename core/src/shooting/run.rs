@@ -167,6 +167,11 @@ impl<'r> Run<'r> {
         let (kind, after, value) = (event.kind, event.after, event.point.value);
         let u = equations.unknowns_of(&event.point.orbit.states, event.point.value);
         let same = self.same_state(equations).at_point();
+        // Along a resonance orbits shrink by orders of magnitude.
+        let same = SameState {
+            size: same.size.min(event.point.size()),
+            ..same
+        };
         let state = event.point.orbit.state();
         let is_fold = kind == EventKind::Fold;
         let recurrence = match earlier(equations, &u, same, symmetries) {
