@@ -8,7 +8,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::continuation::follow::{CurvePoint, Step};
-use crate::law::{LawFacts, is_unbounded};
+use crate::law::{LawFacts, unbounded_by};
 use crate::system::System;
 
 /// An extreme of a gap is followed from one orbit to the next as long as it moves by less than this phase.
@@ -32,9 +32,31 @@ pub(crate) fn corners(system: &dyn System) -> bool {
         .any(|level| level.force_jumps || level.unbounded_by_gap)
 }
 
-/// The same of one level of a law at values of its arguments. A slope may be bounded or not as an exponent is.
-pub(crate) fn is_corner(facts: &LawFacts, level: usize, arguments: &[f64]) -> bool {
-    facts.levels[level].force_jumps || is_unbounded(facts, level, arguments)
+/// What a branch and the multipliers along it do where a level is touched. With a force that goes as `g^p` beyond it, both go to their limits as
+/// `h^(p - 1/2)` of the height `h` of the extreme.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub(crate) enum Bend {
+    /// They go on: the stiffness is bounded.
+    Smooth,
+    /// They are continuous, and steeper than can be resolved: `p` is between a half and one.
+    Steep,
+    /// The branch may have a corner of any angle, and multipliers jump or are unbounded: the force jumps, or `p` is a half at most.
+    Corner,
+}
+
+impl Bend {
+    /// At one level of a law, at values of its arguments, of which an exponent may be one.
+    pub(crate) fn at(facts: &LawFacts, level: usize, arguments: &[f64]) -> Self {
+        // The exponent of the slope is that of the force less one.
+        match unbounded_by(facts, level, arguments) {
+            _ if facts.levels[level].force_jumps => Self::Corner,
+            Some(exponent) if exponent <= -0.5 => Self::Corner,
+            Some(_) => Self::Steep,
+            None => Self::Smooth,
+        }
+    }
 }
 
 /// One extreme of a gap, seen from one level.
@@ -55,8 +77,8 @@ pub(crate) struct Extreme {
     pub(crate) size: f64,
     /// The force jumps at the level.
     pub(crate) jumps: bool,
-    /// The branch may have a corner of any angle where the level is touched: the force jumps, or its slope is unbounded.
-    pub(crate) corners: bool,
+    /// What the branch does where the level is touched.
+    pub(crate) bend: Bend,
     /// It is none, but the gap where the unknowns begin to tell the orbit.
     pub(crate) begins: bool,
     /// It is seen from no level, but from the gap zero.
@@ -77,7 +99,7 @@ impl Extreme {
             above: 0.0,
             size,
             jumps,
-            corners: jumps,
+            bend: if jumps { Bend::Corner } else { Bend::Smooth },
             begins: false,
             plain: false,
             of_states: false,
@@ -207,7 +229,7 @@ mod tests {
             above,
             size: 1.0,
             jumps: false,
-            corners: false,
+            bend: Bend::Smooth,
             begins: false,
             plain: false,
             of_states: false,

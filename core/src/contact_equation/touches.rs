@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::motion::{GapExtreme, Motion};
 use super::placement::Told;
 use super::run::{Run, SAME};
-use crate::branches::extreme::{Extreme, is_corner};
+use crate::branches::extreme::{Bend, Extreme};
 use crate::branches::recurrence::Recurrence;
 
 /// What `H` of a pair may be where its gap touches the level.
@@ -83,7 +83,7 @@ impl Run<'_> {
                     above: (extreme.gap - value) / size,
                     size,
                     jumps: facts.levels[level].force_jumps,
-                    corners: is_corner(facts, level, &of.arguments),
+                    bend: Bend::at(facts, level, &of.arguments),
                     begins: false,
                     plain: false,
                     of_states: false,

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::equations::{Equations, Span};
 use super::gap_scan::{self, Room};
 use super::problem::ShootingProblem;
-use crate::branches::extreme::{Extreme, is_corner};
+use crate::branches::extreme::{Bend, Extreme};
 use crate::branches::recurrence::Recurrence;
 use crate::laws::generic::narrow::Narrow;
 use crate::laws::generic::scales::Scales;
@@ -136,7 +136,7 @@ impl<'r> GapExtremes<'r> {
             for (level, value) in self.levels.iter().enumerate() {
                 let jumps = facts.levels[level].force_jumps;
                 let alike = Extreme {
-                    corners: is_corner(facts, level, &self.arguments),
+                    bend: Bend::at(facts, level, &self.arguments),
                     ..Extreme::of(contact, level, 0.5 * (high - low), jumps)
                 };
                 extremes.extend(seen_from(*value, &found, whole, alike));

@@ -1,7 +1,7 @@
 //! The [extremes](Extreme) of gaps, from the series of an orbit.
 
 use crate::balance::{Balance, gap_series};
-use crate::branches::extreme::{Extreme, is_corner};
+use crate::branches::extreme::{Bend, Extreme};
 use crate::laws::generic::narrow::Narrow;
 use crate::laws::generic::scales::Scales;
 use crate::model::validate;
@@ -137,7 +137,7 @@ impl<'a> GapExtremes<'a> {
             for (level, value) in self.levels.iter().enumerate() {
                 let jumps = facts.levels[level].force_jumps;
                 let alike = Extreme {
-                    corners: is_corner(facts, level, &self.arguments),
+                    bend: Bend::at(facts, level, &self.arguments),
                     ..Extreme::of(contact, level, 0.5 * (high - low), jumps)
                 };
                 extremes.extend(self.seen_from(*value, alike));

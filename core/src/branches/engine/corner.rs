@@ -35,16 +35,17 @@
 
 use super::approach::Approach;
 use super::corner_search::{Corner, CornerSearch};
+use super::explained::Bent;
 use super::seen::Seen;
 use super::touch::touching;
 use super::{Engine, Looked};
-use crate::branches::extreme::{Extreme, passed};
+use crate::branches::extreme::{Bend, Extreme, passed};
 use crate::branches::point::Event;
 use crate::branches::problem::{BranchProblem, Change, Touch};
 use crate::continuation::follow::{CurvePoint, Step, Stop};
 use crate::continuation::newton::Newton;
 use crate::continuation::problem::Norm;
-use crate::event::EventKind;
+use crate::event::{EventKind, Turn};
 use crate::numeric::linear::dot;
 
 /// A corner is looked for as far ahead as so many times the step that failed.
@@ -232,6 +233,7 @@ impl Engine {
         } = corner;
         let (value, error) = (touch.located.point.parameter(), touch.error);
         let known = problem.record().events.len();
+        let places = problem.record().turns.len();
         // On the side that is clear the branch is smooth up to the touch.
         let comes_clear = end.u == touch.located.point.u;
         let mut turns = corner.turns();
@@ -244,7 +246,8 @@ impl Engine {
         if comes_clear {
             first = problem.record().events.len();
         }
-        if !touch.extreme.jumps {
+        let is_corner = touch.extreme.bend == Bend::Corner;
+        if !is_corner {
             turns &= !self.folds_within(*problem, newton, [end, begin], after);
         }
         if !comes_clear {
@@ -258,10 +261,11 @@ impl Engine {
         }
         let record = problem.record_mut();
         let mut behind = record.events.split_off(first);
-        if touch.extreme.jumps {
+        if is_corner {
             // Multipliers are unbounded at the touch: what a series leaves of that beside it is none of its own.
             drop_beside(&mut record.events, known, value);
             drop_beside(&mut behind, 0, value);
+            turns ^= drop_places_beside(&mut record.turns, places, [value, error]);
         }
         if turns {
             // A fold and a turn that are not told apart are none.
@@ -285,12 +289,13 @@ impl Engine {
                 rate: touch.rate,
                 after,
             };
-            problem.keep_touch(newton, step, &touch);
+            let bent = Bent::kept(*problem, newton, step, &touch, &extremes);
+            self.bent.extend(bent);
         }
         problem.record_mut().events.extend(behind);
     }
 
-    /// What changes its sign between the two sides of a touch where the force does not jump: slopes and multipliers may be continuous and change
+    /// What changes its sign between the two sides of a touch that is no corner: slopes and multipliers may be continuous and change
     /// faster than a way of points shows. Says whether the branch turns there by a fold, and not by its corner.
     fn folds_within(
         &mut self,
@@ -345,7 +350,11 @@ fn ahead(problem: &mut dyn BranchProblem, at: &CurvePoint, step: f64) -> Vec<(f6
         problem.add_beginnings(&at.u, &mut extremes);
     }
     for extreme in extremes {
-        let bends = extreme.jumps || (extreme.corners && step < BENDS_WITHIN);
+        let bends = match extreme.bend {
+            Bend::Corner => true,
+            Bend::Steep => step < BENDS_WITHIN,
+            Bend::Smooth => false,
+        };
         if !bends || extreme.above.abs() > NEAR {
             continue;
         }
@@ -367,6 +376,19 @@ fn drop_beside(events: &mut Vec<Event>, first: usize, touch: f64) {
         place += 1;
         place <= first || (event.point.value - touch).abs() > ERRORS * event.error
     });
+}
+
+/// Drops the places from one on where something jumps no farther from a corner than the error of its value: it jumps there. Says whether the
+/// slope does so an odd number of times, beside what both sides of the corner tell of it.
+fn drop_places_beside(turns: &mut Vec<Turn>, first: usize, [touch, error]: [f64; 2]) -> bool {
+    let (mut place, mut turned) = (0, false);
+    turns.retain(|turn| {
+        place += 1;
+        let dropped = place > first && (turn.value - touch).abs() <= ERRORS * error;
+        turned ^= dropped && turn.kind == EventKind::Fold;
+        !dropped
+    });
+    turned
 }
 
 /// Drops a fold among the events from one on that errors do not tell apart from a touch. Says whether there was one.

@@ -1,19 +1,64 @@
 //! What is said where multipliers cross the unit circle and no event was located.
 
 use super::Engine;
+use super::touch::AT_ONCE;
+use crate::branches::extreme::{Bend, Extreme};
 use crate::branches::moduli;
-use crate::branches::point::{Event, Point};
-use crate::branches::problem::BranchProblem;
+use crate::branches::point::Point;
+use crate::branches::problem::{BranchProblem, Touch};
 use crate::branches::record::Kept;
 use crate::branches::stability::Verdict;
+use crate::continuation::follow::Step;
+use crate::continuation::newton::Newton;
 use crate::event::{EventKind, Turn};
 
+/// A touch at which the branch or its multipliers bend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Bent {
+    /// Number of points of the branch before it.
+    after: usize,
+    /// Of the event.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
+    value: f64,
+    /// The sharpest of all levels that are touched there.
+    bend: Bend,
+}
+
+impl Bent {
+    /// Has a touch kept, of an orbit with these extremes. Says what bends there, if anything does and it is an event.
+    pub(super) fn kept(
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        step: Step<'_>,
+        touch: &Touch,
+        extremes: &[Extreme],
+    ) -> Option<Self> {
+        let known = problem.record().events.len();
+        problem.keep_touch(newton, step, touch);
+        let event = problem.record().events.get(known)?;
+        let touching = extremes.iter();
+        let touching = touching.filter(|extreme| extreme.above.abs() <= AT_ONCE);
+        let bend = touching.fold(touch.extreme.bend, |bend, extreme| bend.max(extreme.bend));
+        (bend != Bend::Smooth).then_some(Self {
+            after: touch.after,
+            value: event.point.value,
+            bend,
+        })
+    }
+
+    /// Whether it is what a file may say.
+    pub(super) fn is_possible(&self) -> bool {
+        self.value.is_finite()
+    }
+}
+
 impl Engine {
-    /// Multipliers that cross the unit circle in the last step, at no place that was found, do so where the one level is touched in it
-    /// at which they jump, or nearly.
+    /// Multipliers that cross the unit circle in the last step, at no place that was found, do so where a level is touched in it at which they
+    /// jump, or nearly, if that is one place.
     pub(super) fn place_turns(&mut self, problem: &mut dyn BranchProblem) {
         for unlocated in self.unlocated.drain(..) {
-            let touch = corner_touch(problem, unlocated.after);
+            let touch = one_bent(&self.bent, unlocated.after);
             let record = problem.record_mut();
             let of_multipliers = matches!(
                 unlocated.kind,
@@ -32,7 +77,7 @@ impl Engine {
         if !watched.any(|watched| watched.kind == EventKind::NeimarkSacker) {
             return;
         }
-        let jumps = problem.force_jumps();
+        let corners = problem.corners();
         let Kept {
             points,
             events,
@@ -56,14 +101,20 @@ impl Engine {
             return;
         }
         let other = &points[before - 1];
-        // Multipliers jump at a touch where the force does, and nowhere else.
-        let explains = |kind: EventKind, after: usize| {
+        // Multipliers jump at a touch that is a corner, and nowhere else. Which level is touched at a place that is none is not known.
+        let explains = |kind: EventKind, after: usize, jumps: bool| {
             let touches = matches!(kind, EventKind::Grazing { .. });
             after >= before && (jumps || !touches)
         };
+        let corner = |bent: &Bent| bent.after >= before && bent.bend == Bend::Corner;
         if other.stability.verdict == last.stability.verdict
-            || events.iter().any(|event| explains(event.kind, event.after))
-            || turns.iter().any(|turn| explains(turn.kind, turn.after))
+            || self.bent.iter().any(corner)
+            || events
+                .iter()
+                .any(|event| explains(event.kind, event.after, false))
+            || turns
+                .iter()
+                .any(|turn| explains(turn.kind, turn.after, corners))
         {
             return;
         }
@@ -76,7 +127,7 @@ impl Engine {
         };
         let (place, middle) = (points.len() - 1, 0.5 * (other.value + last.value));
         // At a touch where the stiffness is unbounded multipliers change faster than can be resolved.
-        let (after, value) = corner_touch(problem, before).unwrap_or((place, middle));
+        let (after, value) = one_bent(&self.bent, before).unwrap_or((place, middle));
         let turn = Turn {
             kind,
             value,
@@ -87,14 +138,11 @@ impl Engine {
     }
 }
 
-/// Where the one level is touched behind so many points, if a branch may have a corner where one is: the number of points before it, and the
-/// value.
-fn corner_touch(problem: &dyn BranchProblem, from: usize) -> Option<(usize, f64)> {
-    let touches = |event: &&Event| matches!(event.kind, EventKind::Grazing { .. });
-    let events = problem.record().events.iter().filter(touches);
-    let mut found = events.filter(|event| event.after >= from);
-    match (problem.corners(), found.next(), found.next()) {
-        (true, Some(touch), None) => Some((touch.after, touch.point.value)),
+/// The one touch behind so many points at which multipliers jump, or nearly: the number of points before it, and the value.
+fn one_bent(bent: &[Bent], from: usize) -> Option<(usize, f64)> {
+    let mut found = bent.iter().filter(|bent| bent.after >= from);
+    match (found.next(), found.next()) {
+        (Some(bent), None) => Some((bent.after, bent.value)),
         _ => None,
     }
 }

@@ -37,6 +37,7 @@ mod touch;
 mod walk;
 mod zero;
 
+use explained::Bent;
 use seen::{Seen, changes, is_modulus};
 use touch::Gaps;
 use walk::Looked;
@@ -90,6 +91,8 @@ struct Engine {
     plain: Option<Gaps>,
     /// Where levels are touched in the last step.
     touched: Vec<f64>,
+    /// Touches at which the branch or its multipliers bend, so far.
+    bent: Vec<Bent>,
     /// The last step was divided in a narrow place of a law.
     doubted: bool,
     /// What changed its sign in the last step at no place that was found.
@@ -214,6 +217,7 @@ impl Engine {
             gaps: Vec::new(),
             plain: None,
             touched: Vec::new(),
+            bent: Vec::new(),
             doubted: false,
             unlocated: Vec::new(),
         }

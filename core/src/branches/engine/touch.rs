@@ -6,6 +6,7 @@
 
 use super::Engine;
 use super::approach::{Approach, Reached, on_the_way};
+use super::explained::Bent;
 use super::inside_touch::Steps;
 use crate::branches::extreme::{Extreme, Passage, appears, crossings, distinct, is_copy, passed};
 use crate::branches::problem::{BranchProblem, Touch};
@@ -18,7 +19,7 @@ use crate::event::{EventKind, Turn};
 const SAME: f64 = 1e-9;
 /// Extremes that are so near to their levels, in units of the gap, at an orbit that touches one, touch as well: Newton's method leaves
 /// less between copies.
-const AT_ONCE: f64 = 1e-8;
+pub(super) const AT_ONCE: f64 = 1e-8;
 /// A slope that is smaller where the branch turns does not jump there.
 const STEEP: f64 = 1e-6;
 /// An orbit farther from where it was sought than so many steps is another one.
@@ -40,6 +41,8 @@ struct TouchSearch<'s> {
     turned: Option<Turn>,
     /// Where touches were found.
     found: Vec<f64>,
+    /// Those at which the branch or its multipliers bend.
+    bent: Vec<Bent>,
 }
 
 /// A point with the extremes of its gaps.
@@ -92,6 +95,7 @@ impl Engine {
                 let mut search = self.touch_search(whole, after - 1);
                 search.found = touched;
                 search.between_all(problem, newton, &earlier);
+                self.bent.append(&mut search.bent);
             }
             parts = last;
         }
@@ -99,6 +103,7 @@ impl Engine {
         search.turned = turned;
         search.between_all(problem, newton, &parts);
         self.touched = search.found;
+        self.bent.append(&mut search.bent);
     }
 
     /// A search for the touches in a step behind so many points.
@@ -110,6 +115,7 @@ impl Engine {
             after,
             turned: None,
             found: Vec::new(),
+            bent: Vec::new(),
         }
     }
 
@@ -288,7 +294,8 @@ impl TouchSearch<'_> {
             turns: self.turns_at(problem, value),
             after: self.after,
         };
-        problem.keep_touch(newton, self.whole, &touch);
+        self.bent
+            .extend(Bent::kept(problem, newton, self.whole, &touch, &extremes));
         true
     }
 

@@ -4,6 +4,7 @@
 //! step makes that step again, and comes to the same points to the last bit.
 
 use super::Engine;
+use super::explained::Bent;
 use super::seen::Seen;
 use crate::branches::problem::Test;
 use crate::branches::record::Kept;
@@ -25,6 +26,9 @@ pub(crate) struct Walk {
     /// Where levels are touched in the step before.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     touched: Vec<f64>,
+    /// Touches at which the branch bends.
+    #[cfg_attr(feature = "serde", serde(default))]
+    bent: Vec<Bent>,
     /// What the branch had then.
     pub(crate) kept: Places,
 }
@@ -92,6 +96,7 @@ impl Walk {
             && before.iter().all(is_vector)
             && self.looked.iter().all(|looked| is_vector(&looked.at))
             && self.touched.iter().all(|value| value.is_finite())
+            && self.bent.iter().all(Bent::is_possible)
             && self.halted.is_possible()
             && self.contraction.is_finite()
             && self.kept.points > 0
@@ -120,6 +125,7 @@ impl Engine {
             decided: self.decided,
             looked: self.looked.clone(),
             touched: self.touched.clone(),
+            bent: self.bent.clone(),
             kept: Places::all(kept),
         }
     }
@@ -133,6 +139,7 @@ impl Engine {
             decided: walk.decided,
             looked: walk.looked,
             touched: walk.touched,
+            bent: walk.bent,
             ..Self::new(options)
         };
         (engine, walk.halted, walk.contraction)

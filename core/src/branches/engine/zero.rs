@@ -2,6 +2,7 @@
 
 use super::Engine;
 use super::seen::Seen;
+use crate::branches::extreme::Bend;
 use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
@@ -181,11 +182,18 @@ impl<'s> Search<'s> {
     }
 
     /// Whether a test function that is not driven to zero is continuous there all the same, and steep, as beside a touch where the stiffness
-    /// is unbounded: on both sides little is left of it, as near as points can be to each other. Where the force jumps it may be a short jump.
-    fn is_steep(&self, problem: &dyn BranchProblem, located: &Located) -> bool {
+    /// is unbounded: on both sides little is left of it, as near as points can be to each other. Where a level may be a corner it may be a short
+    /// jump.
+    fn is_steep(&self, problem: &mut dyn BranchProblem, located: &Located) -> bool {
         let [a, b] = self.sizes();
-        let may_be = problem.corners() && !problem.force_jumps();
-        may_be && located.jump > 0.0 && located.jump <= STEEP * a.min(b)
+        let left_little = located.jump > 0.0 && located.jump <= STEEP * a.min(b);
+        if !left_little || !problem.corners() {
+            return false;
+        }
+        let mut extremes = Vec::new();
+        let known = problem.extremes(&located.point.u, &mut extremes);
+        let sharpest = extremes.iter().map(|extreme| extreme.bend).max();
+        known && sharpest == Some(Bend::Steep)
     }
 
     /// Where the test function changes its sign.

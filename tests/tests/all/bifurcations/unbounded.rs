@@ -12,6 +12,15 @@ hertzian::oscillator! {
 }
 
 hertzian::oscillator! {
+    /// The same with an exponent below a half: what the stop does to the motion rises faster than the root of how far it goes in.
+    Harder(x, y) {
+        law stop(gap) { gap > 0 => 6.425*gap^0.4 + 0.02198*dot(gap), else => 0 }
+        ddot(x) + 0.02198*dot(x) + x + 0.5*(x - y) + stop(x - 0.819) = 0.74101*cos(omega*t);
+        ddot(y) + 0.02198*dot(y) + y + 0.5*(y - x) = 0;
+    }
+}
+
+hertzian::oscillator! {
     /// A cubic spring that is pressed into such a stop.
     Pressed(x) {
         law stop(gap) { gap > 0 => 3.018*gap^0.6 + 0.01046*dot(gap), else => 0 }
@@ -74,23 +83,57 @@ fn touch_between(mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
+fn touches_of_free_masses() -> [f64; 3] {
+    [
+        touch_between(0.6, 0.65),
+        touch_between(1.1, 1.2),
+        touch_between(1.2, 1.35),
+    ]
+}
+
+fn assert_touches(branch: &Branch, exact: [f64; 3]) {
+    for value in exact {
+        let mut events = branch.events.iter().filter(|event| is_touch(event.kind));
+        let found = events.find(|event| (event.point.value - value).abs() <= event.error);
+        assert!(found.is_some(), "{value} {:?}", values(branch, is_touch));
+    }
+}
+
+/// Multipliers are unbounded beside such a touch, and the branch may have a corner there.
+#[test]
+fn touches_of_an_exponent_below_a_half_are_passed() {
+    let exact = touches_of_free_masses();
+    let model = Harder {};
+    let both = [(0.6, 1.6), (1.6, 0.6)].map(|(from, to)| branch(&model, from, to));
+    for branch in &both {
+        assert_touches(branch, exact);
+        // Whatever changes has its event.
+        assert_eq!(branch.turns, []);
+    }
+    let wanted: [fn(EventKind) -> bool; 4] = [
+        |kind| kind == EventKind::Fold,
+        |kind| kind == EventKind::PeriodDoubling,
+        |kind| kind == EventKind::NeimarkSacker,
+        |kind| kind == EventKind::Grazing { turns: true },
+    ];
+    for wanted in wanted {
+        let [up, down] = [0, 1].map(|which| values(&both[which], wanted));
+        assert_eq!(up.len(), down.len(), "{up:?} {down:?}");
+        for (a, b) in up.iter().zip(&down) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+    }
+}
+
 /// Whichever way the branch is followed, it passes every touch, and each is where the motion without a stop reaches it. Folds and torus
 /// bifurcations that lie within `1e-9` of a touch are found with it.
 #[test]
 fn what_lies_beside_a_touch_is_found_from_both_sides() {
-    let exact = [
-        touch_between(0.6, 0.65),
-        touch_between(1.1, 1.2),
-        touch_between(1.2, 1.35),
-    ];
+    let exact = touches_of_free_masses();
     let model = Masses {};
     let [up, down] = [(0.6, 1.6), (1.6, 0.6)].map(|(from, to)| branch(&model, from, to));
     for branch in [&up, &down] {
-        for value in exact {
-            let mut events = branch.events.iter().filter(|event| is_touch(event.kind));
-            let found = events.find(|event| (event.point.value - value).abs() <= event.error);
-            assert!(found.is_some(), "{value} {:?}", values(branch, is_touch));
-        }
+        assert_touches(branch, exact);
     }
     let folds = [&up, &down].map(|branch| values(branch, |kind| kind == EventKind::Fold));
     assert_eq!(folds[0].len(), folds[1].len(), "{folds:?}");
