@@ -33,7 +33,7 @@
 //! (corners of branches); Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (a border that is not the
 //! tangent).
 
-use super::approach::Approach;
+use super::approach::{Approach, Reached};
 use super::corner_search::{Corner, CornerSearch};
 use super::explained::Bent;
 use super::seen::Seen;
@@ -274,25 +274,38 @@ impl Engine {
             turns = !dropped;
         }
         if !touch.extreme.begins {
-            let mut extremes = Vec::new();
-            problem.extremes(&touch.located.point.u, &mut extremes);
             let step = Step {
                 before: if comes_clear { before } else { next },
                 next: &touch.located.point,
             };
-            let touch = Touch {
-                contacts: touching(&extremes),
-                turns,
-                located: touch.located.clone(),
-                extreme: touch.extreme,
-                error,
-                rate: touch.rate,
-                after,
-            };
-            let bent = Bent::kept(*problem, newton, step, &touch, &extremes);
-            self.bent.extend(bent);
+            self.keep_touch(*problem, newton, step, touch, turns, after);
         }
         problem.record_mut().events.extend(behind);
+    }
+
+    /// Keeps the touch at a corner.
+    fn keep_touch(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        step: Step<'_>,
+        touch: &Reached,
+        turns: bool,
+        after: usize,
+    ) {
+        let mut extremes = Vec::new();
+        problem.extremes(&touch.located.point.u, &mut extremes);
+        let touch = Touch {
+            contacts: touching(&extremes),
+            turns,
+            located: touch.located.clone(),
+            extreme: touch.extreme,
+            error: touch.error,
+            rate: touch.rate,
+            after,
+        };
+        let bent = Bent::kept(problem, newton, step, &touch, &extremes);
+        self.bent.extend(bent);
     }
 
     /// What changes its sign between the two sides of a touch that is no corner: slopes and multipliers may be continuous and change
