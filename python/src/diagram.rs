@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use hertzian::Error;
 use hertzian::bifurcation::{Diagram, Omitted, Origin, Searched, SettledTo};
+use hertzian::{Branch, Error};
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::matrix;
