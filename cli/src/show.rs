@@ -39,7 +39,7 @@ pub struct Options {
     pub files: Vec<PathBuf>,
 
     /// Which orbits there are at these values of what varies
-    #[arg(long, value_name = "VALUE", num_args = 1..)]
+    #[arg(long, value_name = "VALUE", value_delimiter = ',', num_args = 1..)]
     pub at: Vec<f64>,
 
     /// This branch alone, counted from one

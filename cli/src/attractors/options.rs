@@ -120,7 +120,7 @@ pub struct Options {
     pub every: NonZeroUsize,
 
     /// --lyapunov, --phase: do it at each of these amplitudes
-    #[arg(long, value_name = "VALUE", num_args = 1..)]
+    #[arg(long, value_name = "VALUE", value_delimiter = ',', num_args = 1..)]
     pub drives: Vec<f64>,
 
     /// --phase: also mark the points of the periodic attractor at this amplitude

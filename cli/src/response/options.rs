@@ -121,7 +121,7 @@ pub struct Options {
     pub patience: Option<usize>,
 
     /// Also compute every orbit of the branches at exactly these values of what varies
-    #[arg(long, value_name = "VALUE", num_args = 1..)]
+    #[arg(long, value_name = "VALUE", value_delimiter = ',', num_args = 1..)]
     pub at: Vec<f64>,
 
     /// Also find where the period doubles, a symmetry breaks, quasi-periodic motions begin, and a contact is touched

@@ -247,6 +247,20 @@ fn a_cantilever_by_its_tip() {
     are_those(&text, "cantilever", &["tip:max", "impact:max"], 2e-6);
 }
 
+/// Values at which orbits are asked for stand behind each other with commas, as signals do, or with spaces.
+#[test]
+fn values_have_commas_or_spaces() {
+    let folder = Folder::new("commas");
+    let told = |values: &str| {
+        let command =
+            format!("response --from 0.6 --to 0.8 --harmonics 5 --one-branch --at {values}");
+        solutions(&run(&folder, &command))
+    };
+    let both = told("0.65,0.7");
+    assert_eq!(both.len(), 2);
+    assert_eq!(both, told("0.65 0.7"));
+}
+
 /// The part of the example `variants`.
 const PART: &str = "Part(x: mm) {
     param mass: t = 1e-3 > 0;
