@@ -13,11 +13,12 @@ use crate::misplaced::{Given, count};
 use crate::model::{FREQUENCY_VARIES, ModelOptions};
 use crate::program::{self, Ended, Failed};
 use crate::range::RangeOptions;
+use crate::response::files::page;
 use crate::response::model_file::Varied;
 use crate::response::models::model;
 use crate::response::places;
 use crate::response::progress::Progress;
-use crate::response::run::{Failure, page};
+use crate::response::run::Failure;
 use crate::values;
 
 /// More values of one parameter would take longer than anyone waits.

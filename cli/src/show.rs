@@ -15,8 +15,8 @@ use hertzian::{Branch, Point, Verdict};
 use crate::look::{Axis, Look};
 use crate::map;
 use crate::program::{self, Ended, Failed};
+use crate::response::files::page;
 use crate::response::places;
-use crate::response::run::page;
 
 /// Says what is in a file that `response --json`, `response --keep` or `map --json` has written, and draws it. Nothing is computed.
 #[derive(Debug, Clone, PartialEq, Args)]

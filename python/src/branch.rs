@@ -412,7 +412,7 @@ impl PyBranch {
     }
 
     /// The branch as runs of one stability each, of what is asked of a signal over what is varied, for drawing: list of `Run`. Neighbours
-    /// share the point where they meet.
+    /// share the point where they meet. Between orbits there are interpolated places where the line bends.
     #[pyo3(signature = (wanted=None))]
     fn runs(&self, py: Python<'_>, wanted: Option<&str>) -> PyResult<Vec<PyRun>> {
         let branch = self.held();

@@ -14,7 +14,7 @@ use super::options::Swept;
 use super::output::{Results, Table, entries};
 use super::run::{Failure, Task};
 use crate::look::Axis;
-use crate::response::run::page;
+use crate::response::files::page;
 
 /// Sweeps up, down, or up and then down.
 ///

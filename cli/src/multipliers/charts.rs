@@ -41,7 +41,7 @@ fn chart(name: &str, measured: &[Measured], point: impl Fn(&Measured) -> [f64; 2
     let mut chart = Chart::new(name)
         .y("largest error of a multiplier")
         .scales(Scale::Logarithmic, Scale::Logarithmic);
-    for method in METHODS {
+    for (method, _) in METHODS {
         let of_method = measured.iter().filter(|m| m.method == method);
         let points: Vec<_> = of_method.map(&point).collect();
         let label = method.to_string();

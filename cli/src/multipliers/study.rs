@@ -59,15 +59,21 @@ pub struct Measured {
     pub microseconds: f64,
 }
 
-/// The methods that are compared.
-pub const METHODS: [Method; 7] = [
-    Method::Default,
-    Method::Monodromy,
-    Method::Hill(Sorting::Symmetry),
-    Method::Hill(Sorting::WeightedMean),
-    Method::Hill(Sorting::ImaginaryPart),
-    Method::KoopmanHill(Projection::Direct),
-    Method::KoopmanHill(Projection::Subharmonic),
+/// The methods that are compared, and what `work-precision` calls them.
+pub const METHODS: [(Method, &str); 7] = [
+    (Method::Default, "monodromy, as many steps as needed"),
+    (Method::Monodromy, "monodromy, to 1e-10"),
+    (Method::Hill(Sorting::Symmetry), "Hill, symmetry"),
+    (Method::Hill(Sorting::WeightedMean), "Hill, weighted mean"),
+    (Method::Hill(Sorting::ImaginaryPart), "Hill, imaginary part"),
+    (
+        Method::KoopmanHill(Projection::Direct),
+        "Koopman-Hill, direct",
+    ),
+    (
+        Method::KoopmanHill(Projection::Subharmonic),
+        "Koopman-Hill, subharmonic",
+    ),
 ];
 /// Times below the limit are the least of so many.
 const TURNS: usize = 5;
@@ -128,7 +134,7 @@ pub fn measure(oscillator: &Oscillator, harmonics: &[usize]) -> Result<Vec<Measu
     for &harmonics in harmonics {
         let branch = oscillator.branch(harmonics)?;
         let exact = oscillator.exact(&branch)?.stability.multipliers;
-        for method in METHODS {
+        for (method, _) in METHODS {
             let answer = branch.multipliers(&branch.points[0], method)?;
             let mut least = answer.elapsed;
             for _ in 0..TURNS {
@@ -184,7 +190,7 @@ pub fn orders(measured: &[Measured]) -> Vec<(Method, f64)> {
             .map(|m| [(m.harmonics as f64).ln(), m.error.ln()]);
         (method, -slope(&points.collect::<Vec<_>>()))
     };
-    METHODS.into_iter().map(of).collect()
+    METHODS.map(|(method, _)| of(method)).to_vec()
 }
 
 /// Slope of a line by least squares.

@@ -4,12 +4,81 @@ use std::io;
 use std::path::Path;
 
 use hertzian::bifurcation::Searched;
+use hertzian::chart::{Chart, Page};
+use hertzian::export::{self, Table};
 use hertzian::shooting::BifurcationCurve;
-use hertzian::{Branch, Point, export};
+use hertzian::{Branch, Point, System};
 use serde::Serialize;
 
 use super::backbone::Backbone;
+use super::options::Options;
+use super::run::Failure;
 use super::structure::Reduction;
+
+/// A form in which results are written when all is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Picture,
+    Table,
+    Json,
+}
+
+/// Where each form that was asked for is written.
+fn forms(options: &Options) -> impl Iterator<Item = (Form, &Path)> {
+    let optional = [(Form::Table, &options.csv), (Form::Json, &options.json)];
+    let optional = optional.into_iter();
+    let optional = optional.filter_map(|(form, path)| Some((form, path.as_deref()?)));
+    std::iter::once((Form::Picture, options.svg.as_path())).chain(optional)
+}
+
+/// All files that are written, those too that are written on the way.
+pub fn paths(options: &Options) -> impl Iterator<Item = &Path> {
+    let besides = [&options.panels, &options.keep, &options.resume];
+    let besides = besides.into_iter().filter_map(|path| path.as_deref());
+    forms(options).map(|(_, path)| path).chain(besides)
+}
+
+/// Writes the files that were asked for.
+///
+/// # Errors
+/// If one cannot be written.
+pub fn write(
+    options: &Options,
+    model: &dyn System,
+    record: &Record<'_>,
+    charts: &[Chart],
+) -> Result<(), Failure> {
+    for (form, path) in forms(options) {
+        let contents = match form {
+            Form::Picture => Ok(page(charts.to_vec()).into_bytes()),
+            Form::Table => Ok(table(model, record.branches).to_csv().into_bytes()),
+            Form::Json => json(record),
+        };
+        contents
+            .and_then(|contents| export::write(path, contents))
+            .map_err(|error| Failure::File(path.to_path_buf(), error))?;
+    }
+    Ok(())
+}
+
+/// Charts as one picture.
+pub fn page(charts: Vec<Chart>) -> String {
+    match charts.as_slice() {
+        [chart] => chart.to_svg(),
+        _ => charts.into_iter().fold(Page::new(2), Page::chart).to_svg(),
+    }
+}
+
+/// The orbits of all branches.
+fn table(model: &dyn System, branches: &[Branch]) -> Table {
+    let of = branches.first().and_then(Branch::accuracy_of);
+    let mut table = Table::of(model).with_errors_of(of);
+    for (number, branch) in branches.iter().enumerate() {
+        let points = branch.points.iter();
+        points.for_each(|point| table.add(number, point));
+    }
+    table
+}
 
 /// What `--json` writes: results of the library as they are. `Branch::read_all` (`core/src/report/export/json.rs`) reads `version` and `branches`.
 #[derive(Debug, Serialize)]
@@ -33,14 +102,10 @@ pub struct Record<'r> {
     pub reduction: Option<&'r Reduction>,
 }
 
-/// Writes everything as JSON.
-///
-/// # Errors
-/// If the file cannot be written.
-pub fn write_json(path: &Path, record: &Record<'_>) -> io::Result<()> {
+fn json(record: &Record<'_>) -> io::Result<Vec<u8>> {
     let mut text = serde_json::to_vec(record)?;
     text.push(b'\n');
-    export::write(path, text)
+    Ok(text)
 }
 
 /// Writes a table.

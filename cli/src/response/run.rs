@@ -4,9 +4,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use hertzian::bifurcation::Diagram;
-use hertzian::chart::{Chart, Page, Series, View};
+use hertzian::chart::{Chart, Series, View};
 use hertzian::error::{ErrorKind, chain};
-use hertzian::export::{self, Table};
+use hertzian::export;
 use hertzian::observe::Wanted;
 use hertzian::{
     Branch, Cancel, ContactEquation, Error, FrequencyResponse, Model, OrbitError, Point, Shooting,
@@ -189,7 +189,8 @@ pub fn run(
         backbone: &backbone,
         reduction: reduction.as_ref(),
     };
-    let written = write(options, &*model, &record, charts)?;
+    files::write(options, &*model, &record, &charts)?;
+    let written: Vec<&Path> = files::paths(options).collect();
     Ok(Outcome {
         summary: summary::of(options, &branches[0], &at, &written)
             + &reduction.map_or_else(String::new, |reduction| reduction.summary())
@@ -298,11 +299,11 @@ fn check(options: &Options) -> Result<(), Failure> {
         return Err(Failure::Option(FREQUENCY_VARIES.to_owned()));
     }
     numbers(options).map_err(Failure::Option)?;
-    for path in paths(options) {
+    for path in files::paths(options) {
         places::check(path).map_err(|error| Failure::File(path.to_path_buf(), error))?;
     }
     let read = options.model.path();
-    if let Some(path) = places::shared(read.into_iter().chain(paths(options))) {
+    if let Some(path) = places::shared(read.into_iter().chain(files::paths(options))) {
         let message = format!("{} is asked for more than once", path.display());
         return Err(Failure::Option(message));
     }
@@ -326,15 +327,6 @@ fn numbers(options: &Options) -> Result<(), String> {
         values::interval("--within", &options.within)?;
     }
     options.model.check()
-}
-
-fn paths(options: &Options) -> impl Iterator<Item = &Path> {
-    let optional = options.csv.iter().chain(&options.json);
-    let optional = optional.chain(&options.panels);
-    let optional = optional.chain(&options.keep).chain(&options.resume);
-    std::iter::once(&options.svg)
-        .chain(optional)
-        .map(PathBuf::as_path)
 }
 
 /// What varies, and how far, in the library's terms.
@@ -425,42 +417,4 @@ fn picture(
         label: "loss of contact".to_owned(),
         points: loss_of_contact(&options.model, low..=high, cancel),
     }))
-}
-
-/// Charts as one picture.
-pub fn page(charts: Vec<Chart>) -> String {
-    match charts.as_slice() {
-        [chart] => chart.to_svg(),
-        _ => charts.into_iter().fold(Page::new(2), Page::chart).to_svg(),
-    }
-}
-
-/// Writes the files that were asked for; returns their paths.
-fn write<'a>(
-    options: &'a Options,
-    model: &dyn System,
-    record: &Record<'_>,
-    charts: Vec<Chart>,
-) -> Result<Vec<&'a Path>, Failure> {
-    let failed = |path: &Path| {
-        let path = path.to_path_buf();
-        move |error| Failure::File(path, error)
-    };
-    let svg = &options.svg;
-    export::write(svg, page(charts)).map_err(failed(svg))?;
-    if let Some(path) = &options.csv {
-        let of = record.branches.first().and_then(Branch::accuracy_of);
-        let mut table = Table::of(model).with_errors_of(of);
-        for (number, branch) in record.branches.iter().enumerate() {
-            branch
-                .points
-                .iter()
-                .for_each(|point| table.add(number, point));
-        }
-        export::write(path, table.to_csv()).map_err(failed(path))?;
-    }
-    if let Some(path) = &options.json {
-        files::write_json(path, record).map_err(failed(path))?;
-    }
-    Ok(paths(options).collect())
 }

@@ -4,7 +4,7 @@ use hertzian::chart::{Chart, Note, Scale, Series};
 
 use super::measure::Measured;
 use super::method::Family;
-use super::multipliers::{Answer, NAMES};
+use super::multipliers::{Answer, names};
 use super::peer::Peer;
 use super::problem::Problem;
 
@@ -77,7 +77,7 @@ pub fn multipliers(problem: &Problem, answers: &[Answer]) -> Chart {
         .x("time of one orbit's multipliers, milliseconds")
         .y("largest error of a multiplier")
         .scales(Scale::Logarithmic, Scale::Logarithmic);
-    for (method, name) in NAMES.into_iter().enumerate() {
+    for (method, name) in names().enumerate() {
         let right = answers
             .iter()
             .filter(|one| one.method == method && one.failure.is_none());

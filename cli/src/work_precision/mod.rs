@@ -29,7 +29,7 @@ use crate::response::progress::Progress;
 use crate::values;
 use measure::{Limits, Measured, measure};
 use method::Reference;
-use multipliers::{Answer, NAMES};
+use multipliers::{Answer, name};
 use options::Options;
 use peer::Peer;
 use problem::Problem;
@@ -250,7 +250,7 @@ fn write_multipliers(path: &Path, sections: &[Section]) -> io::Result<()> {
             for one in answers {
                 writer.write_record([
                     problem.id.to_owned(),
-                    NAMES[one.method].to_owned(),
+                    name(one.method).to_owned(),
                     one.setting.clone(),
                     format!("{:?}", one.seconds),
                     format!("{:?}", one.error),

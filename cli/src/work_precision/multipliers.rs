@@ -10,27 +10,27 @@ use super::method::Reference;
 use super::problem::Problem;
 use crate::multipliers::study::METHODS;
 
-/// What is compared: [`METHODS`], and shooting.
-pub const NAMES: [&str; METHODS.len() + 1] = [
-    "monodromy, as many steps as needed",
-    "monodromy, to 1e-10",
-    "Hill, symmetry",
-    "Hill, weighted mean",
-    "Hill, imaginary part",
-    "Koopman-Hill, direct",
-    "Koopman-Hill, subharmonic",
-    "shooting: orbit and multipliers",
-];
 const HARMONICS: [usize; 4] = [5, 10, 20, 40];
 const TOLERANCES: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 /// Times below the limit are medians of so many.
 const TURNS: usize = 7;
 const LONG: Duration = Duration::from_millis(20);
 
+/// The names of what is compared: [`METHODS`], and last shooting.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    let methods = METHODS.into_iter().map(|(_, name)| name);
+    methods.chain(["shooting: orbit and multipliers"])
+}
+
+/// The name of one of them.
+pub fn name(method: usize) -> &'static str {
+    names().nth(method).unwrap_or_default()
+}
+
 /// A method at one setting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Position among [`NAMES`].
+    /// Position among the [`names`].
     pub method: usize,
     /// Its setting.
     pub setting: String,
@@ -59,7 +59,7 @@ pub fn measure(problem: &Problem, reference: &Reference) -> Vec<Answer> {
             answers.extend((0..METHODS.len()).map(|method| failed(method, &setting, &failure)));
             continue;
         };
-        for (method, of) in METHODS.into_iter().enumerate() {
+        for (method, (of, _)) in METHODS.into_iter().enumerate() {
             let mut last = Vec::new();
             let seconds = median(|| {
                 let Ok(answer) = branch.multipliers(&orbit, of) else {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::Section;
 use super::measure::Measured;
 use super::method::Family;
-use super::multipliers::NAMES;
+use super::multipliers::name;
 use super::peer::Peer;
 
 const STYLE: &str = "\
@@ -93,7 +93,7 @@ pub fn verdict(section: &Section) -> String {
     if let Some(best) = right.min_by(|a, b| a.seconds.total_cmp(&b.seconds)) {
         sentences.push(format!(
             "Multipliers to 1e-4 come soonest by {} with {}, in {:.3} ms.",
-            NAMES[best.method],
+            name(best.method),
             best.setting,
             1e3 * best.seconds
         ));

@@ -200,6 +200,12 @@ fn a_branch_goes_on_for_as_many_points_as_asked() {
         "{said}"
     );
     assert_eq!(count(), 15);
+    printed(&[&on[..], &["--max-points", "1000"]].concat());
+    let said = refused(&on);
+    assert!(
+        said.contains("has reached the end of its range, and nothing of it is left"),
+        "{said}"
+    );
 }
 
 /// What is said of a file is of the output that leads, and charts are those that one asks for.

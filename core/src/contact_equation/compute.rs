@@ -10,7 +10,7 @@ use super::problem::{ContactProblem, FIRST, RESOLUTIONS};
 use super::regular::Compared;
 use super::rest::Rest;
 use super::run::Run;
-use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::branch::Branch;
 use crate::branches::engine;
 use crate::branches::error::OrbitError;
 use crate::branches::observed::Motion;
@@ -18,14 +18,12 @@ use crate::branches::orbit::Orbit;
 use crate::branches::point::Point;
 use crate::branches::problem::BranchProblem;
 use crate::branches::progress::See;
-use crate::branches::record::Record;
 use crate::branches::recurrence::Recurrence;
 use crate::branches::solve;
 use crate::continuation::follow::{CurvePoint, FollowOptions, Start, Stop};
 use crate::continuation::newton::{Newton, NewtonError, NewtonOptions};
 use crate::error::Error;
 use crate::model::request::RequestError;
-use crate::time::Work;
 
 /// An update of Newton's method that is as small a part of the tolerance is the last one.
 const UPDATE: f64 = 1e-2;
@@ -166,23 +164,12 @@ fn ended(
         rest,
         ..
     } = run;
-    let Record {
-        points,
-        events,
-        turns,
-    } = record;
+    let asked = &problem.asked;
+    let (system, varied) = (asked.system.as_ref(), asked.varied.clone());
     let branch = Branch {
-        model: Model::of(problem.asked.system.as_ref()),
-        varied: problem.asked.varied.clone(),
-        points,
-        events,
-        turns,
-        begin: None,
-        stopped,
         statistics,
-        work: Work::default(),
         elapsed: started.elapsed(),
-        further: Further::default(),
+        ..Branch::gathered(system, varied, record, stopped)
     };
     let rest = rest.filter(|_| stopped.can_be_resumed());
     Ok(Followed { branch, rest })

@@ -153,7 +153,8 @@ impl<'b, 'r> ContactBranch<'b, 'r> {
         self.run.record.last_error(VANISHING)
     }
 
-    /// What happens at a zero, if anything does.
+    /// What happens at a zero, if anything does: as by shooting. What it asks (`tests`, `last_error`) is of each method, and test functions
+    /// are computed for moduli alone, so that neither can be handed to one function before.
     fn kind(&mut self, zero: &Zero) -> Option<EventKind> {
         let tested::Test::Modulus(place) = tested::Test::of(zero.change.test) else {
             return Some(zero.change.kind);

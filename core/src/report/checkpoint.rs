@@ -170,10 +170,7 @@ impl Keeper {
             end,
         };
         if let Err(source) = file.append(&self.path, &line) {
-            file.failure = Some(FileError::Write {
-                path: self.path.clone(),
-                kind: source.kind(),
-            });
+            file.failure = Some(FileError::not_written(&self.path, &source));
             return false;
         }
         file.points = kept.points.len();
@@ -234,10 +231,8 @@ impl<T> News<Vec<T>> {
 
 impl Keep for Keeper {
     fn begin(&self, model: &Model, varied: &str, further: &Further) -> Result<(), Error> {
-        hertzian_file::can_write(&self.path).map_err(|source| FileError::Write {
-            path: self.path.clone(),
-            kind: source.kind(),
-        })?;
+        hertzian_file::can_write(&self.path)
+            .map_err(|source| FileError::not_written(&self.path, &source))?;
         let head = Head {
             version: JSON_VERSION,
             kept: About {

@@ -8,8 +8,8 @@ use crate::error::Error;
 use crate::orbit::observe::Wanted;
 
 impl Branch {
-    /// What is asked of a signal at every orbit, as `"tip:rms"`, over what the branch varies: solid where it is stable. It has the name of
-    /// what was asked for, as `peak-to-peak of tip`.
+    /// What is asked of a signal at every orbit, as `"tip:rms"`, over what the branch varies: solid where it is stable, and bent between
+    /// orbits as [`runs`](Self::runs) are. It has the name of what was asked for, as `peak-to-peak of tip`.
     ///
     /// ```
     /// use hertzian::FrequencyResponse;

@@ -32,6 +32,31 @@ struct Places {
     events: Vec<[f64; 2]>,
 }
 
+impl Places {
+    /// The branch that they are of as runs of one stability each, bent as it is.
+    fn runs(&self, branch: &Branch, scale: Scale) -> Vec<Run> {
+        let verdicts = branch.points.iter().map(|point| point.stability.verdict);
+        let after = branch.events.iter().map(|event| event.after);
+        let events: Vec<(usize, [f64; 2])> = after.zip(self.events.iter().copied()).collect();
+        let runs = runs(self.points.iter().copied().zip(verdicts), &events);
+        smoothed(runs, &self.bends(branch), scale)
+    }
+
+    fn bends(&self, branch: &Branch) -> Vec<([f64; 2], Bend)> {
+        let bent = branch.events.iter().zip(&self.events);
+        let bent = bent.filter_map(|(event, place)| match event.kind {
+            EventKind::Fold => Some((*place, Bend::Upright)),
+            EventKind::Grazing { .. } => Some((*place, Bend::Corner)),
+            _ => None,
+        });
+        let beside = branch.turns.iter();
+        let beside = beside.flat_map(|turn| [turn.after.checked_sub(1), Some(turn.after)]);
+        let beside = beside.filter_map(|index| self.points.get(index?));
+        bent.chain(beside.map(|place| (*place, Bend::Corner)))
+            .collect()
+    }
+}
+
 impl<'b> Drawn<'b> {
     pub(crate) fn of(seen: Seen<'b>) -> Self {
         let branch = seen.branch;
@@ -62,29 +87,7 @@ impl<'b> Drawn<'b> {
 
     /// A line as runs of one stability each, bent as the branch is.
     pub(crate) fn runs(&self, line: usize, scale: Scale) -> Vec<Run> {
-        let Places { points, events } = &self.lines[line];
-        let branch = self.seen.branch;
-        let verdicts = branch.points.iter().map(|point| point.stability.verdict);
-        let after = branch.events.iter().map(|event| event.after);
-        let events: Vec<(usize, [f64; 2])> = after.zip(events.iter().copied()).collect();
-        let runs = runs(points.iter().copied().zip(verdicts), &events);
-        smoothed(runs, &self.bends(line), scale)
-    }
-
-    fn bends(&self, line: usize) -> Vec<([f64; 2], Bend)> {
-        let Places { points, events } = &self.lines[line];
-        let branch = self.seen.branch;
-        let bent = branch.events.iter().zip(events);
-        let bent = bent.filter_map(|(event, place)| match event.kind {
-            EventKind::Fold => Some((*place, Bend::Upright)),
-            EventKind::Grazing { .. } => Some((*place, Bend::Corner)),
-            _ => None,
-        });
-        let beside = branch.turns.iter();
-        let beside = beside.flat_map(|turn| [turn.after.checked_sub(1), Some(turn.after)]);
-        let beside = beside.filter_map(|index| points.get(index?));
-        bent.chain(beside.map(|place| (*place, Bend::Corner)))
-            .collect()
+        self.lines[line].runs(self.seen.branch, scale)
     }
 
     /// Its orbits along a line.
@@ -258,18 +261,23 @@ impl Seen<'_> {
 
 impl Branch {
     /// The branch as runs of one stability each, by peak-to-peak of the first coordinate; neighbours share the point where they meet, which is
-    /// the event if there is one between them.
+    /// the event if there is one between them. Between orbits there are places where the line bends, as [`plot`](Self::plot) draws it with
+    /// linear axes: these are interpolated.
     pub fn runs(&self) -> Vec<Run> {
         self.runs_of(place)
     }
 
-    /// The same with every orbit at a place of one's own.
+    /// The same with every orbit at a place of one's own, over what the branch varies: upright at folds.
     pub fn runs_of(&self, place: impl Fn(&Point) -> [f64; 2]) -> Vec<Run> {
-        let points = self.points.iter();
-        let points = points.map(|point| (place(point), point.stability.verdict));
-        let events = self.events.iter();
-        let events = events.map(|event| (event.after, place(&event.point)));
-        runs(points, &events.collect::<Vec<_>>())
+        let places = Places {
+            points: self.points.iter().map(&place).collect(),
+            events: self
+                .events
+                .iter()
+                .map(|event| place(&event.point))
+                .collect(),
+        };
+        places.runs(self, Scale::Linear)
     }
 }
 

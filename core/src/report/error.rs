@@ -1,7 +1,7 @@
 //! Why a result is not in its file, or cannot be had from it.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::error::ErrorKind;
 #[cfg(feature = "plot")]
@@ -127,6 +127,16 @@ pub enum FileError {
         /// That of the files that are read.
         expected: u32,
     },
+}
+
+impl FileError {
+    /// A file could not be written, as the system says.
+    pub(crate) fn not_written(path: &Path, source: &io::Error) -> Self {
+        Self::Write {
+            path: path.to_path_buf(),
+            kind: source.kind(),
+        }
+    }
 }
 
 crate::error::room_error! {

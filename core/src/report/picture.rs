@@ -123,8 +123,7 @@ pub(crate) fn harmonic(line: usize) -> String {
 
 impl From<ChartError> for Error {
     fn from(ChartError { path, source, .. }: ChartError) -> Self {
-        let kind = source.kind();
-        FileError::Write { path, kind }.into()
+        FileError::not_written(&path, &source).into()
     }
 }
 

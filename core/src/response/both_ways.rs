@@ -5,12 +5,14 @@
 
 use crate::branches::branch::{Branch, Further};
 use crate::branches::point::{Event, Point};
+use crate::branches::request::Request;
 use crate::cancel::Cancel;
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::Turn;
 use crate::model::request::RequestError;
+use crate::model::validate;
 use crate::time::Work;
 
 /// Rounding of the value of an orbit that was found again, as a part of values along the branch.
@@ -105,12 +107,18 @@ impl Way {
 
 impl<R: Clone> BothWays<R> {
     /// Of a branch from the orbit at a value, of which nothing was followed yet.
-    pub(super) fn from(value: f64) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// If the value is not in the range that is asked for.
+    pub(super) fn through(request: &Request, value: f64) -> Result<Self, Error> {
+        let [from, to] = request.range()?;
+        let between = from.min(to)..=from.max(to);
+        validate::option("through", value, between, "must be between from and to")?;
+        Ok(Self {
             value,
             forth: None,
             back: None,
-        }
+        })
     }
 
     /// Place of the orbit from which a branch was followed.

@@ -16,19 +16,17 @@ use crate::balance_branch::motion;
 use crate::balance_branch::options::HarmonicBalance;
 use crate::balance_branch::run::{Followed, Rest, Run};
 use crate::balance_branch::switch::switch_branch;
-use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::branch::{Branch, Further};
 use crate::branches::engine::Places;
 use crate::branches::error::{Attempts, OrbitError};
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
-use crate::branches::record::Record;
 use crate::branches::request::{Guess, Request};
 use crate::continuation::follow::{FollowOptions, Start};
 use crate::continuation::statistics::Statistics;
 use crate::error::Error;
 use crate::event::{EventKind, Side};
 use crate::model::request::RequestError;
-use crate::model::validate;
 use crate::orbit::observe::Accuracy;
 use crate::shooting::Shooting;
 
@@ -107,15 +105,8 @@ impl Follow for HarmonicBalance {
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        let [from, to] = request.range()?;
-        validate::option(
-            "through",
-            value,
-            from.min(to)..=from.max(to),
-            "must be between from and to",
-        )?;
+        let both = BothWays::through(request, value)?;
         let request = &with_series(request, self, Some(value))?;
-        let both = BothWays::from(value);
         both_ways(Asked::of(request, self), None, &both, visit)
     }
 }
@@ -262,15 +253,11 @@ fn as_branch(asked: Asked<'_>, context: BranchContext, followed: Followed) -> Br
 fn gathered(asked: Asked<'_>, followed: Followed) -> Part<Rest> {
     let Followed {
         stopped,
-        record,
+        mut record,
         statistics,
         mut rest,
     } = followed;
-    let Record {
-        points,
-        mut events,
-        mut turns,
-    } = record;
+    let (events, turns) = (&mut record.events, &mut record.turns);
     if let Some(rest) = &mut rest {
         let kept = rest.kept();
         let after: Vec<usize> = events.iter().map(|event| event.after).collect();
@@ -281,18 +268,10 @@ fn gathered(asked: Asked<'_>, followed: Followed) -> Part<Rest> {
     // What a step hid is found one step later.
     events.sort_by_key(|event| event.after);
     turns.sort_by_key(|turn| turn.after);
+    let request = asked.request;
     let branch = Branch {
-        model: Model::of(asked.request.system.as_ref()),
-        varied: asked.request.varied(),
-        points,
-        events,
-        turns,
-        begin: None,
-        stopped,
         statistics,
-        work: crate::time::Work::default(),
-        elapsed: std::time::Duration::default(),
-        further: Further::default(),
+        ..Branch::gathered(request.system.as_ref(), request.varied(), record, stopped)
     };
     Part { branch, rest }
 }

@@ -59,14 +59,8 @@ impl Follow for Shooting {
     }
 
     fn through(&self, request: &Request, value: f64, visit: See<'_>) -> Result<Branch, Error> {
-        let [from, to] = request.range()?;
-        validate::option(
-            "through",
-            value,
-            from.min(to)..=from.max(to),
-            "must be between from and to",
-        )?;
-        both_ways(request, *self, None, &BothWays::from(value), visit)
+        let both = BothWays::through(request, value)?;
+        both_ways(request, *self, None, &both, visit)
     }
 }
 

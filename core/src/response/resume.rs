@@ -134,7 +134,8 @@ impl Resume<'_> {
     /// Goes on.
     ///
     /// # Errors
-    /// If an option is not usable, the branch was read from a file and has no [model](Branch::attach), or there is nothing to go on to.
+    /// If an option is not usable, the branch was read from a file and has no [model](Branch::attach), or there is nothing to go on to: a
+    /// branch that has reached the end of its range goes on [to](Self::to) a value beyond it.
     pub fn run(&self) -> Result<Branch, Error> {
         self.run_with(|_| ControlFlow::Continue(()))
     }
@@ -273,7 +274,6 @@ impl Resume<'_> {
         let [.., before, last] = &points[..] else {
             return self.again(following, request, visit);
         };
-        self.unkept()?;
         let [has, _] = self.points_of_parts(following);
         let to = self.to.or(request.to).unwrap_or(last.value);
         if !ends {
@@ -282,10 +282,12 @@ impl Resume<'_> {
             );
         }
         if self.to.is_none() && self.branch.stopped == Stop::ReachedEnd {
+            // Not the name of what goes on: the program, which says this too, has none.
             return Err(
-                nothing("has reached the end of its range: `to` says how far to go on").into(),
+                nothing("has reached the end of its range, and nothing of it is left").into(),
             );
         }
+        self.unkept()?;
         if (to - last.value) * (last.value - before.value) <= 0.0 {
             return Err(RequestError::Option {
                 name: "to",

@@ -8,10 +8,9 @@ use super::rest::Rest;
 use super::run::Run;
 use super::start::{First, first};
 use super::switch::{self, Begun};
-use crate::branches::branch::{Branch, Further, Model};
+use crate::branches::branch::Branch;
 use crate::branches::point::{Event, Point};
 use crate::branches::progress::See;
-use crate::branches::record::Record;
 use crate::branches::request::Guess;
 use crate::continuation::follow::{Start, Stop};
 use crate::error::Error;
@@ -151,23 +150,12 @@ fn as_branch(problem: &ShootingProblem, run: Run<'_>, stopped: Stop, started: In
         rest,
         ..
     } = run;
-    let Record {
-        points,
-        events,
-        turns,
-    } = record;
+    let (system, varied) = (problem.system.as_ref(), problem.varied.clone());
     let branch = Branch {
-        model: Model::of(problem.system.as_ref()),
-        varied: problem.varied.clone(),
-        points,
-        events,
-        turns,
-        begin: None,
-        stopped,
         statistics,
         work,
         elapsed: started.elapsed(),
-        further: Further::default(),
+        ..Branch::gathered(system, varied, record, stopped)
     };
     let rest = rest.filter(|_| stopped.can_be_resumed());
     Followed { branch, rest }

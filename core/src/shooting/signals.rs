@@ -229,7 +229,7 @@ impl<'s> Reader<'s> {
                 .iter()
                 .map(|&piece| on_pieces[contact][piece]);
             ContactMotion {
-                peak_force: motion.maximum.max(-motion.minimum),
+                peak_force: motion.maximum.abs().max(motion.minimum.abs()),
                 minimum_force: motion.minimum,
                 maximum_force: motion.maximum,
                 fraction: on.sum::<f64>().min(1.0),

@@ -172,6 +172,17 @@ fn from_a_file_that_was_kept() {
         tried += 1;
     }
     assert_eq!(tried, 3);
+    // What has ended is told so, whether it is kept or not; what goes on beyond the range does not belong into the file.
+    let mut read = Branch::read(&path).expect("read");
+    read.attach(&ONE).expect("its model");
+    for resume in [read.resume(), read.resume().keep(&path)] {
+        let said = resume.run().expect_err("it has ended").to_string();
+        assert!(said.contains("has reached the end of its range"), "{said}");
+    }
+    let longer = read.resume().to(1.5).keep(&path);
+    let said = longer.run().expect_err("it is longer").to_string();
+    assert!(said.contains("beyond what is kept in its file"), "{said}");
+    assert_eq!(Branch::read(&path).expect("read"), read);
     std::fs::remove_file(path).expect("removed");
 }
 

@@ -87,7 +87,8 @@ impl ContactObserver {
         // A gap that is not a number is on no segment.
         if extremes[0] <= extremes[1] {
             [motion.minimum_force, motion.maximum_force] = extremes;
-            motion.peak_force = largest(-extremes[0], extremes[1]);
+            // The sign of a zero is none of a size.
+            motion.peak_force = largest(extremes[0].abs(), extremes[1].abs());
         }
         motion
     }
@@ -315,6 +316,7 @@ mod tests {
         assert!((above.peak_force - 3.0_f64.powf(1.5)).abs() < 1e-13);
         let below = read(system.law(0), &arguments, &[-2.0, 0.6, -0.8]);
         assert_eq!(below, ContactMotion::NONE);
+        assert!(below.peak_force.is_sign_positive());
         let twice = read(system.law(0), &arguments, &[0.0, 0.0, 0.0, 1.0, 0.0]);
         assert_eq!(twice.count, 2);
         assert!((twice.fraction - 0.5).abs() < 1e-14);

@@ -93,10 +93,7 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, FileError> {
 /// # Errors
 /// If the file cannot be written.
 pub(crate) fn write(path: &Path, written: &impl Serialize) -> Result<(), FileError> {
-    let failed = |source: std::io::Error| FileError::Write {
-        path: path.to_path_buf(),
-        kind: source.kind(),
-    };
+    let failed = |source: std::io::Error| FileError::not_written(path, &source);
     let mut text = serde_json::to_vec(written).map_err(|source| failed(source.into()))?;
     text.push(b'\n');
     hertzian_file::write(path, text).map_err(failed)

@@ -8,10 +8,12 @@ use serde::{Deserialize, Serialize};
 use crate::bifurcation::{Cell, Map};
 use crate::branches::branch::Model;
 use crate::error::Error;
+#[cfg(feature = "serde")]
 use crate::report::error::FileError;
+use crate::report::export::csv;
 #[cfg(feature = "serde")]
 use crate::report::export::json::{JSON_VERSION, read, write};
-use crate::report::export::table::{line, maybe, number};
+use crate::report::export::table::{maybe, number};
 use crate::report::unit::in_unit;
 
 /// Names of the columns after those of the two parameters; the sixth has the unit of the signal.
@@ -35,7 +37,6 @@ impl Map {
     /// `missed`, `motions`, `restless` and `largest` as of [`Cell`]; `periods` of the stable orbits, with spaces; `verdict`, what can be said
     /// of all solutions together; `reason`, why nothing is known. What is not known is empty.
     pub fn to_csv(&self) -> String {
-        let mut text = String::new();
         let mut names: Vec<String> = Vec::new();
         for name in &self.names {
             let mut column = name.clone();
@@ -47,14 +48,12 @@ impl Map {
         names.extend(COLUMNS.map(str::to_owned));
         let largest = &mut names[self.names.len() + LARGEST];
         *largest = in_unit(largest, self.model.unit_of(&self.signal));
-        line(&mut text, names.iter().map(String::as_str));
-        for (place, cell) in self.cells.iter().enumerate() {
+        let rows = self.cells.iter().enumerate().map(|(place, cell)| {
             let values = self.at(place).unwrap_or([f64::NAN; 2]).map(number);
-            let cells = values.into_iter().chain(cells(cell));
-            let cells: Vec<String> = cells.collect();
-            line(&mut text, cells.iter().map(String::as_str));
-        }
-        text
+            let row = values.into_iter().chain(cells(cell));
+            row.collect::<Vec<String>>()
+        });
+        csv::text(&names, rows)
     }
 
     /// Writes the [table](Self::to_csv).
@@ -62,11 +61,7 @@ impl Map {
     /// # Errors
     /// If the file cannot be written.
     pub fn write_csv(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        let path = path.as_ref();
-        hertzian_file::write(path, self.to_csv()).map_err(|source| {
-            let (path, kind) = (path.to_path_buf(), source.kind());
-            FileError::Write { path, kind }.into()
-        })
+        csv::write(path.as_ref(), &self.to_csv())
     }
 }
 

@@ -1,8 +1,6 @@
-//! Orbits as a table: one row for each, in text with commas (RFC 4180), numbers as short as they read back to the same bits.
+//! Orbits as a table: one row of cells for each, numbers as short as they read back to the same bits. A form of export makes its file of them.
 
-use std::fmt::Write;
-
-use crate::branches::branch::Model;
+use crate::branches::branch::{Branch, Model};
 use crate::branches::observed::Motion;
 use crate::branches::point::Point;
 use crate::orbit::observe::Measure;
@@ -85,7 +83,8 @@ pub const COLUMNS: [&str; 20] = [
 pub struct Table {
     /// Names of the columns.
     names: Vec<String>,
-    text: String,
+    /// With a cell for each name.
+    rows: Vec<Vec<String>>,
     parameters: usize,
     /// Pieces of the law of each contact.
     pieces: Vec<usize>,
@@ -126,11 +125,30 @@ impl Table {
         with_units(model, &mut names);
         Self {
             names,
-            text: String::new(),
+            rows: Vec::new(),
             parameters: model.parameters.len(),
             pieces,
             named,
         }
+    }
+
+    /// The orbits of a branch.
+    pub(super) fn of_branch(branch: &Branch) -> Self {
+        let mut table = Self::of_model(&branch.model).with_errors_of(branch.accuracy_of());
+        for point in &branch.points {
+            table.add(0, point);
+        }
+        table
+    }
+
+    /// The names of the columns.
+    pub(super) fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The rows, with a cell for each column: a text, or a number as one. What is not known is empty.
+    pub(super) fn rows(&self) -> &[Vec<String>] {
+        &self.rows
     }
 
     /// The same where errors are of an output or a coordinate of this name, as of [`Branch::accuracy_of`](crate::Branch::accuracy_of).
@@ -150,10 +168,10 @@ impl Table {
     /// Adds a row: an orbit, and the number of its branch.
     pub fn add(&mut self, branch: usize, point: &Point) {
         let parameters = point.parameters.iter().take(self.parameters);
-        let parameters: Vec<String> = parameters.map(|&value| number(value)).collect();
-        let cells = cells(branch, point);
+        let mut row = Vec::with_capacity(self.names.len());
+        row.extend(cells(branch, point));
+        row.extend(parameters.map(|&value| number(value)));
         let observed = &point.observed;
-        let mut of_contacts: Vec<String> = Vec::new();
         for (index, &pieces) in self.pieces.iter().enumerate() {
             let contact = observed.contacts.get(index);
             let on_pieces = observed.on_pieces.get(index);
@@ -163,16 +181,14 @@ impl Table {
                 .flatten()
                 .chain(on_pieces.into_iter().flatten());
             let cells = values.map(|&value| number(value));
-            of_contacts.extend(
+            row.extend(
                 cells
                     .chain(std::iter::repeat(String::new()))
                     .take(2 + pieces),
             );
         }
-        let of_signals = self.signals(point);
-        let all = cells.iter().chain(&parameters).chain(&of_contacts);
-        let all = all.chain(&of_signals);
-        self.line(all.map(String::as_str));
+        row.extend(self.signals(point));
+        self.rows.push(row);
     }
 
     /// The columns of named signals, and what follows them.
@@ -198,31 +214,6 @@ impl Table {
         }
         cells
     }
-
-    /// The text of the table, with a line break after every row.
-    pub fn to_csv(&self) -> String {
-        let mut text = String::new();
-        line(&mut text, self.names.iter().map(String::as_str));
-        text + &self.text
-    }
-
-    fn line<'c>(&mut self, cells: impl Iterator<Item = &'c str>) {
-        line(&mut self.text, cells);
-    }
-}
-
-/// Adds a line to the text of a table.
-pub(crate) fn line<'c>(text: &mut String, cells: impl Iterator<Item = &'c str>) {
-    for (index, cell) in cells.enumerate() {
-        let comma = if index == 0 { "" } else { "," };
-        // Writing to a string does not fail.
-        let _ = if cell.contains([',', '"', '\n', '\r']) {
-            write!(text, "{comma}\"{}\"", cell.replace('"', "\"\""))
-        } else {
-            write!(text, "{comma}{cell}")
-        };
-    }
-    text.push('\n');
 }
 
 /// [`COLUMNS`] and the parameters: one whose name is another column's gets an underscore after it, or as many as it takes.
@@ -431,18 +422,5 @@ mod tests {
         let value = |name: &str| cell(name).parse::<f64>().expect("a number");
         assert_eq!((value("x_p2p_"), value("error_of_x")), (0.5, 0.2));
         assert!((value("stop_1_p2p") - 2.0 * value("x_p2p")).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_cell_with_a_comma_is_quoted() {
-        let mut table = Table {
-            names: vec!["a,b".to_owned()],
-            text: String::new(),
-            parameters: 0,
-            pieces: Vec::new(),
-            named: [0; 2],
-        };
-        table.line(["\"", "c"].into_iter());
-        assert_eq!(table.to_csv(), "\"a,b\"\n\"\"\"\",c\n");
     }
 }

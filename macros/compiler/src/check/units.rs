@@ -182,8 +182,9 @@ impl Checker<'_> {
         let power = own.in_units_of(units_are_known(unit, *extent)?);
         let power = power.ok_or_else(|| {
             extent.fault(format!(
-                "`{}` is in {own}, which is not measured in {}",
+                "`{}` {}, and is not measured in {}",
                 shortened(&output.value),
+                said(own),
                 unit.text
             ))
         })?;
@@ -272,7 +273,7 @@ impl Checker<'_> {
                 let mut sum = None;
                 self.repeat(repeated, |checker| {
                     let term = checker.of(&repeated.body)?;
-                    sum = agree(&sum, &term, &repeated.body, "the terms before it")?;
+                    sum = agree(&sum, &term, &repeated.body, "the sum before it")?;
                     Ok(())
                 })?;
                 Ok(sum)
@@ -390,7 +391,12 @@ impl Checker<'_> {
         for piece in &law.pieces {
             self.condition(piece)?;
             let own = self.of(&piece.force)?;
-            force = agree(&force, &own, &piece.force, "the pieces before it")?;
+            force = agree(
+                &force,
+                &own,
+                &piece.force,
+                "the force of the pieces before it",
+            )?;
         }
         self.depth -= 1;
         self.names = outer;
@@ -408,7 +414,9 @@ impl Checker<'_> {
         match measures.find(|other| *other != first) {
             None => Ok(Some(first)),
             Some(other) => Err(expression.extent.fault(format!(
-                "`{law}` is in {first} where it acts once and in {other} where it acts again: write the force that is meant as in the equation, with its gap"
+                "`{law}` {} where it acts once and {} where it acts again: write the force that is meant as in the equation, with its gap",
+                said(first),
+                said(other)
             ))),
         }
     }
@@ -436,11 +444,22 @@ impl Checker<'_> {
     }
 }
 
+/// What something is measured in, as it is said of it.
+fn said(own: Dimension) -> String {
+    if own == Dimension::ONE {
+        "has no unit".to_owned()
+    } else {
+        format!("is in {own}")
+    }
+}
+
 fn agree(before: &Measure, own: &Measure, term: &Expr, what: &str) -> syn::Result<Measure> {
     match (before, own) {
         (Some(before), Some(own)) if before != own => Err(term.extent.fault(format!(
-            "`{}` is in {own}, and {what} in {before}: they cannot be added or compared",
-            shortened(term)
+            "`{}` {}, and {what} {}: they cannot be added or compared",
+            shortened(term),
+            said(*own),
+            said(*before)
         ))),
         (Some(_), _) => Ok(*before),
         (None, own) => Ok(*own),

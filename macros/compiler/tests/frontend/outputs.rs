@@ -132,10 +132,7 @@ fn what_is_no_output_is_refused() {
             "there is no law `mash`: did you mean `force(mesh)`?",
         ),
         ("output q = force(y);", "there is no law `y`"),
-        (
-            "output q: N = y;",
-            "`y` is in mm, which is not measured in N",
-        ),
+        ("output q: N = y;", "`y` is in mm, and is not measured in N"),
         ("output q: mn = y;", "unknown unit `mn`"),
         ("output q = y + m;", "they cannot be added"),
         (

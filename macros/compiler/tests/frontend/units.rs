@@ -35,7 +35,7 @@ fn faults_of_units_are_at_their_terms() {
         (
             "c*dot(x)",
             "c*x",
-            "`c*x` is in N*s, and what stands before it in N",
+            "`c*x` is in N*s, and what stands before it is in N:",
         ),
         (
             "n: 1 > 0",
@@ -57,7 +57,16 @@ fn faults_of_units_are_at_their_terms() {
         ),
         ("gap > offset", "gap > kappa", "cannot be added or compared"),
         ("kappa: 1", "kappa", "parameter `kappa` has no unit"),
-        ("push +", "2 + push +", "cannot be added"),
+        (
+            "push +",
+            "2 + push +",
+            "`push` is in N, and what stands before it has no unit",
+        ),
+        (
+            "push +",
+            "push + 0.1 +",
+            "`0.1` has no unit, and what stands before it is in N",
+        ),
         ("= 1e9 in", "= -1 in", "outside of its range"),
         ("(3/2)", "(3/0)", "exponent of a unit is a fraction"),
         ("(3/2)", "x", "exponent of a unit is a number"),

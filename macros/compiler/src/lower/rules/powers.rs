@@ -3,7 +3,7 @@
 use crate::dag::{Dag, Id, Node, Rational, Variable};
 use crate::errors::Extent;
 use crate::lower::expand::Expander;
-use crate::lower::interval::Stretch;
+use crate::lower::interval::{Interval, Stretch};
 use crate::lower::written::{Quote, Written, place_of_power, quote_of_power};
 
 /// Every power in a force exists on its closed piece. Faults are at the power where its place is known, else at `extent`.
@@ -38,128 +38,115 @@ pub fn power_is_defined(
     if gap || rate {
         return Err("an exponent must be made of numbers and parameters".to_owned());
     }
-    if !context
-        .dag
-        .as_number(exponent)
-        .is_some_and(Rational::is_integer)
-    {
-        base_is_not_negative(context, base, exponent, stretch, quote)?;
-        return exponent_is_positive_where_the_base_vanishes(
-            context, base, exponent, stretch, quote,
-        );
-    }
-    divisor_does_not_vanish(context, base, exponent, stretch, quote)
-}
-
-/// The base of a power that is not whole is never negative on its piece.
-fn base_is_not_negative(
-    context: &mut Expander,
-    base: Id,
-    exponent: Id,
-    stretch: Stretch,
-    quote: Option<&Quote>,
-) -> Result<(), String> {
-    let bounds = context.ranges.bounds(&mut context.dag, base, stretch);
-    if bounds.is_not_negative() {
-        return Ok(());
-    }
-    let (shown, exponent) = quoted(context, base, exponent, quote);
-    let raised = as_exponent(&exponent);
-    let place = where_it_holds(&context.dag, base);
-    let advice = if context
-        .dag
-        .variables(base)
-        .iter()
-        .any(|variable| matches!(variable, Variable::Gap | Variable::Rate))
-    {
-        format!(
-            "write `|{shown}|^{raised}`, or `sgn({shown})*|{shown}|^{raised}` for an odd force, or restrict the piece"
-        )
-    } else {
-        advice_on_ranges(context, base, ">=")
+    let power = Power {
+        base,
+        exponent,
+        stretch,
+        quote,
     };
-    Err(format!(
-        "`{shown}` may be negative{place}, and a negative number has no power `{exponent}`: {advice}"
-    ))
+    let number = context.dag.as_number(exponent);
+    if number.is_some_and(Rational::is_integer) {
+        return power.divisor_does_not_vanish(context);
+    }
+    power.base_is_not_negative(context)?;
+    power.exponent_is_positive_where_the_base_vanishes(context)
 }
 
-/// Where the base of a power that is not whole can vanish, the exponent is positive.
-fn exponent_is_positive_where_the_base_vanishes(
-    context: &mut Expander,
+/// A power on the stretch of gaps that it stands in.
+struct Power<'q> {
     base: Id,
     exponent: Id,
     stretch: Stretch,
-    quote: Option<&Quote>,
-) -> Result<(), String> {
-    let positive = context
-        .ranges
-        .bounds(&mut context.dag, exponent, Stretch::ALL)
-        .is_positive();
-    if positive
-        || context
-            .ranges
-            .bounds(&mut context.dag, base, stretch)
-            .is_positive()
-    {
-        return Ok(());
-    }
-    let (shown, shown_exponent) = quoted(context, base, exponent, quote);
-    let advice = if context.dag.as_number(exponent).is_some() {
-        format!(
-            "add a positive distance to `{shown}`, as in `({shown} + a)^{}`",
-            as_exponent(&shown_exponent)
-        )
-    } else {
-        advice_on_ranges(context, exponent, ">")
-    };
-    let place = where_it_holds(&context.dag, base);
-    Err(format!(
-        "`{shown}` vanishes{place}, so the exponent `{shown_exponent}` must be positive: {advice}"
-    ))
+    quote: Option<&'q Quote>,
 }
 
-/// What is divided by never vanishes on its piece.
-fn divisor_does_not_vanish(
-    context: &mut Expander,
-    base: Id,
-    exponent: Id,
-    stretch: Stretch,
-    quote: Option<&Quote>,
-) -> Result<(), String> {
-    let negative = context
-        .dag
-        .as_number(exponent)
-        .is_some_and(Rational::is_negative);
-    if !negative
-        || context
-            .ranges
-            .bounds(&mut context.dag, base, stretch)
-            .excludes_zero()
-    {
-        return Ok(());
+impl Power<'_> {
+    /// The base of a power that is not whole is never negative on its piece.
+    fn base_is_not_negative(&self, context: &mut Expander) -> Result<(), String> {
+        if self.bounds(context).is_not_negative() {
+            return Ok(());
+        }
+        let (shown, exponent) = self.quoted(context);
+        let raised = as_exponent(&exponent);
+        let place = where_it_holds(&context.dag, self.base);
+        let advice = if self.base_moves(context) {
+            format!(
+                "write `|{shown}|^{raised}`, or `sgn({shown})*|{shown}|^{raised}` for an odd force, or restrict the piece"
+            )
+        } else {
+            advice_on_ranges(context, self.base, ">=")
+        };
+        Err(format!(
+            "`{shown}` may be negative{place}, and a negative number has no power `{exponent}`: {advice}"
+        ))
     }
-    let (shown, _) = quoted(context, base, exponent, quote);
-    let moves = context
-        .dag
-        .variables(base)
-        .iter()
-        .any(|variable| matches!(variable, Variable::Gap | Variable::Rate));
-    if moves {
-        return Err(format!(
-            "division by `{shown}`, which may vanish on this piece: add a positive distance to it"
-        ));
-    }
-    Err(format!(
-        "division by `{shown}`, which may be zero: {}",
-        advice_on_ranges(context, base, ">")
-    ))
-}
 
-/// A base and an exponent as written, or else as they are.
-fn quoted(context: &Expander, base: Id, exponent: Id, quote: Option<&Quote>) -> (String, String) {
-    match quote {
-        Some(quote) => (quote.operand.to_string(), quote.exponent.to_string()),
-        None => (context.show(base), context.show(exponent)),
+    /// Where the base of a power that is not whole can vanish, the exponent is positive.
+    fn exponent_is_positive_where_the_base_vanishes(
+        &self,
+        context: &mut Expander,
+    ) -> Result<(), String> {
+        let exponents = context
+            .ranges
+            .bounds(&mut context.dag, self.exponent, Stretch::ALL);
+        if exponents.is_positive() || self.bounds(context).is_positive() {
+            return Ok(());
+        }
+        let (shown, exponent) = self.quoted(context);
+        let advice = if context.dag.as_number(self.exponent).is_some() {
+            format!(
+                "add a positive distance to `{shown}`, as in `({shown} + a)^{}`",
+                as_exponent(&exponent)
+            )
+        } else {
+            advice_on_ranges(context, self.exponent, ">")
+        };
+        let place = where_it_holds(&context.dag, self.base);
+        Err(format!(
+            "`{shown}` vanishes{place}, so the exponent `{exponent}` must be positive: {advice}"
+        ))
+    }
+
+    /// What is divided by never vanishes on its piece.
+    fn divisor_does_not_vanish(&self, context: &mut Expander) -> Result<(), String> {
+        let number = context.dag.as_number(self.exponent);
+        let divides = number.is_some_and(Rational::is_negative);
+        if !divides || self.bounds(context).excludes_zero() {
+            return Ok(());
+        }
+        let (shown, _) = self.quoted(context);
+        Err(if self.base_moves(context) {
+            format!(
+                "division by `{shown}`, which may vanish on this piece: add a positive distance to it"
+            )
+        } else {
+            format!(
+                "division by `{shown}`, which may be zero: {}",
+                advice_on_ranges(context, self.base, ">")
+            )
+        })
+    }
+
+    /// Of the base, while the gap is in the stretch.
+    fn bounds(&self, context: &mut Expander) -> Interval {
+        context
+            .ranges
+            .bounds(&mut context.dag, self.base, self.stretch)
+    }
+
+    /// Whether the gap or its rate is in the base.
+    fn base_moves(&self, context: &Expander) -> bool {
+        let variables = context.dag.variables(self.base);
+        let mut variables = variables.iter();
+        variables.any(|variable| matches!(variable, Variable::Gap | Variable::Rate))
+    }
+
+    /// The base and the exponent as written, or else as they are.
+    fn quoted(&self, context: &Expander) -> (String, String) {
+        match self.quote {
+            Some(quote) => (quote.operand.to_string(), quote.exponent.to_string()),
+            None => (context.show(self.base), context.show(self.exponent)),
+        }
     }
 }
 
