@@ -10,7 +10,7 @@ use std::time::Duration;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::point::{Event, Point};
-use super::record::{Kept, Record};
+use super::record::Kept;
 use crate::cancel::Cancel;
 use crate::continuation::follow::Stop;
 use crate::continuation::statistics::Statistics;
@@ -293,33 +293,6 @@ impl PartialEq for Further {
 }
 
 impl Branch {
-    /// What a walk has gathered of a system, whichever method computed it: what it cost, and what it goes on from, is for the method to add.
-    pub(crate) fn gathered(
-        system: &dyn System,
-        varied: String,
-        record: Record,
-        stopped: Stop,
-    ) -> Self {
-        let Record {
-            points,
-            events,
-            turns,
-        } = record;
-        Self {
-            model: Model::of(system),
-            varied,
-            points,
-            events,
-            turns,
-            begin: None,
-            stopped,
-            statistics: Statistics::default(),
-            work: Work::default(),
-            elapsed: Duration::default(),
-            further: Further::default(),
-        }
-    }
-
     /// The system that it belongs to; `None` of a branch that was read from a file.
     pub fn system(&self) -> Option<&dyn System> {
         self.further.system.as_deref()

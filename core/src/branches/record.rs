@@ -1,8 +1,15 @@
 //! What the walk along a branch has gathered, whichever method computes its orbits.
 
+use std::time::Duration;
+
+use super::branch::{Branch, Further, Model};
 use super::engine::Places;
 use super::point::{Event, Point};
+use crate::continuation::follow::Stop;
+use crate::continuation::statistics::Statistics;
 use crate::event::{EventKind, Turn};
+use crate::system::System;
+use crate::time::Work;
 
 /// Orbits with what happened between them. Places of events and turns count the points before them.
 #[derive(Debug, Default)]
@@ -21,6 +28,28 @@ pub(crate) struct Kept<'k> {
 }
 
 impl Record {
+    /// A branch of a system that has ended so. What it cost, and what it goes on from, is for the method to add.
+    pub(crate) fn into_branch(self, system: &dyn System, varied: String, stopped: Stop) -> Branch {
+        let Self {
+            points,
+            events,
+            turns,
+        } = self;
+        Branch {
+            model: Model::of(system),
+            varied,
+            points,
+            events,
+            turns,
+            begin: None,
+            stopped,
+            statistics: Statistics::default(),
+            work: Work::default(),
+            elapsed: Duration::default(),
+            further: Further::default(),
+        }
+    }
+
     pub(crate) fn kept(&self) -> Kept<'_> {
         Kept {
             points: &self.points,

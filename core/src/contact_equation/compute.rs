@@ -169,7 +169,7 @@ fn ended(
     let branch = Branch {
         statistics,
         elapsed: started.elapsed(),
-        ..Branch::gathered(system, varied, record, stopped)
+        ..record.into_branch(system, varied, stopped)
     };
     let rest = rest.filter(|_| stopped.can_be_resumed());
     Ok(Followed { branch, rest })

@@ -271,7 +271,7 @@ fn gathered(asked: Asked<'_>, followed: Followed) -> Part<Rest> {
     let request = asked.request;
     let branch = Branch {
         statistics,
-        ..Branch::gathered(request.system.as_ref(), request.varied(), record, stopped)
+        ..record.into_branch(request.system.as_ref(), request.varied(), stopped)
     };
     Part { branch, rest }
 }

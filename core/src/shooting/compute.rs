@@ -155,7 +155,7 @@ fn as_branch(problem: &ShootingProblem, run: Run<'_>, stopped: Stop, started: In
         statistics,
         work,
         elapsed: started.elapsed(),
-        ..Branch::gathered(system, varied, record, stopped)
+        ..record.into_branch(system, varied, stopped)
     };
     let rest = rest.filter(|_| stopped.can_be_resumed());
     Followed { branch, rest }
