@@ -1,4 +1,8 @@
 //! The [extremes](Extreme) of gaps, from the motion along an orbit.
+//!
+//! What is asked is that of `balance_branch/run/gap_extremes.rs`, line by line. That reads a series, whose gap has as many harmonics; this passes
+//! a motion, which may fail, of a part that stands for the whole. Values of the parameter, and the arguments and levels of a contact that follow
+//! from them, are held by the balance there and by the problem here, so that loops over contacts are the same in form alone.
 
 use std::f64::consts::TAU;
 

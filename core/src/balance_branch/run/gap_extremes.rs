@@ -1,4 +1,4 @@
-//! The [extremes](Extreme) of gaps, from the series of an orbit.
+//! The [extremes](Extreme) of gaps, from the series of an orbit. Why it is not one with that of a motion: `shooting/gap_extremes.rs`.
 
 use crate::balance::{Balance, gap_series};
 use crate::branches::extreme::{Bend, Extreme};
