@@ -222,8 +222,7 @@ impl<'a> PointEvaluator<'a> {
             let counts = STEEPEST * shift.abs() > stability.error;
             if *beside_fold && counts && judge.refined.is_none() {
                 // What lies across the branch and what lies along it may cancel, and are taken by their sizes.
-                let across = judge.stability(balance, Some(finer), u);
-                let along = distance(&across.multipliers, &stability.multipliers);
+                let along = distance(&judge.beside(finer), &stability.multipliers);
                 stability = Stability::of(stability.multipliers, stability.error + along);
             }
         }

@@ -155,14 +155,15 @@ impl<'r> GapExtremes<'r> {
         if self.scales.iter().all(Option::is_none) {
             return Some(false);
         }
-        let u = &self.whole(u)[..];
+        let value = u[u.len() - 1];
+        let mut states = None;
         let whole = self.equations.span.begins(self.equations.span.segments);
         let mut found = Vec::new();
         for contact in 0..self.scales.len() {
-            if self.scales[contact].is_none() {
+            if !self.may_be_narrow(contact, value) {
                 continue;
             }
-            self.set(contact, u[u.len() - 1]);
+            let u = &states.get_or_insert_with(|| self.whole(u))[..];
             let [low, high] = self.find_extremes(u, &mut found)?;
             let alike = Extreme {
                 plain: true,
@@ -170,7 +171,20 @@ impl<'r> GapExtremes<'r> {
             };
             extremes.extend(seen_from(0.0, &found, whole, alike));
         }
-        Some(true)
+        Some(states.is_some())
+    }
+
+    /// Takes what belongs to a contact, and says whether its law may have narrow places.
+    fn may_be_narrow(&mut self, contact: usize, value: f64) -> bool {
+        if self.scales[contact].is_none() {
+            return false;
+        }
+        self.set(contact, value);
+        let scales = self.scales[contact].as_mut();
+        scales.is_some_and(|scales| {
+            scales.set(&self.arguments, &self.levels);
+            scales.may_be_narrow()
+        })
     }
 
     /// Adds the narrow places of the law of a contact in a range of its gap.

@@ -53,6 +53,9 @@ use crate::system::{System, Variable};
 
 /// The change by the harmonics from `K` to `2 K` times this is that by all above `K`, where it falls as `K^-1.6` or faster.
 pub(crate) const BEYOND: f64 = 1.5;
+/// What contacts couple of the tail is measured in its first harmonics: one for so many of the coarse balance, and so many at least.
+const MEASURED: usize = 4;
+const MEASURED_LEAST: usize = 12;
 /// Size of a correction, in parts of the orbit, that Newton's method leaves.
 pub(crate) const NOTHING: f64 = 1e-13;
 /// Size of an oscillation, in parts of the mean, that is one of rounding.
@@ -77,8 +80,9 @@ pub(crate) struct RefinedBalance<'a> {
     beyond: Vec<f64>,
     /// The coarse balance, where contact forces are exact.
     plain: Option<Balance<'a>>,
-    /// Series of a contact force.
+    /// Series of a contact force, and the length of its part that reaches the harmonics where the coupling is measured.
     force: Vec<f64>,
+    short: usize,
     /// The tail alone.
     without_core: Vec<f64>,
     /// The last orbit corrected further, and before its last step.
@@ -88,6 +92,8 @@ pub(crate) struct RefinedBalance<'a> {
     /// Residual of the tail before it was added, and what contacts couple of it to its inertia.
     alone: Vec<f64>,
     coupled: f64,
+    /// The highest harmonic in which that is measured.
+    measured: usize,
 }
 
 impl<'a> RefinedBalance<'a> {
@@ -113,6 +119,9 @@ impl<'a> RefinedBalance<'a> {
         };
         let of = |resolution| Balance::new(system, parameters, omega, variable, resolution);
         let (balance, plain) = (of(fine), of(coarse));
+        let measured = (coarse.harmonics / MEASURED)
+            .max(MEASURED_LEAST * coarse.period * coarse.stride)
+            .min(fine.harmonics - coarse.harmonics);
         let unknowns = balance.unknowns();
         let coordinates = balance.layout().coordinates;
         Self {
@@ -124,6 +133,8 @@ impl<'a> RefinedBalance<'a> {
             modes: Modes::default(),
             beyond: vec![0.0; coordinates],
             force: vec![0.0; series::length(balance.force_harmonics())],
+            measured: coarse.harmonics + measured,
+            short: series::length(plain.force_harmonics() + measured),
             plain: (coarse.aft == Aft::Switched).then_some(plain),
             without_core: Vec::new(),
             further: Vec::new(),
@@ -186,12 +197,13 @@ impl<'a> RefinedBalance<'a> {
     }
 
     /// What contacts couple of the tail that was added to its inertia, from the residual that it leaves, or from the forces on it alone:
-    /// the next step of the tail to this one, harmonic by harmonic.
+    /// the next step of the tail to this one, harmonic by harmonic. Inertia grows with the square of a harmonic, and harmonics fall, so that
+    /// those which come first tell it.
     fn measure_coupling(&mut self, forces: bool) {
         let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
         let n = self.balance.layout().coordinates;
         let (mut next, mut this) = (0.0, 0.0);
-        for entry in (coarse..fine).step_by(2) {
+        for entry in (coarse..series::length(self.measured)).step_by(2) {
             let [mut tail, mut before, mut left] = [0.0; 3];
             for at in (0..n).flat_map(|i| [i * fine + entry, i * fine + entry + 1]) {
                 let own = if forces { self.alone[at] } else { 0.0 };
@@ -234,10 +246,10 @@ impl<'a> RefinedBalance<'a> {
         self.residual.fill(0.0);
         for index in 0..self.balance.alike.len() {
             let Alike { contact, count } = self.balance.alike[index];
+            let force = &mut self.force[..self.short];
+            self.balance.contact_force(&self.orbit, contact, force);
             self.balance
-                .contact_force(&self.orbit, contact, &mut self.force);
-            self.balance
-                .add_in_direction(contact, count, &self.force, &mut self.residual);
+                .add_in_direction(contact, count, force, &mut self.residual);
         }
         self.measure_coupling(true);
         self.balance.keep_unknowns(&mut self.residual);

@@ -148,12 +148,14 @@ impl<'a> GapExtremes<'a> {
     /// The same from zero, of the gaps alone whose laws may have narrow places. Says whether there are any.
     pub(super) fn read_plain(&mut self, u: &[f64], extremes: &mut Vec<Extreme>) -> bool {
         extremes.clear();
-        let known = self.scales.iter().any(Option::is_some);
-        if known {
-            self.balance.set(u[u.len() - 1]);
+        if self.scales.iter().all(Option::is_none) {
+            return false;
         }
+        self.balance.set(u[u.len() - 1]);
+        let mut known = false;
         for contact in 0..self.scales.len() {
-            if self.scales[contact].is_some() {
+            if self.may_be_narrow(contact) {
+                known = true;
                 let [low, high] = self.find_turns(u, contact);
                 let alike = Extreme {
                     plain: true,
@@ -163,6 +165,19 @@ impl<'a> GapExtremes<'a> {
             }
         }
         known
+    }
+
+    /// Takes what belongs to a contact, and says whether its law may have narrow places.
+    fn may_be_narrow(&mut self, contact: usize) -> bool {
+        if self.scales[contact].is_none() {
+            return false;
+        }
+        self.set(contact);
+        let scales = self.scales[contact].as_mut();
+        scales.is_some_and(|scales| {
+            scales.set(&self.arguments, &self.levels);
+            scales.may_be_narrow()
+        })
     }
 
     /// Adds the narrow places of the law of a contact in a range of its gap.

@@ -39,6 +39,14 @@ enum Mark {
 }
 
 impl Scales {
+    /// Whether the law may have narrow places, for the arguments at hand.
+    pub(crate) fn may_be_narrow(&self) -> bool {
+        (0..self.pieces()).any(|piece| {
+            let mut features = 0..self.features(piece);
+            features.any(|at| self.is_sharp(piece, at) && !marks(self.kind(piece, at)).is_empty())
+        })
+    }
+
     /// Adds the narrow places in a range of gaps, at rest, to others of the same law.
     pub(crate) fn narrow(&mut self, [low, high]: [f64; 2], to: &mut Vec<Narrow>) {
         for piece in 0..self.pieces() {

@@ -113,7 +113,8 @@ impl Scales {
         self.pieces[piece].sharp.contains(&true)
     }
 
-    /// How many pieces there are, how many operands a piece has, what is done with one of them, and its values at gaps at rest: of a base their size.
+    /// How many pieces there are, how many operands a piece has, what is done with one of them, whether it is sharp for
+    /// the arguments at hand, and its values at gaps at rest: of a base their size.
     pub(super) fn pieces(&self) -> usize {
         self.pieces.len()
     }
@@ -124,6 +125,10 @@ impl Scales {
 
     pub(super) fn kind(&self, piece: usize, feature: usize) -> Kind {
         self.pieces[piece].kinds[feature]
+    }
+
+    pub(super) fn is_sharp(&self, piece: usize, feature: usize) -> bool {
+        self.pieces[piece].sharp[feature]
     }
 
     pub(super) fn operand(&mut self, piece: usize, feature: usize, gap: &[f64]) -> Vec<f64> {

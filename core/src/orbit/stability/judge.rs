@@ -18,7 +18,7 @@
 
 use std::time::Instant;
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use super::method::{Floquet, Found};
 use super::orbit::Orbit;
@@ -200,6 +200,15 @@ impl Judge {
             cost: self.engine.cost(),
             elapsed: started.elapsed(),
         }
+    }
+
+    /// The multipliers of an orbit beside the one that was judged last, as exactly as a first attempt finds them; none if that fails.
+    pub(crate) fn beside(&mut self, finer: &RefinedBalance<'_>) -> Vec<Complex<f64>> {
+        self.computed += 1;
+        let orbit = Orbit::of(finer.balance(), finer.series());
+        self.engine
+            .multipliers(&orbit, LENIENCE * self.aim)
+            .multipliers
     }
 
     /// Multipliers of an orbit as it is, and of the corrected one with what the truncation may leave in them.
