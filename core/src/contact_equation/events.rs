@@ -83,9 +83,10 @@ pub(super) fn event(
         return Some(event);
     };
     let map = again.equations.map(&again.point.u);
+    let point = at_event(run, &mut again, map.as_ref(), read.map.as_ref(), kind);
     event.point = Point {
-        error: event.point.error,
-        ..at_event(run, &mut again, map.as_ref(), read.map.as_ref(), kind)
+        error: Some(run.error_at_event(at, &again.equations, point.value)),
+        ..point
     };
     (event.error, event.test) = (again.error, again.test);
     event.tangent = again.point.tangent;
@@ -343,7 +344,7 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
             let value = u[u.len() - 1];
             read.point = Point {
                 stability: read.point.stability,
-                error: read.point.error,
+                error: Some(run.error_at_event(at, &equations, value)),
                 ..run.observed(&equations, value)
             };
         }

@@ -305,6 +305,16 @@ impl Run<'_> {
         })
     }
 
+    /// The error of what is read off an orbit at an event, from the same event by finer equations: neither orbit is at a given value, and beside
+    /// a fold those at one value tell nothing.
+    pub(super) fn error_at_event(&mut self, at: &CurvePoint, finer: &Equations, value: f64) -> f64 {
+        self.equations.compute(&at.u, false);
+        let point = self.observed(&self.equations, at.parameter());
+        let apart = self.apart(finer, &point, value);
+        let noise = self.noise(&point);
+        stated(part_of(SAFETY * apart + noise, self.size(&point, noise)))
+    }
+
     /// An orbit without its errors, and the map of its states if stability is asked for.
     fn read_plainly(&mut self, at: &CurvePoint) -> Option<(Point, Option<DMatrix<f64>>)> {
         let map = if self.problem.asked.stability {

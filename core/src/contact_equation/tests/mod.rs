@@ -18,6 +18,7 @@ use crate::cancel::Cancel;
 use crate::continuation::jacobian::Jacobian;
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::Problem;
+use crate::event::EventKind;
 use crate::system::{System, Variable};
 use crate::{Branch, ContactEquation, FrequencyResponse, Shooting, Stop};
 
@@ -380,5 +381,33 @@ fn errors_hold(request: &FrequencyResponse<ContactEquation>) {
         let known = a.error + b.error + 1e-9;
         assert!(spread <= known, "{}: {spread:e} {known:e}", point.value);
         assert_eq!(a.verdict, b.verdict);
+    }
+}
+
+/// At an event an orbit is at no given value: beside a fold those at one value tell nothing of its size.
+#[test]
+fn sizes_at_events_are_those_of_shooting_and_their_errors_hold() {
+    let one = OneSided {
+        alpha: 1.5,
+        load: 1.0,
+        drive: 0.1,
+    };
+    let request = FrequencyResponse::of(&one).from(0.6).to(1.6);
+    let exact = request.clone().by(Shooting::new().tolerance(1e-12));
+    let exact = exact.run().unwrap().events;
+    let found = request.by(ContactEquation::new()).run().unwrap().events;
+    let folds = found.iter().filter(|event| event.kind == EventKind::Fold);
+    assert_eq!(folds.count(), 2);
+    for event in &found {
+        let same = exact.iter().find(|known| {
+            known.kind == event.kind && (known.point.value - event.point.value).abs() < 1e-8
+        });
+        let same = same.unwrap_or_else(|| panic!("{:?} {}", event.kind, event.point.value));
+        let size = same.point.peak_to_peak();
+        let apart = (event.point.peak_to_peak() - size).abs() / size;
+        let stated = event.point.error.unwrap();
+        let known = stated + 1e-11;
+        assert!(apart <= known, "{apart:e} {known:e}");
+        assert!(stated < 1e-6, "{} {stated:e}", event.point.value);
     }
 }
