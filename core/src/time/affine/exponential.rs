@@ -14,11 +14,17 @@
 //! Source: Moler and Van Loan (2003), Nineteen dubious ways to compute the exponential of a matrix, SIAM Review 45, method 3
 //! (scaling and squaring).
 
+use multiversion::multiversion;
+
 use super::table::{COEFFICIENTS, Polynomial, Table, cells};
 use super::terms::Basis;
 
 /// Terms of the exponential over half a cell: `0.225^14 / 14! = 1e-20` is left out.
 const TERMS: usize = 13;
+
+/// Rows and columns of a block of a product.
+const ROWS: usize = 4;
+const LANES: usize = 8;
 
 /// Workspace to make tables: matrices of the order of `z`.
 #[derive(Debug)]
@@ -187,18 +193,20 @@ pub(super) fn fill_derivatives(series: &mut [Polynomial], workspace: &Workspace)
     }
 }
 
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_series(cell: &mut [Polynomial], rows: &[Polynomial], middle: &[f64]) {
     let order = middle.len().isqrt();
     for (out, row) in cell.chunks_exact_mut(order).zip(rows.chunks_exact(order)) {
-        for (polynomial, factors) in row.iter().zip(middle.chunks_exact(order)) {
-            for (out, factor) in out.iter_mut().zip(factors) {
-                if *factor == 0.0 {
-                    continue;
-                }
-                for (out, x) in out.iter_mut().zip(polynomial) {
-                    *out += factor * x;
+        for (m, out) in out.iter_mut().enumerate() {
+            // In registers, as long as it grows.
+            let mut sum = *out;
+            for (polynomial, factors) in row.iter().zip(middle.chunks_exact(order)) {
+                let factor = factors[m];
+                for k in 0..COEFFICIENTS {
+                    sum[k] += factor * polynomial[k];
                 }
             }
+            *out = sum;
         }
     }
 }
@@ -215,6 +223,7 @@ fn row_times(row: &[f64], matrix: &[f64], out: &mut [f64]) {
     add_row_times(row, matrix, out);
 }
 
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub(super) fn add_row_times(row: &[f64], matrix: &[f64], out: &mut [f64]) {
     for (factor, from) in row.iter().zip(matrix.chunks_exact(row.len())) {
         // Many entries are zeros: the constant and the waves are not moved by the others.
@@ -227,9 +236,55 @@ pub(super) fn add_row_times(row: &[f64], matrix: &[f64], out: &mut [f64]) {
     }
 }
 
+/// Adds the product of two matrices, row by row, in blocks of rows and columns whose sums stay in registers.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_products(a: &[f64], b: &[f64], out: &mut [f64]) {
     let order = a.len().isqrt();
-    for (row, out) in a.chunks_exact(order).zip(out.chunks_exact_mut(order)) {
-        add_row_times(row, b, out);
+    let whole = order - order % ROWS;
+    let (rows, rest) = a.split_at(whole * order);
+    let (out, out_rest) = out.split_at_mut(whole * order);
+    for (a, out) in (rows.chunks_exact(ROWS * order)).zip(out.chunks_exact_mut(ROWS * order)) {
+        add_rows::<ROWS>(order, a, b, out);
+    }
+    for (a, out) in rest
+        .chunks_exact(order)
+        .zip(out_rest.chunks_exact_mut(order))
+    {
+        add_rows::<1>(order, a, b, out);
+    }
+}
+
+/// The same of some rows.
+#[inline(always)]
+#[allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
+fn add_rows<const COUNT: usize>(order: usize, a: &[f64], b: &[f64], out: &mut [f64]) {
+    let whole = order - order % LANES;
+    for column in (0..whole).step_by(LANES) {
+        let mut sums = [[0.0; LANES]; COUNT];
+        for (sums, out) in sums.iter_mut().zip(out.chunks_exact(order)) {
+            sums.copy_from_slice(&out[column..][..LANES]);
+        }
+        for (k, b) in b.chunks_exact(order).enumerate() {
+            let (b, _) = b[column..].as_chunks::<LANES>();
+            for (row, sums) in sums.iter_mut().enumerate() {
+                let factor = a[row * order + k];
+                for l in 0..LANES {
+                    sums[l] += factor * b[0][l];
+                }
+            }
+        }
+        for (out, sums) in out.chunks_exact_mut(order).zip(&sums) {
+            out[column..][..LANES].copy_from_slice(sums);
+        }
+    }
+    for (a, out) in a.chunks_exact(order).zip(out.chunks_exact_mut(order)) {
+        for (column, out) in out.iter_mut().enumerate().skip(whole) {
+            for (x, y) in a.iter().zip(b[column..].iter().step_by(order)) {
+                *out += x * y;
+            }
+        }
     }
 }

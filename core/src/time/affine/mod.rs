@@ -25,7 +25,6 @@ mod tests;
 
 use std::f64::consts::TAU;
 
-use self::crossing::value_and_slope;
 use self::model::Model;
 use self::scalar::{Scalar, Span};
 use self::table::{COEFFICIENTS, ExitLevel, Polynomial, Table};
@@ -123,6 +122,19 @@ impl Affine {
         tangent: &mut Option<&mut Tangent>,
         see: &mut Option<See<'_>>,
     ) -> Result<(), FlowError> {
+        self.room.begin();
+        let passed = self.pass_span(span, state, tangent, see);
+        self.show(see);
+        passed
+    }
+
+    fn pass_span(
+        &mut self,
+        span: Span,
+        state: &mut [f64],
+        tangent: &mut Option<&mut Tangent>,
+        see: &mut Option<See<'_>>,
+    ) -> Result<(), FlowError> {
         let n = self.model.basis.coordinates;
         let mut done = 0.0;
         let mut switches = 0;
@@ -135,6 +147,7 @@ impl Affine {
             self.goes_on(span.begin + done)?;
             let passed = self.pass_segment(span, done, state, tangent, see)?;
             let Some(next) = passed.goes_on_at else {
+                self.catch_up(tangent);
                 return Ok(());
             };
             done = next;
@@ -151,6 +164,8 @@ impl Affine {
                     let phase = span.begin + done;
                     return Err(FlowError::TooManySwitches { phase, switches });
                 }
+                self.catch_up(tangent);
+                self.show(see);
                 self.cross(switch, tangent.as_deref_mut());
             }
         }
@@ -168,11 +183,19 @@ impl Affine {
         let by = tangent.as_ref().and_then(|tangent| tangent.by);
         let phase = span.begin + done;
         let combination = self.model.combination(&self.pieces, phase, by.is_some())?;
-        let leapt = self.leap(combination, span, done, state, tangent.as_deref_mut(), see);
-        if let Some(passed) = leapt {
+        if tangent.is_some() {
+            self.wait(combination);
+        }
+        if see.is_some() {
+            self.begin_stretch(combination, phase);
+        }
+        if let Some(passed) = self.leap(combination, span, done, state, see.is_some()) {
+            self.room.waits(passed.cells);
+            let next = passed.goes_on_at.map_or(span.end, |next| span.begin + next);
+            self.go_on_stretch(passed.cells, next, see);
             return Ok(passed);
         }
-        let table = &self.model.at(combination).table;
+        let (table, ladder) = self.model.at(combination).tabulated();
         let rows = &mut self.rows[..table.rows];
         let left = (span.length - done) / table.cell;
         let range = left.min(table.range());
@@ -189,12 +212,15 @@ impl Affine {
             phases: (phase, end),
             base: self.model.terms.base,
         };
-        piece.at(cells, rows, &mut self.next);
+        match ladder.filter(|_| cells == table.range()) {
+            Some(ladder) => ladder.pass_range(&self.z, &mut self.next),
+            None => table.state(cells, &self.z, piece.base, &mut self.next),
+        }
         if self.next.iter().any(|x| !x.is_finite()) {
             return Err(FlowError::NotFinite { phase });
         }
         state.copy_from_slice(&self.next);
-        if let Some(tangent) = tangent.as_deref_mut() {
+        if let Some(tangent) = tangent.as_deref_mut().filter(|_| ladder.is_none()) {
             let workspace = tangent::Workspace {
                 rows: &mut *rows,
                 rows_by: &mut self.rows_by[..table.rows],
@@ -203,11 +229,13 @@ impl Affine {
             };
             tangent::advance(&self.model, table, &self.z, cells, tangent, workspace);
         }
-        if let Some(see) = see {
+        if let Some(see) = see.as_mut().filter(|_| ladder.is_none()) {
             see(&piece);
         }
-        self.work.steps += 1;
         let switch = hit.map(|hit| Switch::over(&table.exits[hit.exit]));
+        self.work.steps += 1;
+        self.room.waits(cells);
+        self.go_on_stretch(cells, end, see);
         Ok(Passed {
             goes_on_at: (!last).then_some(next),
             cells,
@@ -390,20 +418,6 @@ struct Piece<'t> {
     base: f64,
 }
 
-impl Piece<'_> {
-    /// The state after some cells. `rows` is workspace.
-    fn at(&self, cells: f64, rows: &mut [Polynomial], state: &mut [f64]) {
-        let (cell, s) = self.table.place(cells);
-        self.table.polynomials(cell, self.z, rows);
-        let n = state.len() / 2;
-        for (i, row) in rows[..n].iter().enumerate() {
-            let (value, slope) = value_and_slope(row, s);
-            state[i] = value;
-            state[n + i] = slope * (self.base / self.table.cell);
-        }
-    }
-}
-
 impl Stretch for Piece<'_> {
     fn phases(&self) -> (f64, f64) {
         self.phases
@@ -411,13 +425,6 @@ impl Stretch for Piece<'_> {
 
     fn state(&self, phase: f64, state: &mut [f64]) {
         let cells = (phase - self.phases.0) / self.table.cell;
-        let (cell, s) = self.table.place(cells);
-        let n = state.len() / 2;
-        for i in 0..n {
-            let row = self.table.polynomial(cell, i, self.z);
-            let (value, slope) = value_and_slope(&row, s);
-            state[i] = value;
-            state[n + i] = slope * (self.base / self.table.cell);
-        }
+        self.table.state(cells, self.z, self.base, state);
     }
 }

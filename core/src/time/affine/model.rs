@@ -75,6 +75,13 @@ pub(super) struct Model {
     workspace: Workspace,
 }
 
+impl Combination {
+    /// Its table, and the steps over many ranges of it, if they are worth it.
+    pub(super) fn tabulated(&self) -> (&Table, Option<&Ladder>) {
+        (&self.table, self.ladder.as_ref())
+    }
+}
+
 impl Model {
     /// # Errors
     /// Unless every piece is affine, and stiffness and directions are constant; if values are not usable.

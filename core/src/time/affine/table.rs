@@ -20,6 +20,8 @@
 //!
 //! Source of (1): Van Loan (1978), Computing integrals involving the matrix exponential, IEEE Trans. Automatic Control 23.
 
+use multiversion::multiversion;
+
 use super::crossing::value_and_slope;
 use super::exponential::{Workspace, add_row_times, fill_derivatives, fill_series};
 use super::terms::Basis;
@@ -157,12 +159,11 @@ impl Table {
         }
     }
 
-    /// The polynomial of one row in a cell.
-    pub(super) fn polynomial(&self, cell: usize, row: usize, z: &[f64]) -> Polynomial {
-        let mut sum = [[0.0; COEFFICIENTS]];
-        let from = (cell * self.rows + row) * self.order;
-        add_combination(&self.series[from..][..self.order], z, &mut sum);
-        sum[0]
+    /// Writes the state after some cells of a motion that begins at `z`; `base` is phase per time.
+    pub(super) fn state(&self, cells: f64, z: &[f64], base: f64, state: &mut [f64]) {
+        let (cell, s) = self.place(cells);
+        let series = &self.series[cell * self.rows * self.order..];
+        write_state(series, z, [s, base / self.cell], state);
     }
 
     /// The polynomials of all rows in a cell, for a motion that begins at `z`.
@@ -195,13 +196,41 @@ fn combine(series: &[Polynomial], z: &[f64], out: &mut [Polynomial]) {
     add_combination(series, z, out);
 }
 
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_combination(series: &[Polynomial], z: &[f64], out: &mut [Polynomial]) {
-    for (sum, row) in out.iter_mut().zip(series.chunks_exact(z.len())) {
-        for (term, factor) in row.iter().zip(z) {
-            for (sum, term) in sum.iter_mut().zip(term) {
-                *sum += term * factor;
-            }
+    for (out, row) in out.iter_mut().zip(series.chunks_exact(z.len())) {
+        *out = sum(*out, row, z);
+    }
+}
+
+/// A polynomial with those of a row added, as many times as `z` says.
+#[inline(always)]
+#[allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the instruction set of its caller"
+)]
+fn sum(mut sum: Polynomial, row: &[Polynomial], z: &[f64]) -> Polynomial {
+    for (term, factor) in row.iter().zip(z) {
+        for k in 0..COEFFICIENTS {
+            sum[k] += term[k] * factor;
         }
+    }
+    sum
+}
+
+/// Writes positions and velocities at a place in a cell, of a motion that begins at `z`; `rate` is velocity by slope.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn write_state(series: &[Polynomial], z: &[f64], [s, rate]: [f64; 2], state: &mut [f64]) {
+    let (positions, velocities) = state.split_at_mut(state.len() / 2);
+    let rows = series.chunks_exact(z.len());
+    for ((position, velocity), row) in positions.iter_mut().zip(velocities).zip(rows) {
+        let polynomial = sum([0.0; COEFFICIENTS], row, z);
+        let (mut value, mut slope) = (0.0, 0.0);
+        for x in polynomial.iter().rev() {
+            (value, slope) = (value * s + x, slope * s + value);
+        }
+        *position = value;
+        *velocity = slope * rate;
     }
 }
 

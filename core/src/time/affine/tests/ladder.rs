@@ -67,7 +67,8 @@ proptest! {
 
     #[test]
     fn motions(model in stiff(), omega in 0.3..2.0, x in -1.0..1.0, v in -1.0..1.0) {
-        compare_in_steps(&model, omega, &[x, x, v, v], 9.0, 1e-3);
+        // For a time, not for a phase: rounding errors of the independent flow grow with its steps.
+        compare_in_steps(&model, omega, &[x, x, v, v], 0.4 + 8.6 * omega.min(1.0), 1e-3);
     }
 
     /// At once, and in pieces that are too short for steps over many ranges.
@@ -96,6 +97,21 @@ proptest! {
             }
         }
     }
+}
+
+/// The fast oscillation turns by three radians in a thousandth of the phase: the independent flow steps in time.
+#[test]
+fn a_light_mass_that_is_shaken_slowly() {
+    let model = Stiff {
+        light: 0.001,
+        rub: 0.02,
+        coupling: 800.0,
+        stop: 7.823_913_303_961_198,
+        play: 0.784_032_203_272_942_7,
+        preload: 0.0,
+        drive: 1.588_321_642_364_930_2,
+    };
+    compare_in_steps(&model, 0.3, &[0.0; 4], 3.0, 1e-3);
 }
 
 /// Steps follow the motion, and not the fastest oscillation: it takes a thousand ranges of its tables in a period.

@@ -88,9 +88,16 @@ fn compare(system: &dyn System, omega: f64, start: &[f64], to: f64) {
     compare_to(system, omega, start, to, 0.02 * omega.min(1.0), 1e-13);
 }
 
-/// The same, with steps of the independent flow of this length. Velocities of what moves faster have larger rounding errors.
+/// The same, with steps of the independent flow of this length in time. Velocities of what moves faster have larger rounding errors.
 pub(super) fn compare_in_steps(system: &dyn System, omega: f64, start: &[f64], to: f64, step: f64) {
-    compare_to(system, omega, start, to, step, 1e-13 * 0.02 / step);
+    compare_to(
+        system,
+        omega,
+        start,
+        to,
+        step * omega.min(1.0),
+        1e-13 * 0.02 / step,
+    );
 }
 
 /// The same, with this rounding error of states. A motion that comes to rest on a level where the force jumps, by ever shorter bounces, has

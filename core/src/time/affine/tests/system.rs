@@ -163,7 +163,8 @@ fn stiff_contacts_are_resolved() {
             unreachable!()
         };
         let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs());
-        assert!((a * d - b * c - 1.0).abs() < 1e-14 * size * size);
+        let area = (a * d - b * c - 1.0).abs();
+        assert!(area < 1e-14 * size * size, "{stiffness:e}: {area:e} {size}");
     }
 }
 
