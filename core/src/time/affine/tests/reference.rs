@@ -128,19 +128,25 @@ impl<'a> Reference<'a> {
         })
     }
 
-    /// One extrapolated step.
     fn step(&self, phase: f64, state: &DVector<f64>, step: f64) -> DVector<f64> {
+        state + self.increment(phase, state, step)
+    }
+
+    /// What one extrapolated step adds, with rounding errors in parts of it.
+    fn increment(&self, phase: f64, state: &DVector<f64>, step: f64) -> DVector<f64> {
         let mut row: Vec<DVector<f64>> = Vec::new();
         for j in 1..=COLUMNS {
             let parts = 2 * j;
             let h = step / parts as f64;
-            let mut before = state.clone();
-            let mut now = state + self.field(phase, state) * h;
+            let mut before = DVector::zeros(state.len());
+            let mut now = self.field(phase, state) * h;
             for i in 1..parts {
-                let next = &before + self.field(phase + i as f64 * h, &now) * (2.0 * h);
+                let there = state + &now;
+                let next = &before + self.field(phase + i as f64 * h, &there) * (2.0 * h);
                 before = std::mem::replace(&mut now, next);
             }
-            let smooth = (&now + &before + self.field(phase + step, &now) * h) * 0.5;
+            let there = state + &now;
+            let smooth = (&now + &before + self.field(phase + step, &there) * h) * 0.5;
             let mut column = smooth;
             let mut next_row = vec![column.clone()];
             for (k, earlier) in row.iter().enumerate() {
@@ -203,11 +209,20 @@ impl<'a> Reference<'a> {
             self.pieces[contact] = levels.iter().filter(|&&level| gap > level).count();
         }
         let (mut phase, mut crossings) = (from, 0);
+        // What rounding takes from a sum is given to the next one (Kahan 1965).
+        let mut lost = DVector::zeros(now.len());
+        let mut lost_phase = 0.0;
         while phase < to {
             let length = step.min(to - phase);
             let Some(crossed) = self.crossing(phase, &now, length) else {
-                now = self.step(phase, &now, length);
-                phase += length;
+                let wanted = self.increment(phase, &now, length) + &lost;
+                let next = &now + &wanted;
+                lost = wanted - (&next - &now);
+                now = next;
+                let wanted = length + lost_phase;
+                let next = phase + wanted;
+                lost_phase = wanted - (next - phase);
+                phase = next;
                 continue;
             };
             let (mut inside, mut outside) = (0.0, crossed);
