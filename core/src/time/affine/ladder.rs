@@ -415,7 +415,7 @@ impl Affine {
             // A step ends before what is left, here with it.
             left = left.min((stretch.most - stretch.cells) / range + 0.5);
         }
-        let mut ranges = 0;
+        let mut ranges: usize = 0;
         while let Some(k) = ladder.step(table, &self.z, left - ranges as f64) {
             ladder.climb(k, &self.z, next);
             if next.iter().any(|x| !x.is_finite()) {

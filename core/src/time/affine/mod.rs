@@ -186,13 +186,7 @@ impl Affine {
         if tangent.is_some() {
             self.wait(combination);
         }
-        if see.is_some() {
-            self.begin_stretch(combination, phase);
-        }
-        if let Some(passed) = self.leap(combination, span, done, state, see.is_some()) {
-            self.room.waits(passed.cells);
-            let next = passed.goes_on_at.map_or(span.end, |next| span.begin + next);
-            self.go_on_stretch(passed.cells, next, see);
+        if let Some(passed) = self.leap_on(combination, span, done, state, see) {
             return Ok(passed);
         }
         let (table, ladder) = self.model.at(combination).tabulated();
@@ -241,6 +235,25 @@ impl Affine {
             cells,
             switch,
         })
+    }
+
+    /// Leaps, and tells what waits and what is shown of it.
+    fn leap_on(
+        &mut self,
+        combination: usize,
+        span: Span,
+        done: f64,
+        state: &mut [f64],
+        see: &mut Option<See<'_>>,
+    ) -> Option<Passed> {
+        if see.is_some() {
+            self.begin_stretch(combination, span.begin + done);
+        }
+        let passed = self.leap(combination, span, done, state, see.is_some())?;
+        self.room.waits(passed.cells);
+        let next = passed.goes_on_at.map_or(span.end, |next| span.begin + next);
+        self.go_on_stretch(passed.cells, next, see);
+        Some(passed)
     }
 
     /// Whether nobody has cancelled the motion.
