@@ -222,7 +222,8 @@ impl<'a> PointEvaluator<'a> {
             let counts = STEEPEST * shift.abs() > stability.error;
             if *beside_fold && counts && judge.refined.is_none() {
                 // What lies across the branch and what lies along it may cancel, and are taken by their sizes.
-                let along = distance(&judge.beside(finer), &stability.multipliers);
+                let (across, error) = judge.beside(finer, stability.error);
+                let along = distance(&across, &stability.multipliers) + error;
                 stability = Stability::of(stability.multipliers, stability.error + along);
             }
         }

@@ -168,8 +168,13 @@ impl<'r> Run<'r> {
         let u = equations.unknowns_of(&event.point.orbit.states, event.point.value);
         let same = self.same_state(equations).at_point();
         // Along a resonance orbits shrink by orders of magnitude.
+        let own = event.point.size();
         let same = SameState {
-            size: same.size.min(event.point.size()),
+            size: if own > 0.0 {
+                same.size.min(own)
+            } else {
+                same.size
+            },
             ..same
         };
         let state = event.point.orbit.state();

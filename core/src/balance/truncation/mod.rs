@@ -53,9 +53,8 @@ use crate::system::{System, Variable};
 
 /// The change by the harmonics from `K` to `2 K` times this is that by all above `K`, where it falls as `K^-1.6` or faster.
 pub(crate) const BEYOND: f64 = 1.5;
-/// What contacts couple of the tail is measured in its first harmonics: one for so many of the coarse balance, and so many at least.
-const MEASURED: usize = 4;
-const MEASURED_LEAST: usize = 12;
+/// What contacts couple of the tail is measured in its first harmonics, which hold all of its square but this part.
+const UNMEASURED: f64 = 0.1;
 /// Size of a correction, in parts of the orbit, that Newton's method leaves.
 pub(crate) const NOTHING: f64 = 1e-13;
 /// Size of an oscillation, in parts of the mean, that is one of rounding.
@@ -80,9 +79,8 @@ pub(crate) struct RefinedBalance<'a> {
     beyond: Vec<f64>,
     /// The coarse balance, where contact forces are exact.
     plain: Option<Balance<'a>>,
-    /// Series of a contact force, and the length of its part that reaches the harmonics where the coupling is measured.
+    /// Series of a contact force.
     force: Vec<f64>,
-    short: usize,
     /// The tail alone.
     without_core: Vec<f64>,
     /// The last orbit corrected further, and before its last step.
@@ -119,9 +117,6 @@ impl<'a> RefinedBalance<'a> {
         };
         let of = |resolution| Balance::new(system, parameters, omega, variable, resolution);
         let (balance, plain) = (of(fine), of(coarse));
-        let measured = (coarse.harmonics / MEASURED)
-            .max(MEASURED_LEAST * coarse.period * coarse.stride)
-            .min(fine.harmonics - coarse.harmonics);
         let unknowns = balance.unknowns();
         let coordinates = balance.layout().coordinates;
         Self {
@@ -133,8 +128,7 @@ impl<'a> RefinedBalance<'a> {
             modes: Modes::default(),
             beyond: vec![0.0; coordinates],
             force: vec![0.0; series::length(balance.force_harmonics())],
-            measured: coarse.harmonics + measured,
-            short: series::length(plain.force_harmonics() + measured),
+            measured: fine.harmonics,
             plain: (coarse.aft == Aft::Switched).then_some(plain),
             without_core: Vec::new(),
             further: Vec::new(),
@@ -196,9 +190,28 @@ impl<'a> RefinedBalance<'a> {
         Some(())
     }
 
+    /// The harmonic up to which those of the tail hold all of its square but [`UNMEASURED`]: inertia grows with the square of a harmonic, and
+    /// harmonics fall, unless one of them meets a mode.
+    fn first_harmonics(&self) -> usize {
+        let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
+        let n = self.balance.layout().coordinates;
+        let square = |entry: usize| {
+            let rows = (0..n).map(|i| &self.orbit[i * fine + entry..][..2]);
+            rows.map(|pair| pair[0].powi(2) + pair[1].powi(2))
+                .sum::<f64>()
+        };
+        let entries = (coarse..fine).step_by(2);
+        let most = UNMEASURED * entries.clone().map(square).sum::<f64>();
+        let mut beyond = 0.0;
+        let last = entries.rev().find(|&entry| {
+            beyond += square(entry);
+            beyond > most
+        });
+        last.map_or(self.coarse.harmonics, |entry| entry.div_ceil(2))
+    }
+
     /// What contacts couple of the tail that was added to its inertia, from the residual that it leaves, or from the forces on it alone:
-    /// the next step of the tail to this one, harmonic by harmonic. Inertia grows with the square of a harmonic, and harmonics fall, so that
-    /// those which come first tell it.
+    /// the next step of the tail to this one, harmonic by harmonic, up to the highest that is measured.
     fn measure_coupling(&mut self, forces: bool) {
         let (fine, coarse) = (self.balance.length(), series::length(self.coarse.harmonics));
         let n = self.balance.layout().coordinates;
@@ -243,10 +256,14 @@ impl<'a> RefinedBalance<'a> {
         self.add_stiffness();
         self.solve_tail()?;
         self.alone.clone_from(&self.residual);
+        self.measured = self.first_harmonics();
+        // Those of a force reach farther where its direction moves.
+        let beside = self.balance.force_harmonics() - self.balance.resolution().harmonics;
+        let short = series::length(self.measured + beside);
         self.residual.fill(0.0);
         for index in 0..self.balance.alike.len() {
             let Alike { contact, count } = self.balance.alike[index];
-            let force = &mut self.force[..self.short];
+            let force = &mut self.force[..short];
             self.balance.contact_force(&self.orbit, contact, force);
             self.balance
                 .add_in_direction(contact, count, force, &mut self.residual);

@@ -397,7 +397,8 @@ fn drop_places_beside(turns: &mut Vec<Turn>, first: usize, [touch, error]: [f64;
     let (mut place, mut turned) = (0, false);
     turns.retain(|turn| {
         place += 1;
-        let dropped = place > first && (turn.value - touch).abs() <= ERRORS * error;
+        let beside = error.is_finite() && (turn.value - touch).abs() <= ERRORS * error;
+        let dropped = place > first && beside;
         turned ^= dropped && turn.kind == EventKind::Fold;
         !dropped
     });

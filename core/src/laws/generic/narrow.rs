@@ -58,10 +58,13 @@ impl Scales {
             let length = range[1] - range[0];
             // Not a number is no range either.
             let is_range = length > 0.0 && length.is_finite();
-            if !is_range || !self.any(piece) {
+            if !is_range {
                 continue;
             }
             for feature in 0..self.features(piece) {
+                if !self.is_sharp(piece, feature) {
+                    continue;
+                }
                 for &mark in marks(self.kind(piece, feature)) {
                     self.marked(piece, feature, mark, range, to);
                 }

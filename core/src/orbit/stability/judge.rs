@@ -81,7 +81,7 @@ pub(crate) struct Judge {
     rest: Rest,
     /// The last orbit, where it was closed by integration.
     pub(crate) refined: Option<Refined>,
-    /// Orbits judged.
+    /// Orbits whose multipliers were computed.
     pub(crate) computed: usize,
 }
 
@@ -202,13 +202,18 @@ impl Judge {
         }
     }
 
-    /// The multipliers of an orbit beside the one that was judged last, as exactly as a first attempt finds them; none if that fails.
-    pub(crate) fn beside(&mut self, finer: &RefinedBalance<'_>) -> Vec<Complex<f64>> {
+    /// The multipliers of an orbit beside the one that was judged last, if the method can as exactly as this, and their error; none if that
+    /// fails.
+    pub(crate) fn beside(
+        &mut self,
+        finer: &RefinedBalance<'_>,
+        exactly: f64,
+    ) -> (Vec<Complex<f64>>, f64) {
         self.computed += 1;
         let orbit = Orbit::of(finer.balance(), finer.series());
-        self.engine
-            .multipliers(&orbit, LENIENCE * self.aim)
-            .multipliers
+        let tolerance = exactly.clamp(LEAST, LENIENCE * self.tolerance);
+        let found = self.engine.multipliers(&orbit, tolerance);
+        (found.multipliers, found.error)
     }
 
     /// Multipliers of an orbit as it is, and of the corrected one with what the truncation may leave in them.

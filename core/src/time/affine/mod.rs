@@ -1,9 +1,9 @@
 //! The flow of systems whose forces are piecewise affine: closed forms from switch to switch.
 //!
 //! While no gap leaves its piece, the motion is that of a linear system with constant coefficients, and is tabulated as series
-//! that end below rounding (`table`); where a period has many of them, it is passed in longer steps (`ladder`, `modes`). The first meeting of a gap with an end of its piece is proven to be the first (`search`,
-//! `crossing`). There the state is continuous, and perturbations jump (`tangent`). One coordinate under one harmonic has the same
-//! in arrays of fixed size (`scalar`, `interval`).
+//! that end below rounding (`table`); where a period has many of them, it is passed in longer steps (`ladder`, `modes`, `leap`). The first
+//! meeting of a gap with an end of its piece is proven to be the first (`search`, `crossing`). There the state is continuous, and
+//! perturbations jump (`tangent`). One coordinate under one harmonic has the same in arrays of fixed size (`scalar`, `interval`).
 //!
 //! A motion that touches an end without crossing it stays on its piece; perturbations do not jump there.
 
@@ -13,6 +13,7 @@ mod equations;
 mod exponential;
 mod interval;
 mod ladder;
+mod leap;
 mod model;
 mod modes;
 mod scalar;
@@ -53,7 +54,7 @@ pub struct Affine {
     at: Vec<Option<usize>>,
     column: Vec<f64>,
     propagator: Vec<f64>,
-    room: ladder::Room,
+    room: leap::Room,
     /// The state at the end of a stretch.
     next: Vec<f64>,
     /// The flow of the reversed motion; made when it is needed.
@@ -104,7 +105,7 @@ impl Affine {
             column: vec![0.0; 2 * model.basis.coordinates],
             next: vec![0.0; 2 * model.basis.coordinates],
             propagator: vec![0.0; 4 * model.basis.coordinates.pow(2)],
-            room: ladder::Room::new(&model.basis),
+            room: leap::Room::new(&model.basis),
             work: Work::default(),
             cancel: Cancel::new(),
             scalar: Scalar::new(&model),
@@ -124,6 +125,8 @@ impl Affine {
     ) -> Result<(), FlowError> {
         self.room.begin();
         let passed = self.pass_span(span, state, tangent, see);
+        // After a failure too perturbations are those of the state that it leaves.
+        self.catch_up(tangent);
         self.show(see);
         passed
     }
@@ -147,7 +150,6 @@ impl Affine {
             self.goes_on(span.begin + done)?;
             let passed = self.pass_segment(span, done, state, tangent, see)?;
             let Some(next) = passed.goes_on_at else {
-                self.catch_up(tangent);
                 return Ok(());
             };
             done = next;
@@ -235,25 +237,6 @@ impl Affine {
             cells,
             switch,
         })
-    }
-
-    /// Leaps, and tells what waits and what is shown of it.
-    fn leap_on(
-        &mut self,
-        combination: usize,
-        span: Span,
-        done: f64,
-        state: &mut [f64],
-        see: &mut Option<See<'_>>,
-    ) -> Option<Passed> {
-        if see.is_some() {
-            self.begin_stretch(combination, span.begin + done);
-        }
-        let passed = self.leap(combination, span, done, state, see.is_some())?;
-        self.room.waits(passed.cells);
-        let next = passed.goes_on_at.map_or(span.end, |next| span.begin + next);
-        self.go_on_stretch(passed.cells, next, see);
-        Some(passed)
     }
 
     /// Whether nobody has cancelled the motion.

@@ -171,15 +171,35 @@ impl Modes {
         (self.growth * time).exp()
     }
 
-    /// Part of the rates that belongs to modes which turn by more than one within a time.
+    /// Part of the rates that belongs to modes which turn by more than one within a time: of all of the motion, or of one of the rows, whichever
+    /// is larger. Where all of a structure moves slowly a gap may tremble.
     pub(super) fn beyond(&self, time: f64) -> f64 {
-        let rates = || self.all.iter().zip(&self.amplitudes);
-        let rate = |(mode, amplitude): (&Mode, &f64)| mode.size * amplitude;
-        let fast: f64 = rates()
-            .filter(|(mode, _)| mode.size * time > 1.0)
-            .map(rate)
-            .sum();
-        let all: f64 = rates().map(rate).sum();
+        let all = self.part_beyond(time, |mode, amplitude| mode.size * amplitude);
+        let rows = self.weights.chunks_exact(self.all.len());
+        let rows = rows.map(|weights| {
+            let mut weights = weights.iter();
+            self.part_beyond(time, |mode, amplitude| {
+                let weight = weights.next().copied().unwrap_or(0.0);
+                if mode.size > 0.0 {
+                    weight / mode.size * amplitude
+                } else {
+                    0.0
+                }
+            })
+        });
+        rows.fold(all, f64::max)
+    }
+
+    /// The part of a sum over modes that those have which turn by more than one within a time.
+    fn part_beyond(&self, time: f64, mut rate: impl FnMut(&Mode, f64) -> f64) -> f64 {
+        let (mut fast, mut all) = (0.0, 0.0);
+        for (mode, &amplitude) in self.all.iter().zip(&self.amplitudes) {
+            let rate = rate(mode, amplitude);
+            all += rate;
+            if mode.size * time > 1.0 {
+                fast += rate;
+            }
+        }
         if all > 0.0 { fast / all } else { 0.0 }
     }
 }
