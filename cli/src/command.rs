@@ -7,6 +7,8 @@ use clap::{Parser, Subcommand};
 
 use crate::attractors::{self, figures};
 use crate::built_in;
+#[cfg(feature = "explore")]
+use crate::explore;
 use crate::install;
 use crate::misplaced::{self, Given};
 use crate::{map, multipliers, paper, program, response, show, study, work_precision};
@@ -40,6 +42,8 @@ pub struct Program {
 )]
 pub enum Task {
     Response(Box<response::options::Options>),
+    #[cfg(feature = "explore")]
+    Explore(explore::options::Options),
     Show(show::Options),
     Map(Box<map::Options>),
     Attractors(Box<attractors::options::Options>),
@@ -84,6 +88,8 @@ pub fn main() -> ExitCode {
     };
     match program.task {
         Task::Response(options) => response::start(&options),
+        #[cfg(feature = "explore")]
+        Task::Explore(options) => explore::start(&options),
         Task::Show(options) => show::start(&options),
         Task::Map(options) => map::start(&options),
         Task::Attractors(options) => attractors::start(&options),

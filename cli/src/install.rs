@@ -10,8 +10,10 @@ use crate::command::Program;
 use crate::program;
 
 /// Subcommands that have a page of their own.
-const PAGES: [&str; 9] = [
+const PAGES: &[&str] = &[
     "response",
+    #[cfg(feature = "explore")]
+    "explore",
     "show",
     "map",
     "attractors",

@@ -6,6 +6,8 @@
 pub mod attractors;
 pub mod built_in;
 pub mod command;
+#[cfg(feature = "explore")]
+pub mod explore;
 mod install;
 pub mod look;
 pub mod map;

@@ -70,7 +70,7 @@ pub fn page(charts: Vec<Chart>) -> String {
 }
 
 /// The orbits of all branches.
-fn table(model: &dyn System, branches: &[Branch]) -> Table {
+pub(crate) fn table(model: &dyn System, branches: &[Branch]) -> Table {
     let of = branches.first().and_then(Branch::accuracy_of);
     let mut table = Table::of(model).with_errors_of(of);
     for (number, branch) in branches.iter().enumerate() {
@@ -102,7 +102,7 @@ pub struct Record<'r> {
     pub reduction: Option<&'r Reduction>,
 }
 
-fn json(record: &Record<'_>) -> io::Result<Vec<u8>> {
+pub(crate) fn json(record: &Record<'_>) -> io::Result<Vec<u8>> {
     let mut text = serde_json::to_vec(record)?;
     text.push(b'\n');
     Ok(text)

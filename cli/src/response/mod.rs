@@ -17,7 +17,7 @@ pub mod run;
 pub mod search;
 pub mod structure;
 pub mod summary;
-mod value;
+pub(crate) mod value;
 
 use std::process::ExitCode;
 

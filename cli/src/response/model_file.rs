@@ -86,7 +86,19 @@ pub fn read(
     varied: Varied<'_>,
 ) -> Result<Declaration, ModelError> {
     let text = text(path).map_err(ModelError::Unreadable)?;
-    let mut model = Declaration::parse(&text).map_err(ModelError::Faulty)?;
+    let model = Declaration::parse(&text).map_err(ModelError::Faulty)?;
+    valued(model, settings, varied)
+}
+
+/// A declaration with its parameters set. `varied` needs no value: the range gives it one.
+///
+/// # Errors
+/// If a parameter to be set does not exist, or one has no value.
+pub fn valued(
+    mut model: Declaration,
+    settings: &[(String, f64)],
+    varied: Varied<'_>,
+) -> Result<Declaration, ModelError> {
     // An unknown name is reported by the run itself.
     let _ = model.set(varied.name, varied.value);
     for (name, value) in settings {

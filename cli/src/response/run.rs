@@ -257,13 +257,13 @@ fn checked(
 }
 
 /// Where branches wind, which takes long and is seldom what was looked for.
-fn windings(branches: &[Branch]) -> impl Iterator<Item = String> {
+pub(crate) fn windings(branches: &[Branch]) -> impl Iterator<Item = String> {
     let windings = branches.iter().filter_map(Branch::winding);
     windings.map(|winding| winding.to_string())
 }
 
 /// What is unusual about the model, at the frequency where the branch begins.
-fn remarks_on(branch: &Branch, model: &dyn System) -> Vec<String> {
+pub(crate) fn remarks_on(branch: &Branch, model: &dyn System) -> Vec<String> {
     let omega = branch.points.first().map_or(1.0, |point| point.orbit.omega);
     let remarks = remarks::of(model, omega).into_iter();
     remarks.map(|remark| remark.to_string()).collect()
@@ -343,7 +343,7 @@ pub fn in_range(options: &Options, model: &dyn System) -> FrequencyResponse {
 }
 
 /// The options in the library's terms.
-fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
+pub(crate) fn request(options: &Options, model: &dyn System) -> FrequencyResponse {
     let mut request = in_range(options, model)
         .tolerance(options.tolerance)
         .aft(options.aft.into())
@@ -390,7 +390,7 @@ fn solutions_at(
 }
 
 /// The library's picture of the branches, with the boundary of lost contact.
-fn picture(
+pub(crate) fn picture(
     options: &Options,
     diagram: &Diagram,
     model: &dyn System,

@@ -1,0 +1,159 @@
+// The curve, its shadow and the pinned ones.
+
+import { extent, frame, line } from './axes.js';
+import { byId, inUnit, short, svg } from './dom.js';
+import { state } from './state.js';
+
+const KINDS = {
+  fold: 'the curve turns back: beyond, what one sees jumps elsewhere',
+  'period-doubling': 'the motion begins to repeat after twice the time',
+  'symmetry-breaking': 'the motion loses its symmetry',
+  'branch-point': 'two curves of motions cross',
+  'neimark-sacker': 'a second frequency begins',
+  grazing: 'a contact is just touched',
+};
+
+export const meaning = (kind) => KINDS[kind] ?? '';
+
+// A mark of its own for each kind.
+export function mark(kind, x, y, size = 5) {
+  const shapes = {
+    fold: `M${-size} 0a${size} ${size} 0 1 0 ${2 * size} 0a${size} ${size} 0 1 0 ${-2 * size} 0Z`,
+    'period-doubling': `M${-size} ${-size}H${size}V${size}H${-size}Z`,
+    'symmetry-breaking': `M0 ${-1.3 * size}L${1.3 * size} 0L0 ${1.3 * size}L${-1.3 * size} 0Z`,
+    'branch-point': `M0 ${-1.2 * size}L${1.2 * size} ${size}H${-1.2 * size}Z`,
+    'neimark-sacker': `M${-size} ${-size}L${size} ${size}M${size} ${-size}L${-size} ${size}M0 ${-1.3 * size}V${1.3 * size}`,
+    grazing: `M${-1.2 * size} 0H${1.2 * size}M0 ${-1.2 * size}V${1.2 * size}`,
+  };
+  return svg('path', { class: 'mark', d: shapes[kind] ?? shapes.fold, transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})` });
+}
+
+export const chart = {
+  curve: null,
+  shadow: null,
+  pins: [],
+  solutions: [],
+  domain: null, // of the axes while a slider is dragged
+  place: null, // the frame that was drawn last
+};
+
+const svgOf = () => byId('chart');
+
+function flats(curve) {
+  return curve.branches.flatMap((branch) => branch.runs.map((run) => run.places));
+}
+
+function comparable(curve) {
+  return curve && chart.curve && curve.varied === chart.curve.varied && curve.plot === chart.curve.plot;
+}
+
+// The range of the vertical axis: what is drawn fits, and while it moves the axis only grows.
+function verticalOf(curves, dragging) {
+  let [low, high] = extent(curves.flatMap((curve) => flats(curve).flatMap((flat) => flat.filter((_, i) => i % 2 === 1))));
+  if (state.yscale !== 'linear') {
+    const positive = curves.flatMap((curve) => flats(curve).flatMap((flat) => flat.filter((v, i) => i % 2 === 1 && v > 0)));
+    [low, high] = extent(positive);
+    if (low < high * 1e-12) low = high * 1e-12;
+  }
+  if (!Number.isFinite(low)) return [0, 1];
+  if (state.yscale === 'linear') {
+    const pad = 0.05 * (high - low || Math.abs(high) || 1);
+    low = low >= 0 && low < 0.4 * high ? 0 : low - pad;
+    high += pad;
+  } else {
+    low /= 1.2;
+    high *= 1.2;
+  }
+  if (dragging && chart.domain) {
+    low = Math.min(low, chart.domain[0]);
+    high = Math.max(high, chart.domain[1]);
+  }
+  chart.domain = [low, high];
+  return chart.domain;
+}
+
+function horizontal(curve) {
+  const ends = [Math.min(state.from, state.to), Math.max(state.from, state.to)];
+  // Branches from bifurcations may go beyond.
+  const [low, high] = extent(flats(curve).flatMap((flat) => flat.filter((_, i) => i % 2 === 0)));
+  const domain = [Math.min(ends[0], Number.isFinite(low) ? low : ends[0]), Math.max(ends[1], Number.isFinite(high) ? high : ends[1])];
+  if (state.xscale === 'log' && !(domain[0] > 0)) domain[0] = domain[1] > 0 ? domain[1] / 1e3 : 1e-3;
+  return domain;
+}
+
+// Draws everything anew.
+export function draw({ dragging = false } = {}) {
+  const target = svgOf();
+  const { width, height } = target.getBoundingClientRect();
+  const curve = chart.curve;
+  if (!curve || width < 50) return;
+  target.setAttribute('viewBox', `0 0 ${width} ${height}`);
+  const others = [chart.shadow, ...chart.pins.map((pin) => pin.curve)].filter(comparable);
+  const on = frame(width, height, {
+    x: { domain: horizontal(curve), scale: state.xscale, label: inUnit(curve.varied, curve.varied_unit) },
+    y: { domain: verticalOf([curve, ...others], dragging), scale: state.yscale, label: inUnit(curve.label, state.yscale === 'db' ? `dB over 1 ${curve.unit}`.trim() : curve.unit) },
+  });
+  chart.place = on;
+  const { px, py, box } = on;
+  const clip = svg('clipPath', { id: 'inside' }, svg('rect', { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top }));
+  const shadows = svg('g', { class: 'shadow', 'clip-path': 'url(#inside)' });
+  if (comparable(chart.shadow)) for (const flat of flats(chart.shadow)) shadows.append(svg('path', { d: line(flat, px, py) }));
+  const pins = svg('g', { 'clip-path': 'url(#inside)' });
+  for (const pin of chart.pins.filter((candidate) => comparable(candidate.curve))) {
+    for (const branch of pin.curve.branches) {
+      for (const run of branch.runs) {
+        const path = svg('path', { class: run.verdict, d: line(run.places, px, py) });
+        path.style.stroke = `var(--pin${pin.colour})`;
+        pins.append(path);
+      }
+    }
+  }
+  const curves = svg('g', { id: 'curve', class: curve.effort === 'screen' ? 'coarse' : 'exact', 'clip-path': 'url(#inside)' });
+  for (const branch of curve.branches) for (const run of branch.runs) curves.append(svg('path', { class: run.verdict, d: line(run.places, px, py) }));
+  const marks = svg('g', { id: 'marks' });
+  for (const event of curve.events) {
+    const [x, y] = [px(event.value), event.size === null ? NaN : py(event.size)];
+    if (!Number.isFinite(x) || !Number.isFinite(y)) continue;
+    const shape = mark(event.kind, x, y);
+    shape.append(svg('title', { text: `${event.said}: ${meaning(event.kind)}` }));
+    marks.append(shape);
+  }
+  const here = svg('g', { id: 'here' });
+  if (state.at !== null) {
+    const x = px(state.at);
+    if (x >= box.left && x <= box.right) here.append(svg('line', { class: 'here', x1: x, x2: x, y1: box.top, y2: box.bottom }));
+    for (const { size, chosen } of chart.solutions) {
+      if (size === null || !Number.isFinite(py(size))) continue;
+      here.append(svg('circle', { class: chosen ? 'solution chosen' : 'solution', cx: x, cy: py(size), r: chosen ? 6 : 5 }));
+    }
+  }
+  target.replaceChildren(clip, ...on.parts, shadows, pins, curves, marks, here, svg('circle', { id: 'hover', class: 'hover', r: 3, cx: -9, cy: -9 }));
+  target.setAttribute('aria-label', `${curve.label} over ${curve.varied}: ${curve.events.length} events, ${curve.events.map((event) => event.said).join('; ')}`);
+}
+
+// The place of the curve that is nearest to one on the screen: value, size, how far, and what is known of it.
+export function nearest(clientX, clientY) {
+  if (!chart.curve || !chart.place) return null;
+  const bounds = svgOf().getBoundingClientRect();
+  const [x, y] = [clientX - bounds.left, clientY - bounds.top];
+  const { px, py, value } = chart.place;
+  let best = { far: Infinity };
+  chart.curve.branches.forEach((branch, number) => {
+    for (const run of branch.runs) {
+      for (let i = 0; i + 1 < run.places.length; i += 2) {
+        const [v, size] = [run.places[i], run.places[i + 1]];
+        if (v === null || size === null) continue;
+        const far = Math.hypot(px(v) - x, py(size) - y);
+        if (far < best.far) best = { far, value: v, size, verdict: run.verdict, branch: number, period: branch.period };
+      }
+    }
+  });
+  return { ...best, under: value(x), clicked: y };
+}
+
+// What is said of a place on the curve.
+export function said(place) {
+  const { varied, varied_unit: unit, label, unit: measured } = chart.curve;
+  const period = place.period > 1 ? `, period ${place.period}` : '';
+  return `${varied} ${short(place.value, 6)} ${unit}: ${label} ${short(place.size, 5)} ${measured}, ${place.verdict}${period}`.replace(/ +/g, ' ').replace(' :', ':').replace(' ,', ',');
+}
