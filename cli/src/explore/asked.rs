@@ -91,7 +91,8 @@ impl Asked {
     /// # Errors
     /// Which does not.
     pub fn check(&self) -> Result<(), Fault> {
-        let value = |field: &str, must: &str| Fault::new("value", format!("{field} {must}")).of(field);
+        let value =
+            |field: &str, must: &str| Fault::new("value", format!("{field} {must}")).of(field);
         if !(1..=LONGEST_PERIOD).contains(&self.period) {
             let must = format!("must be from 1 to {LONGEST_PERIOD}");
             return Err(value("period", &must));

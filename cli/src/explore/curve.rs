@@ -201,7 +201,10 @@ fn ends(traced: &Traced) -> Vec<String> {
     });
     notes.extend(lines);
     for omitted in &traced.diagram.omitted {
-        let failed = matches!(omitted.reason, Reason::Failed(_) | Reason::Budget | Reason::Period);
+        let failed = matches!(
+            omitted.reason,
+            Reason::Failed(_) | Reason::Budget | Reason::Period
+        );
         let branch = &traced.diagram.branches[omitted.branch].branch;
         let event = branch.events.get(omitted.event).filter(|_| failed);
         notes.extend(event.map(|event| {

@@ -103,7 +103,10 @@ pub fn of(text: &str, texts: &Texts) -> Result<Declared, Fault> {
     let facts = declaration.facts().parameters.iter();
     let values = declaration.parameters().into_iter();
     let parameters = facts.zip(values);
-    let known = declaration.parameters().iter().all(|(_, value)| value.is_finite());
+    let known = declaration
+        .parameters()
+        .iter()
+        .all(|(_, value)| value.is_finite());
     let remarks = known.then(|| remarks::of(&declaration, 1.0));
     let remarks = remarks.into_iter().flatten();
     Ok(Declared {

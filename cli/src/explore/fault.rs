@@ -58,7 +58,10 @@ impl Fault {
 
     /// A newer request has taken its place, or nobody waits for it any more.
     pub fn cancelled() -> Self {
-        Self::new("cancelled", "a newer request has taken the place of this one")
+        Self::new(
+            "cancelled",
+            "a newer request has taken the place of this one",
+        )
     }
 }
 
@@ -78,7 +81,11 @@ impl From<Error> for Fault {
             }
             _ => None,
         };
-        let kind = if field.is_some() { "value" } else { "computation" };
+        let kind = if field.is_some() {
+            "value"
+        } else {
+            "computation"
+        };
         Self {
             field,
             ..Self::new(kind, chain(&error).to_string())

@@ -34,55 +34,49 @@ fn write(
         writeln!(text, "}}\n")?;
     }
     writeln!(text, "fn main() -> Result<(), hertzian::Error> {{")?;
-    let fields = facts.parameters.iter().zip(values);
-    let fields = fields.map(|(parameter, value)| format!("{}: {value:?}", parameter.name));
-    let fields: Vec<String> = fields.collect();
-    writeln!(
-        text,
-        "    let model = {} {{ {} }};",
-        facts.name,
-        fields.join(", ")
-    )?;
-    let request = match asked.depth {
-        Some(_) => "hertzian::Bifurcations::of(&model)",
-        None => "hertzian::FrequencyResponse::of(&model)",
-    };
-    writeln!(text, "    let request = {request}")?;
-    if asked.varied != "omega" {
-        writeln!(
-            text,
-            "        .vary(\"{}\").omega({:?})",
-            asked.varied, asked.omega
-        )?;
+    writeln!(text, "    let model = {} {{", facts.name)?;
+    for (parameter, value) in facts.parameters.iter().zip(values) {
+        writeln!(text, "        {}: {value:?},", parameter.name)?;
     }
-    write!(text, "        .from({:?}).to({:?})", asked.from, asked.to)?;
-    if asked.period != 1 {
-        write!(text, "\n        .period({})", asked.period)?;
-    }
-    match (asked.depth, by) {
-        (Some(depth), _) => write!(text, "\n        .depth({depth})")?,
-        (None, By::Balance) => {}
-        (None, By::Shooting) => write!(text, "\n        .by(hertzian::Shooting::new())")?,
-        (None, By::ContactEquation) => {
-            write!(text, "\n        .by(hertzian::ContactEquation::new())")?;
-        }
-    }
-    writeln!(text, ";")?;
+    writeln!(text, "    }};")?;
+    request(text, asked, by)?;
     if asked.depth.is_some() {
         writeln!(text, "    let diagram = request.run()?;")?;
         writeln!(text, "    for found in &diagram.branches {{")?;
-        writeln!(text, "        let branch = &found.branch;")?;
-        writeln!(
-            text,
-            "        branch.events.iter().for_each(|event| println!(\"{{}}\", branch.describe(event)));"
-        )?;
-        writeln!(text, "    }}\n    diagram.plot(\"response.svg\")\n}}")
+        writeln!(text, "        for event in &found.branch.events {{")?;
+        let said = "println!(\"{}\", found.branch.describe(event));";
+        writeln!(text, "            {said}\n        }}\n    }}")?;
+        writeln!(text, "    diagram.plot(\"response.svg\")\n}}")
     } else {
         writeln!(text, "    let branch = request.run()?;")?;
-        writeln!(
-            text,
-            "    branch.events.iter().for_each(|event| println!(\"{{}}\", branch.describe(event)));"
-        )?;
+        writeln!(text, "    for event in &branch.events {{")?;
+        let said = "println!(\"{}\", branch.describe(event));";
+        writeln!(text, "        {said}\n    }}")?;
         writeln!(text, "    branch.plot(\"response.svg\")\n}}")
     }
+}
+
+/// What is asked for, an option in each line.
+fn request(text: &mut String, asked: &Asked, by: By) -> std::fmt::Result {
+    let of = match asked.depth {
+        Some(_) => "hertzian::Bifurcations::of(&model)",
+        None => "hertzian::FrequencyResponse::of(&model)",
+    };
+    let mut options = vec![format!("let request = {of}")];
+    if asked.varied != "omega" {
+        options.push(format!(".vary({:?})", asked.varied));
+        options.push(format!(".omega({:?})", asked.omega));
+    }
+    options.push(format!(".from({:?})", asked.from));
+    options.push(format!(".to({:?})", asked.to));
+    if asked.period != 1 {
+        options.push(format!(".period({})", asked.period));
+    }
+    options.extend(match (asked.depth, by) {
+        (Some(depth), _) => Some(format!(".depth({depth})")),
+        (None, By::Balance) => None,
+        (None, By::Shooting) => Some(".by(hertzian::Shooting::new())".to_owned()),
+        (None, By::ContactEquation) => Some(".by(hertzian::ContactEquation::new())".to_owned()),
+    });
+    writeln!(text, "    {};", options.join("\n        "))
 }

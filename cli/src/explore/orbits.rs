@@ -114,9 +114,12 @@ pub fn at(traced: &Traced, value: f64, plot: &str, cancel: &Cancel) -> Result<Or
         orbits: Vec::new(),
         notes: Vec::new(),
     };
+    let Some(first) = traced.branches().next() else {
+        return Ok(found);
+    };
+    found.said = of_varied(first, Decimal::plain(value));
+    let wanted = wanted(plot, first)?;
     for (number, branch) in traced.branches().enumerate() {
-        found.said = of_varied(branch, Decimal::plain(value));
-        let wanted = wanted(plot, branch)?;
         let points = match branch.at(value) {
             Ok(points) => points,
             Err(error) if is_cancelled(&error) => return Err(error.into()),
@@ -131,11 +134,17 @@ pub fn at(traced: &Traced, value: f64, plot: &str, cancel: &Cancel) -> Result<Or
                 return Err(Fault::cancelled());
             }
             if found.orbits.len() == MOST {
-                found.notes.push(format!("there are more than {MOST} orbits here"));
+                found
+                    .notes
+                    .push(format!("there are more than {MOST} orbits here"));
                 return Ok(found);
             }
             match show(branch, number, point, &wanted) {
-                Ok(shown) => found.orbits.push(shown),
+                // In what the first branch is measured in, as the command does.
+                Ok(shown) => found.orbits.push(Shown {
+                    said: first.describe_size(point),
+                    ..shown
+                }),
                 Err(error) => found.notes.push(chain(&error).to_string()),
             }
         }
@@ -216,9 +225,7 @@ fn contacts(branch: &Branch, system: &dyn System, point: &Point) -> Result<Vec<C
                 let position = point.orbit.state_at(column, time).unwrap_or_default().0;
                 value * wave_at(wave, phase) * position
             }
-            Place::Offset { contact: own, wave } if own == contact => {
-                -value * wave_at(wave, phase)
-            }
+            Place::Offset { contact: own, wave } if own == contact => -value * wave_at(wave, phase),
             _ => 0.0,
         });
         terms.sum()
@@ -252,7 +259,9 @@ fn wave_at(wave: Wave, phase: f64) -> f64 {
 
 /// Stretches of time with a force.
 fn closed(wave: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let largest = wave.iter().fold(0.0_f64, |m, [_, force]| m.max(force.abs()));
+    let largest = wave
+        .iter()
+        .fold(0.0_f64, |m, [_, force]| m.max(force.abs()));
     let mut stretches: Vec<[f64; 2]> = Vec::new();
     for pair in wave.windows(2) {
         let [[from, a], [to, b]] = [pair[0], pair[1]];
@@ -268,11 +277,7 @@ fn closed(wave: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 /// Of a contact whose gap is one coordinate times a factor, less a distance: which, the factor, and where the gap is zero.
-fn surface(
-    system: &dyn System,
-    contact: usize,
-    coefficients: &[f64],
-) -> Option<(usize, f64, f64)> {
+fn surface(system: &dyn System, contact: usize, coefficients: &[f64]) -> Option<(usize, f64, f64)> {
     let (mut of, mut offset) = (None, 0.0);
     for (place, &value) in system.facts().places.iter().zip(coefficients) {
         let wave = match *place {

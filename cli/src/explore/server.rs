@@ -220,7 +220,8 @@ async fn read(mut body: Incoming) -> Result<Vec<u8>, (StatusCode, Fault)> {
             }
         }
         if length > LONGEST {
-            let message = format!("the request is larger than {LONGEST} bytes: nothing here needs so many");
+            let message =
+                format!("the request is larger than {LONGEST} bytes: nothing here needs so many");
             return Err((StatusCode::PAYLOAD_TOO_LARGE, Fault::request(message)));
         }
         Ok(bytes)

@@ -68,7 +68,9 @@ impl Traced {
 
     /// Whether there is more to be found by `hertzian response`: the branch ends before the range does, or nothing stable is on a part of it.
     pub fn lacks(&self) -> bool {
-        let ended = self.branches().any(|branch| branch.stopped != Stop::ReachedEnd);
+        let ended = self
+            .branches()
+            .any(|branch| branch.stopped != Stop::ReachedEnd);
         !self.whole && (ended || self.longest_lacking() > LACKING)
     }
 
@@ -131,8 +133,7 @@ pub fn trace(
         Ok((_, diagram)) => diagram.branches.iter().any(|found| is_lost(&found.branch)),
         Err(fault) => fault.kind == "computation",
     };
-    if gives_up && asked.by == Method::Automatic && method != By::Balance && asked.depth.is_none()
-    {
+    if gives_up && asked.by == Method::Automatic && method != By::Balance && asked.depth.is_none() {
         found = one(By::Balance).or(found);
     }
     let (options, diagram) = found?;
@@ -151,7 +152,10 @@ pub fn trace(
 
 /// Whether a branch ended because nothing further was found.
 fn is_lost(branch: &Branch) -> bool {
-    matches!(branch.stopped, Stop::StepTooShort { .. } | Stop::Motion { .. })
+    matches!(
+        branch.stopped,
+        Stop::StepTooShort { .. } | Stop::Motion { .. }
+    )
 }
 
 fn find(
@@ -173,7 +177,9 @@ fn find(
     }
     if options.bifurcations {
         let found = bifurcations::find(options, model, cancel, &mut seen)?;
-        return found.map(|found| found.diagram).ok_or_else(Fault::cancelled);
+        return found
+            .map(|found| found.diagram)
+            .ok_or_else(Fault::cancelled);
     }
     Ok(covering(options, request, &mut |done| seen.see(done))?)
 }

@@ -123,7 +123,10 @@ impl Drop for Ticket {
     fn drop(&mut self) {
         self.cancel.cancel();
         let mut running = unpoisoned(&self.work.running);
-        if running.get(&self.lane).is_some_and(|(number, _)| *number == self.number) {
+        if running
+            .get(&self.lane)
+            .is_some_and(|(number, _)| *number == self.number)
+        {
             running.remove(&self.lane);
         }
     }
@@ -170,12 +173,7 @@ impl Work {
         emit(json!({ "fault": fault }));
     }
 
-    fn try_answer(
-        &self,
-        ask: &Ask,
-        cancel: &Cancel,
-        emit: &Emit,
-    ) -> Result<Value, Fault> {
+    fn try_answer(&self, ask: &Ask, cancel: &Cancel, emit: &Emit) -> Result<Value, Fault> {
         if cancel.is_cancelled() {
             return Err(Fault::cancelled());
         }
@@ -186,7 +184,7 @@ impl Work {
             }
             Ask::Curve { of, plot, effort } => self.curve(of, plot, *effort, cancel, emit),
             Ask::Orbits { of, plot, at } => {
-                let traced = self.traced(of, false, cancel, emit)?;
+                let traced = self.traced(of, true, cancel, emit)?;
                 let orbits = orbits::at(&traced, *at, plot, cancel)?;
                 Ok(json!({ "orbits": orbits }))
             }

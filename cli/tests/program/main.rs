@@ -3,6 +3,8 @@
 mod attractors;
 mod cancels;
 mod commands;
+#[cfg(feature = "explore")]
+mod explore;
 mod files;
 mod folder;
 mod kept;

@@ -1,0 +1,274 @@
+//! What the page is told.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use hertzian::Cancel;
+use hertzian_cli::explore::asked::{Asked, Effort, Method};
+use hertzian_cli::explore::exported::{Form, Scale};
+use hertzian_cli::explore::work::{Ask, Request, Work};
+use serde_json::Value;
+
+use super::{answered, last, of};
+
+fn full(of: Asked) -> Ask {
+    Ask::Curve {
+        of,
+        plot: String::new(),
+        effort: Effort::Full,
+    }
+}
+
+#[test]
+fn a_declaration_has_its_parameters_with_ranges() {
+    let text = of("bolted-joint", 1.0, 2.0).text;
+    let answer = last(&Ask::Declaration { text });
+    let declared = &answer["declaration"];
+    assert_eq!(declared["name"], "BoltedJoint");
+    let mass = &declared["parameters"][0];
+    assert_eq!(mass["name"], "mass");
+    assert_eq!(mass["documentation"], "mass of the part");
+    assert_eq!(
+        (mass["unit"].as_str(), mass["default"].as_f64()),
+        (Some("kg"), Some(2.0))
+    );
+    assert_eq!(mass["minimum"]["value"], 0.0);
+    assert_eq!(mass["minimum"]["included"], false);
+    assert!(mass["maximum"].is_null());
+    let kinds: Vec<&str> = declared["signals"]
+        .as_array()
+        .expect("signals")
+        .iter()
+        .map(|signal| signal["kind"].as_str().expect("a kind"))
+        .collect();
+    assert_eq!(kinds, ["output", "output", "coordinate", "contact"]);
+}
+
+#[test]
+fn a_fault_of_a_declaration_has_its_place() {
+    let text =
+        "Spring(x) {\n    param k = 1 > 0;\n    ddot(x) + k*x = cos(omega*t) + q;\n}".to_owned();
+    for ask in [
+        Ask::Declaration { text: text.clone() },
+        full(Asked {
+            text,
+            ..of("tip", 0.5, 1.5)
+        }),
+    ] {
+        let fault = &last(&ask)["fault"];
+        assert_eq!(fault["kind"], "declaration");
+        let place = &fault["places"][0];
+        assert_eq!(
+            (place["line"].as_u64(), place["column"].as_u64()),
+            (Some(3), Some(36))
+        );
+        assert!(
+            place["message"]
+                .as_str()
+                .expect("a sentence")
+                .contains("`q`")
+        );
+    }
+}
+
+#[test]
+fn a_fault_of_a_value_names_its_field() {
+    let base = of("one-sided", 0.6, 1.6);
+    let zeta = Asked {
+        values: [("zeta".to_owned(), -1.0)].into(),
+        ..base.clone()
+    };
+    let empty = Asked {
+        to: base.from,
+        ..base.clone()
+    };
+    let period = Asked {
+        period: 0,
+        ..base.clone()
+    };
+    let varied = Asked {
+        varied: "mass".to_owned(),
+        ..base
+    };
+    for (asked, field) in [
+        (zeta, "zeta"),
+        (empty, "to"),
+        (period, "period"),
+        (varied, "mass"),
+    ] {
+        let fault = last(&full(asked));
+        let fault = &fault["fault"];
+        let named = fault["field"] == field;
+        let said = fault["message"]
+            .as_str()
+            .is_some_and(|text| text.contains(field));
+        assert!(named || said, "{field}: {fault}");
+    }
+}
+
+#[test]
+fn contacts_that_open_are_computed_by_the_contact_equation() {
+    for (name, range, method) in [
+        ("one-sided", [0.6, 1.6], "contact-equation"),
+        ("tip", [0.994, 1.006], "balance"),
+        ("continuous", [0.6, 1.6], "balance"),
+    ] {
+        let answer = last(&full(of(name, range[0], range[1])));
+        assert_eq!(answer["curve"]["method"], method, "{name}");
+    }
+}
+
+/// At the frequency at which contact is lost the gap just touches: where the linear spring has it in closed form, peak-to-peak is twice the load.
+#[test]
+fn forces_and_gaps_are_those_of_the_law() {
+    let asked = Asked {
+        values: [("alpha".to_owned(), 1.0), ("zeta".to_owned(), 0.0)].into(),
+        by: Method::Balance,
+        ..of("one-sided", 0.2, 0.5)
+    };
+    let answer = last(&Ask::Orbits {
+        of: asked,
+        plot: String::new(),
+        at: 0.4,
+    });
+    let orbit = &answer["orbits"]["orbits"][0];
+    // Without a loss of contact x = W + A cos(omega t) / (1 - omega^2).
+    let amplitude = 0.1 / (1.0 - 0.16);
+    assert!((orbit["size"].as_f64().expect("a size") - 2.0 * amplitude).abs() < 1e-9);
+    let contact = &orbit["contacts"][0];
+    let numbers = |value: &Value| -> Vec<f64> {
+        let all = value.as_array().expect("numbers").iter();
+        all.map(|v| v.as_f64().expect("a number")).collect()
+    };
+    let (times, gaps, forces) = (
+        numbers(&contact["times"]),
+        numbers(&contact["gaps"]),
+        numbers(&contact["forces"]),
+    );
+    for ((time, gap), force) in times.iter().zip(&gaps).zip(&forces) {
+        assert!((gap - 1.0 - amplitude * (0.4 * time).cos()).abs() < 1e-9);
+        assert!((gap - force).abs() < 1e-9);
+    }
+    assert_eq!(contact["closed"].as_array().expect("stretches").len(), 1);
+    assert_eq!(numbers(&contact["surface"]), [0.0, 1.0, 0.0]);
+}
+
+#[test]
+fn the_exported_lines_are_a_program() {
+    let asked = Asked {
+        varied: "drive".to_owned(),
+        omega: 0.9,
+        by: Method::Balance,
+        ..of("cubic-with-stop", 0.01, 0.3)
+    };
+    let answer = last(&Ask::Export {
+        of: asked,
+        plot: String::new(),
+        scale: Scale::Linear,
+        form: Form::Rust,
+    });
+    let ours = answer["export"]["contents"].as_str().expect("lines");
+    assert_eq!(ours, include_str!("lines.rs"));
+}
+
+#[test]
+fn a_newer_request_takes_the_place_of_an_older_one_of_the_same_page() {
+    let work = Arc::new(Work::default());
+    let all = Cancel::new();
+    let request = |client: &str, at: f64| Request {
+        client: client.to_owned(),
+        ask: full(of("one-sided", at, 1.6)),
+    };
+    let first = work.begin(&request("a", 0.6), &all);
+    let other = work.begin(&request("b", 0.6), &all);
+    let text = Request {
+        client: "a".to_owned(),
+        ask: Ask::Declaration {
+            text: String::new(),
+        },
+    };
+    let text = work.begin(&text, &all);
+    assert!(!first.cancel.is_cancelled());
+    let second = work.begin(&request("a", 0.7), &all);
+    assert!(first.cancel.is_cancelled());
+    assert!(!second.cancel.is_cancelled() && !other.cancel.is_cancelled());
+    assert!(!text.cancel.is_cancelled());
+    // Where nobody waits any more, nothing goes on, and nothing is kept; the older one does not take the newer one along.
+    let token = second.cancel.clone();
+    drop(first);
+    assert!(!token.is_cancelled());
+    drop(second);
+    assert!(token.is_cancelled());
+    drop((other, text));
+    assert_eq!(work.running(), 0);
+}
+
+/// Shaft on eight balls: seconds of work, of which little is done once nobody wants it.
+#[test]
+fn cancelled_work_ends() {
+    let cancel = Cancel::new();
+    let token = cancel.clone();
+    let begun = Instant::now();
+    let thread = std::thread::spawn(move || {
+        let ask = full(of("ball-bearing", 0.3, 0.65));
+        answered(&Work::default(), &ask, &token)
+    });
+    std::thread::sleep(Duration::from_millis(100));
+    cancel.cancel();
+    let lines = thread.join().expect("an answer");
+    assert_eq!(lines.last().expect("a line")["fault"]["kind"], "cancelled");
+    assert!(begun.elapsed() < Duration::from_secs(3));
+}
+
+#[test]
+fn what_takes_long_says_how_far_it_is() {
+    let lines = answered(
+        &Work::default(),
+        &full(Asked {
+            by: Method::Balance,
+            ..of("ball-bearing", 0.3, 0.31)
+        }),
+        &Cancel::new(),
+    );
+    let (last, before) = lines.split_last().expect("lines");
+    assert!(last["curve"].is_object(), "{last}");
+    let said = before.iter().filter_map(|line| line["progress"].as_str());
+    let said: Vec<&str> = said.collect();
+    assert!(
+        said.iter().all(|text| text.contains("omega = 0.3")),
+        "{said:?}"
+    );
+    assert!(!said.is_empty());
+}
+
+/// On the screen a pixel is not seen to be wrong: folds are where they are to a pixel of some five hundred.
+#[test]
+fn what_moves_is_as_exact_as_the_screen() {
+    for (name, range) in [("one-sided", [0.6, 1.6]), ("cubic-with-stop", [0.4, 2.2])] {
+        let folds = |effort| -> Vec<[f64; 2]> {
+            let answer = last(&Ask::Curve {
+                of: of(name, range[0], range[1]),
+                plot: String::new(),
+                effort,
+            });
+            let events = answer["curve"]["events"]
+                .as_array()
+                .expect("events")
+                .clone();
+            let folds = events.iter().filter(|event| event["kind"] == "fold");
+            folds
+                .map(|fold| ["value", "size"].map(|key| fold[key].as_f64().expect("a number")))
+                .collect()
+        };
+        let (coarse, exact) = (folds(Effort::Screen), folds(Effort::Full));
+        assert_eq!(coarse.len(), exact.len(), "{name}");
+        let highest = exact.iter().fold(0.0_f64, |m, fold| m.max(fold[1]));
+        for (a, b) in coarse.iter().zip(&exact) {
+            assert!(
+                (a[0] - b[0]).abs() < 2e-3 * (range[1] - range[0]),
+                "{name}: {a:?} {b:?}"
+            );
+            assert!((a[1] - b[1]).abs() < 4e-3 * highest, "{name}: {a:?} {b:?}");
+        }
+    }
+}
