@@ -57,7 +57,7 @@ const several = (items) => (items.length > 1 ? `: ${items.map((item) => item.nam
 function history(orbit, time) {
   const lines = even(orbit.motions.map((motion) => ({ xs: motion.times, ys: motion.positions, name: motion.name })));
   const shades = orbit.contacts.flatMap((contact) => contact.closed);
-  const about = `Over one period${several(orbit.motions)}${shades.length > 0 ? '; shaded while in contact' : ''}`;
+  const about = `Over its period${several(orbit.motions)}${shades.length > 0 ? '; shaded while in contact' : ''}`;
   const names = orbit.motions.length === 1 ? inUnit(orbit.motions[0].name, orbit.motions[0].unit) : 'position';
   const { drawing, on } = traces('history', about, time, names, lines, shades);
   const now = svg('line', { class: 'here', y1: on.box.top, y2: on.box.bottom, x1: on.box.left, x2: on.box.left });

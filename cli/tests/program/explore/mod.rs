@@ -1,4 +1,4 @@
-//! The subcommand `explore`: what its page is told, and what its server refuses. The page itself is driven by `cli/explore.sh`.
+//! The subcommand `explore`: what its page is told, and what its server refuses. The page itself is driven by `cli/tests/explore/drive.mjs`.
 
 mod answers;
 mod fuzzed;
