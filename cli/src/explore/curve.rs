@@ -131,8 +131,7 @@ pub fn of(traced: &Traced, plot: &str, effort: Effort) -> Result<Curve, Fault> {
     let mut notes = Vec::new();
     if effort == Effort::Full {
         notes.extend(run::remarks_on(first, &*traced.model));
-        let all: Vec<Branch> = traced.branches().cloned().collect();
-        notes.extend(run::windings(&all));
+        notes.extend(run::windings(traced.branches()));
     }
     notes.extend(ends(traced));
     let drawn = traced.branches();

@@ -21,6 +21,9 @@ const KEPT: usize = 8;
 /// Characters of what a page calls itself, at most.
 const LONGEST_NAME: usize = 64;
 
+/// A page by what it calls itself, and a kind of request: what takes the place of each other.
+type Lane = (String, &'static str);
+
 /// A request of a page.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -86,7 +89,7 @@ impl Request {
     }
 
     /// What of the same page takes the place of each other.
-    fn lane(&self) -> (String, &'static str) {
+    fn lane(&self) -> Lane {
         let lane = match self.ask {
             Ask::Declaration { .. } => "declaration",
             Ask::Curve { .. } => "curve",
@@ -105,7 +108,7 @@ pub type Emit = Arc<dyn Fn(Value) + Send + Sync>;
 pub struct Work {
     texts: Texts,
     kept: Mutex<VecDeque<(Asked, Arc<Traced>)>>,
-    running: Mutex<HashMap<(String, &'static str), (u64, Cancel)>>,
+    running: Mutex<HashMap<Lane, (u64, Cancel)>>,
     next: AtomicU64,
 }
 
@@ -113,7 +116,7 @@ pub struct Work {
 #[derive(Debug)]
 pub struct Ticket {
     work: Arc<Work>,
-    lane: (String, &'static str),
+    lane: Lane,
     number: u64,
     /// Cancelled when a newer request takes its place, or nobody waits any more.
     pub cancel: Cancel,

@@ -257,8 +257,10 @@ fn checked(
 }
 
 /// Where branches wind, which takes long and is seldom what was looked for.
-pub(crate) fn windings(branches: &[Branch]) -> impl Iterator<Item = String> {
-    let windings = branches.iter().filter_map(Branch::winding);
+pub(crate) fn windings<'b>(
+    branches: impl IntoIterator<Item = &'b Branch>,
+) -> impl Iterator<Item = String> {
+    let windings = branches.into_iter().filter_map(Branch::winding);
     windings.map(|winding| winding.to_string())
 }
 

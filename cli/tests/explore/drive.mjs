@@ -63,7 +63,7 @@ async function slider(page, name) {
   return page.value(`(() => { const e = document.querySelector('[data-slider="${name}"]'); e.scrollIntoView({ block: 'center' }); const b = e.getBoundingClientRect(); const part = e.value / e.max; return { x: b.x + 8 + part * (b.width - 16), y: b.y + b.height / 2, width: b.width - 16, left: b.x + 8 }; })()`);
 }
 
-// Drags a slider to and fro for so long, as a hand does, and lets it go in a new place; gives back where that is.
+// Drags a slider back and forth for so long, as a hand does, and lets it go in a new place; gives back where that is.
 async function drag(page, name, milliseconds, part) {
   const { x, y, width, left } = await slider(page, name);
   await page.mouse('mouseMoved', x, y);

@@ -151,9 +151,13 @@ export function nearest(clientX, clientY) {
   return { ...best, under: value(x), clicked: y };
 }
 
-// What is said of a place on the curve.
-export function said(place) {
+// What is said of a place on the curve: of an orbit that was computed with more digits than of a place between two.
+export function said(drawn) {
+  const orbits = chart.curve.branches[drawn.branch]?.orbits ?? [];
+  const orbit = orbits.find(([value, size]) => Math.fround(value) === drawn.value && Math.fround(size) === drawn.size);
+  const place = orbit ? { ...drawn, value: orbit[0], size: orbit[1] } : drawn;
+  const digits = orbit ? 9 : 5;
   const { varied, varied_unit: unit, label, unit: measured } = chart.curve;
   const period = place.period > 1 ? `, period ${place.period}` : '';
-  return `${varied} ${short(place.value, 6)} ${unit}: ${label} ${short(place.size, 5)} ${measured}, ${place.verdict}${period}`.replace(/ +/g, ' ').replace(' :', ':').replace(' ,', ',');
+  return `${varied} ${short(place.value, digits + 1)} ${unit}: ${label} ${short(place.size, digits)} ${measured}, ${place.verdict}${period}`.replace(/ +/g, ' ').replace(' :', ':').replace(' ,', ',');
 }

@@ -36,6 +36,12 @@ function status(text) {
   byId('status').textContent = text;
 }
 
+// When something was drawn, for whoever measures it; the last few hundred times.
+function note(name) {
+  if (performance.getEntriesByName(name).length > 500) performance.clearMarks(name);
+  performance.mark(name);
+}
+
 // ---- curves
 
 let turn = 0;
@@ -54,7 +60,7 @@ function accept(curve) {
   draw({ dragging });
   showFound(curve);
   showMeasure(curve.plot);
-  performance.mark(`drawn-${curve.effort}`);
+  note(`drawn-${curve.effort}`);
 }
 
 async function onScreen() {
@@ -119,7 +125,7 @@ function moved() {
 }
 
 function settled() {
-  performance.mark('released');
+  note('released');
   clearTimeout(pause);
   if (!dragging && chart.curve?.effort === 'full') chart.shadow = chart.curve;
   dragging = false;
@@ -204,7 +210,7 @@ function showOrbits() {
     byId('verdict').textContent = '';
   }
   if (orbits.notes.length > 0) byId('verdict').append(el('span', { class: 'small', text: ` ${orbits.notes.join('; ')}` }));
-  performance.mark('drawn-orbits');
+  note('drawn-orbits');
 }
 
 // ---- faults
@@ -248,7 +254,7 @@ function lost() {
     byId('lost').hidden = true;
     exact = '';
     busySince = null;
-    if (declared) exactly();
+    if (declared) declare(state.text);
     else begin();
   }, AGAIN);
 }

@@ -62,8 +62,8 @@ function paint(canvas, orbit, time) {
       context.stroke();
       context.fillStyle = colour('--soft');
       context.font = '12px system-ui, sans-serif';
-      context.textAlign = 'left';
-      context.fillText(contact.name, middle - reach, wall + (under > 0 ? 16 : -8));
+      context.textAlign = 'right';
+      context.fillText(contact.name, middle + reach, wall + (under > 0 ? -6 : 14));
     }
     context.fillStyle = colour('--curve');
     context.fillRect(middle - size, position - size, 2 * size, 2 * size);
