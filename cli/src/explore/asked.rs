@@ -9,7 +9,7 @@ use hertzian::law::Variation;
 use serde::{Deserialize, Serialize};
 
 use super::declared::Texts;
-use super::fault::Fault;
+use super::fault::{Fault, Kind};
 use crate::built_in::{BuiltIn, MODELS};
 use crate::range::RangeOptions;
 use crate::response::model_file::{self, Varied};
@@ -92,7 +92,7 @@ impl Asked {
     /// Which does not.
     pub fn check(&self) -> Result<(), Fault> {
         let value =
-            |field: &str, must: &str| Fault::new("value", format!("{field} {must}")).of(field);
+            |field: &str, must: &str| Fault::new(Kind::Value, format!("{field} {must}")).of(field);
         if !(1..=LONGEST_PERIOD).contains(&self.period) {
             let must = format!("must be from 1 to {LONGEST_PERIOD}");
             return Err(value("period", &must));
@@ -133,7 +133,7 @@ impl Asked {
         options.model = options
             .model
             .resolved()
-            .map_err(|message| Fault::new("value", message))?;
+            .map_err(|message| Fault::new(Kind::Value, message))?;
         Ok(options)
     }
 

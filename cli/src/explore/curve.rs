@@ -11,7 +11,7 @@ use hertzian::{Branch, Error, Event, Point, Stop, Verdict};
 use serde::Serialize;
 
 use super::asked::Effort;
-use super::fault::Fault;
+use super::fault::{Fault, Kind};
 use super::traced::Traced;
 use crate::response::options::By;
 use crate::response::value::of_varied;
@@ -122,7 +122,7 @@ pub fn of(traced: &Traced, plot: &str, effort: Effort) -> Result<Curve, Fault> {
     let mut branches = traced.branches();
     let first = branches
         .next()
-        .ok_or_else(|| Fault::new("computation", "there is no branch"))?;
+        .ok_or_else(|| Fault::new(Kind::Computation, "there is no branch"))?;
     let wanted = wanted(plot, first)?;
     if let Some(point) = first.points.first() {
         first.measured(&wanted, point)?;

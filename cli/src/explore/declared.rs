@@ -3,9 +3,9 @@
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
+use hertzian::Model;
 use hertzian::generic::Declaration;
 use hertzian::system::{Bound, ParameterFacts, System};
-use hertzian::{Model, remarks};
 use serde::Serialize;
 
 use super::fault::Fault;
@@ -26,8 +26,6 @@ pub struct Declared {
     pub signals: Vec<Signal>,
     /// Whether it is measured in units; then time is in seconds.
     pub has_units: bool,
-    /// What is unusual about it.
-    pub remarks: Vec<String>,
 }
 
 /// A parameter.
@@ -103,19 +101,12 @@ pub fn of(text: &str, texts: &Texts) -> Result<Declared, Fault> {
     let facts = declaration.facts().parameters.iter();
     let values = declaration.parameters().into_iter();
     let parameters = facts.zip(values);
-    let known = declaration
-        .parameters()
-        .iter()
-        .all(|(_, value)| value.is_finite());
-    let remarks = known.then(|| remarks::of(&declaration, 1.0));
-    let remarks = remarks.into_iter().flatten();
     Ok(Declared {
         signals: signals(&model),
         parameters: parameters
             .map(|(facts, (_, value))| Parameter::of(facts, value))
             .collect(),
         has_units: !model.units.is_empty(),
-        remarks: remarks.map(|remark| remark.to_string()).collect(),
         name: model.name,
         equation: model.equation,
     })

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::curve::wanted;
 use super::declared::Texts;
-use super::fault::Fault;
+use super::fault::{Fault, Kind};
 use super::lines;
 use super::traced::Traced;
 use crate::look::ScaleName;
@@ -107,7 +107,8 @@ fn json(traced: &Traced, branches: &[Branch]) -> Result<String, Fault> {
         backbone: &Backbone::default(),
         reduction: None,
     };
-    let unwritten = |error: &dyn std::fmt::Display| Fault::new("computation", error.to_string());
+    let unwritten =
+        |error: &dyn std::fmt::Display| Fault::new(Kind::Computation, error.to_string());
     let bytes = files::json(&record).map_err(|error| unwritten(&error))?;
     String::from_utf8(bytes).map_err(|error| unwritten(&error))
 }

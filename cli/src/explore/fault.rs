@@ -10,8 +10,8 @@ use crate::response::model_file::ModelError;
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Fault {
-    /// What it is about, for whoever shows it: `request`, `declaration`, `value`, `busy`, `cancelled` or `computation`.
-    pub kind: &'static str,
+    /// What it is about.
+    pub kind: Kind,
     /// A sentence.
     pub message: String,
     /// The field that it belongs to: a parameter, `from`, `to` and so on.
@@ -20,6 +20,24 @@ pub struct Fault {
     /// What is wrong with the declaration.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub places: Vec<Place>,
+}
+
+/// What a fault is about: so whoever shows it knows where.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// The request is none that is answered.
+    Request,
+    /// The declaration.
+    Declaration,
+    /// A value that is asked for.
+    Value,
+    /// The computation, which came to nothing.
+    Computation,
+    /// Too much waits.
+    Busy,
+    /// A newer request has taken the place of this one.
+    Cancelled,
 }
 
 /// A fault of a declaration.
@@ -35,7 +53,7 @@ pub struct Place {
 
 impl Fault {
     /// A sentence of a kind.
-    pub fn new(kind: &'static str, message: impl Into<String>) -> Self {
+    pub fn new(kind: Kind, message: impl Into<String>) -> Self {
         Self {
             kind,
             message: message.into(),
@@ -53,13 +71,13 @@ impl Fault {
 
     /// What was asked for makes no sense.
     pub fn request(message: impl Into<String>) -> Self {
-        Self::new("request", message)
+        Self::new(Kind::Request, message)
     }
 
     /// A newer request has taken its place, or nobody waits for it any more.
     pub fn cancelled() -> Self {
         Self::new(
-            "cancelled",
+            Kind::Cancelled,
             "a newer request has taken the place of this one",
         )
     }
@@ -82,9 +100,9 @@ impl From<Error> for Fault {
             _ => None,
         };
         let kind = if field.is_some() {
-            "value"
+            Kind::Value
         } else {
-            "computation"
+            Kind::Computation
         };
         Self {
             field,
@@ -107,7 +125,7 @@ impl From<DeclarationError> for Fault {
         };
         Self {
             places,
-            ..Self::new("declaration", message)
+            ..Self::new(Kind::Declaration, message)
         }
     }
 }
@@ -116,7 +134,7 @@ impl From<ModelError> for Fault {
     fn from(error: ModelError) -> Self {
         match error {
             ModelError::Faulty(error) => error.into(),
-            ModelError::Parameter(message) => Self::new("value", message),
+            ModelError::Parameter(message) => Self::new(Kind::Value, message),
             ModelError::Unreadable(error) => Self::request(error.to_string()),
         }
     }

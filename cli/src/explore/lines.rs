@@ -23,8 +23,11 @@ fn write(
     by: By,
 ) -> std::fmt::Result {
     let facts = declared.facts();
-    if asked.text.contains("oscillator!") {
+    let named = |line: &str| line.trim_start().starts_with("hertzian::oscillator!");
+    if asked.text.lines().any(named) {
         writeln!(text, "{}\n", asked.text.trim_end())?;
+    } else if let Some(bare) = asked.text.trim_start().strip_prefix("oscillator!") {
+        writeln!(text, "hertzian::oscillator!{}\n", bare.trim_end())?;
     } else {
         writeln!(text, "hertzian::oscillator! {{")?;
         for line in asked.text.trim_end().lines() {

@@ -24,7 +24,7 @@ use tokio::runtime::Builder;
 use tokio::sync::{Semaphore, mpsc};
 use tokio::time::timeout;
 
-use super::fault::Fault;
+use super::fault::{Fault, Kind};
 use super::guard;
 use super::models::{Offered, offered};
 use super::options::Options;
@@ -236,7 +236,7 @@ impl Server {
     /// Hands a request to a thread, as soon as one is free, and sends what it says line by line.
     fn work_on(self: &Arc<Self>, request: Request) -> Result<Answer, (StatusCode, Fault)> {
         let Ok(place) = Arc::clone(&self.waiting).try_acquire_owned() else {
-            let fault = Fault::new("busy", "too many requests are waiting: ask again");
+            let fault = Fault::new(Kind::Busy, "too many requests are waiting: ask again");
             return Err((StatusCode::SERVICE_UNAVAILABLE, fault));
         };
         let ticket = self.work.begin(&request, &self.cancel);

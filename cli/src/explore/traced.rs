@@ -14,7 +14,7 @@ use hertzian::{
 
 use super::asked::{Asked, Effort, Method};
 use super::declared::Texts;
-use super::fault::Fault;
+use super::fault::{Fault, Kind};
 use crate::response::options::{By, Options};
 use crate::response::progress::{Progress, Seen};
 use crate::response::{bifurcations, covered, run};
@@ -131,7 +131,7 @@ pub fn trace(
     // Where the method that pays most does not get through, the one that is most robust is asked.
     let gives_up = match &found {
         Ok((_, diagram)) => diagram.branches.iter().any(|found| is_lost(&found.branch)),
-        Err(fault) => fault.kind == "computation",
+        Err(fault) => fault.kind == Kind::Computation,
     };
     if gives_up && asked.by == Method::Automatic && method != By::Balance && asked.depth.is_none() {
         found = one(By::Balance).or(found);
@@ -189,7 +189,6 @@ fn covering(
     request: FrequencyResponse,
     visit: &mut dyn FnMut(hertzian::Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Diagram, Error> {
-    // A part of the work can be lost to what it cannot do, and that is no error; but there is no diagram of nothing.
     match options.method() {
         By::Balance => covered::find(options, request, visit),
         By::Shooting => covered::find(options, request.by(Shooting::new()), visit),

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::asked::{Asked, Effort};
 use super::declared::{self, Texts};
 use super::exported::{self, Form, Scale};
-use super::fault::Fault;
+use super::fault::{Fault, Kind};
 use super::traced::{Tell, Traced, trace};
 use super::{curve, orbits};
 
@@ -169,7 +169,7 @@ impl Work {
             Ok(Ok(value)) => return emit(value),
             Ok(Err(fault)) => fault,
             Err(_) => Fault::new(
-                "computation",
+                Kind::Computation,
                 "the program has a mistake here, which stopped this computation: please report it with the declaration and the values",
             ),
         };

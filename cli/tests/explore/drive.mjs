@@ -97,6 +97,7 @@ step('its numbers are those of the command that it shows', async ({ page }) => {
   const printed = await command(page, ['--svg', '/dev/null', '--at', '1.1']);
   const folds = printed.split('\n').filter((line) => line.startsWith('fold ')).map((line) => line.replace(/^fold +omega /, 'fold at '));
   assert.deepEqual((await events(page)).filter((text) => text.startsWith('fold')), folds);
+  await page.until(`location.hash.length > 1`, 'a state in the address');
   await page.value(`(() => { location.hash = '#' + encodeURIComponent(JSON.stringify({ ...JSON.parse(decodeURIComponent(location.hash.slice(1))), at: 1.1 })); })()`);
   await page.until(`document.querySelectorAll('#solutions button').length === 3 && !document.querySelector('#orbit').classList.contains('old')`, 'three motions');
   const sizes = printed.split('\n').filter((line) => line.startsWith('at ')).map((line) => line.split('peak-to-peak ')[1].split(', '));

@@ -290,6 +290,7 @@ async function declare(text, { fresh = false } = {}) {
 }
 
 function fill() {
+  byId('equation').textContent = declared.equation;
   controls.build(declared.parameters, { moved, settled });
   controls.refresh();
   byId('varied').replaceChildren(...['omega', ...names()].map((name) => el('option', { value: name, text: name })));

@@ -172,6 +172,36 @@ fn the_exported_lines_are_a_program() {
 }
 
 #[test]
+fn the_macro_may_stand_around_the_declaration() {
+    let bare = "Linear(x) { ddot(x) + 0.1*dot(x) + x = cos(omega*t); }";
+    for text in [
+        bare.to_owned(),
+        format!("hertzian::oscillator! {{ {bare} }}"),
+        format!("oscillator! {{ {bare} }}"),
+        format!("// as oscillator! has it\n{bare}"),
+    ] {
+        let answer = last(&Ask::Export {
+            of: Asked {
+                text,
+                depth: Some(1),
+                ..of("tip", 0.5, 1.5)
+            },
+            plot: String::new(),
+            scale: Scale::Linear,
+            form: Form::Rust,
+        });
+        let lines = answer["export"]["contents"].as_str().expect("lines");
+        let begins = lines
+            .lines()
+            .filter(|line| line.starts_with("hertzian::oscillator! {"));
+        assert_eq!(begins.count(), 1, "{lines}");
+        assert!(lines.contains(
+            "Bifurcations::of(&model)\n        .from(0.5)\n        .to(1.5)\n        .depth(1);"
+        ));
+    }
+}
+
+#[test]
 fn a_newer_request_takes_the_place_of_an_older_one_of_the_same_page() {
     let work = Arc::new(Work::default());
     let all = Cancel::new();
