@@ -33,7 +33,7 @@ function ticksOf(name, low, high, most) {
 }
 
 // A frame with two axes. `domain` is in values; what is returned maps values to places and back.
-export function frame(width, height, { x, y, apart = 75, bottom = 40, top = 10, right = 14 }) {
+export function frame(width, height, { x, y, apart = 75, bottom = 40, top = 10, right = 22 }) {
   const scales = { x: SCALES[x.scale ?? 'linear'], y: SCALES[y.scale ?? 'linear'] };
   const ends = { x: x.domain.map(scales.x.to), y: y.domain.map(scales.y.to) };
   for (const axis of [ends.x, ends.y]) {

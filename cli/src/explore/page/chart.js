@@ -94,6 +94,7 @@ export function draw({ dragging = false } = {}) {
     y: { domain: verticalOf([curve, ...others], dragging), scale: state.yscale, label: inUnit(curve.label, state.yscale === 'db' ? `dB over 1 ${curve.unit}`.trim() : curve.unit) },
   });
   chart.place = on;
+  byId('missing').hidden = state.yscale === 'linear' || !flats(curve).some((flat) => flat.some((v, i) => i % 2 === 1 && v !== null && v <= 0));
   const { px, py, box } = on;
   const clip = svg('clipPath', { id: 'inside' }, svg('rect', { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top }));
   const shadows = svg('g', { class: 'shadow', 'clip-path': 'url(#inside)' });
