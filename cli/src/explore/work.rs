@@ -30,6 +30,9 @@ type Lane = (String, &'static str);
 pub struct Request {
     /// What the page calls itself: a newer request of the same page, for the same, takes the place of an older one.
     pub client: String,
+    /// Its number among the requests of the page: they may arrive in another order than they were sent in.
+    #[serde(default)]
+    pub number: u64,
     /// What is asked for.
     pub ask: Ask,
 }
@@ -108,8 +111,18 @@ pub type Emit = Arc<dyn Fn(Value) + Send + Sync>;
 pub struct Work {
     texts: Texts,
     kept: Mutex<VecDeque<(Asked, Arc<Traced>)>>,
-    running: Mutex<HashMap<Lane, (u64, Cancel)>>,
+    running: Mutex<HashMap<Lane, Running>>,
     next: AtomicU64,
+}
+
+/// The newest request of a lane.
+#[derive(Debug)]
+struct Running {
+    /// Of all tickets.
+    ticket: u64,
+    /// Of the page.
+    number: u64,
+    cancel: Cancel,
 }
 
 /// A request that is worked on; nobody waits for it when this is dropped.
@@ -117,7 +130,7 @@ pub struct Work {
 pub struct Ticket {
     work: Arc<Work>,
     lane: Lane,
-    number: u64,
+    ticket: u64,
     /// Cancelled when a newer request takes its place, or nobody waits any more.
     pub cancel: Cancel,
 }
@@ -126,10 +139,8 @@ impl Drop for Ticket {
     fn drop(&mut self) {
         self.cancel.cancel();
         let mut running = unpoisoned(&self.work.running);
-        if running
-            .get(&self.lane)
-            .is_some_and(|(number, _)| *number == self.number)
-        {
+        let newest = running.get(&self.lane);
+        if newest.is_some_and(|newest| newest.ticket == self.ticket) {
             running.remove(&self.lane);
         }
     }
@@ -141,18 +152,29 @@ fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Work {
-    /// Takes in a request, and cancels the one whose place it takes.
+    /// Takes in a request, and cancels the one whose place it takes; or this one, if it is the older.
     pub fn begin(self: &Arc<Self>, request: &Request, all: &Cancel) -> Ticket {
         let (lane, cancel) = (request.lane(), all.child());
-        let number = self.next.fetch_add(1, Ordering::Relaxed);
-        let entry = (number, cancel.clone());
-        if let Some((_, older)) = unpoisoned(&self.running).insert(lane.clone(), entry) {
-            older.cancel();
+        let ticket = self.next.fetch_add(1, Ordering::Relaxed);
+        let mut running = unpoisoned(&self.running);
+        let newest = running.get(&lane);
+        if newest.is_some_and(|newest| newest.number > request.number) {
+            cancel.cancel();
+        } else {
+            let entry = Running {
+                ticket,
+                number: request.number,
+                cancel: cancel.clone(),
+            };
+            if let Some(older) = running.insert(lane.clone(), entry) {
+                older.cancel.cancel();
+            }
         }
+        drop(running);
         Ticket {
             work: Arc::clone(self),
             lane,
-            number,
+            ticket,
             cancel,
         }
     }

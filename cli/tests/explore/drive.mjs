@@ -149,6 +149,23 @@ step('a click shows the motions', async ({ page }) => {
   await page.until(`document.querySelector('#orbit-title').textContent !== ${JSON.stringify(before)}`, 'the next value by a key');
 });
 
+step('no answer to what was asked before is shown', async ({ page }) => {
+  const set = (value) => page.value(`(() => { const t = document.querySelector('#parameter-load'); t.value = '${value}'; t.dispatchEvent(new Event('change')); })()`);
+  const [x, y] = await page.middle('#chart');
+  await page.click(x, y);
+  for (const value of [0.7, 1.3, 0.8, 1.1]) await set(value);
+  await page.until(`document.querySelector('#command').value.includes('--set load=1.1 ')`, 'the last value');
+  await ready(page);
+  await page.until(`!document.querySelector('#orbit').classList.contains('old')`, 'its motions');
+  const at = await page.value(`document.querySelector('#orbit-title').textContent.match(/= ([\\d.]+):/)[1]`);
+  const printed = await command(page, ['--svg', '/dev/null', '--at', at]);
+  const sizes = printed.split('\n').filter((line) => line.startsWith('at ')).map((line) => line.split('peak-to-peak ')[1].split(', '));
+  assert.deepEqual(await texts(page, '#solutions button'), sizes.map(([size, verdict]) => `${verdict}, peak-to-peak of x ${size}`));
+  await set(1);
+  await page.until(`document.querySelector('#command').value.includes('--set load=1 ')`, 'the load as it was');
+  await ready(page);
+});
+
 const edit = (page, from, to) => page.value(`(() => { const t = document.querySelector('#text'); t.value = t.value.replace(${JSON.stringify(from)}, ${JSON.stringify(to)}); t.dispatchEvent(new Event('input')); })()`);
 
 step('a mistake in the declaration is shown at its place', async ({ page }) => {

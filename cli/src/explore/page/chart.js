@@ -10,7 +10,7 @@ const KINDS = {
   'symmetry-breaking': 'the motion loses its symmetry',
   'branch-point': 'two curves of motions cross',
   'neimark-sacker': 'a second frequency begins',
-  grazing: 'a contact is just touched',
+  grazing: 'a contact just opens, or is just touched',
 };
 
 export const meaning = (kind) => KINDS[kind] ?? '';

@@ -2,6 +2,7 @@
 
 const client = crypto.randomUUID ? crypto.randomUUID() : String(Math.random()).slice(2);
 const running = new Map();
+let number = 0;
 
 // Thrown where a newer request has taken the place of this one.
 export class Superseded extends Error {}
@@ -21,12 +22,13 @@ export async function ask(lane, what, onLine = () => {}) {
   running.get(lane)?.abort();
   const mine = new AbortController();
   running.set(lane, mine);
+  number += 1;
   const current = () => running.get(lane) === mine;
   try {
     const response = await fetch('/ask', {
       method: 'POST',
       headers: { 'Content-Type': 'application/json' },
-      body: JSON.stringify({ client, ask: what }),
+      body: JSON.stringify({ client, number, ask: what }),
       signal: mine.signal,
     });
     const reader = response.body.getReader();

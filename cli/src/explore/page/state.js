@@ -51,7 +51,17 @@ export function fromHash(hash, models) {
   if (typeof read.text !== 'string') read.text = model?.text;
   if (typeof read.text !== 'string') return false;
   for (const [name, kind] of Object.entries(KINDS)) if (typeof read[name] === kind && read[name] !== null) state[name] = read[name];
+  if (!['linear', 'log'].includes(state.xscale)) state.xscale = 'linear';
+  if (!['linear', 'log', 'db'].includes(state.yscale)) state.yscale = 'linear';
   state.at = typeof read.at === 'number' ? read.at : null;
   state.depth = typeof read.depth === 'number' ? read.depth : null;
   return true;
+}
+
+let keeping = null;
+
+// Into the address, when changes pause.
+export function keep(models) {
+  clearTimeout(keeping);
+  keeping = setTimeout(() => history.replaceState(null, '', toHash(models)), 150);
 }

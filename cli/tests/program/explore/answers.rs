@@ -207,12 +207,14 @@ fn a_newer_request_takes_the_place_of_an_older_one_of_the_same_page() {
     let all = Cancel::new();
     let request = |client: &str, at: f64| Request {
         client: client.to_owned(),
+        number: 0,
         ask: full(of("one-sided", at, 1.6)),
     };
     let first = work.begin(&request("a", 0.6), &all);
     let other = work.begin(&request("b", 0.6), &all);
     let text = Request {
         client: "a".to_owned(),
+        number: 0,
         ask: Ask::Declaration {
             text: String::new(),
         },
@@ -231,6 +233,22 @@ fn a_newer_request_takes_the_place_of_an_older_one_of_the_same_page() {
     assert!(token.is_cancelled());
     drop((other, text));
     assert_eq!(work.running(), 0);
+}
+
+#[test]
+fn a_request_that_arrives_late_does_not_take_the_place_of_a_newer_one() {
+    let work = Arc::new(Work::default());
+    let request = |number| Request {
+        client: "a".to_owned(),
+        number,
+        ask: full(of("one-sided", 0.6, 1.6)),
+    };
+    let newer = work.begin(&request(2), &Cancel::new());
+    let late = work.begin(&request(1), &Cancel::new());
+    assert!(late.cancel.is_cancelled() && !newer.cancel.is_cancelled());
+    drop(late);
+    let newest = work.begin(&request(3), &Cancel::new());
+    assert!(newer.cancel.is_cancelled() && !newest.cancel.is_cancelled());
 }
 
 /// Shaft on eight balls: seconds of work, of which little is done once nobody wants it.

@@ -126,7 +126,7 @@ proptest! {
             token.cancel();
         });
         // As the server hands it over: written, read, with a stack that has room.
-        let request = Request { client: "fuzz".to_owned(), ask };
+        let request = Request { client: "fuzz".to_owned(), number: 0, ask };
         let written = serde_json::to_vec(&request).expect("JSON");
         let read = Request::read(&written).expect("a request");
         prop_assert_eq!(&read, &request);
@@ -157,7 +157,7 @@ proptest! {
     #[test]
     fn a_request_with_other_bytes_is_read_or_refused(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
         let ask = Ask::Declaration { text: MODELS[0].text.to_owned() };
-        let request = Request { client: "fuzz".to_owned(), ask };
+        let request = Request { client: "fuzz".to_owned(), number: 0, ask };
         let mut bytes = serde_json::to_vec(&request).expect("JSON");
         let at = at.index(bytes.len());
         bytes[at] = byte;
