@@ -118,8 +118,8 @@ pub struct Work {
 /// The newest request of a lane.
 #[derive(Debug)]
 struct Running {
-    /// Of all tickets.
-    ticket: u64,
+    /// That of its ticket.
+    stamp: u64,
     /// Of the page.
     number: u64,
     cancel: Cancel,
@@ -130,7 +130,8 @@ struct Running {
 pub struct Ticket {
     work: Arc<Work>,
     lane: Lane,
-    ticket: u64,
+    /// Which no other ticket has.
+    stamp: u64,
     /// Cancelled when a newer request takes its place, or nobody waits any more.
     pub cancel: Cancel,
 }
@@ -140,7 +141,7 @@ impl Drop for Ticket {
         self.cancel.cancel();
         let mut running = unpoisoned(&self.work.running);
         let newest = running.get(&self.lane);
-        if newest.is_some_and(|newest| newest.ticket == self.ticket) {
+        if newest.is_some_and(|newest| newest.stamp == self.stamp) {
             running.remove(&self.lane);
         }
     }
@@ -155,14 +156,14 @@ impl Work {
     /// Takes in a request, and cancels the one whose place it takes; or this one, if it is the older.
     pub fn begin(self: &Arc<Self>, request: &Request, all: &Cancel) -> Ticket {
         let (lane, cancel) = (request.lane(), all.child());
-        let ticket = self.next.fetch_add(1, Ordering::Relaxed);
+        let stamp = self.next.fetch_add(1, Ordering::Relaxed);
         let mut running = unpoisoned(&self.running);
         let newest = running.get(&lane);
         if newest.is_some_and(|newest| newest.number > request.number) {
             cancel.cancel();
         } else {
             let entry = Running {
-                ticket,
+                stamp,
                 number: request.number,
                 cancel: cancel.clone(),
             };
@@ -174,7 +175,7 @@ impl Work {
         Ticket {
             work: Arc::clone(self),
             lane,
-            ticket,
+            stamp,
             cancel,
         }
     }
