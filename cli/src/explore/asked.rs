@@ -1,7 +1,8 @@
 //! What the page asks for, and the same as options of `hertzian response`: so both compute the same numbers.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use clap::{Parser, ValueEnum};
 use hertzian::System;
@@ -113,8 +114,7 @@ impl Asked {
     /// # Errors
     /// If a parameter is not one of the model.
     pub fn options(&self, by: By) -> Result<Options, Fault> {
-        let mut options = Options::try_parse_from(["response"])
-            .map_err(|error| Fault::request(error.to_string()))?;
+        let mut options = usual()?;
         let name = self.built_in().map_or(NO_NAME, |model| model.name);
         options.model.file = Some(PathBuf::from(name));
         options.model.set = self.settings();
@@ -173,12 +173,12 @@ impl Asked {
         }
     }
 
-    /// The command line that computes the same; `file` is where a model without a name is.
-    pub fn command(&self, by: By, file: &Path) -> String {
+    /// The command line that computes the same.
+    pub fn command(&self, by: By) -> String {
         let mut words = vec!["hertzian response --model".to_owned()];
         words.push(match self.built_in() {
             Some(model) => model.name.to_owned(),
-            None => file.display().to_string(),
+            None => NO_NAME.to_owned(),
         });
         let settings = self.settings().into_iter();
         words.extend(settings.map(|(name, value)| format!("--set {name}={value}")));
@@ -198,6 +198,17 @@ impl Asked {
         }
         words.join(" ")
     }
+}
+
+/// The options of a command line without any.
+fn usual() -> Result<Options, Fault> {
+    static USUAL: OnceLock<Options> = OnceLock::new();
+    if let Some(known) = USUAL.get() {
+        return Ok(known.clone());
+    }
+    let read = Options::try_parse_from(["response"]);
+    let read = read.map_err(|error| Fault::request(error.to_string()))?;
+    Ok(USUAL.get_or_init(|| read).clone())
 }
 
 /// Whether a contact opens: a piece of its law has no force, and another has.

@@ -1,7 +1,5 @@
 //! What the page draws of branches, and what it lists.
 
-use std::path::Path;
-
 use clap::ValueEnum;
 use hertzian::bifurcation::Reason;
 use hertzian::chart::{Line, Run};
@@ -154,12 +152,22 @@ pub fn of(traced: &Traced, plot: &str, effort: Effort) -> Result<Curve, Fault> {
         method: name_of(by),
         events: events.collect(),
         notes,
-        command: traced.asked.command(by, Path::new("FILE")),
+        command: command(traced, first, &wanted),
         points: traced.branches().map(|branch| branch.points.len()).sum(),
         milliseconds: 1e3 * traced.elapsed.as_secs_f64(),
         lacks: effort == Effort::Full && traced.lacks(),
         branches: drawn,
     })
+}
+
+/// The command line that computes the same; what leads is drawn anyway.
+fn command(traced: &Traced, first: &Branch, wanted: &Wanted) -> String {
+    let command = traced.asked.command(traced.options.method());
+    if *wanted == first.leading() {
+        command
+    } else {
+        format!("{command} --plot {wanted}")
+    }
 }
 
 /// The name of a method.

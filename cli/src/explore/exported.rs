@@ -62,14 +62,13 @@ pub fn of(
     texts: &Texts,
     cancel: &Cancel,
 ) -> Result<File, Fault> {
-    let branches: Vec<Branch> = traced.branches().cloned().collect();
     let (name, contents) = match form {
         Form::Svg => ("response.svg", picture(traced, plot, scale, cancel)?),
         Form::Csv => (
             "response.csv",
-            files::table(&*traced.model, &branches).to_csv(),
+            files::table(&*traced.model, &traced.written()?).to_csv(),
         ),
-        Form::Json => ("response.json", json(traced, &branches)?),
+        Form::Json => ("response.json", json(traced, &traced.written()?)?),
         Form::Rust => ("main.rs", rust(traced, texts)?),
     };
     Ok(File { name, contents })
@@ -83,6 +82,8 @@ fn picture(traced: &Traced, plot: &str, scale: Scale, cancel: &Cancel) -> Result
         options.plot = vec![wanted(plot, branch)?];
     }
     options.look.scale = match scale {
+        // Of what was followed sizes may be very different, and the usual scale depends on that.
+        Scale::Linear if traced.followed.is_some() => Some(ScaleName::Linear),
         Scale::Linear => None,
         Scale::Log => Some(ScaleName::Log),
         Scale::Db => Some(ScaleName::Db),
@@ -90,7 +91,10 @@ fn picture(traced: &Traced, plot: &str, scale: Scale, cancel: &Cancel) -> Result
     let views = options.views();
     let charts = views
         .iter()
-        .map(|view| run::picture(&options, &traced.diagram, &*traced.model, view, cancel))
+        .map(|view| match &traced.followed {
+            Some((_, found)) => found.chart(&options, &*traced.model, view),
+            None => run::picture(&options, &traced.diagram, &*traced.model, view, cancel),
+        })
         .collect::<Result<Vec<_>, _>>()?;
     Ok(files::page(charts))
 }
@@ -125,10 +129,7 @@ fn rust(traced: &Traced, texts: &Texts) -> Result<String, Fault> {
     }
     let mut values = vec![0.0; declaration.facts().parameters.len()];
     declaration.values(&mut values);
-    Ok(lines::of(
-        asked,
-        &declaration,
-        &values,
-        traced.options.method(),
-    ))
+    let by = traced.options.method();
+    let several = traced.diagram.branches.len() > 1;
+    Ok(lines::of(asked, &declaration, &values, by, several))
 }

@@ -7,11 +7,11 @@ use hertzian::System;
 use super::asked::Asked;
 use crate::response::options::By;
 
-/// A program, to be copied into `main.rs` of a package that depends on `hertzian`.
-pub fn of(asked: &Asked, declared: &dyn System, values: &[f64], by: By) -> String {
+/// A program, to be copied into `main.rs` of a package that depends on `hertzian`; of several branches if it takes several to cover the range.
+pub fn of(asked: &Asked, declared: &dyn System, values: &[f64], by: By, several: bool) -> String {
     let mut text = String::new();
     // Writing to a string does not fail.
-    let _ = write(&mut text, asked, declared, values, by);
+    let _ = write(&mut text, asked, declared, values, by, several);
     text
 }
 
@@ -21,6 +21,7 @@ fn write(
     declared: &dyn System,
     values: &[f64],
     by: By,
+    several: bool,
 ) -> std::fmt::Result {
     let facts = declared.facts();
     let named = |line: &str| line.trim_start().starts_with("hertzian::oscillator!");
@@ -43,7 +44,8 @@ fn write(
     }
     writeln!(text, "    }};")?;
     request(text, asked, by)?;
-    if asked.depth.is_some() {
+    if asked.depth.is_some() || several {
+        covered(text, asked)?;
         writeln!(text, "    let diagram = request.run()?;")?;
         writeln!(text, "    for found in &diagram.branches {{")?;
         writeln!(text, "        for event in &found.branch.events {{")?;
@@ -61,11 +63,7 @@ fn write(
 
 /// What is asked for, an option in each line.
 fn request(text: &mut String, asked: &Asked, by: By) -> std::fmt::Result {
-    let of = match asked.depth {
-        Some(_) => "hertzian::Bifurcations::of(&model)",
-        None => "hertzian::FrequencyResponse::of(&model)",
-    };
-    let mut options = vec![format!("let request = {of}")];
+    let mut options = vec!["let request = hertzian::FrequencyResponse::of(&model)".to_owned()];
     if asked.varied != "omega" {
         options.push(format!(".vary({:?})", asked.varied));
         options.push(format!(".omega({:?})", asked.omega));
@@ -75,11 +73,34 @@ fn request(text: &mut String, asked: &Asked, by: By) -> std::fmt::Result {
     if asked.period != 1 {
         options.push(format!(".period({})", asked.period));
     }
-    options.extend(match (asked.depth, by) {
-        (Some(depth), _) => Some(format!(".depth({depth})")),
-        (None, By::Balance) => None,
-        (None, By::Shooting) => Some(".by(hertzian::Shooting::new())".to_owned()),
-        (None, By::ContactEquation) => Some(".by(hertzian::ContactEquation::new())".to_owned()),
+    // What begins at bifurcations is followed by shooting.
+    let by = if asked.depth.is_some() {
+        By::Shooting
+    } else {
+        by
+    };
+    options.extend(match by {
+        By::Balance => None,
+        By::Shooting => Some(".by(hertzian::Shooting::new())".to_owned()),
+        By::ContactEquation => Some(".by(hertzian::ContactEquation::new())".to_owned()),
     });
     writeln!(text, "    {};", options.join("\n        "))
+}
+
+/// All that covers the range, as `hertzian response` looks for it.
+fn covered(text: &mut String, asked: &Asked) -> std::fmt::Result {
+    writeln!(text, "    let patience = request.transient_periods()?;")?;
+    writeln!(
+        text,
+        "    let settling = hertzian::bifurcation::Settling::new().patience(patience);"
+    )?;
+    writeln!(
+        text,
+        "    let request = hertzian::Bifurcations::starting_with(request)"
+    )?;
+    match asked.depth {
+        Some(depth) => writeln!(text, "        .max_points(50_000)\n        .depth({depth})")?,
+        None => writeln!(text, "        .depth(0)\n        .margin(0.0)")?,
+    }
+    writeln!(text, "        .cover(settling);")
 }

@@ -15,6 +15,7 @@ use hertzian::{
 use super::asked::{Asked, Effort, Method};
 use super::declared::Texts;
 use super::fault::{Fault, Kind};
+use crate::response::bifurcations::Found;
 use crate::response::options::{By, Options};
 use crate::response::progress::{Progress, Seen};
 use crate::response::{bifurcations, covered, run};
@@ -25,8 +26,6 @@ const PIXEL: f64 = 2e-3;
 const STRIDE: f64 = 0.2;
 /// Orbits on the screen, at most: a branch that winds is not looked at while it moves.
 const MOST_ON_SCREEN: usize = 600;
-/// Orbits of an exact curve, at most.
-const MOST: usize = 20_000;
 /// Between two lines about progress.
 const INTERVAL: Duration = Duration::from_millis(150);
 /// A stretch without stable orbits is looked into if it is longer than this part of the range, as a search is.
@@ -45,6 +44,8 @@ pub struct Traced {
     pub model: Box<dyn System>,
     /// The branches; the first is the one that was asked for.
     pub diagram: Diagram,
+    /// Where branches from bifurcations were asked for, by shooting, the one that was asked for by its own method, and what was found.
+    pub followed: Option<(Branch, Found)>,
     /// Whether it was looked for all that covers the range.
     pub whole: bool,
     /// How long it took.
@@ -61,7 +62,19 @@ impl std::fmt::Debug for Traced {
 }
 
 impl Traced {
-    /// The branches.
+    /// All branches as they are written to files, with everything that is read off their orbits.
+    ///
+    /// # Errors
+    /// If the motion of an orbit cannot be computed.
+    pub fn written(&self) -> Result<Vec<Branch>, Error> {
+        let Some((first, found)) = &self.followed else {
+            return Ok(self.branches().cloned().collect());
+        };
+        let further = found.branches()?;
+        Ok(std::iter::once(first.clone()).chain(further).collect())
+    }
+
+    /// The branches that are drawn.
     pub fn branches(&self) -> impl Iterator<Item = &Branch> {
         self.diagram.branches.iter().map(|found| &found.branch)
     }
@@ -122,8 +135,7 @@ pub fn trace(
     };
     let one = |method: By| -> Result<(Options, Diagram), Fault> {
         let mut options = asked.options(method)?;
-        options.one_branch = !whole;
-        options.max_points = Some(MOST);
+        options.one_branch = !whole && asked.depth.is_none();
         let diagram = find(&options, effort, &*model, cancel, tell)?;
         Ok((options, diagram))
     };
@@ -133,10 +145,17 @@ pub fn trace(
         Ok((_, diagram)) => diagram.branches.iter().any(|found| is_lost(&found.branch)),
         Err(fault) => fault.kind == Kind::Computation,
     };
-    if gives_up && asked.by == Method::Automatic && method != By::Balance && asked.depth.is_none() {
+    if gives_up && asked.by == Method::Automatic && method != By::Balance {
         found = one(By::Balance).or(found);
     }
-    let (options, diagram) = found?;
+    let (options, mut diagram) = found?;
+    let followed = if asked.depth.is_some() && effort == Effort::Full {
+        let followed = follow(&options, &*model, &diagram, cancel, tell)?;
+        diagram = followed.1.diagram.clone();
+        Some(followed)
+    } else {
+        None
+    };
     if cancel.is_cancelled() {
         return Err(Fault::cancelled());
     }
@@ -145,6 +164,7 @@ pub fn trace(
         options,
         model,
         diagram,
+        followed,
         whole: whole || asked.depth.is_some(),
         elapsed: begun.elapsed(),
     })
@@ -175,13 +195,23 @@ fn find(
             .max_points(MOST_ON_SCREEN);
         return Ok(covering(options, request, &mut |done| seen.see(done))?);
     }
-    if options.bifurcations {
-        let found = bifurcations::find(options, model, cancel, &mut seen)?;
-        return found
-            .map(|found| found.diagram)
-            .ok_or_else(Fault::cancelled);
-    }
     Ok(covering(options, request, &mut |done| seen.see(done))?)
+}
+
+/// What begins on the first of these branches, and that branch.
+fn follow(
+    options: &Options,
+    model: &dyn System,
+    diagram: &Diagram,
+    cancel: &Cancel,
+    tell: &Tell,
+) -> Result<(Branch, Found), Fault> {
+    let mut progress = Progress::to(Line::new(tell));
+    let mut seen = Seen::new(&mut progress, options);
+    let found = bifurcations::find(options, model, cancel, &mut seen)?;
+    let first = diagram.branches.first();
+    let first = first.map(|found| found.branch.clone());
+    first.zip(found).ok_or_else(Fault::cancelled)
 }
 
 fn covering(

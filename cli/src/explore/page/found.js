@@ -1,8 +1,9 @@
 // What is on the curve, in words, and what of it is drawn.
 
-import { mark, meaning } from './chart.js';
+import { chart, mark, meaning } from './chart.js';
 import { byId, el, short, svg } from './dom.js';
 import { session } from './session.js';
+import { state } from './state.js';
 
 const MEASURES = [
   ['p2p', 'peak-to-peak'], ['h', 'amplitude of a harmonic'], ['mean', 'mean'], ['rms', 'rms'], ['max', 'largest'], ['min', 'smallest'],
@@ -20,7 +21,13 @@ export function showFound(curve, pick) {
   byId('notes').replaceChildren(...curve.notes.map((text) => el('li', { text })));
   const many = curve.branches.length > 1 ? ` on ${curve.branches.length} branches` : '';
   byId('cost').textContent = `${curve.points} orbits${many} by ${curve.method} in ${short(curve.milliseconds, 2)} ms${curve.effort === 'screen' ? ', as exact as the screen' : ''}`;
-  byId('command').value = curve.command;
+  showCommand();
+}
+
+// The command that makes the same picture.
+export function showCommand() {
+  const scale = state.yscale !== 'linear' || state.depth !== null ? ` --scale ${state.yscale}` : '';
+  if (chart.curve) byId('command').value = chart.curve.command + scale;
 }
 
 // Where the curve is highest, as exactly as it is drawn.

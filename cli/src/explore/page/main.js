@@ -5,7 +5,7 @@ import * as controls from './controls.js';
 import { changed, exactly, moved, renew, settled, shadow } from './curves.js';
 import { byId, el, written } from './dom.js';
 import * as editor from './editor.js';
-import { fillMeasures } from './found.js';
+import { fillMeasures, showCommand } from './found.js';
 import { forget, forgetSize, outdate, pick, redraw } from './motions.js';
 import { ask, models as fetchModels, Refused } from './net.js';
 import { names, report, session } from './session.js';
@@ -102,6 +102,7 @@ function listen() {
       state[name] = byId(name).value;
       keep(session.models);
       draw();
+      showCommand();
     });
   }
   for (const id of ['signal', 'measure', 'harmonic']) byId(id).addEventListener('change', measured);

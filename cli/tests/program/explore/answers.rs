@@ -153,22 +153,40 @@ fn forces_and_gaps_are_those_of_the_law() {
     assert_eq!(numbers(&contact["surface"]), [0.0, 1.0, 0.0]);
 }
 
+/// One branch, several that cover a range, and what begins at bifurcations.
 #[test]
 fn the_exported_lines_are_a_program() {
-    let asked = Asked {
+    let one = Asked {
         varied: "drive".to_owned(),
         omega: 0.9,
         by: Method::Balance,
         ..of("cubic-with-stop", 0.01, 0.3)
     };
-    let answer = last(&Ask::Export {
-        of: asked,
-        plot: String::new(),
-        scale: Scale::Linear,
-        form: Form::Rust,
-    });
-    let ours = answer["export"]["contents"].as_str().expect("lines");
-    assert_eq!(ours, include_str!("lines.rs"));
+    let several = Asked {
+        values: [("drive".to_owned(), 0.2)].into(),
+        by: Method::ContactEquation,
+        ..of("two-masses", 0.8, 1.2)
+    };
+    let followed = Asked {
+        values: [("alpha".to_owned(), 1.0)].into(),
+        depth: Some(1),
+        varied: "drive".to_owned(),
+        ..of("one-sided", 1.0, 1.6)
+    };
+    for (asked, lines) in [
+        (one, include_str!("lines/one.rs")),
+        (several, include_str!("lines/several.rs")),
+        (followed, include_str!("lines/followed.rs")),
+    ] {
+        let answer = last(&Ask::Export {
+            of: asked,
+            plot: String::new(),
+            scale: Scale::Linear,
+            form: Form::Rust,
+        });
+        let ours = answer["export"]["contents"].as_str().expect("lines");
+        assert_eq!(ours, lines);
+    }
 }
 
 #[test]
@@ -195,9 +213,8 @@ fn the_macro_may_stand_around_the_declaration() {
             .lines()
             .filter(|line| line.starts_with("hertzian::oscillator! {"));
         assert_eq!(begins.count(), 1, "{lines}");
-        assert!(lines.contains(
-            "Bifurcations::of(&model)\n        .from(0.5)\n        .to(1.5)\n        .depth(1);"
-        ));
+        assert!(lines.contains("\n        .from(0.5)\n        .to(1.5)\n"));
+        assert!(lines.contains("\n        .depth(1)\n"));
     }
 }
 

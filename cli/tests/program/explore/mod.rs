@@ -6,7 +6,11 @@ mod fuzzed;
     dead_code,
     reason = "it is compared with what is exported, and compiled"
 )]
-mod lines;
+mod lines {
+    mod followed;
+    mod one;
+    mod several;
+}
 mod numbers;
 mod server;
 
