@@ -7,7 +7,7 @@
 
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -22,9 +22,9 @@ const RATE = 1000;
 const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
 
 class Served {
-  static async begin(port = 0) {
+  static async begin(port = 0, words = []) {
     const served = new Served();
-    served.child = spawn(program, ['explore', '--port', String(port)], { stdio: ['ignore', 'pipe', 'inherit'] });
+    served.child = spawn(program, ['explore', '--port', String(port), ...words], { stdio: ['ignore', 'pipe', 'inherit'] });
     const line = await new Promise((done, fail) => {
       let text = '';
       served.child.stdout.on('data', (data) => {
@@ -147,6 +147,15 @@ step('a click shows the motions', async ({ page }) => {
   const before = await page.value(`document.querySelector('#orbit-title').textContent`);
   await page.send('Input.dispatchKeyEvent', { type: 'keyDown', key: 'ArrowRight', code: 'ArrowRight', windowsVirtualKeyCode: 39 });
   await page.until(`document.querySelector('#orbit-title').textContent !== ${JSON.stringify(before)}`, 'the next value by a key');
+});
+
+step('a click on an event shows the motion there', async ({ page }) => {
+  const [x, y] = await page.value(`(() => { const b = document.querySelector('#marks [data-event="0"]').getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()`);
+  const [first] = await events(page);
+  await page.click(x, y);
+  await page.until(`document.querySelector('#orbit-title').textContent.includes('1.1445169')`, 'the fold');
+  const size = first.split('peak-to-peak ')[1].slice(0, 7);
+  assert.ok((await texts(page, '#solutions [aria-pressed=true]'))[0].includes(size));
 });
 
 step('no answer to what was asked before is shown', async ({ page }) => {
@@ -300,6 +309,28 @@ step('where the program is gone the page says so, and goes on when it is back', 
   await page.until(`document.querySelector('#command').value.includes('--set load=1.5 ')`, 'the curve of the new value');
   await ready(page);
   page.faults.length = 0; // The browser says that as well.
+});
+
+step('a model from a file is explored as the command computes it', async ({ browser, folder }) => {
+  const file = join(folder, 'stop.txt');
+  writeFileSync(file, 'Stop(x) {\n    /// stiffness of the stop\n    param k = 4 in 1e-2..1e4;\n    ddot(x) + 0.1*dot(x) + x + H(x - 1)*k*(x - 1) = 0.3*cos(omega*t);\n}\n');
+  const served = await Served.begin(0, [file, '--set', 'k=20', '--from', '0.7', '--to', '2']);
+  try {
+    const page = await browser.page(served.url);
+    await ready(page);
+    assert.equal(await page.value(`document.querySelector('#parameter-k').value`), '20');
+    // Six decades are a slider over decades.
+    assert.equal(await page.value(`document.querySelector('[data-field=k] input[type=checkbox]').checked`), true);
+    assert.match(await page.value(`document.querySelector('#command').value`), /--set k=20 --from 0\.7 --to 2/);
+    const printed = await command(page, ['--svg', '/dev/null']);
+    const folds = printed.split('\n').filter((line) => line.startsWith('fold ')).map((line) => line.replace(/^fold +omega /, 'fold at '));
+    // Those of the branch that was asked for come first; of one that was joined the command lists them below.
+    assert.equal(folds.length, 2);
+    assert.deepEqual((await events(page)).filter((text) => text.startsWith('fold')).slice(0, 2), folds);
+    await page.close();
+  } finally {
+    await served.kill();
+  }
 });
 
 // Pictures to be looked at, none of which is compared.

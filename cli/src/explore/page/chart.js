@@ -112,10 +112,11 @@ export function draw({ dragging = false } = {}) {
   const curves = svg('g', { id: 'curve', class: curve.effort === 'screen' ? 'coarse' : 'exact', 'clip-path': 'url(#inside)' });
   for (const branch of curve.branches) for (const run of branch.runs) curves.append(svg('path', { class: run.verdict, d: line(run.places, px, py) }));
   const marks = svg('g', { id: 'marks' });
-  for (const event of curve.events) {
+  for (const [number, event] of curve.events.entries()) {
     const [x, y] = [px(event.value), event.size === null ? NaN : py(event.size)];
     if (!Number.isFinite(x) || !Number.isFinite(y)) continue;
     const shape = mark(event.kind, x, y);
+    shape.dataset.event = number;
     shape.append(svg('title', { text: `${event.said}: ${meaning(event.kind)}` }));
     marks.append(shape);
   }

@@ -27,7 +27,12 @@ export function showFound(curve, pick) {
 // The command that makes the same picture.
 export function showCommand() {
   const scale = state.yscale !== 'linear' || state.depth !== null ? ` --scale ${state.yscale}` : '';
-  if (chart.curve) byId('command').value = chart.curve.command + scale;
+  if (!chart.curve) return;
+  // The file that the program was started with has a name.
+  const file = session.models.find((model) => model.text === state.text)?.name;
+  const quoted = /^[\w./-]+$/.test(file ?? '') ? file : `'${file?.replaceAll("'", "'\\''")}'`;
+  const command = file === undefined ? chart.curve.command : chart.curve.command.replace(' --model FILE', () => ` --model ${quoted}`);
+  byId('command').value = command + scale;
 }
 
 // Where the curve is highest, as exactly as it is drawn.

@@ -166,6 +166,11 @@ function onChart() {
     hover.setAttribute('cy', near ? chart.place.py(place.size) : -9);
   });
   target.addEventListener('click', (event) => {
+    const marked = chart.curve?.events[event.target.closest('[data-event]')?.dataset.event];
+    if (marked) {
+      pick(marked.value, marked.size);
+      return;
+    }
     const place = nearest(event.clientX, event.clientY);
     if (!place) return;
     const near = place.far < 40;
