@@ -44,7 +44,9 @@ function showLargest(curve) {
     }
   }
   const { label, unit, varied, varied_unit: along } = curve;
-  byId('largest').textContent = top ? `Highest: ${label} ${short(top[1], 4)} ${unit} at ${varied} ${short(top[0], 4)} ${along}`.replace(/ +/g, ' ').trim() : '';
+  const ends = [state.from, state.to].map((end) => Math.abs(end - (top ? top[0] : NaN)));
+  const beyond = Math.min(...ends) < 1e-6 * Math.abs(state.to - state.from) ? ', where the range ends' : '';
+  byId('largest').textContent = top ? `Highest: ${label} ${short(top[1], 4)} ${unit} at ${varied} ${short(top[0], 4)} ${along}`.replace(/ +/g, ' ').trim() + beyond : '';
 }
 
 // Shows what is drawn in the fields.
