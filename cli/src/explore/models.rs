@@ -21,7 +21,7 @@ const RANGES: &[(&str, [f64; 2])] = &[
     ("ball-bearing", [0.3, 0.65]),
     ("tip", [0.994, 1.006]),
     ("bolted-joint", [1500.0, 4500.0]),
-    ("cantilever", [200.0, 400.0]),
+    ("cantilever", [300.0, 900.0]),
 ];
 
 /// Where nothing else is known, as of `hertzian response`.

@@ -45,7 +45,7 @@ function showLargest(curve) {
   }
   const { label, unit, varied, varied_unit: along } = curve;
   const ends = [state.from, state.to].map((end) => Math.abs(end - (top ? top[0] : NaN)));
-  const beyond = Math.min(...ends) < 1e-6 * Math.abs(state.to - state.from) ? ', where the range ends' : '';
+  const beyond = top && Math.min(...ends) < 1e-6 * Math.abs(state.to - state.from) + 1e-7 * Math.abs(top[0]) ? ', where the range ends' : '';
   byId('largest').textContent = top ? `Highest: ${label} ${short(top[1], 4)} ${unit} at ${varied} ${short(top[0], 4)} ${along}`.replace(/ +/g, ' ').trim() + beyond : '';
 }
 

@@ -4,8 +4,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use hertzian::Cancel;
+use hertzian_cli::built_in::MODELS;
 use hertzian_cli::explore::asked::{Asked, Effort, Method};
 use hertzian_cli::explore::exported::{Form, Scale};
+use hertzian_cli::explore::models::offered;
+use hertzian_cli::explore::options::Options;
 use hertzian_cli::explore::work::{Ask, Request, Work};
 use serde_json::Value;
 
@@ -42,6 +45,34 @@ fn a_declaration_has_its_parameters_with_ranges() {
         .map(|signal| signal["kind"].as_str().expect("a kind"))
         .collect();
     assert_eq!(kinds, ["output", "output", "coordinate", "contact"]);
+}
+
+/// Every model is there, with a range in which it has something to show.
+#[test]
+fn every_model_begins_with_a_curve() {
+    let options = Options {
+        model: "one-sided".into(),
+        set: Vec::new(),
+        from: None,
+        to: None,
+        port: 0,
+        open: false,
+    };
+    let models = offered(&options).expect("models");
+    assert_eq!(models.len(), MODELS.len());
+    for model in models {
+        let answer = last(&Ask::Curve {
+            of: of(&model.name, model.range[0], model.range[1]),
+            plot: String::new(),
+            effort: Effort::Screen,
+        });
+        let orbits = answer["curve"]["points"].as_u64();
+        assert!(
+            orbits.is_some_and(|orbits| orbits > 20),
+            "{}: {answer}",
+            model.name
+        );
+    }
 }
 
 #[test]
