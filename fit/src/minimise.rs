@@ -1,0 +1,315 @@
+//! Least squares by the method of Levenberg and Marquardt, with ranges, from one start.
+//!
+//! Unknowns are given to it in units of their scales; in the search for the neighbourhood those that are positive by their logarithms, so that
+//! a long step does not end where damping or stiffness vanish, and where curves say nothing any more. A trial whose curve cannot be followed gets residuals so large that the step is rejected,
+//! which shortens the next one; why it failed is kept.
+//!
+//! Source: Moré (1978), Lecture Notes in Mathematics 630, 105; ranges as in MPFIT, Markwardt (2009), ASP Conference Series 411, 251; (1) as
+//! in Huber (1964), Annals of Mathematical Statistics 35, 73.
+
+use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
+
+use crate::fit::Loss;
+use crate::problem::{Problem, Unknown};
+use crate::trial::{How, Trial};
+
+/// Residuals of a trial that failed, in units of the best ones: beyond ten of these a step is rejected.
+const FAILED: f64 = 100.0;
+
+/// A search by logarithms does not go farther beyond the range of starts than by this factor: a step may lead to stiff motions that take long.
+const FARTHEST: f64 = 10.0;
+
+/// How far an iteration goes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Until {
+    pub(crate) how: How,
+    /// Relative change of the sum of squares, and of the unknowns, below which it ends.
+    pub(crate) tolerance: f64,
+    pub(crate) iterations: usize,
+}
+
+/// What came of an iteration.
+#[derive(Debug)]
+pub(crate) struct Outcome {
+    /// The best trial.
+    pub(crate) trial: Trial,
+    /// Whether it ended by its tolerance.
+    pub(crate) converged: bool,
+}
+
+/// What is told and counted of all trials.
+pub(crate) struct Trials<'t> {
+    /// Says how far it is; whether to go on.
+    pub(crate) told: &'t mut dyn FnMut(usize, f64) -> bool,
+    pub(crate) count: usize,
+    /// Why trials failed, with how often.
+    pub(crate) failed: Vec<(String, usize)>,
+    pub(crate) is_stopped: bool,
+}
+
+impl Trials<'_> {
+    /// A trial, counted.
+    ///
+    /// # Errors
+    /// If it failed; the reason is kept.
+    pub(crate) fn at(
+        &mut self,
+        problem: &Problem,
+        unknowns: &[f64],
+        how: How,
+    ) -> Result<Trial, String> {
+        self.count += 1;
+        let trial = Trial::at(problem, unknowns, how);
+        self.is_stopped |= problem.cancel.is_cancelled();
+        if let Err(reason) = &trial
+            && !self.is_stopped
+        {
+            self.note(reason);
+        }
+        trial
+    }
+
+    fn note(&mut self, reason: &str) {
+        match self.failed.iter_mut().find(|(known, _)| known == reason) {
+            Some((_, count)) => *count += 1,
+            None => self.failed.push((reason.to_owned(), 1)),
+        }
+    }
+}
+
+/// Residuals as they count, and the factors of their derivatives: the squares of these sum up to the loss
+///
+/// ```text
+/// rho(r) = r^2 for |r| <= c,   c (2 |r| - c) beyond                                                         (1)
+/// ```
+pub(crate) fn counted(loss: Loss, scale: f64, residuals: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let of = |&residual: &f64| match loss {
+        Loss::Squares => (residual, 1.0),
+        Loss::Huber(limit) => {
+            let (limit, size) = (limit * scale, residual.abs());
+            if size <= limit {
+                (residual, 1.0)
+            } else {
+                let root = (limit * (2.0 * size - limit)).sqrt();
+                (root * residual.signum(), limit / root)
+            }
+        }
+    };
+    residuals.iter().map(of).unzip()
+}
+
+/// Sum of squares.
+pub(crate) fn square(residuals: &[f64]) -> f64 {
+    residuals.iter().map(|residual| residual * residual).sum()
+}
+
+/// Least squares from a trial on.
+pub(crate) fn minimise(
+    problem: &Problem,
+    start: Trial,
+    scale: f64,
+    until: Until,
+    trials: &mut Trials<'_>,
+) -> Outcome {
+    let axes: Vec<Axis> = problem
+        .unknowns
+        .iter()
+        .map(|unknown| Axis::of(unknown, until.how))
+        .collect();
+    let mut at: Vec<f64> = (axes.iter().zip(&start.unknowns))
+        .map(|(axis, value)| axis.scaled(*value))
+        .collect();
+    let ranges = axes.iter().map(|axis| {
+        let [low, high] = axis.limits.map(|limit| axis.scaled(limit));
+        MPPar {
+            limited_low: low.is_finite(),
+            limit_low: if low.is_finite() { low } else { 0.0 },
+            limited_up: high.is_finite(),
+            limit_up: if high.is_finite() { high } else { 0.0 },
+            side: MPSide::User,
+            ..MPPar::new()
+        }
+    });
+    let mut search = Search {
+        ranges: ranges.collect(),
+        config: MPConfig {
+            ftol: until.tolerance,
+            xtol: until.tolerance,
+            gtol: 1e-14,
+            step_factor: 1.0,
+            max_iter: until.iterations,
+            ..MPConfig::new()
+        },
+        least: square(&counted(problem.loss, scale, &start.residuals).0),
+        best: start,
+        last: None,
+        axes,
+        problem,
+        scale,
+        how: until.how,
+        trials,
+    };
+    let status = search.mpfit(&mut at);
+    let converged = status.is_ok_and(|status| status.success != MPSuccess::MaxIter);
+    Outcome {
+        trial: search.best,
+        converged,
+    }
+}
+
+/// How an unknown is given to the method.
+#[derive(Debug, Clone, Copy)]
+struct Axis {
+    scale: f64,
+    limits: [f64; 2],
+    by_logarithm: bool,
+}
+
+impl Axis {
+    fn of(unknown: &Unknown, how: How) -> Self {
+        let by_logarithm = how == How::Near && unknown.limits[0] >= 0.0 && unknown.start > 0.0;
+        let [low, high] = unknown.limits;
+        let [from, to] = unknown.search.unwrap_or(unknown.limits);
+        Self {
+            scale: unknown.scale,
+            limits: if by_logarithm {
+                [low.max(from / FARTHEST), high.min(to * FARTHEST)]
+            } else {
+                unknown.limits
+            },
+            by_logarithm,
+        }
+    }
+
+    fn scaled(&self, value: f64) -> f64 {
+        if self.by_logarithm {
+            // Of the scale itself it is one, so that steps have a size to begin with.
+            1.0 + (value / self.scale).ln()
+        } else {
+            value / self.scale
+        }
+    }
+
+    fn value(&self, at: f64) -> f64 {
+        let value = if self.by_logarithm {
+            self.scale * (at - 1.0).exp()
+        } else {
+            self.scale * at
+        };
+        value.clamp(self.limits[0], self.limits[1])
+    }
+
+    /// How fast a value grows with what is given.
+    fn slope(&self, value: f64) -> f64 {
+        if self.by_logarithm { value } else { self.scale }
+    }
+}
+
+/// The problem as the method wants it.
+struct Search<'s, 't> {
+    problem: &'s Problem,
+    how: How,
+    scale: f64,
+    ranges: Vec<MPPar>,
+    axes: Vec<Axis>,
+    config: MPConfig,
+    best: Trial,
+    least: f64,
+    /// The last trial that is not the best.
+    last: Option<Trial>,
+    trials: &'s mut Trials<'t>,
+}
+
+impl Search<'_, '_> {
+    fn unscaled(&self, at: &[f64]) -> Vec<f64> {
+        let values = self.axes.iter().zip(at).map(|(axis, at)| axis.value(*at));
+        values.collect()
+    }
+
+    fn counted(&self, residuals: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        counted(self.problem.loss, self.scale, residuals)
+    }
+}
+
+impl MPFitter for Search<'_, '_> {
+    fn eval(&mut self, at: &[f64], deviates: &mut [f64]) -> MPResult<()> {
+        let unknowns = self.unscaled(at);
+        if unknowns == self.best.unknowns {
+            deviates.copy_from_slice(&self.counted(&self.best.residuals).0);
+            return Ok(());
+        }
+        let trial = self.trials.at(self.problem, &unknowns, self.how);
+        let size = (self.least / deviates.len() as f64).sqrt();
+        let go_on = (self.trials.told)(self.trials.count, size);
+        self.trials.is_stopped |= !go_on;
+        match trial {
+            Ok(trial) => {
+                let (counted, _) = self.counted(&trial.residuals);
+                deviates.copy_from_slice(&counted);
+                let sum = square(&counted);
+                // What is not a number is no smaller.
+                let is_better = sum < self.least;
+                let other = if is_better {
+                    self.least = sum;
+                    std::mem::replace(&mut self.best, trial)
+                } else {
+                    trial
+                };
+                self.last = Some(other);
+            }
+            Err(_) => deviates.fill(FAILED * (size + 1.0)),
+        }
+        if self.trials.is_stopped {
+            return Err(MPError::Eval);
+        }
+        if !square(deviates).is_finite() {
+            deviates.fill(FAILED * (size + 1.0));
+        }
+        Ok(())
+    }
+
+    fn number_of_points(&self) -> usize {
+        self.best.residuals.len()
+    }
+
+    fn config(&self) -> &MPConfig {
+        &self.config
+    }
+
+    fn parameters(&self) -> &[MPPar] {
+        &self.ranges
+    }
+
+    fn jacobian(
+        &mut self,
+        at: &[f64],
+        deviates: &mut [f64],
+        columns: &mut [Option<Vec<f64>>],
+    ) -> MPResult<()> {
+        let unknowns = self.unscaled(at);
+        let problem = self.problem;
+        let trial = if unknowns == self.best.unknowns {
+            &mut self.best
+        } else {
+            self.last
+                .as_mut()
+                .filter(|last| last.unknowns == unknowns)
+                .ok_or(MPError::Eval)?
+        };
+        let jacobian = match trial.jacobian(problem, false) {
+            Ok(jacobian) => jacobian,
+            Err(reason) => {
+                self.trials.note(&format!("no derivatives: {reason}"));
+                return Err(MPError::Eval);
+            }
+        };
+        let (counted, factors) = counted(problem.loss, self.scale, &trial.residuals);
+        deviates.copy_from_slice(&counted);
+        for (j, column) in columns.iter_mut().enumerate() {
+            let slope = self.axes[j].slope(unknowns[j]);
+            let entries = column.iter_mut().flatten().enumerate();
+            entries.for_each(|(i, entry)| *entry = jacobian[(i, j)] * factors[i] * slope);
+        }
+        Ok(())
+    }
+}

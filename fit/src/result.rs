@@ -1,0 +1,283 @@
+//! What came of a fit.
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+use crate::error::FitError;
+use crate::fit::{Fit, Loss};
+use crate::minimise::{Outcome, Trials};
+use crate::problem::Problem;
+use crate::statistics::{self, Linear};
+use crate::trial::{How, Trial};
+
+/// The estimate of a parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Estimate {
+    /// Its name; of a parameter that each data set has for itself, with that of the set: `drive of rising`.
+    pub name: String,
+    /// Its unit; empty where there is none.
+    pub unit: String,
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error; `None` where the estimate is at the end of its range, or the data do not determine it.
+    pub error: Option<f64>,
+    /// Its 95 % interval; `None` where there is no standard error.
+    pub interval: Option<[f64; 2]>,
+    /// Whether it is at the end of its range.
+    pub at_limit: bool,
+}
+
+/// A measured value beside the fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct FittedValue {
+    /// Where it was measured.
+    pub place: f64,
+    /// The value.
+    pub value: f64,
+    /// The standard deviation that it counted by.
+    pub deviation: f64,
+    /// The nearest point of the curve, place and reading: what the model says.
+    pub foot: [f64; 2],
+    /// The distance from the curve, positive above, in standard deviations.
+    pub residual: f64,
+    /// How far the value determines its own fit, from zero to one.
+    pub leverage: f64,
+    /// The residual from a fit without this value, in its standard deviations.
+    pub studentised: f64,
+    /// How far the estimates move when this value is left out: the largest change, in standard errors.
+    pub influence: f64,
+    /// Whether so large a residual is not to be expected of any of so many values, at 5 %.
+    pub is_outlier: bool,
+    /// The row of its data set, from zero on.
+    pub row: usize,
+}
+
+/// A data set beside the fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct FittedSet {
+    /// Its name.
+    pub name: String,
+    /// What was measured.
+    pub wanted: String,
+    /// Its unit; empty where there is none.
+    pub unit: String,
+    /// What varied, and its unit.
+    pub varied: [String; 2],
+    /// The values, in the order of the sweep.
+    pub values: Vec<FittedValue>,
+    /// Residuals of the jumps, in standard deviations.
+    pub jumps: Vec<f64>,
+    /// The curve of the fit: whether a part may be stable, and its points.
+    pub curve: Vec<(bool, Vec<[f64; 2]>)>,
+}
+
+/// Where a search went on from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Started {
+    /// The parameters that the coarse search came to, in the order of the estimates.
+    pub values: Vec<f64>,
+    /// The root of the mean square of the coarse residuals there.
+    pub rms: f64,
+}
+
+impl Started {
+    pub(crate) fn of(trial: &Trial) -> Self {
+        let mean = crate::minimise::square(&trial.residuals) / trial.residuals.len() as f64;
+        Self {
+            values: trial.unknowns.clone(),
+            rms: mean.sqrt(),
+        }
+    }
+}
+
+/// What came of a fit.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct Fitted {
+    /// The estimates, in the order in which parameters were freed.
+    pub estimates: Vec<Estimate>,
+    /// Covariance of the estimates; not a number where one has no standard error.
+    pub covariance: Vec<Vec<f64>>,
+    /// Their correlation.
+    pub correlation: Vec<Vec<f64>>,
+    /// Singular values of the derivatives of the residuals by relative changes of the estimates, largest first: what a change of one hundred per cent
+    /// along each of so many independent directions would change.
+    pub singular_values: Vec<f64>,
+    /// What the data cannot tell, in words; empty where they determine all parameters.
+    pub untold: Vec<String>,
+    /// The data sets.
+    pub sets: Vec<FittedSet>,
+    /// Sum of the squares of the residuals.
+    pub chi_square: f64,
+    /// Measured values less estimates.
+    pub degrees: usize,
+    /// How probable a larger sum of squares is, if model and deviations are right; `None` where deviations are not known.
+    pub probability: Option<f64>,
+    /// The standard deviation of the residuals: one if model and deviations are right, and where none were stated in hundredths of the largest
+    /// value of a set.
+    pub scatter: f64,
+    /// Whether deviations of all sets were stated.
+    pub is_absolute: bool,
+    /// Whether the search ended by itself, and not because it was cancelled or took too long.
+    pub converged: bool,
+    /// Curves of all sets that were followed, each a trial.
+    pub trials: usize,
+    /// Why trials were rejected because their curves could not be followed or compared, with how often.
+    pub rejected: Vec<(String, usize)>,
+    /// Where the search went on from, best first.
+    pub starts: Vec<Started>,
+    /// The fit that was asked for.
+    #[serde(skip)]
+    pub(crate) asked: Fit,
+}
+
+impl Fitted {
+    /// The estimate of a parameter, by its name.
+    pub fn estimate(&self, name: &str) -> Option<&Estimate> {
+        self.estimates.iter().find(|estimate| estimate.name == name)
+    }
+
+    /// The root of the mean square of all residuals.
+    pub fn rms(&self) -> f64 {
+        let count: usize = self
+            .sets
+            .iter()
+            .map(|set| set.values.len() + set.jumps.len())
+            .sum();
+        (self.chi_square / count.max(1) as f64).sqrt()
+    }
+
+    /// Fits again with a parameter at a value instead of free, from these estimates.
+    ///
+    /// # Errors
+    /// As of [`Fit::run`], and if nothing would be free.
+    pub fn without(&self, name: &str, value: f64) -> Result<Self, FitError> {
+        self.asked.from(self).held(name, value).run()
+    }
+
+    pub(crate) fn of(
+        problem: &Problem,
+        outcome: Outcome,
+        starts: Vec<Started>,
+        trials: &mut Trials<'_>,
+    ) -> Result<Self, FitError> {
+        let Outcome {
+            mut trial,
+            mut converged,
+        } = outcome;
+        // After a cancellation what is dear is left out.
+        let at_every_foot = !trials.is_stopped && trial.how == How::Exact;
+        let jacobian = trial.jacobian(problem, at_every_foot).or_else(|reason| {
+            let reason = format!("no derivatives at every value: {reason}");
+            trials.failed.push((reason, 1));
+            trial.jacobian(problem, false)
+        });
+        let jacobian = jacobian.unwrap_or_else(|reason| {
+            trials.failed.push((format!("no derivatives: {reason}"), 1));
+            DMatrix::zeros(trial.residuals.len(), problem.unknowns.len())
+        });
+        converged &= !trials.is_stopped;
+        let linear = Linear::of(problem, &trial, &jacobian);
+        let degrees = linear.degrees;
+        let chi_square = crate::minimise::square(&trial.residuals);
+        let probability = (problem.is_absolute && problem.loss == Loss::Squares && degrees > 0)
+            .then(|| statistics::exceeds(chi_square, degrees));
+        Ok(Self {
+            estimates: estimates(problem, &trial, &linear),
+            covariance: rows(&linear.covariance),
+            correlation: rows(&statistics::correlation(&linear.covariance)),
+            singular_values: linear.singular.iter().copied().collect(),
+            untold: linear.in_words(problem),
+            sets: sets(problem, &trial, &jacobian, &linear),
+            chi_square,
+            degrees,
+            probability,
+            scatter: linear.scatter,
+            is_absolute: problem.is_absolute,
+            converged,
+            trials: trials.count,
+            rejected: std::mem::take(&mut trials.failed),
+            starts,
+            asked: problem.asked.clone(),
+        })
+    }
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect()
+}
+
+fn estimates(problem: &Problem, trial: &Trial, linear: &Linear) -> Vec<Estimate> {
+    let wide = linear.quantile(problem.is_absolute);
+    let unknowns = problem.unknowns.iter().enumerate().map(|(index, unknown)| {
+        let value = trial.unknowns[index];
+        let error = linear.covariance[(index, index)].sqrt();
+        let error = error.is_finite().then_some(error);
+        Estimate {
+            name: unknown.name.clone(),
+            unit: problem.model.parameters[unknown.parameter].unit.clone(),
+            value,
+            error,
+            interval: error.map(|error| [value - wide * error, value + wide * error]),
+            at_limit: linear.at_limit[index],
+        }
+    });
+    unknowns.collect()
+}
+
+fn sets(
+    problem: &Problem,
+    trial: &Trial,
+    jacobian: &DMatrix<f64>,
+    linear: &Linear,
+) -> Vec<FittedSet> {
+    let mut first = 0;
+    let sets = problem.sets.iter().enumerate().map(|(number, set)| {
+        let values = trial.feet(number).enumerate().map(|(index, foot)| {
+            let row = first + index;
+            let residual = trial.residuals[row];
+            let gradient: DVector<f64> = jacobian.row(row).transpose();
+            let left_out = linear.left_out(residual, &gradient);
+            FittedValue {
+                place: set.places[index],
+                value: set.values[index],
+                deviation: set.deviations[index],
+                foot,
+                residual,
+                leverage: left_out.leverage,
+                studentised: left_out.studentised,
+                influence: left_out.influence,
+                is_outlier: left_out.is_outlier,
+                row: set.given[index],
+            }
+        });
+        let values: Vec<FittedValue> = values.collect();
+        first += values.len();
+        let jumps = trial.residuals[first..][..set.jumps.len()].to_vec();
+        first += jumps.len();
+        let varied = &problem.groups[set.group].varied;
+        FittedSet {
+            name: set.name.clone(),
+            wanted: set.wanted.to_string(),
+            unit: set
+                .wanted
+                .measure
+                .unit(problem.model.unit_of(&set.wanted.name)),
+            varied: [
+                varied.clone(),
+                problem.model.unit_of_varied(varied).to_owned(),
+            ],
+            values,
+            jumps,
+            curve: trial.drawn(number),
+        }
+    });
+    sets.collect()
+}

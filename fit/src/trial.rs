@@ -1,0 +1,606 @@
+//! Residuals at values of the unknowns, and their derivatives.
+//!
+//! *Near* residuals are distances to the curve through the orbits that were followed, and that of the fold ahead from where the data leave a sheet, so
+//! that a search far off sees what is seen at a glance: where the measured curve ends. *Exact* ones are taken from orbits that are computed at
+//! the place of each foot: with the reading `y_f` and the slope `m` of the curve there, and the deviations `a` and `b`,
+//!
+//! ```text
+//! r = (d_y - y_f - m (d_x - x_f)) / sqrt(b^2 + m^2 a^2),     dr/dp = - y_p / sqrt(b^2 + m^2 a^2)              (1)
+//! ```
+//!
+//! which is the distance to the tangent at the foot. Derivatives are exact at some orbits of each sheet; between these `W = y_p x'` is a
+//! smooth function of the length along the curve, also at folds. For errors of estimates they are computed at every foot.
+
+use nalgebra::DMatrix;
+
+use crate::assign;
+use crate::curve::Curve;
+use crate::data::Sweep;
+use crate::path::{Foot, Path, Sheet};
+use crate::problem::{Problem, Set};
+use crate::spline::Spline;
+use crate::turn;
+
+/// Orbits of one sheet at which derivatives are computed.
+const NODES: usize = 14;
+/// A foot nearer to a fold than this part of the range is at it: there is no derivative at a fixed place.
+const FROM_FOLD: f64 = 1e-6;
+/// Of deviations along both axes, those of near residuals are at least this part of the range of a set.
+const NEAR: f64 = 0.03;
+
+/// How residuals are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum How {
+    /// From the curve as it was followed, and by deviations that are at least a part of what was measured.
+    Near,
+    /// From orbits at the places of the data.
+    Exact,
+}
+
+/// A data set beside its curve.
+#[derive(Debug)]
+struct Beside {
+    paths: Vec<Path>,
+    /// Sheets with the number of their path.
+    sheets: Vec<(usize, Sheet)>,
+    /// The sheet and the foot of each value.
+    feet: Vec<(usize, Foot)>,
+    /// The place of what is wanted in its group.
+    wanted: usize,
+    /// Exact: place, number of the orbit there, slope of the curve; nothing where the foot is at a fold.
+    exact: Vec<Option<(f64, usize, f64)>>,
+    /// The sheet that each jump ends, where there is one.
+    jumps: Vec<Option<usize>>,
+    /// Where the data leave a sheet, and that sheet.
+    left: Option<(f64, usize)>,
+}
+
+/// Curves at values of the unknowns, and residuals.
+#[derive(Debug)]
+pub(crate) struct Trial {
+    pub(crate) unknowns: Vec<f64>,
+    pub(crate) how: How,
+    pub(crate) residuals: Vec<f64>,
+    curves: Vec<Curve>,
+    beside: Vec<Beside>,
+}
+
+impl Trial {
+    /// # Errors
+    /// Why the curves cannot be compared with the data.
+    pub(crate) fn at(problem: &Problem, unknowns: &[f64], how: How) -> Result<Self, String> {
+        let groups = 0..problem.groups.len();
+        let curves = groups.map(|group| Curve::follow(problem, group, unknowns));
+        let mut trial = Self {
+            unknowns: unknowns.to_vec(),
+            how,
+            residuals: Vec::new(),
+            curves: curves.collect::<Result<_, _>>()?,
+            beside: Vec::new(),
+        };
+        for set in &problem.sets {
+            let beside = trial.beside(problem, set)?;
+            trial.beside.push(beside);
+        }
+        Ok(trial)
+    }
+
+    /// Puts a set beside its curve, and appends its residuals.
+    fn beside(&mut self, problem: &Problem, set: &Set) -> Result<Beside, String> {
+        let wanted = problem.groups[set.group].wanted.iter();
+        let wanted = wanted
+            .clone()
+            .position(|wanted| *wanted == set.wanted)
+            .unwrap_or(0);
+        let nodes = self.curves[set.group].nodes(wanted, set.wraps());
+        let paths = nodes
+            .into_iter()
+            .filter_map(|nodes| Path::of(nodes, set.size));
+        let paths: Vec<Path> = paths.collect();
+        let sheets = paths.iter().enumerate().flat_map(|(path, of)| {
+            let sheets = of.sheets().into_iter();
+            sheets.map(move |sheet| (path, sheet))
+        });
+        let sheets =
+            sheets.filter(|(_, sheet)| sheet.may_be_stable || set.sweep == Sweep::Controlled);
+        let sheets: Vec<(usize, Sheet)> = sheets.collect();
+        if sheets.is_empty() {
+            return Err(format!("{} is known of no orbit of the curve", set.wanted));
+        }
+        let all: Vec<Vec<Foot>> = (0..set.places.len())
+            .map(|index| {
+                let feet = sheets
+                    .iter()
+                    .map(|(path, sheet)| foot(&paths[*path], sheet, set, index, self.how));
+                feet.collect()
+            })
+            .collect();
+        let squares: Vec<Vec<f64>> = all
+            .iter()
+            .map(|feet| {
+                feet.iter()
+                    .map(|foot| foot.distance * foot.distance)
+                    .collect()
+            })
+            .collect();
+        let ranks: Vec<isize> = sheets
+            .iter()
+            .map(|(path, sheet)| rank(*path, sheet))
+            .collect();
+        let assigned = assign::assigned(set.sweep, &ranks, &squares);
+        let feet = assigned
+            .iter()
+            .zip(&all)
+            .map(|(&sheet, feet)| (sheet, feet[sheet]));
+        let mut beside = Beside {
+            feet: feet.collect(),
+            jumps: jumps(set, &sheets),
+            left: left(set, &assigned),
+            exact: Vec::new(),
+            paths,
+            sheets,
+            wanted,
+        };
+        match self.how {
+            How::Near => self
+                .residuals
+                .extend(beside.feet.iter().map(|(_, foot)| foot.distance)),
+            How::Exact => self.exact(problem, set, &mut beside)?,
+        }
+        for (number, jump) in set.jumps.iter().enumerate() {
+            let by = jump.deviation.max(self.least(set.size[0]));
+            let apart = beside.jumps[number]
+                .map_or(set.size[0], |sheet| jump.value - beside.fold(set, sheet));
+            self.residuals.push(one_sided(set, number, apart) / by);
+        }
+        if self.how == How::Near {
+            let apart = beside
+                .left
+                .map_or(0.0, |(place, sheet)| place - beside.fold(set, sheet));
+            self.residuals.push(apart / self.least(set.size[0]));
+        }
+        Ok(beside)
+    }
+
+    /// Deviations are not below this part of a size.
+    fn least(&self, size: f64) -> f64 {
+        match self.how {
+            How::Near => NEAR * size,
+            How::Exact => 0.0,
+        }
+    }
+
+    /// The residuals (1) of a set.
+    fn exact(&mut self, problem: &Problem, set: &Set, beside: &mut Beside) -> Result<(), String> {
+        for (index, (sheet, foot)) in beside.feet.iter().enumerate() {
+            let (path_number, sheet) = &beside.sheets[*sheet];
+            let path = &beside.paths[*path_number];
+            let Some(place) = stand(sheet, foot, set, index) else {
+                self.residuals.push(foot.distance);
+                beside.exact.push(None);
+                continue;
+            };
+            let ([_, near], [dx, dy]) = path.at(path.along_at(sheet, place));
+            let curve = &mut self.curves[set.group];
+            let readings = curve.readings(problem, *path_number, place, beside.wanted)?;
+            let turned = |reading: f64| {
+                if set.wraps() {
+                    turn::near(reading, near)
+                } else {
+                    reading
+                }
+            };
+            let nearest = readings.iter().map(|&reading| turned(reading)).enumerate();
+            let nearest = nearest.min_by(|a, b| (a.1 - near).abs().total_cmp(&(b.1 - near).abs()));
+            let Some((number, reading)) = nearest.filter(|(_, reading)| reading.is_finite()) else {
+                return Err(format!(
+                    "no orbit was found at {} = {place}",
+                    problem.groups[set.group].varied
+                ));
+            };
+            let slope = dy / dx;
+            let datum = if set.wraps() {
+                turn::near(set.values[index], reading)
+            } else {
+                set.values[index]
+            };
+            let apart = datum - reading - slope * (set.places[index] - place);
+            self.residuals.push(apart / across(set, index, slope));
+            beside.exact.push(Some((place, number, slope)));
+        }
+        Ok(())
+    }
+
+    /// Derivatives of the residuals by the unknowns, one row for each; with those at every foot, or between some orbits.
+    ///
+    /// # Errors
+    /// Why there are none.
+    pub(crate) fn jacobian(
+        &mut self,
+        problem: &Problem,
+        at_every_foot: bool,
+    ) -> Result<DMatrix<f64>, String> {
+        let count = problem.unknowns.len();
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(self.residuals.len());
+        for (number, set) in problem.sets.iter().enumerate() {
+            let before = rows.len();
+            self.between(problem, number, set, &mut rows)?;
+            if at_every_foot {
+                self.every_foot(problem, number, set, &mut rows[before..])?;
+            }
+            let first = before + set.places.len();
+            for jump in 0..set.jumps.len() {
+                let by = set.jumps[jump].deviation.max(self.least(set.size[0]));
+                let beside = &self.beside[number];
+                let is_met = set.jumps[jump].is_bound && self.residuals[first + jump] == 0.0;
+                let turn = beside.jumps[jump].and_then(|sheet| beside.turn(set, sheet));
+                let slopes = match turn.filter(|_| !is_met) {
+                    Some((path, event)) => {
+                        self.curves[set.group].fold_slopes(problem, path, event)?
+                    }
+                    None => vec![0.0; count],
+                };
+                rows.push(slopes.iter().map(|slope| -slope / by).collect());
+            }
+            if self.how == How::Near {
+                let beside = &self.beside[number];
+                let turn = beside.left.and_then(|(_, sheet)| beside.turn(set, sheet));
+                let slopes = match turn {
+                    Some((path, event)) => {
+                        self.curves[set.group].fold_slopes(problem, path, event)?
+                    }
+                    None => vec![0.0; count],
+                };
+                let by = self.least(set.size[0]);
+                rows.push(slopes.iter().map(|slope| -slope / by).collect());
+            }
+        }
+        Ok(DMatrix::from_fn(rows.len(), count, |i, j| rows[i][j]))
+    }
+
+    /// Puts derivatives at the foot of each value in place of those between orbits.
+    fn every_foot(
+        &mut self,
+        problem: &Problem,
+        number: usize,
+        set: &Set,
+        rows: &mut [Vec<f64>],
+    ) -> Result<(), String> {
+        let beside = &self.beside[number];
+        let exact = beside.exact.iter().enumerate();
+        for (index, (place, orbit, _)) in
+            exact.filter_map(|(index, exact)| Some((index, (*exact)?)))
+        {
+            let (path, _) = beside.sheets[beside.feet[index].0];
+            let slopes = self.curves[set.group].slopes_at(problem, path, place, orbit)?;
+            let of = slopes.of[beside.wanted].as_ref();
+            let (_, slope, by) = of.ok_or("a reading has no derivative")?;
+            let across = across(set, index, *slope);
+            rows[index] = by.iter().map(|by| -by / across).collect();
+        }
+        Ok(())
+    }
+
+    /// Rows of a set by derivatives between some orbits.
+    fn between(
+        &mut self,
+        problem: &Problem,
+        number: usize,
+        set: &Set,
+        rows: &mut Vec<Vec<f64>>,
+    ) -> Result<(), String> {
+        let count = problem.unknowns.len();
+        let beside = &self.beside[number];
+        let curve = &mut self.curves[set.group];
+        let mut of_sheet: Vec<Option<Vec<Spline>>> = vec![None; beside.sheets.len()];
+        for (index, (sheet_number, foot)) in beside.feet.iter().enumerate() {
+            let (path_number, sheet) = &beside.sheets[*sheet_number];
+            if of_sheet[*sheet_number].is_none() {
+                let feet = beside.feet.iter().filter(|(own, _)| own == sheet_number);
+                let along: Vec<f64> = feet.map(|(_, foot)| foot.along).collect();
+                let path = &beside.paths[*path_number];
+                let chosen = chosen(path, sheet, &along);
+                let splines = splines(
+                    problem,
+                    curve,
+                    (path, sheet, *path_number),
+                    &chosen,
+                    beside.wanted,
+                    set,
+                )?;
+                of_sheet[*sheet_number] = Some(splines);
+            }
+            let splines = of_sheet[*sheet_number].as_deref().unwrap_or_default();
+            let row = match beside.exact.get(index) {
+                Some(Some((place, _, slope))) => {
+                    let along = beside.paths[*path_number].along_at(sheet, *place);
+                    let (_, [dx, _]) = beside.paths[*path_number].at(along);
+                    let by =
+                        |spline: &Spline| -spline.of(along)[0] / dx / across(set, index, *slope);
+                    splines.iter().map(by).collect()
+                }
+                _ => splines
+                    .iter()
+                    .map(|spline| foot.weight * spline.of(foot.along)[0])
+                    .collect::<Vec<f64>>(),
+            };
+            debug_assert_eq!(row.len(), count);
+            rows.push(row);
+        }
+        Ok(())
+    }
+
+    /// What the fit says at each value: the reading of the model at the place of the datum's foot, and that place.
+    pub(crate) fn feet(&self, set: usize) -> impl Iterator<Item = [f64; 2]> {
+        self.beside[set]
+            .feet
+            .iter()
+            .map(|(_, foot)| [foot.x, foot.y])
+    }
+
+    /// The curve beside a set, part by part: whether it may be stable, and its points.
+    pub(crate) fn drawn(&self, set: usize) -> Vec<(bool, Vec<[f64; 2]>)> {
+        let beside = &self.beside[set];
+        let parts = beside.paths.iter().flat_map(|path| {
+            path.sheets().into_iter().map(move |sheet| {
+                let [from, to] = sheet.ends;
+                let inside = path
+                    .along
+                    .iter()
+                    .copied()
+                    .filter(move |along| (from..=to).contains(along));
+                let points = inside.map(|along| path.at(along).0);
+                (sheet.may_be_stable, points.collect())
+            })
+        });
+        parts.collect()
+    }
+}
+
+impl Beside {
+    /// The place where a sheet ends ahead of the sweep.
+    fn fold(&self, set: &Set, sheet: usize) -> f64 {
+        self.sheets[sheet].1.range[usize::from(set.sweep == Sweep::Rising)]
+    }
+
+    /// The path and the event of the fold there.
+    fn turn(&self, set: &Set, sheet: usize) -> Option<(usize, usize)> {
+        let (path, sheet) = &self.sheets[sheet];
+        let node = sheet.folds[usize::from(set.sweep == Sweep::Rising)]?;
+        Some((*path, self.paths[*path].nodes[node].event?))
+    }
+}
+
+/// Where a sweep leaves the first sheet that it leaves, between two values.
+fn left(set: &Set, assigned: &[usize]) -> Option<(f64, usize)> {
+    let swept = matches!(set.sweep, Sweep::Rising | Sweep::Falling);
+    let mut pairs = assigned.windows(2).zip(set.places.windows(2));
+    let leaves = pairs.find(|(sheets, _)| swept && sheets[0] != sheets[1]);
+    leaves.map(|(sheets, places)| (0.5 * (places[0] + places[1]), sheets[0]))
+}
+
+/// For each jump the sheet that ends in a fold nearest to it.
+fn jumps(set: &Set, sheets: &[(usize, Sheet)]) -> Vec<Option<usize>> {
+    let side = usize::from(set.sweep == Sweep::Rising);
+    let of = |jump: &crate::data::Jump| {
+        let ends = sheets
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, sheet))| sheet.folds[side].is_some());
+        let apart = |sheet: &Sheet| (sheet.range[side] - jump.value).abs();
+        let nearest = ends.min_by(|a, b| apart(&a.1.1).total_cmp(&apart(&b.1.1)));
+        nearest.map(|(number, _)| number)
+    };
+    set.jumps.iter().map(of).collect()
+}
+
+/// The place of a sheet along the curve from its lowest end on: the first path begins there, and the second, if there is one, at the highest.
+fn rank(path: usize, sheet: &Sheet) -> isize {
+    let along = sheet.nodes[0] as isize;
+    if path == 0 {
+        along
+    } else {
+        isize::MAX / 4 - along
+    }
+}
+
+/// What counts of how far a jump is beyond the fold: of a bound nothing where the fold is farther in the direction of the sweep.
+fn one_sided(set: &Set, jump: usize, apart: f64) -> f64 {
+    let ahead = if set.sweep == Sweep::Rising {
+        1.0
+    } else {
+        -1.0
+    };
+    if set.jumps[jump].is_bound && ahead * apart < 0.0 {
+        0.0
+    } else {
+        apart
+    }
+}
+
+/// The deviation of a value across a curve of a slope.
+fn across(set: &Set, index: usize, slope: f64) -> f64 {
+    set.deviations[index].hypot(slope * set.place_deviation)
+}
+
+/// The foot of a value on a sheet.
+fn foot(path: &Path, sheet: &Sheet, set: &Set, index: usize, how: How) -> Foot {
+    let least = |size: f64| if how == How::Near { NEAR * size } else { 0.0 };
+    let by = [
+        set.place_deviation.max(least(set.size[0])),
+        set.deviations[index].max(least(set.size[1])),
+    ];
+    let mut value = set.values[index];
+    if set.wraps() {
+        let ([_, near], _) = path.at(path.along_at(sheet, set.places[index]));
+        value = turn::near(value, near);
+    }
+    path.foot(sheet, [set.places[index], value], by)
+}
+
+/// The place of the orbit that a value is compared with: that of the value itself, if its foot is no farther than its deviation. None where the
+/// foot is at a fold or beyond: the fold is a node of the curve, and the distance from it is exact as it is.
+fn stand(sheet: &Sheet, foot: &Foot, set: &Set, index: usize) -> Option<f64> {
+    let own = set.places[index];
+    let is_own = (foot.x - own).abs() <= set.place_deviation;
+    let place = if is_own { own } else { foot.x };
+    let away = FROM_FOLD * set.size[0];
+    let [low, high] = sheet.range;
+    let [low_fold, high_fold] = sheet.folds.map(|fold| fold.is_some());
+    let at_fold = low_fold && place <= low + away || high_fold && place >= high - away;
+    let beyond = foot.along < sheet.ends[0] && sheet.nodes[0] > 0 || foot.along > sheet.ends[1];
+    (!at_fold && !beyond).then(|| place.clamp(low, high))
+}
+
+/// Nodes of a path at which derivatives are computed: of those between the feet, and one on either side of them, so many, evenly by their number,
+/// since steps are short where a branch bends; and turns, with their neighbours.
+fn chosen(path: &Path, sheet: &Sheet, feet: &[f64]) -> Vec<usize> {
+    let [low, high] = crate::checks::extremes(feet);
+    let [first, last] = sheet.within(path);
+    let from = (first..=last).rfind(|&node| path.along[node] <= low);
+    let to = (first..=last).find(|&node| path.along[node] >= high);
+    let (from, to) = (from.unwrap_or(first), to.unwrap_or(last));
+    let step = (to - from).div_ceil(NODES).max(1);
+    let is_turn = |node: usize| {
+        path.nodes
+            .get(node)
+            .is_some_and(|node| node.event.is_some())
+    };
+    let is_near = |node: usize| {
+        is_turn(node) || is_turn(node + 1) || node.checked_sub(1).is_some_and(is_turn)
+    };
+    let taken = |&node: &usize| (node - from) % step == 0 || node == to || is_near(node);
+    (from..=to).filter(taken).collect()
+}
+
+/// `W` of each unknown along a sheet.
+fn splines(
+    problem: &Problem,
+    curve: &mut Curve,
+    (path, sheet, branch): (&Path, &Sheet, usize),
+    nodes: &[usize],
+    wanted: usize,
+    set: &Set,
+) -> Result<Vec<Spline>, String> {
+    let mut along = Vec::with_capacity(nodes.len());
+    let mut moves: Vec<Vec<f64>> = vec![Vec::with_capacity(nodes.len()); problem.unknowns.len()];
+    let mut failed = None;
+    for &node in nodes {
+        // Next to a fold there may be none, and the others are enough.
+        match moved(problem, curve, (path, sheet, branch), node, wanted, set) {
+            Ok(by) => {
+                along.push(path.along[node]);
+                for (moves, by) in moves.iter_mut().zip(by) {
+                    moves.push(by);
+                }
+            }
+            Err(reason) => failed = Some(reason),
+        }
+    }
+    if along.is_empty() {
+        return Err(failed.unwrap_or_else(|| "no orbit of the curve has derivatives".to_owned()));
+    }
+    let spline = |moves| Spline::through(along.clone(), moves);
+    Ok(moves.into_iter().map(spline).collect())
+}
+
+/// `W` at a node. At a fold, which moves along the axis of the places, it is `-y' x_p`.
+fn moved(
+    problem: &Problem,
+    curve: &mut Curve,
+    (path, sheet, branch): (&Path, &Sheet, usize),
+    node: usize,
+    wanted: usize,
+    set: &Set,
+) -> Result<Vec<f64>, String> {
+    if let Some(event) = path.nodes[node].event {
+        let (_, [_, dy]) = path.at(path.along[node]);
+        let by = curve.fold_slopes(problem, branch, event)?;
+        return Ok(by.iter().map(|by| -dy * by).collect());
+    }
+    let point = path.nodes[node].point.ok_or("a node without an orbit")?;
+    let slopes = curve.slopes_of(problem, branch, point)?;
+    let of = slopes.of[wanted].as_ref();
+    let (_, slope, by) = of.ok_or("a reading without derivatives")?;
+    let inside = (sheet.nodes[0]..=sheet.nodes[1]).contains(&node);
+    let direction = if inside {
+        sheet.direction
+    } else {
+        -sheet.direction
+    };
+    let dx = direction / (1.0 / set.size[0]).hypot(slope / set.size[1]);
+    Ok(by.iter().map(|by| by * dx).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::DataSet;
+    use crate::fit::Fit;
+
+    hertzian::oscillator! {
+        OneSided(x) {
+            param alpha > 0;
+            param zeta in 0.0..;
+            param load;
+            param drive;
+            law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^alpha, else => 0 }
+            ddot(x) + contact(x) = drive*cos(omega*t) + load;
+        }
+    }
+
+    /// Derivatives of residuals on both sides of folds against differences of them.
+    #[test]
+    fn derivatives_are_those_of_the_residuals() {
+        let omegas: Vec<f64> = (0..14).map(|i| 0.65 + 0.05 * f64::from(i)).collect();
+        let rising = [
+            0.19, 0.2, 0.21, 0.23, 0.25, 0.28, 0.31, 0.36, 0.43, 0.6, 2.2, 1.9, 1.4, 0.9,
+        ];
+        let falling = [
+            0.2, 8.0, 6.9, 6.1, 5.3, 4.7, 4.1, 3.5, 3.0, 2.6, 2.2, 1.9, 1.5, 0.8,
+        ];
+        let model = OneSided {
+            alpha: 1.45,
+            zeta: 0.035,
+            load: 0.97,
+            drive: 0.1,
+        };
+        let set = |values: &[f64], sweep| {
+            DataSet::new("x:p2p", omegas.clone(), values.to_vec())
+                .named(format!("{sweep:?}"))
+                .sweep(sweep)
+        };
+        let fit = Fit::of(&model)
+            .data(set(&rising, Sweep::Rising).jump(crate::Jump::at(1.13, 0.01)))
+            .data(set(&falling, Sweep::Falling))
+            .free("alpha")
+            .free("zeta")
+            .free("load");
+        let problem = Problem::new(&fit).expect("a problem");
+        let at = [1.45, 0.035, 0.97];
+        for how in [How::Near, How::Exact] {
+            let mut trial = Trial::at(&problem, &at, how).expect("a trial");
+            for at_every_foot in [false, true] {
+                let jacobian = trial
+                    .jacobian(&problem, at_every_foot)
+                    .expect("derivatives");
+                for j in 0..3 {
+                    let h = 1e-5 * at[j];
+                    let [a, b] = [-h, h].map(|h| {
+                        let mut moved = at;
+                        moved[j] += h;
+                        Trial::at(&problem, &moved, how).expect("a trial").residuals
+                    });
+                    let column = jacobian.column(j);
+                    for i in 0..column.len() {
+                        let expected = (b[i] - a[i]) / (2.0 * h);
+                        println!(
+                            "{how:?} {at_every_foot} {j} {i}: {} {expected} r {}",
+                            column[i], trial.residuals[i]
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

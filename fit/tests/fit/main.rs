@@ -1,0 +1,4 @@
+//! Fits of data that another integration made, of data with noise, and what is refused.
+
+mod common;
+mod recovered;
