@@ -11,7 +11,7 @@ use crate::built_in;
 use crate::explore;
 use crate::install;
 use crate::misplaced::{self, Given};
-use crate::{map, multipliers, paper, program, response, show, study, work_precision};
+use crate::{fit, map, multipliers, paper, program, response, show, study, work_precision};
 
 /// Vibration of oscillators whose forces are piecewise power laws: contacts that open, springs of any exponent, play, stops.
 ///
@@ -48,6 +48,7 @@ pub enum Task {
     Map(Box<map::Options>),
     Attractors(Box<attractors::options::Options>),
     Study(study::options::Options),
+    Fit(Box<fit::options::Options>),
     Multipliers(multipliers::Options),
     Paper(paper::options::Options),
     WorkPrecision(work_precision::options::Options),
@@ -75,6 +76,7 @@ impl Program {
             Task::Response(options) => options.fault(given),
             Task::Map(options) => options.fault(given),
             Task::Attractors(options) => options.fault(given),
+            Task::Fit(options) => options.fault(given),
             _ => None,
         }
     }
@@ -94,6 +96,7 @@ pub fn main() -> ExitCode {
         Task::Map(options) => map::start(&options),
         Task::Attractors(options) => attractors::start(&options),
         Task::Study(options) => study::start(&options),
+        Task::Fit(options) => fit::start(&options),
         Task::Multipliers(options) => multipliers::start(&options),
         Task::Paper(options) => paper::start(&options),
         Task::WorkPrecision(options) => work_precision::start(&options),

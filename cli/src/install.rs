@@ -11,6 +11,7 @@ use crate::program;
 
 /// Subcommands that have a page of their own.
 const PAGES: &[&str] = &[
+const PAGES: &[&str] = &[
     "response",
     #[cfg(feature = "explore")]
     "explore",
@@ -18,6 +19,7 @@ const PAGES: &[&str] = &[
     "map",
     "attractors",
     "study",
+    "fit",
     "multipliers",
     "paper",
     "work-precision",

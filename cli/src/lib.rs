@@ -8,6 +8,7 @@ pub mod built_in;
 pub mod command;
 #[cfg(feature = "explore")]
 pub mod explore;
+pub mod fit;
 mod install;
 pub mod look;
 pub mod map;

@@ -6,21 +6,28 @@
 
 mod assign;
 mod checks;
+mod compare;
 mod curve;
 mod data;
 mod error;
 mod fit;
 mod minimise;
 mod path;
+mod picture;
 mod problem;
+mod report;
 mod result;
 mod search;
 mod spline;
 mod statistics;
+mod table;
 mod trial;
 mod turn;
+mod unit;
 
+pub use compare::{Compared, Comparison};
 pub use data::{DataSet, Jump, Sweep};
 pub use error::FitError;
 pub use fit::{Fit, Loss, Progress, Stage};
 pub use result::{Estimate, Fitted, FittedSet, FittedValue, Started};
+pub use table::read;

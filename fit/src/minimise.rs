@@ -24,7 +24,7 @@ const FARTHEST: f64 = 10.0;
 pub(crate) struct Until {
     pub(crate) how: How,
     /// Relative change of the sum of squares, and of the unknowns, below which it ends.
-    pub(crate) tolerance: f64,
+    pub(crate) tolerance: [f64; 2],
     pub(crate) iterations: usize,
 }
 
@@ -133,8 +133,8 @@ pub(crate) fn minimise(
     let mut search = Search {
         ranges: ranges.collect(),
         config: MPConfig {
-            ftol: until.tolerance,
-            xtol: until.tolerance,
+            ftol: until.tolerance[0],
+            xtol: until.tolerance[1],
             gtol: 1e-14,
             step_factor: 1.0,
             max_iter: until.iterations,

@@ -68,6 +68,20 @@ pub fn rows(text: &str) -> Vec<(f64, f64, Sweep, Option<f64>)> {
 
 /// The data sets of a table of these: a sweep each, and a level of the drive.
 pub fn sets(text: &str) -> Vec<DataSet> {
+    sets_with(text, |_, value| value, None)
+}
+
+/// The same with normal noise of a part of each value, which is stated. The same number gives the same noise.
+pub fn noisy(text: &str, part: f64, number: u64) -> Vec<DataSet> {
+    let mut normal = normal(number);
+    sets_with(text, |_, value| value * (1.0 + part * normal()), Some(part))
+}
+
+fn sets_with(
+    text: &str,
+    mut change: impl FnMut(f64, f64) -> f64,
+    part: Option<f64>,
+) -> Vec<DataSet> {
     let rows = rows(text);
     let mut kinds: Vec<(Sweep, Option<f64>)> = Vec::new();
     for (_, _, sweep, level) in &rows {
@@ -78,14 +92,41 @@ pub fn sets(text: &str) -> Vec<DataSet> {
     let sets = kinds.into_iter().map(|(sweep, level)| {
         let own = rows.iter().filter(|row| (row.2, row.3) == (sweep, level));
         let (omegas, values): (Vec<f64>, Vec<f64>) = own.map(|row| (row.0, row.1)).unzip();
+        let deviations: Option<Vec<f64>> =
+            part.map(|part| values.iter().map(|value| part * value).collect());
+        let values: Vec<f64> = omegas
+            .iter()
+            .zip(values)
+            .map(|(&omega, value)| change(omega, value))
+            .collect();
         let name = format!(
             "{sweep:?}{}",
             level.map_or(String::new(), |level| format!(" {level}"))
         );
-        let set = DataSet::new("x:p2p", omegas, values)
+        let mut set = DataSet::new("x:p2p", omegas, values)
             .named(name)
             .sweep(sweep);
+        if let Some(deviations) = deviations {
+            set = set.deviations(deviations);
+        }
         level.map_or(set.clone(), |level| set.at("drive", level))
     });
     sets.collect()
+}
+
+/// Normal numbers by the method of Box and Muller (1958), from those of SplitMix64 (Steele, Lea and Flood 2014).
+pub fn normal(seed: u64) -> impl FnMut() -> f64 {
+    // Seeds that differ by a step of the sequence would give the same numbers a place later.
+    let mut state = mixed(seed);
+    let mut uniform = move || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        (mixed(state) >> 11) as f64 * 0.5_f64.powi(53)
+    };
+    move || (-2.0 * (1.0 - uniform()).ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos()
+}
+
+fn mixed(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
 }

@@ -1,4 +1,5 @@
 //! Fits of data that another integration made, of data with noise, and what is refused.
 
 mod common;
+mod noise;
 mod recovered;
