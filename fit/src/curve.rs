@@ -23,6 +23,7 @@ pub(crate) struct Curve {
     group: usize,
     orbits: HashMap<(usize, u64), Vec<Point>>,
     slopes: HashMap<(usize, usize), Slopes>,
+    slopes_at: HashMap<(usize, u64, usize), Slopes>,
     folds: HashMap<(usize, usize), Vec<f64>>,
 }
 
@@ -87,6 +88,7 @@ impl Curve {
             group,
             orbits: HashMap::new(),
             slopes: HashMap::new(),
+            slopes_at: HashMap::new(),
             folds: HashMap::new(),
         })
     }
@@ -154,10 +156,16 @@ impl Curve {
         branch: usize,
         place: f64,
         number: usize,
-    ) -> Result<Slopes, String> {
+    ) -> Result<&Slopes, String> {
         self.find(branch, place)?;
-        let point = &self.orbits[&(branch, place.to_bits())][number];
-        slopes(problem, self.group, &self.branches[branch], point)
+        let key = (branch, place.to_bits(), number);
+        if !self.slopes_at.contains_key(&key) {
+            let orbits = &self.orbits[&(branch, place.to_bits())];
+            let point = orbits.get(number).ok_or("no orbit there")?;
+            let found = slopes(problem, self.group, &self.branches[branch], point)?;
+            self.slopes_at.insert(key, found);
+        }
+        Ok(&self.slopes_at[&key])
     }
 
     /// Derivatives at a point of a branch.

@@ -19,6 +19,13 @@ const FAILED: f64 = 100.0;
 /// A search by logarithms does not go farther beyond the range of starts than by this factor: a step may lead to stiff motions that take long.
 const FARTHEST: f64 = 10.0;
 
+/// The method is started again so often, while that gains this part of the sum of squares.
+const RESTARTS: usize = 6;
+const GAINED: f64 = 1e-3;
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Derivatives by an unknown that are below this part of those by the others are rounding: it has no influence, and does not move.
+pub(crate) const WITHOUT: f64 = 1e-9;
+
 /// How far an iteration goes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Until {
@@ -116,9 +123,6 @@ pub(crate) fn minimise(
         .iter()
         .map(|unknown| Axis::of(unknown, until.how))
         .collect();
-    let mut at: Vec<f64> = (axes.iter().zip(&start.unknowns))
-        .map(|(axis, value)| axis.scaled(*value))
-        .collect();
     let ranges = axes.iter().map(|axis| {
         let [low, high] = axis.limits.map(|limit| axis.scaled(limit));
         MPPar {
@@ -149,8 +153,22 @@ pub(crate) fn minimise(
         how: until.how,
         trials,
     };
-    let status = search.mpfit(&mut at);
-    let converged = status.is_ok_and(|status| status.success != MPSuccess::MaxIter);
+    let mut converged = false;
+    // Where a step ends at the end of a range the method may end too, although others could move on.
+    for _ in 0..RESTARTS {
+        let before = search.least;
+        let mut at: Vec<f64> = (search.axes.iter().zip(&search.best.unknowns))
+            .map(|(axis, value)| axis.scaled(*value))
+            .collect();
+        let status = search.mpfit(&mut at);
+        converged = status.is_ok_and(|status| status.success != MPSuccess::MaxIter);
+        if !converged || search.least > (1.0 - GAINED) * before {
+            break;
+        }
+        if !search.is_at_limit() {
+            break;
+        }
+    }
     Outcome {
         trial: search.best,
         converged,
@@ -190,13 +208,17 @@ impl Axis {
         }
     }
 
+    /// The value, which is the end of the range itself where only rounding is between: the method asks whether they are equal.
     fn value(&self, at: f64) -> f64 {
         let value = if self.by_logarithm {
             self.scale * (at - 1.0).exp()
         } else {
             self.scale * at
         };
-        value.clamp(self.limits[0], self.limits[1])
+        let is_end = |end: &&f64| end.is_finite() && (value - **end).abs() <= ROUNDING * end.abs();
+        let end = self.limits.iter().find(is_end);
+        end.copied()
+            .unwrap_or_else(|| value.clamp(self.limits[0], self.limits[1]))
     }
 
     /// How fast a value grows with what is given.
@@ -221,6 +243,12 @@ struct Search<'s, 't> {
 }
 
 impl Search<'_, '_> {
+    /// Whether an unknown is at the end of its range.
+    fn is_at_limit(&self) -> bool {
+        let mut both = self.axes.iter().zip(&self.best.unknowns);
+        both.any(|(axis, value)| axis.limits.contains(value))
+    }
+
     fn unscaled(&self, at: &[f64]) -> Vec<f64> {
         let values = self.axes.iter().zip(at).map(|(axis, at)| axis.value(*at));
         values.collect()
@@ -296,7 +324,7 @@ impl MPFitter for Search<'_, '_> {
                 .filter(|last| last.unknowns == unknowns)
                 .ok_or(MPError::Eval)?
         };
-        let jacobian = match trial.jacobian(problem, false) {
+        let jacobian = match trial.jacobian(problem) {
             Ok(jacobian) => jacobian,
             Err(reason) => {
                 self.trials.note(&format!("no derivatives: {reason}"));
@@ -305,8 +333,16 @@ impl MPFitter for Search<'_, '_> {
         };
         let (counted, factors) = counted(problem.loss, self.scale, &trial.residuals);
         deviates.copy_from_slice(&counted);
+        let slope = |j: usize| self.axes[j].slope(unknowns[j]);
+        let sizes = (0..jacobian.ncols()).map(|j| jacobian.column(j).norm() * slope(j).abs());
+        let sizes: Vec<f64> = sizes.collect();
+        let largest = sizes.iter().fold(0.0, |m: f64, &size| m.max(size));
         for (j, column) in columns.iter_mut().enumerate() {
-            let slope = self.axes[j].slope(unknowns[j]);
+            let slope = if sizes[j] > WITHOUT * largest {
+                slope(j)
+            } else {
+                0.0
+            };
             let entries = column.iter_mut().flatten().enumerate();
             entries.for_each(|(i, entry)| *entry = jacobian[(i, j)] * factors[i] * slope);
         }

@@ -53,9 +53,9 @@ impl Fitted {
 
     fn residuals(&self, sets: &[&FittedSet]) -> Chart {
         let unit = if self.is_absolute {
-            "standard deviations"
+            "in standard deviations"
         } else {
-            "of their scatter"
+            "in units of their scatter"
         };
         let scale = if self.is_absolute || self.scatter == 0.0 {
             1.0

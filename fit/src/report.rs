@@ -11,14 +11,15 @@ const LINES: usize = 5;
 
 /// A number to two digits of its error, and the error.
 fn to_error(value: f64, error: f64) -> (String, String) {
+    // Decimals: below zero in front of the point.
     let digits = if error > 0.0 {
-        (1.0 - error.log10().floor()).clamp(0.0, 15.0)
+        (1.0 - error.log10().floor()).min(15.0)
     } else {
         15.0
     };
     let plain = (1e-5..1e7).contains(&value.abs()) || value == 0.0;
     if plain {
-        let digits = digits as usize;
+        let digits = digits.max(0.0) as usize;
         return (format!("{value:.digits$}"), short(error));
     }
     let significant = (value.abs().log10().floor() + digits).clamp(1.0, 15.0) as usize;

@@ -8,7 +8,7 @@ use crate::fit::{Fit, Loss};
 use crate::minimise::{Outcome, Trials};
 use crate::problem::Problem;
 use crate::statistics::{self, Linear};
-use crate::trial::{How, Trial};
+use crate::trial::Trial;
 
 /// The estimate of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -169,15 +169,9 @@ impl Fitted {
             mut trial,
             mut converged,
         } = outcome;
-        // After a cancellation what is dear is left out.
-        let at_every_foot = !trials.is_stopped && trial.how == How::Exact;
-        let jacobian = trial.jacobian(problem, at_every_foot).or_else(|reason| {
-            let reason = format!("no derivatives at every value: {reason}");
+        let jacobian = trial.jacobian(problem).unwrap_or_else(|reason| {
+            let reason = format!("no derivatives: {reason}");
             trials.failed.push((reason, 1));
-            trial.jacobian(problem, false)
-        });
-        let jacobian = jacobian.unwrap_or_else(|reason| {
-            trials.failed.push((format!("no derivatives: {reason}"), 1));
             DMatrix::zeros(trial.residuals.len(), problem.unknowns.len())
         });
         converged &= !trials.is_stopped;

@@ -21,7 +21,7 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 use crate::fit::Loss;
-use crate::minimise::square;
+use crate::minimise::{WITHOUT, square};
 use crate::problem::Problem;
 use crate::search::spread;
 use crate::trial::Trial;
@@ -34,6 +34,8 @@ const COARSE: f64 = 0.5;
 const PART: f64 = 0.1;
 /// An estimate this near to the end of its range, in units of its scale, is at it.
 const AT: f64 = 1e-7;
+/// Residuals of a set without deviations, in hundredths of its largest value, are rounding below this.
+const ROUNDED: f64 = 1e-6;
 /// Probability outside of an interval, and that of one outlier among all values.
 const OUTSIDE: f64 = 0.05;
 
@@ -46,6 +48,8 @@ pub(crate) struct Linear {
     /// Unknowns that are not at the end of their range, with their scales.
     inner: Vec<(usize, f64)>,
     pub(crate) at_limit: Vec<bool>,
+    /// Unknowns that no residual depends on.
+    silent: Vec<usize>,
     pub(crate) scatter: f64,
     pub(crate) degrees: usize,
     count: usize,
@@ -88,6 +92,12 @@ impl Linear {
             .enumerate()
             .filter(|(index, _)| !at_limit[*index]);
         let inner: Vec<(usize, f64)> = inner.collect();
+        let size = |&(index, scale): &(usize, f64)| jacobian.column(index).norm() * scale;
+        let largest = inner.iter().map(size).fold(0.0, f64::max);
+        let (inner, silent): (Vec<_>, Vec<_>) = inner
+            .into_iter()
+            .partition(|column| size(column) > WITHOUT * largest);
+        let silent: Vec<usize> = silent.into_iter().map(|(index, _)| index).collect();
         let scaled = DMatrix::from_fn(jacobian.nrows(), inner.len(), |i, j| {
             jacobian[(i, inner[j].0)] * inner[j].1
         });
@@ -116,7 +126,7 @@ impl Linear {
             }
         }
         covariance += &determined * (scatter * scatter);
-        for index in (0..count).filter(|&index| at_limit[index]) {
+        for index in (0..count).filter(|index| at_limit[*index] || silent.contains(index)) {
             covariance.row_mut(index).fill(f64::NAN);
             covariance.column_mut(index).fill(f64::NAN);
         }
@@ -126,6 +136,7 @@ impl Linear {
             directions,
             inner,
             at_limit,
+            silent,
             scatter,
             degrees,
             count: measured,
@@ -160,8 +171,9 @@ impl Linear {
         let without = if self.is_absolute || others == 0 {
             self.scatter
         } else {
-            let sum = self.square - residual * residual / rest;
-            (sum.max(0.0) / others as f64).sqrt()
+            // Where nothing is left, rounding is.
+            let sum = (self.square - residual * residual / rest).max(1e-9 * self.square);
+            (sum / others as f64).sqrt()
         };
         let studentised = residual / (without.max(f64::MIN_POSITIVE) * rest.sqrt());
         let part = 1.0 - 0.5 * OUTSIDE / self.count.max(1) as f64;
@@ -175,6 +187,7 @@ impl Linear {
             studentised,
             influence: changes.fold(0.0, f64::max),
             is_outlier: others > 0
+                && (self.is_absolute || self.scatter > ROUNDED)
                 && studentised.abs() > self.normal_or_student(self.is_absolute, others, part),
         }
     }
@@ -182,7 +195,10 @@ impl Linear {
     /// What the data cannot tell.
     pub(crate) fn in_words(&self, problem: &Problem) -> Vec<String> {
         let largest = self.singular.iter().fold(0.0, |m: f64, &x| m.max(x));
-        let mut said = Vec::new();
+        let name = |index: usize| problem.unknowns[index].name.as_str();
+        let silent = self.silent.iter().map(|&index| name(index));
+        let silent = silent.map(|name| format!("the data say nothing of {name}"));
+        let mut said: Vec<String> = silent.collect();
         for (k, &value) in self.singular.iter().enumerate() {
             let is_nothing = value <= NOTHING * largest || value == 0.0;
             if !is_nothing && self.scatter / value <= COARSE {

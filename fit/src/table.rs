@@ -60,47 +60,46 @@ type Key = (String, usize, Vec<u64>, usize);
 /// What is wrong, with its line.
 pub fn read(text: &str, system: &dyn System, omega: Option<f64>) -> Result<Vec<DataSet>, FitError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let header = text
-        .lines()
-        .find(|line| !line.trim().is_empty() && !line.starts_with('#'));
-    let header = header.ok_or_else(|| fault(1, "the table is empty"))?;
-    let delimiter = [b',', b';', b'\t']
-        .into_iter()
-        .find(|mark| header.as_bytes().contains(mark));
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .delimiter(delimiter.unwrap_or(b','))
-        .from_reader(text.as_bytes());
-    let mut records = reader.records();
-    let first = records.next().and_then(Result::ok);
-    let first = first.ok_or_else(|| fault(1, "the table is empty"))?;
-    let line = first.position().map_or(1, csv::Position::line);
-    let model = Model::of(system);
-    let columns = columns(&first, &model).map_err(|message| fault(line, &message))?;
+    let lines = text.lines().zip(1_u64..);
+    let mut lines = lines.filter(|(line, _)| !line.trim().is_empty() && !line.starts_with('#'));
+    let (header, line) = lines.next().ok_or_else(|| fault(1, "the table is empty"))?;
+    let mut marks = [b',', b';', b'\t'].into_iter();
+    let mark = marks.find(|mark| header.as_bytes().contains(mark));
+    let cells = |line: &str, number: u64| {
+        cells(line, mark.unwrap_or(b',')).map_err(|message| fault(number, &message))
+    };
+    let columns = columns(&cells(header, line)?, &Model::of(system))
+        .map_err(|message| fault(line, &message))?;
     let varied = varied(&columns).map_err(|message| fault(line, &message))?;
     let mut sets: Vec<(Key, Rows)> = Vec::new();
-    for record in records {
-        let record = record.map_err(|error| fault(0, &error.to_string()))?;
-        let line = record.position().map_or(0, csv::Position::line);
-        take(&record, &columns, varied, &mut sets).map_err(|message| fault(line, &message))?;
+    for (row, number) in lines {
+        let row = cells(row, number)?;
+        take(&row, &columns, varied, &mut sets).map_err(|message| fault(number, &message))?;
     }
     if sets.is_empty() {
         return Err(fault(line, "there are no rows below the header"));
     }
+    let sets = sets.into_iter();
     Ok(sets
-        .into_iter()
         .map(|(key, rows)| set(&key, rows, &columns, varied, omega))
         .collect())
 }
 
+/// The cells of a line, which may be in quotation marks.
+fn cells(line: &str, mark: u8) -> Result<csv::StringRecord, String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .trim(csv::Trim::All)
+        .delimiter(mark)
+        .from_reader(line.as_bytes());
+    let record = reader.records().next();
+    let record = record.unwrap_or_else(|| Ok(csv::StringRecord::new()));
+    record.map_err(|error| error.to_string())
+}
+
 fn fault(line: u64, message: &str) -> FitError {
-    FitError::Table {
-        line,
-        message: message.to_owned(),
-    }
+    let message = message.to_owned();
+    FitError::Table { line, message }
 }
 
 /// What each column holds.

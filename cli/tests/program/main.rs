@@ -6,6 +6,7 @@ mod commands;
 #[cfg(feature = "explore")]
 mod explore;
 mod files;
+mod fit;
 mod folder;
 mod kept;
 mod multipliers;

@@ -9,7 +9,8 @@ hertzian::oscillator! {
         param zeta in 0.0..;
         param load;
         param drive;
-        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + gap^alpha, else => 0 }
+        param stiffness > 0;
+        law contact(gap) { gap > 0 => 2*zeta*dot(gap) + stiffness*gap^alpha, else => 0 }
         ddot(x) + contact(x) = drive*cos(omega*t) + load;
     }
 }

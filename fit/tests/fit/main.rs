@@ -1,5 +1,7 @@
 //! Fits of data that another integration made, of data with noise, and what is refused.
 
 mod common;
+mod linear;
 mod noise;
 mod recovered;
+mod tables;

@@ -12,7 +12,7 @@ const TRUTH: [(&str, f64); 3] = [("alpha", 1.5), ("zeta", 0.032), ("load", 1.0)]
 /// How many repetitions: a few, or as many as the environment says.
 fn repetitions() -> usize {
     let asked = std::env::var("HERTZIAN_REPETITIONS").ok();
-    asked.and_then(|count| count.parse().ok()).unwrap_or(4)
+    asked.and_then(|count| count.parse().ok()).unwrap_or(2)
 }
 
 fn fitted(number: usize) -> Fitted {
@@ -21,6 +21,7 @@ fn fitted(number: usize) -> Fitted {
         zeta: 0.035,
         load: 0.97,
         drive: 0.1,
+        stiffness: 1.0,
     };
     let sets = noisy(include_str!("measured/one-sided.csv"), 0.01, number as u64);
     // Where the sweeps jump, by an independent computation: folds of table 5b in the README.

@@ -1,45 +1,26 @@
 //! Parameters of data without noise.
 
-use hertzian_fit::{Fit, Fitted};
+use std::time::Instant;
+
+use hertzian_fit::Fit;
 
 use crate::common::{Backlash, OneSided, TwoMasses, sets};
-
-fn assert_near(fitted: &Fitted, expected: &[(&str, f64)], tolerance: f64) {
-    for &(name, value) in expected {
-        let found = fitted.estimate(name).expect(name).value;
-        assert!(
-            (found - value).abs() < tolerance * value.abs(),
-            "{name}: {found} instead of {value}"
-        );
-    }
-}
 
 fn fit(of: &dyn hertzian::System, data: &str) -> Fit {
     sets(data).into_iter().fold(Fit::of(of), Fit::data)
 }
 
-fn run(fit: Fit) -> Fitted {
-    let t = std::time::Instant::now();
-    let fitted = fit
-        .run_with(|p| {
-            println!("{p:?} {:?}", t.elapsed());
-            std::ops::ControlFlow::Continue(())
-        })
-        .expect("a fit");
-    println!(
-        "{:?} {:?} {:?} {} {}",
-        fitted.estimates, fitted.rejected, fitted.singular_values, fitted.scatter, fitted.converged
-    );
-    println!("{:?}", fitted.starts);
-    for s in &fitted.sets {
-        for v in &s.values {
-            println!(
-                "{:.6} {:.6} {:?} {:e}",
-                v.place, v.value, v.foot, v.residual
-            );
-        }
+/// Recovers parameters, with the search done by itself.
+fn assert_recovered(fit: &Fit, expected: &[(&str, f64)]) {
+    let fitted = fit.run().expect("a fit");
+    assert!(fitted.converged && fitted.untold.is_empty(), "{fitted}");
+    for &(name, value) in expected {
+        let found = fitted.estimate(name).expect(name).value;
+        assert!(
+            (found - value).abs() < 1e-6 * value.abs(),
+            "{name}: {found} instead of {value}"
+        );
     }
-    fitted
 }
 
 #[test]
@@ -49,16 +30,13 @@ fn one_sided_hertz() {
         zeta: 0.05,
         load: 0.8,
         drive: 0.1,
+        stiffness: 1.0,
     };
     let fit = fit(&start, include_str!("measured/one-sided.csv"))
         .free("alpha")
         .free("zeta")
         .free("load");
-    assert_near(
-        &run(fit),
-        &[("alpha", 1.5), ("zeta", 0.032), ("load", 1.0)],
-        1e-6,
-    );
+    assert_recovered(&fit, &[("alpha", 1.5), ("zeta", 0.032), ("load", 1.0)]);
 }
 
 #[test]
@@ -74,11 +52,7 @@ fn backlash() {
         .free("zeta")
         .free("stiffness")
         .free("play");
-    assert_near(
-        &run(fit),
-        &[("zeta", 0.05), ("stiffness", 1.3), ("play", 0.3)],
-        1e-6,
-    );
+    assert_recovered(&fit, &[("zeta", 0.05), ("stiffness", 1.3), ("play", 0.3)]);
 }
 
 #[test]
@@ -93,24 +67,40 @@ fn two_masses() {
     let fit = fit(&start, include_str!("measured/two-masses.csv"))
         .free("stop")
         .free("distance");
-    assert_near(&run(fit), &[("stop", 3.0), ("distance", 0.5)], 1e-6);
+    assert_recovered(&fit, &[("stop", 3.0), ("distance", 0.5)]);
 }
 
+/// Three levels of the drive with 60 values each, four free parameters, in five seconds of one core: where the environment asks for it, since other
+/// work takes its time.
 #[test]
-fn levels() {
+fn three_levels_in_five_seconds() {
+    if std::env::var_os("HERTZIAN_SECONDS").is_none() {
+        return;
+    }
     let start = OneSided {
-        alpha: 1.7,
+        alpha: 1.4,
         zeta: 0.04,
         load: 1.1,
         drive: 0.1,
+        stiffness: 1.1,
     };
-    let fit = fit(&start, include_str!("measured/levels.csv"))
+    let fit = fit(&start, include_str!("measured/levels.csv"));
+    let fit = fit
         .free("alpha")
         .free("zeta")
-        .free("load");
-    assert_near(
-        &run(fit),
-        &[("alpha", 1.5), ("zeta", 0.032), ("load", 1.0)],
-        1e-6,
+        .free("load")
+        .free("stiffness");
+    let begin = Instant::now();
+    assert_recovered(
+        &fit,
+        &[
+            ("alpha", 1.5),
+            ("zeta", 0.032),
+            ("load", 1.0),
+            ("stiffness", 1.0),
+        ],
     );
+    let took = begin.elapsed();
+    println!("{took:?}");
+    assert!(took.as_secs_f64() < 5.0, "{took:?}");
 }

@@ -113,6 +113,13 @@ def main(name):
         print("omega,x:p2p,sweep")
         written(one_sided(0.1).sweep([1.0, 0.0], np.linspace(0.62, 1.4, 30)), "rising")
         written(one_sided(0.1).sweep([1.0, 0.0], np.linspace(1.4, 0.62, 30)), "falling")
+    if name == "noisy":
+        # As someone would have measured it: hertz, a noise of one per cent.
+        noise = np.random.default_rng(1)
+        print("# a ball on a plane, swept up and down\nfrequency [Hz],x:p2p,sd,sweep")
+        for sweep, omegas in [("rising", np.linspace(0.62, 1.4, 30)), ("falling", np.linspace(1.4, 0.62, 30))]:
+            for omega, value in one_sided(0.1).sweep([1.0, 0.0], omegas):
+                print(f"{omega/TAU:.6f},{value*(1 + 0.01*noise.standard_normal()):.4g},{0.01*value:.2g},{sweep}")
     if name == "levels":
         print("omega,x:p2p,sweep,drive")
         for drive in [0.06, 0.1, 0.14]:
