@@ -83,7 +83,7 @@ pub(crate) fn fit(fit: &Fit, system: &dyn System, model: &Model) -> Result<(), F
             return refused("another set has this name: give each its own".to_owned());
         }
         numbers(set).or_else(refused)?;
-        names(set, fit, system, model).or_else(refused)?;
+        names(set, system, model).or_else(refused)?;
     }
     Ok(())
 }
@@ -164,7 +164,7 @@ fn numbers(set: &DataSet) -> Result<(), String> {
 }
 
 /// Whether the names of a set are those of something.
-fn names(set: &DataSet, fit: &Fit, system: &dyn System, model: &Model) -> Result<(), String> {
+fn names(set: &DataSet, system: &dyn System, model: &Model) -> Result<(), String> {
     let wanted: Wanted = set
         .wanted
         .parse()
@@ -204,7 +204,6 @@ fn names(set: &DataSet, fit: &Fit, system: &dyn System, model: &Model) -> Result
             return Err(format!("{name} is given twice"));
         }
     }
-    let _ = fit;
     Ok(())
 }
 

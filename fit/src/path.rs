@@ -67,6 +67,8 @@ pub(crate) struct Foot {
     pub(crate) weight: f64,
 }
 
+/// Parts of a step that are drawn.
+const PARTS: usize = 3;
 /// Steps towards a foot.
 const STEPS: usize = 40;
 /// A sheet is looked at beyond a fold by this part of the next one.
@@ -142,7 +144,7 @@ impl Path {
                 range: [self.nodes[low].x, self.nodes[high].x],
                 folds: if grows { folds } else { [folds[1], folds[0]] },
                 direction: if grows { 1.0 } else { -1.0 },
-                may_be_stable: number % 2 == 0,
+                may_be_stable: number.is_multiple_of(2),
             }
         };
         (0..count).map(sheet).collect()
@@ -155,6 +157,17 @@ impl Path {
             .hypot(dy / self.size[1])
             .max(f64::MIN_POSITIVE);
         ([x, y], [dx / speed, dy / speed])
+    }
+
+    /// Points of a sheet that a picture joins.
+    pub(crate) fn drawn(&self, sheet: &Sheet) -> Vec<[f64; 2]> {
+        let [from, to] = sheet.nodes;
+        let pairs = self.along[from..=to].windows(2);
+        let inside = pairs.flat_map(|pair| {
+            (0..PARTS).map(move |k| pair[0] + (pair[1] - pair[0]) * k as f64 / PARTS as f64)
+        });
+        let along = inside.chain([self.along[to]]);
+        along.map(|along| self.at(along).0).collect()
     }
 
     /// The length at which a sheet is at a place, or its nearest end.
@@ -170,9 +183,9 @@ impl Path {
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if is_before(middle) {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
         }
         0.5 * (low + high)

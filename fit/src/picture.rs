@@ -2,7 +2,7 @@
 
 use hertzian::chart::{Chart, Curve, Line, Page, Run, Series};
 
-use crate::result::{Fitted, FittedSet};
+use crate::result::{Fitted, FittedSet, Part};
 
 impl Fitted {
     /// A page of two charts for each thing that was measured: data with the curves of the fit, and below the residuals. Parts of a curve that no
@@ -20,16 +20,16 @@ impl Fitted {
         for kind in kinds {
             let of_kind = |set: &&FittedSet| (set.wanted.as_str(), set.varied[0].as_str()) == kind;
             let sets: Vec<&FittedSet> = self.sets.iter().filter(of_kind).collect();
-            above = above.chart(self.data(&sets));
+            above = above.chart(Self::data(&sets));
             below = below.chart(self.residuals(&sets));
         }
         above.page(below)
     }
 
-    fn data(&self, sets: &[&FittedSet]) -> Chart {
+    fn data(sets: &[&FittedSet]) -> Chart {
         let mut chart =
             labelled(Chart::new("Data and fit"), sets).y(with_unit(&sets[0].wanted, &sets[0].unit));
-        let mut drawn: Vec<&[(bool, Vec<[f64; 2]>)]> = Vec::new();
+        let mut drawn: Vec<&[Part]> = Vec::new();
         for set in sets {
             // Sets of one curve draw it once.
             if !drawn.contains(&set.curve.as_slice()) {
@@ -103,14 +103,14 @@ fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-fn runs(curve: &[(bool, Vec<[f64; 2]>)]) -> Vec<Run> {
-    let runs = curve.iter().map(|(may_be_stable, points)| Run {
-        line: if *may_be_stable {
+fn runs(curve: &[Part]) -> Vec<Run> {
+    let runs = curve.iter().map(|part| Run {
+        line: if part.may_be_stable {
             Line::Stable
         } else {
             Line::Unstable
         },
-        points: points.clone(),
+        points: part.points.clone(),
     });
     runs.collect()
 }

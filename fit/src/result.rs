@@ -54,6 +54,16 @@ pub struct FittedValue {
     pub row: usize,
 }
 
+/// A part of a curve between folds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Part {
+    /// Whether the number of folds before it is even: other parts are unstable.
+    pub may_be_stable: bool,
+    /// Its points.
+    pub points: Vec<[f64; 2]>,
+}
+
 /// A data set beside the fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
@@ -70,8 +80,8 @@ pub struct FittedSet {
     pub values: Vec<FittedValue>,
     /// Residuals of the jumps, in standard deviations.
     pub jumps: Vec<f64>,
-    /// The curve of the fit: whether a part may be stable, and its points.
-    pub curve: Vec<(bool, Vec<[f64; 2]>)>,
+    /// The curve of the fit, part by part.
+    pub curve: Vec<Part>,
 }
 
 /// Where a search went on from.
@@ -164,7 +174,7 @@ impl Fitted {
         outcome: Outcome,
         starts: Vec<Started>,
         trials: &mut Trials<'_>,
-    ) -> Result<Self, FitError> {
+    ) -> Self {
         let Outcome {
             mut trial,
             mut converged,
@@ -180,7 +190,7 @@ impl Fitted {
         let chi_square = crate::minimise::square(&trial.residuals);
         let probability = (problem.is_absolute && problem.loss == Loss::Squares && degrees > 0)
             .then(|| statistics::exceeds(chi_square, degrees));
-        Ok(Self {
+        Self {
             estimates: estimates(problem, &trial, &linear),
             covariance: rows(&linear.covariance),
             correlation: rows(&statistics::correlation(&linear.covariance)),
@@ -197,7 +207,7 @@ impl Fitted {
             rejected: std::mem::take(&mut trials.failed),
             starts,
             asked: problem.asked.clone(),
-        })
+        }
     }
 }
 
@@ -209,7 +219,7 @@ fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 }
 
 fn estimates(problem: &Problem, trial: &Trial, linear: &Linear) -> Vec<Estimate> {
-    let wide = linear.quantile(problem.is_absolute);
+    let wide = linear.quantile();
     let unknowns = problem.unknowns.iter().enumerate().map(|(index, unknown)| {
         let value = trial.unknowns[index];
         let error = linear.covariance[(index, index)].sqrt();

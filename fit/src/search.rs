@@ -81,7 +81,7 @@ pub(crate) fn run(
     let outcome = exact(problem, found, &mut trials)?;
     stage.set(Stage::Errors);
     let _ = (trials.told)(trials.count, rms(&outcome.trial));
-    Fitted::of(problem, outcome, places, &mut trials)
+    Ok(Fitted::of(problem, outcome, places, &mut trials))
 }
 
 /// Root of the mean square of residuals.

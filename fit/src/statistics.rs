@@ -147,15 +147,14 @@ impl Linear {
     }
 
     /// So many standard errors make a 95 % interval.
-    pub(crate) fn quantile(&self, is_absolute: bool) -> f64 {
+    pub(crate) fn quantile(&self) -> f64 {
         let part = 1.0 - 0.5 * OUTSIDE;
-        self.normal_or_student(is_absolute, self.degrees, part)
+        self.normal_or_student(self.degrees, part)
     }
 
-    fn normal_or_student(&self, is_absolute: bool, degrees: usize, part: f64) -> f64 {
-        let student = StudentsT::new(0.0, 1.0, degrees as f64)
-            .ok()
-            .filter(|_| !is_absolute);
+    fn normal_or_student(&self, degrees: usize, part: f64) -> f64 {
+        let student = StudentsT::new(0.0, 1.0, degrees as f64);
+        let student = student.ok().filter(|_| !self.is_absolute);
         match student {
             Some(student) => student.inverse_cdf(part),
             None => Normal::standard().inverse_cdf(part),
@@ -188,7 +187,7 @@ impl Linear {
             influence: changes.fold(0.0, f64::max),
             is_outlier: others > 0
                 && (self.is_absolute || self.scatter > ROUNDED)
-                && studentised.abs() > self.normal_or_student(self.is_absolute, others, part),
+                && studentised.abs() > self.normal_or_student(others, part),
         }
     }
 

@@ -16,13 +16,13 @@ use nalgebra::DMatrix;
 use crate::assign;
 use crate::curve::Curve;
 use crate::data::Sweep;
+use crate::moves::{Along, chosen, splines};
 use crate::path::{Foot, Path, Sheet};
 use crate::problem::{Problem, Set};
+use crate::result::Part;
 use crate::spline::Spline;
 use crate::turn;
 
-/// Orbits of one sheet at which derivatives are computed.
-const NODES: usize = 14;
 /// A foot nearer to a fold than this part of the range is at it: there is no derivative at a fixed place.
 const FROM_FOLD: f64 = 1e-6;
 /// Of deviations along both axes, those of near residuals are at least this part of the range of a set.
@@ -30,8 +30,6 @@ const NEAR: f64 = 0.03;
 
 /// A foot nearer to its datum than this part of the deviation of places is at the same place.
 const OWN: f64 = 0.01;
-/// Parts of a step that are drawn.
-const PARTS: usize = 3;
 
 /// How residuals are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -296,8 +294,14 @@ impl Trial {
             let path = &beside.paths[*path_number];
             let along: Vec<f64> = without.iter().map(|((_, foot), _)| foot.along).collect();
             let nodes = chosen(path, sheet, &along);
-            let of = (path, sheet, *path_number);
-            let splines = splines(problem, curve, of, &nodes, beside.wanted, set)?;
+            let of = Along {
+                path,
+                sheet,
+                branch: *path_number,
+                wanted: beside.wanted,
+                size: set.size,
+            };
+            let splines = splines(problem, curve, of, &nodes)?;
             for ((_, foot), row) in without {
                 let by = |spline: &Spline| foot.weight * spline.of(foot.along)[0];
                 *row = Some(splines.iter().map(by).collect());
@@ -314,20 +318,13 @@ impl Trial {
             .map(|(_, foot)| [foot.x, foot.y])
     }
 
-    /// The curve beside a set, part by part: whether it may be stable, and its points.
-    pub(crate) fn drawn(&self, set: usize) -> Vec<(bool, Vec<[f64; 2]>)> {
+    /// The curve beside a set, part by part.
+    pub(crate) fn drawn(&self, set: usize) -> Vec<Part> {
         let beside = &self.beside[set];
         let parts = beside.paths.iter().flat_map(|path| {
-            path.sheets().into_iter().map(move |sheet| {
-                let [from, to] = sheet.ends;
-                let nodes = path.along.windows(2).flat_map(|pair| {
-                    (0..PARTS).map(move |k| pair[0] + (pair[1] - pair[0]) * k as f64 / PARTS as f64)
-                });
-                let inside = nodes
-                    .filter(move |along| (from..to).contains(along))
-                    .chain([to]);
-                let points = inside.map(|along| path.at(along).0);
-                (sheet.may_be_stable, points.collect())
+            path.sheets().into_iter().map(move |sheet| Part {
+                may_be_stable: sheet.may_be_stable,
+                points: path.drawn(&sheet),
             })
         });
         parts.collect()
@@ -428,86 +425,6 @@ fn stand(sheet: &Sheet, foot: &Foot, set: &Set, index: usize) -> Option<f64> {
     let at_fold = low_fold && place <= low + away || high_fold && place >= high - away;
     let beyond = foot.along < sheet.ends[0] && sheet.nodes[0] > 0 || foot.along > sheet.ends[1];
     (!at_fold && !beyond).then(|| place.clamp(low, high))
-}
-
-/// Nodes of a path at which derivatives are computed: of those between the feet, and one on either side of them, so many, evenly by their number,
-/// since steps are short where a branch bends; and turns, with their neighbours.
-fn chosen(path: &Path, sheet: &Sheet, feet: &[f64]) -> Vec<usize> {
-    let [low, high] = crate::checks::extremes(feet);
-    let [first, last] = sheet.within(path);
-    let from = (first..=last).rfind(|&node| path.along[node] <= low);
-    let to = (first..=last).find(|&node| path.along[node] >= high);
-    let (from, to) = (from.unwrap_or(first), to.unwrap_or(last));
-    let step = (to - from).div_ceil(NODES).max(1);
-    let is_turn = |node: usize| {
-        path.nodes
-            .get(node)
-            .is_some_and(|node| node.event.is_some())
-    };
-    let is_near = |node: usize| {
-        is_turn(node) || is_turn(node + 1) || node.checked_sub(1).is_some_and(is_turn)
-    };
-    let taken = |&node: &usize| (node - from) % step == 0 || node == to || is_near(node);
-    (from..=to).filter(taken).collect()
-}
-
-/// `W` of each unknown along a sheet.
-fn splines(
-    problem: &Problem,
-    curve: &mut Curve,
-    (path, sheet, branch): (&Path, &Sheet, usize),
-    nodes: &[usize],
-    wanted: usize,
-    set: &Set,
-) -> Result<Vec<Spline>, String> {
-    let mut along = Vec::with_capacity(nodes.len());
-    let mut moves: Vec<Vec<f64>> = vec![Vec::with_capacity(nodes.len()); problem.unknowns.len()];
-    let mut failed = None;
-    for &node in nodes {
-        // Next to a fold there may be none, and the others are enough.
-        match moved(problem, curve, (path, sheet, branch), node, wanted, set) {
-            Ok(by) => {
-                along.push(path.along[node]);
-                for (moves, by) in moves.iter_mut().zip(by) {
-                    moves.push(by);
-                }
-            }
-            Err(reason) => failed = Some(reason),
-        }
-    }
-    if along.is_empty() {
-        return Err(failed.unwrap_or_else(|| "no orbit of the curve has derivatives".to_owned()));
-    }
-    let spline = |moves| Spline::through(along.clone(), moves);
-    Ok(moves.into_iter().map(spline).collect())
-}
-
-/// `W` at a node. At a fold, which moves along the axis of the places, it is `-y' x_p`.
-fn moved(
-    problem: &Problem,
-    curve: &mut Curve,
-    (path, sheet, branch): (&Path, &Sheet, usize),
-    node: usize,
-    wanted: usize,
-    set: &Set,
-) -> Result<Vec<f64>, String> {
-    if let Some(event) = path.nodes[node].event {
-        let (_, [_, dy]) = path.at(path.along[node]);
-        let by = curve.fold_slopes(problem, branch, event)?;
-        return Ok(by.iter().map(|by| -dy * by).collect());
-    }
-    let point = path.nodes[node].point.ok_or("a node without an orbit")?;
-    let slopes = curve.slopes_of(problem, branch, point)?;
-    let of = slopes.of[wanted].as_ref();
-    let (_, slope, by) = of.ok_or("a reading without derivatives")?;
-    let inside = (sheet.nodes[0]..=sheet.nodes[1]).contains(&node);
-    let direction = if inside {
-        sheet.direction
-    } else {
-        -sheet.direction
-    };
-    let dx = direction / (1.0 / set.size[0]).hypot(slope / set.size[1]);
-    Ok(by.iter().map(|by| by * dx).collect())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Reads the table and the oscillator, fits, writes and sums up.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -198,7 +198,8 @@ fn written(options: &Options, fitted: &Fitted, summary: &mut String) -> Result<(
     let mut write = |path: &Path, contents: String| {
         let written = hertzian_file::write(path, contents);
         written.map_err(|error| Failure(format!("cannot write {}: {error}", path.display())))?;
-        *summary += &format!("written    {}\n", path.display());
+        // Writing to a string does not fail.
+        let _ = writeln!(summary, "written    {}", path.display());
         Ok(())
     };
     write(&options.svg, fitted.picture().to_svg())?;

@@ -1,5 +1,6 @@
 //! The subcommand `fit`: what it prints and writes, as the book says it, and what is refused.
 
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
@@ -31,7 +32,7 @@ fn table() -> String {
         let omega = 1.0 + 0.2 * f64::from(i);
         for drive in [0.5, 1.0] {
             let size = 2.0 * drive / (4.4 - omega * omega).hypot(0.2 * omega);
-            table += &format!("{omega},{size},{drive}\n");
+            let _ = writeln!(table, "{omega},{size},{drive}");
         }
     }
     table

@@ -115,7 +115,7 @@ fn sets_with(
     sets.collect()
 }
 
-/// Normal numbers by the method of Box and Muller (1958), from those of SplitMix64 (Steele, Lea and Flood 2014).
+/// Normal numbers by the method of Box and Muller (1958), from those of `SplitMix64` (Steele, Lea and Flood 2014).
 pub fn normal(seed: u64) -> impl FnMut() -> f64 {
     // Seeds that differ by a step of the sequence would give the same numbers a place later.
     let mut state = mixed(seed);

@@ -1,6 +1,7 @@
 //! Tables of measured values: what is read, and what is refused with its line.
 
 use std::f64::consts::TAU;
+use std::fmt::Write;
 
 use hertzian_fit::{Fit, read};
 
@@ -29,7 +30,9 @@ fn table() -> String {
         let omega = TAU * frequency;
         for drive in [1.0, 2.0] {
             let amplitude = drive / (900.0 - 2.0 * omega * omega).hypot(5.0 * omega);
-            text += &format!("{frequency}; {}; {}\n", 2e6 * amplitude, 1e3 * drive);
+            let (size, drive) = (2e6 * amplitude, 1e3 * drive);
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "{frequency}; {size}; {drive}");
         }
     }
     text
