@@ -11,7 +11,6 @@ use crate::program;
 
 /// Subcommands that have a page of their own.
 const PAGES: &[&str] = &[
-const PAGES: &[&str] = &[
     "response",
     #[cfg(feature = "explore")]
     "explore",
