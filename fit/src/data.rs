@@ -166,6 +166,26 @@ impl DataSet {
         &self.name
     }
 
+    /// What was measured, as `x:p2p`.
+    pub fn wanted(&self) -> &str {
+        &self.wanted
+    }
+
+    /// What was varied: `omega`, or a parameter.
+    pub fn over(&self) -> &str {
+        &self.varied
+    }
+
+    /// The values of that, in units of the model.
+    pub fn places(&self) -> &[f64] {
+        &self.places
+    }
+
+    /// The measured values, in units of the model.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Number of measured values, jumps apart.
     pub fn len(&self) -> usize {
         self.places.len()

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 
 use clap::{Parser, ValueEnum};
 use hertzian::System;
+use hertzian::generic::Declaration;
 use hertzian::law::Variation;
 use serde::{Deserialize, Serialize};
 
@@ -148,19 +149,30 @@ impl Asked {
     /// # Errors
     /// Faults of the declaration, and parameters that it does not have.
     pub fn model(&self, texts: &Texts) -> Result<Box<dyn System>, Fault> {
-        let varied = Varied {
-            name: &self.varied,
-            value: self.from,
-        };
         if self.built_in().is_some() {
             let options = self.options(By::Balance)?;
+            let varied = Varied {
+                name: &self.varied,
+                value: self.from,
+            };
             if options.model.file.is_none() {
                 return Ok(models::model(&options.model, varied)?);
             }
         }
+        Ok(Box::new(self.declared(texts)?))
+    }
+
+    /// The model at these values as it is declared, whether it is compiled or not.
+    ///
+    /// # Errors
+    /// As of [`model`](Self::model).
+    pub fn declared(&self, texts: &Texts) -> Result<Declaration, Fault> {
+        let varied = Varied {
+            name: &self.varied,
+            value: self.from,
+        };
         let declaration = texts.parse(&self.text)?;
-        let model = model_file::valued(declaration, &self.settings(), varied)?;
-        Ok(Box::new(model))
+        Ok(model_file::valued(declaration, &self.settings(), varied)?)
     }
 
     /// The method that is meant.

@@ -2,7 +2,8 @@
 //!
 //! [`server`] takes requests and refuses what is not from the page; [`work`] runs them on threads, of which a newer one cancels the older;
 //! [`asked`] turns what a page says into the options of `hertzian response`, so that both compute the same numbers; [`traced`] computes the
-//! branches, [`curve`], [`orbits`] and [`exported`] say what is on them, and [`declared`] what a declaration has.
+//! branches, [`curve`], [`orbits`] and [`exported`] say what is on them, and [`declared`] what a declaration has. [`measured`] fits
+//! parameters to measured values.
 
 pub mod asked;
 pub mod curve;
@@ -11,6 +12,7 @@ pub mod exported;
 pub mod fault;
 pub mod guard;
 mod lines;
+pub mod measured;
 pub mod models;
 pub mod options;
 pub mod orbits;

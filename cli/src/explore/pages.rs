@@ -24,6 +24,7 @@ pub const PAGES: &[Page] = pages! {
     "/main.js" "text/javascript; charset=utf-8" "main.js"
     "/session.js" "text/javascript; charset=utf-8" "session.js"
     "/curves.js" "text/javascript; charset=utf-8" "curves.js"
+    "/measured.js" "text/javascript; charset=utf-8" "measured.js"
     "/motions.js" "text/javascript; charset=utf-8" "motions.js"
     "/found.js" "text/javascript; charset=utf-8" "found.js"
     "/take.js" "text/javascript; charset=utf-8" "take.js"

@@ -27,7 +27,7 @@ const STRIDE: f64 = 0.2;
 /// Orbits on the screen, at most: a branch that winds is not looked at while it moves.
 const MOST_ON_SCREEN: usize = 600;
 /// Between two lines about progress.
-const INTERVAL: Duration = Duration::from_millis(150);
+pub(super) const INTERVAL: Duration = Duration::from_millis(150);
 /// A stretch without stable orbits is looked into if it is longer than this part of the range, as a search is.
 const LACKING: f64 = 1e-2;
 

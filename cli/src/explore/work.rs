@@ -14,7 +14,7 @@ use super::declared::{self, Texts};
 use super::exported::{self, Form, Scale};
 use super::fault::{Fault, Kind};
 use super::traced::{Tell, Traced, trace};
-use super::{curve, orbits};
+use super::{curve, measured, orbits};
 
 /// Curves that are kept for clicks on them and for other measures.
 const KEPT: usize = 8;
@@ -64,6 +64,22 @@ pub enum Ask {
         /// The value.
         at: f64,
     },
+    /// Measured values, to be drawn over a curve.
+    Table {
+        /// Of which curve.
+        of: Asked,
+        /// The table, as `hertzian fit` reads it.
+        table: String,
+    },
+    /// Parameters that are fitted to measured values.
+    Fit {
+        /// Where it begins.
+        of: Asked,
+        /// The table.
+        table: String,
+        /// Which are free.
+        free: Vec<String>,
+    },
     /// A file.
     Export {
         /// Of which curve.
@@ -98,6 +114,8 @@ impl Request {
             Ask::Curve { .. } => "curve",
             Ask::Orbits { .. } => "orbits",
             Ask::Export { .. } => "export",
+            Ask::Table { .. } => "table",
+            Ask::Fit { .. } => "fit",
         };
         (self.client.clone(), lane)
     }
@@ -213,6 +231,15 @@ impl Work {
                 let traced = self.traced(of, true, cancel, emit)?;
                 let orbits = orbits::at(&traced, *at, plot, cancel)?;
                 Ok(json!({ "orbits": orbits }))
+            }
+            Ask::Table { of, table } => {
+                let sets = measured::read(of, table, &self.texts)?;
+                Ok(json!({ "table": sets }))
+            }
+            Ask::Fit { of, table, free } => {
+                let tell = tell(emit);
+                let fitted = measured::fit(of, table, free, &self.texts, cancel, &tell)?;
+                Ok(json!({ "fit": fitted }))
             }
             Ask::Export {
                 of,

@@ -230,6 +230,31 @@ step('files are exported as the command writes them', async ({ page, browser, fo
   }
 });
 
+step('measured values are dropped and fitted', async ({ page }) => {
+  await ready(page);
+  // The curve of another damping and load, from its own orbits.
+  const { text } = await page.value(`fetch('/models').then((r) => r.json()).then((all) => all[0])`);
+  const of = { text, varied: 'omega', from: 0.6, to: 1.6, values: { zeta: 0.05, load: 1.2 } };
+  const lines = await page.value(`fetch('/ask', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: ${JSON.stringify(JSON.stringify({ client: 'data', ask: { curve: { of, plot: 'x:p2p', effort: 'full' } } }))} }).then((r) => r.text())`);
+  const orbits = JSON.parse(lines.trim().split('\n').pop()).curve.branches[0].orbits.filter(([, , verdict]) => verdict === 'stable').filter((_, i) => i % 5 === 0);
+  const table = `omega, x:p2p\n${orbits.map(([omega, size]) => `${omega}, ${size}`).join('\n')}\n`;
+  const drop = (contents) => page.value(`(() => { const d = new DataTransfer(); d.items.add(new File([${JSON.stringify(contents)}], 'data.csv')); window.dispatchEvent(new DragEvent('drop', { dataTransfer: d, cancelable: true })); })()`);
+  await drop('omega, nothing:p2p\n1, 2\n');
+  await page.until(`document.querySelector('#fit-fault').textContent.includes('nothing')`, 'what is wrong with a table');
+  await drop(table);
+  await page.until(`document.querySelectorAll('#values circle').length === ${orbits.length}`, 'the values over the curve');
+  await page.value(`(() => { for (const name of ['zeta', 'load']) document.querySelector('#free input[value=' + name + ']').click(); document.querySelector('#fit').click(); })()`);
+  await page.until(`!document.querySelector('#fitted').hidden`, 'a fit', 60_000);
+  await ready(page);
+  const [zeta, load] = await page.value(`['zeta', 'load'].map((name) => Number(document.querySelector('#parameter-' + name).value))`);
+  assert.ok(Math.abs(zeta - 0.05) < 1e-4 && Math.abs(load - 1.2) < 1e-3, `${zeta} ${load}`);
+  await page.press('#no-data');
+  assert.equal(await page.value(`document.querySelectorAll('#values circle').length`), 0);
+  await page.press('#defaults');
+  await page.until(`document.querySelector('#command').value.includes('--set load=1 ')`, 'defaults');
+  await ready(page);
+});
+
 step('the address restores the state, and two pages do not disturb each other', async ({ page, browser, pages }) => {
   await page.value(`(() => { const t = document.querySelector('#parameter-drive'); t.value = '0.12'; t.dispatchEvent(new Event('change')); const y = document.querySelector('#yscale'); y.value = 'db'; y.dispatchEvent(new Event('change')); })()`);
   await page.until(`document.querySelector('#command').value.includes('--set drive=0.12 ')`, 'the other drive');

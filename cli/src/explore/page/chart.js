@@ -33,6 +33,7 @@ export const chart = {
   shadow: null,
   pins: [],
   solutions: [],
+  measured: [], // sets of values
   domain: null, // of the axes while a slider is dragged
   place: null, // the frame that was drawn last
 };
@@ -48,11 +49,12 @@ function comparable(curve) {
 }
 
 // The range of the vertical axis: what is drawn fits, and while it moves the axis only grows.
-function verticalOf(curves, dragging) {
-  let [low, high] = extent(curves.flatMap((curve) => flats(curve).flatMap((flat) => flat.filter((_, i) => i % 2 === 1))));
+function verticalOf(curves, sets, dragging) {
+  const drawn = curves.flatMap((curve) => flats(curve).flatMap((flat) => flat.filter((_, i) => i % 2 === 1)));
+  const all = drawn.concat(...sets.map((set) => set.values));
+  let [low, high] = extent(all);
   if (state.yscale !== 'linear') {
-    const positive = curves.flatMap((curve) => flats(curve).flatMap((flat) => flat.filter((v, i) => i % 2 === 1 && v > 0)));
-    [low, high] = extent(positive);
+    [low, high] = extent(all.filter((value) => value > 0));
     if (low < high * 1e-12) low = high * 1e-12;
   }
   if (!Number.isFinite(low)) return [0, 1];
@@ -89,9 +91,10 @@ export function draw({ dragging = false } = {}) {
   if (!curve || width < 50) return;
   target.setAttribute('viewBox', `0 0 ${width} ${height}`);
   const others = [chart.shadow, ...chart.pins.map((pin) => pin.curve)].filter(comparable);
+  const seen = chart.measured.filter((set) => set.plot === curve.plot && set.varied === curve.varied);
   const on = frame(width, height, {
     x: { domain: horizontal(curve), scale: state.xscale, label: inUnit(curve.varied, curve.varied_unit) },
-    y: { domain: verticalOf([curve, ...others], dragging), scale: state.yscale, label: inUnit(curve.label, state.yscale === 'db' ? `dB over 1 ${curve.unit}`.trim() : curve.unit) },
+    y: { domain: verticalOf([curve, ...others], seen, dragging), scale: state.yscale, label: inUnit(curve.label, state.yscale === 'db' ? `dB over 1 ${curve.unit}`.trim() : curve.unit) },
   });
   chart.place = on;
   byId('missing').hidden = state.yscale === 'linear' || !flats(curve).some((flat) => flat.some((v, i) => i % 2 === 1 && v !== null && v <= 0));
@@ -129,7 +132,11 @@ export function draw({ dragging = false } = {}) {
       here.append(svg('circle', { class: chosen ? 'solution chosen' : 'solution', cx: x, cy: py(size), r: chosen ? 6 : 5 }));
     }
   }
-  target.replaceChildren(clip, ...on.parts, shadows, pins, curves, marks, here, svg('circle', { id: 'hover', class: 'hover', r: 3, cx: -9, cy: -9 }));
+  const values = svg('g', { id: 'values', 'clip-path': 'url(#inside)' });
+  for (const { places, values: sizes } of seen) places.forEach((place, i) => {
+    if (Number.isFinite(py(sizes[i]))) values.append(svg('circle', { class: 'measured', cx: px(place), cy: py(sizes[i]), r: 3 }));
+  });
+  target.replaceChildren(clip, ...on.parts, shadows, pins, curves, values, marks, here, svg('circle', { id: 'hover', class: 'hover', r: 3, cx: -9, cy: -9 }));
   target.setAttribute('aria-label', `${curve.label} over ${curve.varied}: ${curve.events.length} events, ${curve.events.map((event) => event.said).join('; ')}`);
 }
 

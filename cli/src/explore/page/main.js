@@ -7,6 +7,7 @@ import { byId, el, written } from './dom.js';
 import * as editor from './editor.js';
 import { fillMeasures, showCommand } from './found.js';
 import { forget, forgetSize, outdate, pick, redraw } from './motions.js';
+import * as measured from './measured.js';
 import { ask, models as fetchModels, Refused } from './net.js';
 import { names, report, session } from './session.js';
 import { fromHash, keep, state } from './state.js';
@@ -105,7 +106,7 @@ function listen() {
       showCommand();
     });
   }
-  for (const id of ['signal', 'measure', 'harmonic']) byId(id).addEventListener('change', measured);
+  for (const id of ['signal', 'measure', 'harmonic']) byId(id).addEventListener('change', measure);
   byId('defaults').addEventListener('click', () => {
     for (const { name, default: own } of session.declared?.parameters ?? []) if (own !== null) state.values[name] = own;
     settled();
@@ -144,14 +145,14 @@ function vary(name) {
   fields();
 }
 
-function measured() {
+function measure() {
   fillMeasures(byId('signal').value);
-  const measure = byId('measure').value;
-  const isNumbered = measure === 'h' || measure === 'phase';
+  const own = byId('measure').value;
+  const isNumbered = own === 'h' || own === 'phase';
   byId('harmonic-row').hidden = !isNumbered;
   const number = Math.max(1, Math.round(written(byId('harmonic').value)) || 1);
   forgetSize();
-  changed('plot', `${byId('signal').value}:${measure}${isNumbered ? number : ''}`);
+  changed('plot', `${byId('signal').value}:${own}${isNumbered ? number : ''}`);
 }
 
 function onChart() {
@@ -218,6 +219,10 @@ async function begin() {
   restore();
 }
 
+session.filled = () => {
+  controls.refresh();
+  fields();
+};
 session.back = () => {
   renew();
   if (session.declared) declare(state.text);
@@ -225,4 +230,5 @@ session.back = () => {
 };
 theme(matchMedia('(prefers-color-scheme: dark)').matches);
 listen();
+measured.listen();
 begin();

@@ -14,6 +14,7 @@ export const session = {
   declared: null, // what the text that was compiled last declares
   isFine: true, // whether the text that stands there is one
   back: () => {}, // when a program that was gone answers again
+  filled: () => {}, // when fields are to show another state
 };
 
 export const names = () => (session.declared ? session.declared.parameters.map((parameter) => parameter.name) : []);

@@ -249,6 +249,74 @@ fn the_macro_may_stand_around_the_declaration() {
     }
 }
 
+/// Peak-to-peak of a linear oscillator in closed form, of a damping and a drive that the fit does not begin with.
+#[test]
+fn parameters_are_fitted_to_a_table() {
+    let text = "Linear(x) { param zeta = 0.1 in 0.0..; param drive = 1; ddot(x) + 2*zeta*dot(x) + x = drive*cos(omega*t); }";
+    let asked = Asked {
+        text: text.to_owned(),
+        ..of("tip", 0.5, 1.5)
+    };
+    let mut table = "omega, x:p2p\n".to_owned();
+    for step in 0..21 {
+        let omega = 0.5 + 0.05 * f64::from(step);
+        let size = 2.0 * 0.7 / (1.0 - omega * omega).hypot(2.0 * 0.03 * omega);
+        table += &format!("{omega}, {size}\n");
+    }
+    let read = last(&Ask::Table {
+        of: asked.clone(),
+        table: table.clone(),
+    });
+    let set = &read["table"][0];
+    assert_eq!(
+        (set["plot"].as_str(), set["varied"].as_str()),
+        (Some("x:p2p"), Some("omega"))
+    );
+    assert_eq!(set["places"].as_array().map(Vec::len), Some(21));
+    let free = |names: &[&str]| {
+        last(&Ask::Fit {
+            of: asked.clone(),
+            table: table.clone(),
+            free: names.iter().map(ToString::to_string).collect(),
+        })
+    };
+    let fitted = free(&["zeta", "drive"]);
+    assert_eq!(fitted["fit"]["converged"], true, "{fitted}");
+    for (estimate, (name, value)) in fitted["fit"]["values"]
+        .as_array()
+        .expect("values")
+        .iter()
+        .zip([("zeta", 0.03), ("drive", 0.7)])
+    {
+        assert_eq!(estimate[0], name);
+        assert!(
+            (estimate[1].as_f64().expect("a value") - value).abs() < 1e-5,
+            "{fitted}"
+        );
+    }
+    for (names, said) in [(&[][..], "no parameter is free"), (&["mass"], "mass")] {
+        let fault = &free(names)["fault"];
+        assert!(
+            fault["message"]
+                .as_str()
+                .expect("a sentence")
+                .contains(said),
+            "{fault}"
+        );
+    }
+    let fault = last(&Ask::Table {
+        of: asked.clone(),
+        table: "omega, y:p2p\n1, 2\n".to_owned(),
+    });
+    assert!(
+        fault["fault"]["message"]
+            .as_str()
+            .expect("a sentence")
+            .contains("line 1"),
+        "{fault}"
+    );
+}
+
 #[test]
 fn a_newer_request_takes_the_place_of_an_older_one_of_the_same_page() {
     let work = Arc::new(Work::default());

@@ -77,6 +77,25 @@ fn asked() -> impl Strategy<Value = Asked> {
     )
 }
 
+/// A table of measured values, or what is none.
+fn table() -> impl Strategy<Value = String> {
+    let header = prop::sample::select(vec![
+        "omega, x:p2p",
+        "frequency [Hz]; x:h1; sd",
+        "load, contact:max, sweep",
+        "omega",
+        "",
+    ]);
+    let rows = prop::collection::vec((number(), number()), 0..8);
+    prop_oneof![
+        3 => (header, rows).prop_map(|(header, rows)| {
+            let rows = rows.iter().map(|(place, value)| format!("\n{place}, {value}"));
+            header.to_owned() + &rows.collect::<String>()
+        }),
+        1 => ".{0,40}",
+    ]
+}
+
 fn ask() -> impl Strategy<Value = Ask> {
     let plot = || {
         prop_oneof![
@@ -92,6 +111,9 @@ fn ask() -> impl Strategy<Value = Ask> {
     prop_oneof![
         text().prop_map(|text| Ask::Declaration { text }),
         (asked(), plot(), effort).prop_map(|(of, plot, effort)| Ask::Curve { of, plot, effort }),
+        (asked(), table()).prop_map(|(of, table)| Ask::Table { of, table }),
+        (asked(), table(), prop::collection::vec(name(), 0..3))
+            .prop_map(|(of, table, free)| Ask::Fit { of, table, free }),
         (asked(), plot(), number()).prop_map(|(of, plot, at)| Ask::Orbits { of, plot, at }),
         (asked(), plot(), scale, form).prop_map(|(of, plot, scale, form)| Ask::Export {
             of,
@@ -137,7 +159,7 @@ proptest! {
         timer.join().expect("a timer");
         let (last, before) = lines.split_last().expect("a line");
         let is_answer = |line: &serde_json::Value| {
-            ["declaration", "curve", "orbits", "export", "fault"].iter().any(|key| !line[*key].is_null())
+            ["declaration", "curve", "orbits", "export", "table", "fit", "fault"].iter().any(|key| !line[*key].is_null())
         };
         prop_assert!(is_answer(last));
         prop_assert!(before.iter().all(|line| line["fault"].is_null()));
