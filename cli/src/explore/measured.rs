@@ -78,7 +78,7 @@ pub fn fit(
         }
         ControlFlow::Continue(())
     });
-    let fitted = fitted.map_err(fault)?;
+    let fitted = fitted.map_err(|error| fault(&error))?;
     if cancel.is_cancelled() {
         return Err(Fault::cancelled());
     }
@@ -95,7 +95,7 @@ pub fn fit(
 
 fn sets(of: &Asked, table: &str, model: &dyn System) -> Result<Vec<DataSet>, Fault> {
     let omega = Some(of.omega).filter(|omega| *omega > 0.0);
-    hertzian_fit::read(table, model, omega).map_err(fault)
+    hertzian_fit::read(table, model, omega).map_err(|error| fault(&error))
 }
 
 impl Set {
@@ -110,11 +110,11 @@ impl Set {
     }
 }
 
-fn fault(error: FitError) -> Fault {
-    let field = match &error {
+fn fault(error: &FitError) -> Fault {
+    let field = match error {
         FitError::Cancelled => return Fault::cancelled(),
         FitError::Free { .. } | FitError::TooFew { .. } => "free",
         _ => "table",
     };
-    Fault::new(Kind::Value, chain(&error).to_string()).of(field)
+    Fault::new(Kind::Value, chain(error).to_string()).of(field)
 }

@@ -257,12 +257,12 @@ fn parameters_are_fitted_to_a_table() {
         text: text.to_owned(),
         ..of("tip", 0.5, 1.5)
     };
-    let mut table = "omega, x:p2p\n".to_owned();
-    for step in 0..21 {
+    let rows = (0..21).map(|step| {
         let omega = 0.5 + 0.05 * f64::from(step);
         let size = 2.0 * 0.7 / (1.0 - omega * omega).hypot(2.0 * 0.03 * omega);
-        table += &format!("{omega}, {size}\n");
-    }
+        format!("{omega}, {size}\n")
+    });
+    let table = "omega, x:p2p\n".to_owned() + &rows.collect::<String>();
     let read = last(&Ask::Table {
         of: asked.clone(),
         table: table.clone(),
