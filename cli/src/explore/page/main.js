@@ -51,6 +51,7 @@ function fill() {
   byId('varied').replaceChildren(...['omega', ...names()].map((name) => el('option', { value: name, text: name })));
   const about = { coordinate: () => '', contact: () => ', force of a contact', output: (own) => `, ${own.documentation || 'output'}` };
   byId('signal').replaceChildren(...signals.map((own) => el('option', { value: own.name, text: own.name + about[own.kind](own) })));
+  measured.offer();
   fields();
 }
 

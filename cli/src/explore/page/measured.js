@@ -49,19 +49,27 @@ function see(sets) {
   draw();
 }
 
-// Which parameters are free.
-function offer() {
+// Which parameters are free; of another model others can be.
+export function offer() {
+  if (chart.measured.length === 0) return;
   const varied = chart.measured.map((set) => set.varied);
-  byId('free').replaceChildren(...names().filter((name) => !varied.includes(name)).map((name) => el('label', {}, el('input', { type: 'checkbox', value: name }), ` ${name} `)));
+  const chosen = [...byId('free').querySelectorAll('input:checked')].map((box) => box.value);
+  byId('free').replaceChildren(...names().filter((name) => !varied.includes(name)).map((name) => el('label', {}, el('input', { type: 'checkbox', value: name, checked: chosen.includes(name) }), ` ${name} `)));
 }
 
 async function fit() {
   const free = [...byId('free').querySelectorAll('input:checked')].map((box) => box.value);
   byId('fit-fault').hidden = true;
   status('fitting');
+  const begun = JSON.stringify(of());
   try {
     const { fit: fitted } = await ask('fit', { fit: { of: of(), table, free } }, progress);
     status('');
+    if (begun !== JSON.stringify(of())) {
+      byId('fit-fault').textContent = 'The model or its values have changed while they were fitted: fit again.';
+      byId('fit-fault').hidden = false;
+      return;
+    }
     for (const [name, value] of fitted.values) state.values[name] = value;
     byId('fitted').textContent = fitted.said + (fitted.converged ? '' : '\nIt did not converge: these are the best values until then.');
     byId('fitted').hidden = false;
@@ -88,8 +96,11 @@ export function listen() {
   byId('data').addEventListener('change', () => read(byId('data').files[0]));
   byId('fit').addEventListener('click', fit);
   byId('no-data').addEventListener('click', forget);
-  addEventListener('dragover', (event) => event.preventDefault());
+  // Words that are dragged within the text go where they always do.
+  const has = (event) => event.dataTransfer?.types.includes('Files');
+  addEventListener('dragover', (event) => has(event) && event.preventDefault());
   addEventListener('drop', (event) => {
+    if (!has(event)) return;
     event.preventDefault();
     read(event.dataTransfer.files[0]);
   });
