@@ -149,6 +149,17 @@ pub fn at(traced: &Traced, value: f64, plot: &str, cancel: &Cancel) -> Result<Or
             }
         }
     }
+    for (what, names) in [
+        ("coordinates", &first.model.coordinates),
+        ("contacts", &first.model.contacts),
+    ] {
+        if names.len() > SHOWN && !found.orbits.is_empty() {
+            let count = names.len();
+            found
+                .notes
+                .push(format!("the first {SHOWN} of {count} {what} are shown"));
+        }
+    }
     if found.orbits.is_empty() && found.notes.is_empty() {
         let note = format!("no branch passes {} = {}", traced.asked.varied, found.said);
         found.notes.push(note);

@@ -16,7 +16,7 @@ function place(title) {
 function panel(title, about) {
   const figure = byId('panels').querySelector(`[data-panel=${title}]`);
   const drawing = figure.querySelector('svg');
-  figure.querySelector('figcaption').textContent = about;
+  figure.querySelector('figcaption').replaceChildren(...[about].flat());
   const { width, height } = drawing.getBoundingClientRect();
   drawing.setAttribute('viewBox', `0 0 ${width} ${height}`);
   return { drawing, width, height };
@@ -52,12 +52,20 @@ function even(lines) {
   return own;
 }
 
-const several = (items) => (items.length > 1 ? `: ${items.map((item) => item.name).join(', ')}` : '');
+// Names in the colours of their lines, where there are several.
+function several(items) {
+  if (items.length < 2) return [];
+  return items.flatMap((item, index) => {
+    const name = el('b', { text: item.name });
+    name.style.color = `var(${COLOURS[index % COLOURS.length]})`;
+    return [index === 0 ? ': ' : ', ', name];
+  });
+}
 
 function history(orbit, time) {
   const lines = even(orbit.motions.map((motion) => ({ xs: motion.times, ys: motion.positions, name: motion.name })));
   const shades = orbit.contacts.flatMap((contact) => contact.closed);
-  const about = `Over its period${several(orbit.motions)}${shades.length > 0 ? '; shaded while in contact' : ''}`;
+  const about = ['Over its period', ...several(orbit.motions), shades.length > 0 ? '; shaded while in contact' : ''];
   const names = orbit.motions.length === 1 ? inUnit(orbit.motions[0].name, orbit.motions[0].unit) : 'position';
   const { drawing, on } = traces('history', about, time, names, lines, shades);
   const now = svg('line', { class: 'here', y1: on.box.top, y2: on.box.bottom, x1: on.box.left, x2: on.box.left });
@@ -71,13 +79,13 @@ function history(orbit, time) {
 function phases(orbit) {
   const lines = orbit.motions.map((motion) => ({ xs: motion.positions, ys: motion.velocities, name: motion.name }));
   const name = orbit.motions.length === 1 ? orbit.motions[0].name : 'position';
-  traces('phase', `Velocity over position${several(orbit.motions)}`, name, 'velocity', lines);
+  traces('phase', ['Velocity over position', ...several(orbit.motions)], name, 'velocity', lines);
 }
 
 function forces(orbit) {
   const lines = orbit.contacts.map((contact) => ({ xs: contact.gaps, ys: contact.forces, name: contact.name }));
   const unit = orbit.contacts[0].unit;
-  traces('force', `Force over gap${several(orbit.contacts)}: a positive gap is penetration`, 'gap', inUnit(`force of ${orbit.contacts.length === 1 ? orbit.contacts[0].name : 'contacts'}`, unit), lines);
+  traces('force', ['Force over gap', ...several(orbit.contacts), '; a positive gap is penetration'], 'gap', inUnit(`force of ${orbit.contacts.length === 1 ? orbit.contacts[0].name : 'contacts'}`, unit), lines);
 }
 
 function spectrum(orbit) {

@@ -249,6 +249,29 @@ fn the_macro_may_stand_around_the_declaration() {
     }
 }
 
+#[test]
+fn what_is_not_shown_is_said() {
+    let text =
+        "Chain(x[9]) { for j in 0..9 { ddot(x[j]) + 0.1*dot(x[j]) + x[j] = cos(omega*t); } }";
+    let answer = last(&Ask::Orbits {
+        of: Asked {
+            text: text.to_owned(),
+            ..of("tip", 0.5, 1.5)
+        },
+        plot: String::new(),
+        at: 0.7,
+    });
+    let orbits = &answer["orbits"];
+    assert_eq!(
+        orbits["notes"][0], "the first 8 of 9 coordinates are shown",
+        "{answer}"
+    );
+    assert_eq!(
+        orbits["orbits"][0]["motions"].as_array().map(Vec::len),
+        Some(8)
+    );
+}
+
 /// Peak-to-peak of a linear oscillator in closed form, of a damping and a drive that the fit does not begin with.
 #[test]
 fn parameters_are_fitted_to_a_table() {
