@@ -172,6 +172,17 @@ impl Asked {
             value: self.from,
         };
         let declaration = texts.parse(&self.text)?;
+        let mut without = declaration
+            .parameters()
+            .into_iter()
+            .filter(|(name, value)| {
+                value.is_nan() && *name != self.varied && !self.values.contains_key(*name)
+            });
+        if let Some((name, _)) = without.next() {
+            let message = format!("{name} has no default: give it a value");
+            return Err(Fault::new(Kind::Value, message).of(name));
+        }
+        drop(without);
         Ok(model_file::valued(declaration, &self.settings(), varied)?)
     }
 

@@ -1,7 +1,6 @@
 // The motion as it is: masses at their places, surfaces where contacts begin, over and over.
 
 import { extent } from './axes.js';
-import { byId } from './dom.js';
 
 const SECONDS = 3; // for one period of the excitation
 
@@ -100,9 +99,4 @@ export function play(canvas, orbit, each) {
     },
     playing: () => playing,
   };
-}
-
-export function stop() {
-  cancelAnimationFrame(frameId);
-  byId('panels').replaceChildren();
 }

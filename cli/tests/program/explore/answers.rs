@@ -117,11 +117,17 @@ fn a_fault_of_a_value_names_its_field() {
         period: 0,
         ..base.clone()
     };
+    let without = Asked {
+        text: "Free(x) { param mass > 0; mass*ddot(x) + 0.1*dot(x) + x = cos(omega*t); }"
+            .to_owned(),
+        ..base.clone()
+    };
     let varied = Asked {
         varied: "mass".to_owned(),
         ..base
     };
     for (asked, field) in [
+        (without, "mass"),
         (zeta, "zeta"),
         (empty, "to"),
         (period, "period"),
