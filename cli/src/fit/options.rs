@@ -11,7 +11,7 @@ use crate::model::ModelOptions;
 ///
 /// The table has a line of names, with units in brackets, and a row for each measured value:
 ///
-///   frequency [Hz], x:p2p [um], sd, sweep, drive
+///   `frequency [Hz], x:p2p [um], sd, sweep, drive`
 ///
 /// `omega`, `frequency`, or the parameter that was varied; what was measured, as --plot of `hertzian response` writes it, in one column or
 /// several; and where they are known standard deviations, how the sweep went (rising, falling, settled, controlled), a name of the `set`,
