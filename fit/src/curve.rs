@@ -206,7 +206,7 @@ impl Curve {
             .map_err(|error| error.to_string())?;
         let mut slopes = vec![0.0; problem.unknowns.len()];
         for (index, unknown) in problem.of_group(self.group) {
-            let name = &problem.model.parameters[unknown.parameter].name;
+            let name = problem.name_of(unknown);
             slopes[index] = found.of_place(name).map_or(0.0, |slope| slope.value);
         }
         self.folds.insert(key, slopes.clone());
@@ -259,21 +259,26 @@ fn slopes(
     point: &Point,
 ) -> Result<Slopes, String> {
     let of = &problem.groups[group];
+    let unknowns: Vec<(usize, &str)> = problem
+        .of_group(group)
+        .map(|(index, unknown)| (index, problem.name_of(unknown)))
+        .collect();
+    let own = unknowns.iter().map(|(_, name)| *name);
+    let variables: Vec<&str> = std::iter::once(of.varied.as_str()).chain(own).collect();
     let found = branch
-        .sensitivities_of(point, &of.wanted)
+        .quick_sensitivities_of(point, &of.wanted, &variables)
         .map_err(|error| hertzian::error::chain(&error).to_string())?;
     let slopes = of.wanted.iter().map(|wanted| {
         let name = wanted.to_string();
-        let measured = found
-            .measured
-            .iter()
-            .find(|measured| measured.name == name)?;
-        let by = |variable: &str| found.of(&name, variable).map_or(0.0, |slope| slope.value);
+        let mut measured = found.measured.iter();
+        let measured = measured.find(|measured| measured.name == name)?;
+        let mut by = measured.by.iter().map(|slope| slope.value);
+        let place = by.next()?;
         let mut slopes = vec![0.0; problem.unknowns.len()];
-        for (index, unknown) in problem.of_group(group) {
-            slopes[index] = by(&problem.model.parameters[unknown.parameter].name);
+        for ((index, _), slope) in unknowns.iter().zip(by) {
+            slopes[*index] = slope;
         }
-        Some((measured.value, by(&of.varied), slopes))
+        Some((measured.value, place, slopes))
     });
     Ok(Slopes {
         of: slopes.collect(),

@@ -19,6 +19,9 @@ const FAILED: f64 = 100.0;
 /// A search by logarithms does not go farther beyond the range of starts than by this factor: a step may lead to stiff motions that take long.
 const FARTHEST: f64 = 10.0;
 
+/// The first step, where the unknowns as they are given are one: along directions that the data hardly tell, as exponent and stiffness may be, a longer
+/// one leads to where nothing is like the data.
+const FIRST: f64 = 0.15;
 /// The method is started again so often, while that gains this part of the sum of squares.
 const RESTARTS: usize = 6;
 const GAINED: f64 = 1e-3;
@@ -140,7 +143,7 @@ pub(crate) fn minimise(
             ftol: until.tolerance[0],
             xtol: until.tolerance[1],
             gtol: 1e-14,
-            step_factor: 1.0,
+            step_factor: FIRST,
             max_iter: until.iterations,
             ..MPConfig::new()
         },

@@ -247,6 +247,11 @@ impl Problem {
         [low.max(minimum), high.min(maximum)]
     }
 
+    /// The name of the parameter that an unknown is.
+    pub(crate) fn name_of(&self, unknown: &Unknown) -> &str {
+        &self.model.parameters[unknown.parameter].name
+    }
+
     /// The unknowns that the curve of a group depends on.
     pub(crate) fn of_group(&self, group: usize) -> impl Iterator<Item = (usize, &Unknown)> {
         let own = self.groups[group].own;

@@ -17,8 +17,8 @@ use crate::trial::{How, Trial};
 const KEPT: usize = 2;
 /// Where near residuals are this small, as those of data with some noise, no other start is gone on with.
 const NEAR_ENOUGH: f64 = 0.5;
-/// Iterations with near residuals end early; those with exact ones where nothing is gained any more that noise would show, or unknowns are known to
-/// seven digits.
+/// Iterations with near residuals end early; those with exact ones where nothing is gained any more that noise would show, or the next step is one of
+/// the seventh digit.
 const NEAR: Until = Until {
     how: How::Near,
     tolerance: [1e-3, 1e-3],
@@ -26,7 +26,7 @@ const NEAR: Until = Until {
 };
 const EXACT: Until = Until {
     how: How::Exact,
-    tolerance: [1e-6, 1e-7],
+    tolerance: [1e-6, 1e-6],
     iterations: 40,
 };
 

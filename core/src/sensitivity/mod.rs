@@ -30,6 +30,8 @@ use slopes::{Asked, Slopes};
 /// Tolerance of the flow and nodes of a rule, and those that errors are told by.
 const FINE: (f64, usize) = (1e-12, 24);
 const COARSE: (f64, usize) = (1e-10, 16);
+/// Those where no errors are asked for.
+const QUICK: (f64, usize) = (1e-9, 12);
 /// Harmonics that are read off where nothing is asked for by name.
 const HARMONICS: usize = 5;
 /// Roundings of a derivative, times the condition of the equations.
@@ -44,7 +46,7 @@ pub struct Derivative {
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub value: f64,
     /// Estimated error: how much another tolerance of the flow and other nodes change it, and roundings times the condition of the orbit's
-    /// equations.
+    /// equations. Infinite where it was not asked for.
     #[cfg_attr(feature = "serde", serde(with = "crate::serialise"))]
     pub error: f64,
 }
@@ -154,6 +156,43 @@ impl Branch {
         problem.of_point(&rows)
     }
 
+    /// As [`sensitivities_of`](Self::sensitivities_of), by some variables alone (`"omega"`, or parameters) and in a fraction of the time: to eight
+    /// digits as a rule, but without errors, which are infinite. For who needs many of them, as a fit does.
+    ///
+    /// ```
+    /// use hertzian::FrequencyResponse;
+    ///
+    /// hertzian::oscillator! {
+    ///     Linear(x) {
+    ///         param zeta in 0.0..;
+    ///         param drive;
+    ///         ddot(x) + 2*zeta*dot(x) + x = drive*cos(omega*t);
+    ///     }
+    /// }
+    ///
+    /// let branch = FrequencyResponse::of(&Linear { zeta: 0.1, drive: 1.0 }).from(0.5).to(1.5).run()?;
+    /// let at = branch.quick_sensitivities_of(&branch.at(1.0)?[0], &["x:p2p".parse()?], &["zeta"])?;
+    /// assert_eq!(at.variables, ["zeta"]);
+    /// assert!((at.of("x:p2p", "zeta").unwrap().value + 100.0).abs() < 1e-5);
+    /// # Ok::<(), hertzian::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`sensitivities_of`](Self::sensitivities_of), and if there is no such parameter.
+    pub fn quick_sensitivities_of(
+        &self,
+        point: &Point,
+        wanted: &[Wanted],
+        by: &[&str],
+    ) -> Result<Sensitivities, Error> {
+        let mut problem = Sensitive::of(self, point)?;
+        let variables = by.iter().map(|name| problem.variable(name));
+        problem.variables = variables.collect::<Result<_, Error>>()?;
+        let rows = wanted.iter().map(|wanted| problem.row(wanted));
+        let rows = rows.collect::<Result<Vec<Row>, Error>>()?;
+        problem.quick(&rows)
+    }
+
     /// Derivatives of where an event of this branch is: of a fold, or of an orbit that grazes a level. Other events take second derivatives of the
     /// motion and have none here. At a fold nothing else is read off: at a fixed value of what is varied those derivatives are unbounded.
     ///
@@ -232,6 +271,42 @@ impl<'p> Sensitive<'p> {
 
     fn row(&self, wanted: &Wanted) -> Result<Row, Error> {
         row(&self.model, wanted)
+    }
+
+    /// What has a name: the frequency, or a parameter.
+    fn variable(&self, name: &str) -> Result<Variable, Error> {
+        let mut parameters = self.model.parameters.iter();
+        let index = parameters.position(|parameter| parameter.name == name);
+        let known = self.model.parameters.iter();
+        let unknown = || RequestError::UnknownParameter {
+            name: name.to_owned(),
+            known: known.map(|parameter| parameter.name.clone()).collect(),
+        };
+        match index {
+            None if name == "omega" => Ok(Variable::Omega),
+            None => Err(unknown().into()),
+            Some(index) => Ok(Variable::Parameter(index)),
+        }
+    }
+
+    /// By one flow, without errors.
+    fn quick(&self, rows: &[Row]) -> Result<Sensitivities, Error> {
+        let mut cycle = self.cycle(QUICK.0)?;
+        let states = cycle.states(&self.point.orbit)?;
+        let once = self.once(&mut cycle, states, rows, QUICK.1)?;
+        let measured = rows.iter().zip(once.slopes).map(|(row, slope)| Measured {
+            name: row.name.clone(),
+            unit: row.unit.clone(),
+            value: slope.value,
+            by: (slope.by.into_iter())
+                .map(|value| Derivative {
+                    value,
+                    error: f64::INFINITY,
+                })
+                .collect(),
+        });
+        let measured = measured.filter(|measured| !measured.value.is_nan());
+        Ok(self.told(None, Vec::new(), measured.collect(), once.condition))
     }
 
     /// Everything that is read off.
@@ -319,13 +394,17 @@ impl<'p> Sensitive<'p> {
         measured: Vec<Measured>,
         condition: f64,
     ) -> Sensitivities {
-        let parameters = self.model.parameters.iter();
-        let names = parameters.map(|parameter| parameter.name.clone());
-        let omega = self.point.orbit.omega;
-        let values = self.point.parameters.iter().copied();
+        let named = |variable: &Variable| match variable {
+            Variable::Omega => "omega".to_owned(),
+            Variable::Parameter(index) => self.model.parameters[*index].name.clone(),
+        };
+        let value = |variable: &Variable| match variable {
+            Variable::Omega => self.point.orbit.omega,
+            Variable::Parameter(index) => self.point.parameters[*index],
+        };
         Sensitivities {
-            variables: std::iter::once("omega".to_owned()).chain(names).collect(),
-            values: std::iter::once(omega).chain(values).collect(),
+            variables: self.variables.iter().map(named).collect(),
+            values: self.variables.iter().map(value).collect(),
             varied: self.name.clone(),
             kind,
             place,
