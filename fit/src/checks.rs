@@ -8,6 +8,8 @@ use crate::error::FitError;
 use crate::fit::{Fit, Free, Loss};
 use crate::problem::Problem;
 
+/// The highest frequency of a set is not so many times the lowest one.
+const WIDEST: f64 = 1e4;
 /// The standard deviation of a value of a set without any, as a part of the largest value.
 const UNKNOWN: f64 = 0.01;
 /// That of the frequency, as a part of the usual step between neighbours.
@@ -59,13 +61,12 @@ pub(crate) fn deviations(set: &DataSet) -> Vec<f64> {
 /// Whether data and parameters can be used.
 pub(crate) fn fit(fit: &Fit, system: &dyn System, model: &Model) -> Result<(), FitError> {
     if fit.sets.is_empty() || fit.sets.iter().all(DataSet::is_empty) {
-        return Err(FitError::data("none", "there are no data"));
+        let message = "there are no data";
+        return Err(FitError::Nothing { message });
     }
     if fit.free.is_empty() {
-        return Err(FitError::free(
-            "none",
-            "name at least one parameter to be free",
-        ));
+        let message = "no parameter is free: name at least one";
+        return Err(FitError::Nothing { message });
     }
     if let Loss::Huber(limit) = fit.loss
         && !(limit > 0.0 && limit.is_finite())
@@ -88,6 +89,13 @@ pub(crate) fn fit(fit: &Fit, system: &dyn System, model: &Model) -> Result<(), F
     Ok(())
 }
 
+/// The values that parameters have.
+pub(crate) fn values_of(system: &dyn System) -> Vec<f64> {
+    let mut values = vec![0.0; system.facts().parameters.len()];
+    system.values(&mut values);
+    values
+}
+
 /// What a free parameter must be.
 fn free(free: &Free, fit: &Fit, system: &dyn System) -> Result<(), FitError> {
     let Free { name, range, .. } = free;
@@ -100,6 +108,17 @@ fn free(free: &Free, fit: &Fit, system: &dyn System) -> Result<(), FitError> {
             known.join(", ")
         ));
     };
+    let values = values_of(system);
+    let own = parameters
+        .iter()
+        .zip(values)
+        .find(|(own, _)| own.name == *name);
+    if let Some((facts, value)) = own
+        && value.is_finite()
+        && !facts.admits(value)
+    {
+        return refused(format!("its value {value} is not in its declared range"));
+    }
     if let Some([low, high]) = range {
         if !(low.is_finite() && high.is_finite() && low < high) {
             return refused(format!("the range from {low} to {high} is empty"));
@@ -175,6 +194,12 @@ fn names(set: &DataSet, system: &dyn System, model: &Model) -> Result<(), String
     if set.varied == "omega" {
         if let Some(omega) = set.places.iter().find(|omega| **omega <= 0.0) {
             return Err(format!("a frequency is {omega}: it must be positive"));
+        }
+        let [low, high] = extremes(&set.places);
+        if high > WIDEST * low {
+            return Err(format!(
+                "frequencies from {low} to {high} are not of one curve: divide them into sets of which each is fitted for itself"
+            ));
         }
     } else {
         let facts = known(&set.varied)

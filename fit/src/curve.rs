@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use hertzian::{Branch, EventKind, FrequencyResponse, Point, Shooting, Stop, Valued};
 
-use crate::path::Node;
+use crate::path::{Node, Sheet};
 use crate::problem::Problem;
 
 /// Accuracy asked of motions: by shooting their errors are far below, and do not grow with harmonics that are left out.
@@ -17,7 +17,9 @@ const POINTS: usize = 600;
 /// A curve.
 #[derive(Debug)]
 pub(crate) struct Curve {
-    pub(crate) branches: Vec<Branch>,
+    branches: Vec<Branch>,
+    /// Whether each was followed from the lowest place on.
+    from_lowest: Vec<bool>,
     /// For each branch, points and turns in their order, with a reading for each thing that is wanted.
     chains: Vec<Vec<(Node, Vec<f64>)>>,
     group: usize,
@@ -64,26 +66,28 @@ impl Curve {
         let mut branches = Vec::new();
         let mut failed = None;
         match forth {
-            Ok(branch) => branches.push(branch),
+            Ok(branch) => branches.push((branch, true)),
             Err(error) => failed = Some(described(error)),
         }
         if !whole && !problem.cancel.is_cancelled() {
             match request.from(high).to(low).run() {
-                Ok(branch) => branches.push(branch),
+                Ok(branch) => branches.push((branch, false)),
                 Err(error) => failed = failed.or_else(|| Some(described(error))),
             }
         }
         if problem.cancel.is_cancelled() {
             return Err("cancelled".to_owned());
         }
-        branches.retain(|branch| branch.points.len() > 2);
+        branches.retain(|(branch, _)| branch.points.len() > 2);
         if branches.is_empty() {
             return Err(failed.unwrap_or_else(|| "the curve ended where it began".to_owned()));
         }
+        let (branches, from_lowest): (Vec<Branch>, Vec<bool>) = branches.into_iter().unzip();
         let chains = branches.iter().map(|branch| chain(branch, &of.wanted));
         let chains = chains.collect::<Result<_, _>>().map_err(described)?;
         Ok(Self {
             branches,
+            from_lowest,
             chains,
             group,
             orbits: HashMap::new(),
@@ -111,6 +115,16 @@ impl Curve {
             nodes.filter(|node| node.y.is_finite()).collect()
         });
         nodes.collect()
+    }
+
+    /// The place of a sheet along the curve from its lowest end on: a branch that was followed from the highest end comes last, and backwards.
+    pub(crate) fn rank(&self, branch: usize, sheet: &Sheet) -> isize {
+        let along = sheet.nodes[0] as isize;
+        if self.from_lowest[branch] {
+            along
+        } else {
+            isize::MAX / 4 - along
+        }
     }
 
     /// The readings of all orbits of a branch at a place.

@@ -22,6 +22,12 @@ pub enum FitError {
         /// What is wrong.
         message: String,
     },
+    /// Nothing can be fitted.
+    #[error("{message}")]
+    Nothing {
+        /// Why not.
+        message: &'static str,
+    },
     /// A parameter cannot be free as it was asked for.
     #[error("free parameter {name}: {message}")]
     Free {

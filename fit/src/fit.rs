@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use hertzian::{Cancel, System, Valued};
 
+use crate::checks;
 use crate::data::DataSet;
 use crate::error::FitError;
 use crate::problem::Problem;
@@ -126,7 +127,8 @@ impl Fit {
         self
     }
 
-    /// Frees a parameter, within its declared range. Starts are looked for between a third of its value and three times of it.
+    /// Frees a parameter, within its declared range and up to thirty times its value. Starts are looked for between a third of its value and three
+    /// times of it.
     #[must_use]
     pub fn free(self, parameter: impl Into<String>) -> Self {
         self.freed(parameter.into(), None, false)
@@ -159,8 +161,7 @@ impl Fit {
 
     /// The same from other estimates: the values of its system are these, and nothing else is tried.
     pub(crate) fn from(&self, fitted: &Fitted) -> Self {
-        let mut values = vec![0.0; self.system.facts().parameters.len()];
-        self.system.values(&mut values);
+        let mut values = checks::values_of(&self.system);
         for (place, facts) in self.system.facts().parameters.iter().enumerate() {
             let named = fitted.estimate(&facts.name);
             values[place] = named.map_or(values[place], |estimate| estimate.value);
@@ -175,8 +176,7 @@ impl Fit {
 
     /// With a parameter at a value, and not free.
     pub(crate) fn held(self, name: &str, value: f64) -> Self {
-        let mut values = vec![0.0; self.system.facts().parameters.len()];
-        self.system.values(&mut values);
+        let mut values = checks::values_of(&self.system);
         for (place, facts) in self.system.facts().parameters.iter().enumerate() {
             if facts.name == name {
                 values[place] = value;

@@ -7,7 +7,7 @@
 //! Source: Moré (1978), Lecture Notes in Mathematics 630, 105; ranges as in MPFIT, Markwardt (2009), ASP Conference Series 411, 251; (1) as
 //! in Huber (1964), Annals of Mathematical Statistics 35, 73.
 
-use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
+use rmpfit::{MPConfig, MPError, MPFitter, MPMaxFev, MPPar, MPResult, MPSide, MPSuccess};
 
 use crate::fit::Loss;
 use crate::problem::{Problem, Unknown};
@@ -22,6 +22,8 @@ const FARTHEST: f64 = 10.0;
 /// The first step, where the unknowns as they are given are one: along directions that the data hardly tell, as exponent and stiffness may be, a longer
 /// one leads to where nothing is like the data.
 const FIRST: f64 = 0.15;
+/// Trials for each iteration, at most, on the average.
+const TRIALS: usize = 3;
 /// The method is started again so often, while that gains this part of the sum of squares.
 const RESTARTS: usize = 6;
 const GAINED: f64 = 1e-3;
@@ -145,6 +147,7 @@ pub(crate) fn minimise(
             gtol: 1e-14,
             step_factor: FIRST,
             max_iter: until.iterations,
+            max_fev: MPMaxFev::Limited(TRIALS * until.iterations),
             ..MPConfig::new()
         },
         least: square(&counted(problem.loss, scale, &start.residuals).0),

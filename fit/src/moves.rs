@@ -13,7 +13,6 @@ const NODES: usize = 14;
 pub(crate) struct Along<'p> {
     pub(crate) path: &'p Path,
     pub(crate) sheet: &'p Sheet,
-    pub(crate) branch: usize,
     /// Its place among what a group wants.
     pub(crate) wanted: usize,
     /// What counts as one along both axes.
@@ -80,10 +79,10 @@ fn moved(
     let Along {
         path,
         sheet,
-        branch,
         wanted,
         size,
     } = of;
+    let branch = path.branch;
     if let Some(event) = path.nodes[node].event {
         let (_, [_, dy]) = path.at(path.along[node]);
         let by = curve.fold_slopes(problem, branch, event)?;

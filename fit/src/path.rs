@@ -31,6 +31,8 @@ pub(crate) struct Node {
 /// Nodes joined.
 #[derive(Debug, Clone)]
 pub(crate) struct Path {
+    /// The number of its branch.
+    pub(crate) branch: usize,
     pub(crate) nodes: Vec<Node>,
     pub(crate) along: Vec<f64>,
     x: Spline,
@@ -86,7 +88,7 @@ impl Sheet {
 
 impl Path {
     /// Through nodes that are not all at one place.
-    pub(crate) fn of(nodes: Vec<Node>, size: [f64; 2]) -> Option<Self> {
+    pub(crate) fn of(branch: usize, nodes: Vec<Node>, size: [f64; 2]) -> Option<Self> {
         let mut along = vec![0.0];
         for pair in nodes.windows(2) {
             let chord =
@@ -104,6 +106,7 @@ impl Path {
             }
         }
         Some(Self {
+            branch,
             nodes,
             along,
             x,
@@ -279,7 +282,7 @@ mod tests {
                 event: None,
             }
         };
-        Path::of((-20..=20).map(node).collect(), [1.0, 1.0]).expect("a path")
+        Path::of(0, (-20..=20).map(node).collect(), [1.0, 1.0]).expect("a path")
     }
 
     #[test]

@@ -13,6 +13,8 @@ use crate::fit::{Fit, Free, Loss};
 
 /// Starts are looked for down to this part of a value, and up to its inverse, where no range is given.
 const AROUND: f64 = 1.0 / 3.0;
+/// So many times its value is as far as a parameter goes without a range: beyond, motions may be so stiff that they take long.
+const FAR: f64 = 30.0;
 /// Curves go beyond the data by this part of their range.
 const MARGIN: f64 = 0.05;
 /// A range that begins above zero and ends so many times higher is spread evenly by its logarithm.
@@ -112,8 +114,7 @@ impl Problem {
     pub(crate) fn new(fit: &Fit) -> Result<Self, FitError> {
         let system = fit.system.shared();
         let model = Model::of(&system);
-        let mut values = vec![0.0; system.facts().parameters.len()];
-        system.values(&mut values);
+        let values = checks::values_of(&system);
         checks::fit(fit, &system, &model)?;
         let has_own = fit.free.iter().any(|free| free.own);
         let mut problem = Self {
@@ -233,7 +234,13 @@ impl Problem {
         let facts = &self.system.facts().parameters[parameter];
         let scale = range.map_or(self.values[parameter].abs(), |[low, high]| high - low);
         let scale = if scale > 0.0 { scale } else { 1.0 };
-        let [low, high] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let value = self.values[parameter].abs();
+        let far = if value > 0.0 {
+            FAR * value
+        } else {
+            f64::INFINITY
+        };
+        let [low, high] = range.unwrap_or([-far, far]);
         let minimum = match facts.minimum {
             Bound::Unbounded => f64::NEG_INFINITY,
             Bound::Included(end) => end,

@@ -242,8 +242,8 @@ fn sets(
     jacobian: &DMatrix<f64>,
     linear: &Linear,
 ) -> Vec<FittedSet> {
-    let mut first = 0;
     let sets = problem.sets.iter().enumerate().map(|(number, set)| {
+        let first = trial.first[number];
         let values = trial.feet(number).enumerate().map(|(index, foot)| {
             let row = first + index;
             let residual = trial.residuals[row];
@@ -263,9 +263,7 @@ fn sets(
             }
         });
         let values: Vec<FittedValue> = values.collect();
-        first += values.len();
-        let jumps = trial.residuals[first..][..set.jumps.len()].to_vec();
-        first += jumps.len();
+        let jumps = trial.residuals[first + values.len()..][..set.jumps.len()].to_vec();
         let varied = &problem.groups[set.group].varied;
         FittedSet {
             name: set.name.clone(),

@@ -15,8 +15,10 @@ use crate::unit;
 enum Column {
     Omega(f64),
     Parameter(String, f64),
-    Measured(Wanted, f64),
-    Deviation(Option<Wanted>),
+    /// With the unit that was written.
+    Measured(Wanted, f64, Option<String>),
+    /// With the unit that was written.
+    Deviation(Option<Wanted>, Option<String>),
     Sweep,
     Set,
 }
@@ -119,15 +121,30 @@ fn columns(header: &csv::StringRecord, model: &Model) -> Result<Vec<Column>, Str
     let measured: Vec<&Wanted> = measured(&columns).map(|(_, wanted)| wanted).collect();
     for column in &columns {
         match column {
-            Column::Deviation(None) if measured.len() > 1 => {
+            Column::Deviation(None, _) if measured.len() > 1 => {
                 return Err(
                     "several columns are measured: say `sd of x:p2p` instead of `sd`".to_owned(),
                 );
             }
-            Column::Deviation(Some(of)) if !measured.contains(&of) => {
+            Column::Deviation(Some(of), _) if !measured.contains(&of) => {
                 return Err(format!(
                     "there are standard deviations of {of}, and no column {of}"
                 ));
+            }
+            Column::Deviation(of, unit) => {
+                let own = columns.iter().find_map(|column| match column {
+                    Column::Measured(wanted, _, unit) => {
+                        let is_own = of.as_ref().is_none_or(|of| of == wanted);
+                        is_own.then_some(unit)
+                    }
+                    _ => None,
+                });
+                if let (Some(unit), Some(own)) = (unit, own)
+                    && Some(unit) != own.as_ref()
+                {
+                    let message = "standard deviations are in the unit of what was measured";
+                    return Err(format!("[{unit}]: {message}, as its column has it"));
+                }
             }
             _ => {}
         }
@@ -145,8 +162,8 @@ fn kind(column: &Column) -> String {
     match column {
         Column::Omega(_) => "omega".to_owned(),
         Column::Parameter(name, _) => format!("parameter {name}"),
-        Column::Measured(wanted, _) => format!("measured {wanted}"),
-        Column::Deviation(of) => format!("deviation {of:?}"),
+        Column::Measured(wanted, ..) => format!("measured {wanted}"),
+        Column::Deviation(of, _) => format!("deviation {of:?}"),
         Column::Sweep => "sweep".to_owned(),
         Column::Set => "set".to_owned(),
     }
@@ -172,6 +189,7 @@ fn column(cell: &str, model: &Model) -> Result<Column, String> {
     if let Some(parameter) = parameter {
         return Ok(Column::Parameter(name.to_owned(), factor(&parameter.unit)?));
     }
+    let written = unit.map(str::to_owned);
     match name {
         "omega" => return Ok(Column::Omega(frequency(unit.unwrap_or("rad/s"))?)),
         "frequency" => {
@@ -180,7 +198,7 @@ fn column(cell: &str, model: &Model) -> Result<Column, String> {
         }
         "sweep" => return Ok(Column::Sweep),
         "set" => return Ok(Column::Set),
-        "sd" => return Ok(Column::Deviation(None)),
+        "sd" => return Ok(Column::Deviation(None, written)),
         _ => {}
     }
     let of = name.strip_prefix("sd of ").map(str::trim);
@@ -201,10 +219,10 @@ fn column(cell: &str, model: &Model) -> Result<Column, String> {
         .map_err(|error: hertzian::RequestError| error.to_string())?;
     model.check(&wanted).map_err(|error| error.to_string())?;
     if of.is_some() {
-        return Ok(Column::Deviation(Some(wanted)));
+        return Ok(Column::Deviation(Some(wanted), written));
     }
     let factor = factor(&wanted.measure.unit(model.unit_of(&wanted.name)))?;
-    Ok(Column::Measured(wanted, factor))
+    Ok(Column::Measured(wanted, factor, written))
 }
 
 /// The factor to radians per unit of time.
@@ -224,7 +242,7 @@ fn frequency(unit: &str) -> Result<f64, String> {
 fn measured(columns: &[Column]) -> impl Iterator<Item = (usize, &Wanted)> {
     let columns = columns.iter().enumerate();
     columns.filter_map(|(index, column)| match column {
-        Column::Measured(wanted, _) => Some((index, wanted)),
+        Column::Measured(wanted, ..) => Some((index, wanted)),
         _ => None,
     })
 }
@@ -274,7 +292,7 @@ fn take(
             Column::Parameter(_, factor) if index != varied => {
                 settings.push((number(index)? * factor).to_bits());
             }
-            Column::Deviation(of) if !record[index].is_empty() => {
+            Column::Deviation(of, _) if !record[index].is_empty() => {
                 let deviation = number(index)?;
                 if deviation <= 0.0 {
                     return Err(format!(
@@ -295,7 +313,7 @@ fn take(
             _ => 1.0,
         };
     for (index, column) in columns.iter().enumerate() {
-        let Column::Measured(wanted, factor) = column else {
+        let Column::Measured(wanted, factor, _) = column else {
             continue;
         };
         if record[index].is_empty() {
@@ -305,7 +323,7 @@ fn take(
             .get(&wanted.to_string())
             .or_else(|| deviations.get(""));
         let has_column = columns.iter().any(|column| match column {
-            Column::Deviation(of) => of.as_ref().is_none_or(|of| of == wanted),
+            Column::Deviation(of, _) => of.as_ref().is_none_or(|of| of == wanted),
             _ => false,
         });
         if has_column && of.is_none() {
@@ -342,7 +360,7 @@ fn sweep_of(cell: &str) -> Result<usize, String> {
 fn set(key: &Key, rows: Rows, columns: &[Column], varied: usize, omega: Option<f64>) -> DataSet {
     let (name, sweep, settings, measured) = key;
     let wanted = match &columns[*measured] {
-        Column::Measured(wanted, _) => wanted.to_string(),
+        Column::Measured(wanted, ..) => wanted.to_string(),
         _ => String::new(),
     };
     let (words, sweep) = SWEEPS[*sweep];

@@ -64,6 +64,8 @@ pub(crate) struct Trial {
     pub(crate) unknowns: Vec<f64>,
     pub(crate) how: How,
     pub(crate) residuals: Vec<f64>,
+    /// The first residual of each set.
+    pub(crate) first: Vec<usize>,
     curves: Vec<Curve>,
     beside: Vec<Beside>,
 }
@@ -78,14 +80,20 @@ impl Trial {
             unknowns: unknowns.to_vec(),
             how,
             residuals: Vec::new(),
+            first: Vec::new(),
             curves: curves.collect::<Result<_, _>>()?,
             beside: Vec::new(),
         };
         for set in &problem.sets {
+            trial.first.push(trial.residuals.len());
             let beside = trial.beside(problem, set)?;
             trial.beside.push(beside);
         }
-        Ok(trial)
+        if trial.residuals.iter().all(|residual| residual.is_finite()) {
+            Ok(trial)
+        } else {
+            Err("a distance from the curve is no number".to_owned())
+        }
     }
 
     /// Puts a set beside its curve, and appends its residuals.
@@ -96,9 +104,8 @@ impl Trial {
             .position(|wanted| *wanted == set.wanted)
             .unwrap_or(0);
         let nodes = self.curves[set.group].nodes(wanted, set.wraps());
-        let paths = nodes
-            .into_iter()
-            .filter_map(|nodes| Path::of(nodes, set.size));
+        let paths = nodes.into_iter().enumerate();
+        let paths = paths.filter_map(|(branch, nodes)| Path::of(branch, nodes, set.size));
         let paths: Vec<Path> = paths.collect();
         let sheets = paths.iter().enumerate().flat_map(|(path, of)| {
             let sheets = of.sheets().into_iter();
@@ -128,7 +135,7 @@ impl Trial {
             .collect();
         let ranks: Vec<isize> = sheets
             .iter()
-            .map(|(path, sheet)| rank(*path, sheet))
+            .map(|(path, sheet)| self.curves[set.group].rank(paths[*path].branch, sheet))
             .collect();
         let assigned = assign::assigned(set.sweep, &ranks, &squares);
         let feet = assigned
@@ -152,9 +159,13 @@ impl Trial {
         }
         for (number, jump) in set.jumps.iter().enumerate() {
             let by = jump.deviation.max(self.least(set.size[0]));
-            let apart = beside.jumps[number]
-                .map_or(set.size[0], |sheet| jump.value - beside.fold(set, sheet));
-            self.residuals.push(one_sided(set, number, apart) / by);
+            let apart = match beside.jumps[number] {
+                Some(sheet) => one_sided(set, number, jump.value - beside.fold(set, sheet)),
+                // A branch that does not end goes on far enough.
+                None if jump.is_bound => 0.0,
+                None => set.size[0],
+            };
+            self.residuals.push(apart / by);
         }
         if self.how == How::Near {
             let apart = beside
@@ -185,7 +196,7 @@ impl Trial {
             };
             let ([_, near], [dx, dy]) = path.at(path.along_at(sheet, place));
             let curve = &mut self.curves[set.group];
-            let readings = curve.readings(problem, *path_number, place, beside.wanted)?;
+            let readings = curve.readings(problem, path.branch, place, beside.wanted)?;
             let turned = |reading: f64| {
                 if set.wraps() {
                     turn::near(reading, near)
@@ -249,10 +260,10 @@ impl Trial {
         by: f64,
     ) -> Result<Vec<f64>, String> {
         let (set, beside) = (&problem.sets[number], &self.beside[number]);
-        let Some((path, event)) = sheet.and_then(|sheet| beside.turn(set, sheet)) else {
+        let Some((branch, event)) = sheet.and_then(|sheet| beside.turn(set, sheet)) else {
             return Ok(vec![0.0; problem.unknowns.len()]);
         };
-        let slopes = self.curves[set.group].fold_slopes(problem, path, event)?;
+        let slopes = self.curves[set.group].fold_slopes(problem, branch, event)?;
         Ok(slopes.iter().map(|slope| -slope / by).collect())
     }
 
@@ -263,7 +274,8 @@ impl Trial {
         let row = |index: usize| {
             let (place, orbit, _) = (*beside.exact.get(index)?)?;
             let (path, _) = beside.sheets[beside.feet[index].0];
-            let slopes = curve.slopes_at(problem, path, place, orbit).ok()?;
+            let branch = beside.paths[path].branch;
+            let slopes = curve.slopes_at(problem, branch, place, orbit).ok()?;
             let (_, slope, by) = slopes.of[beside.wanted].as_ref()?;
             let across = across(set, index, *slope);
             Some(by.iter().map(|by| -by / across).collect())
@@ -290,14 +302,13 @@ impl Trial {
             if without.is_empty() {
                 continue;
             }
-            let (path_number, sheet) = &beside.sheets[number];
-            let path = &beside.paths[*path_number];
+            let (path, sheet) = &beside.sheets[number];
+            let path = &beside.paths[*path];
             let along: Vec<f64> = without.iter().map(|((_, foot), _)| foot.along).collect();
             let nodes = chosen(path, sheet, &along);
             let of = Along {
                 path,
                 sheet,
-                branch: *path_number,
                 wanted: beside.wanted,
                 size: set.size,
             };
@@ -337,11 +348,12 @@ impl Beside {
         self.sheets[sheet].1.range[usize::from(set.sweep == Sweep::Rising)]
     }
 
-    /// The path and the event of the fold there.
+    /// The branch and the event of the fold there.
     fn turn(&self, set: &Set, sheet: usize) -> Option<(usize, usize)> {
         let (path, sheet) = &self.sheets[sheet];
         let node = sheet.folds[usize::from(set.sweep == Sweep::Rising)]?;
-        Some((*path, self.paths[*path].nodes[node].event?))
+        let path = &self.paths[*path];
+        Some((path.branch, path.nodes[node].event?))
     }
 }
 
@@ -366,16 +378,6 @@ fn jumps(set: &Set, sheets: &[(usize, Sheet)]) -> Vec<Option<usize>> {
         nearest.map(|(number, _)| number)
     };
     set.jumps.iter().map(of).collect()
-}
-
-/// The place of a sheet along the curve from its lowest end on: the first path begins there, and the second, if there is one, at the highest.
-fn rank(path: usize, sheet: &Sheet) -> isize {
-    let along = sheet.nodes[0] as isize;
-    if path == 0 {
-        along
-    } else {
-        isize::MAX / 4 - along
-    }
 }
 
 /// What counts of how far a jump is beyond the fold: of a bound nothing where the fold is farther in the direction of the sweep.

@@ -51,12 +51,12 @@ pub struct Options {
     #[arg(long, value_name = "NAME=VALUE", value_parser = crate::model::setting)]
     pub against: Vec<(String, f64)>,
 
-    /// A sweep jumped: the branch that it was on ends at this value, with this standard deviation, as "SET=VALUE:SD"; "SET=VALUE+:SD" where it goes
+    /// A sweep jumped: the branch that it was on ends at this value (of a frequency in radians per unit of time), with this standard deviation, as "SET=VALUE:SD"; "SET=VALUE+:SD" where it goes
     /// on at least that far
     #[arg(long, value_name = "SET=VALUE:SD", value_parser = jump)]
     pub jump: Vec<SetJump>,
 
-    /// Standard deviation of the frequency, or of what was varied [default: a hundredth of the usual step]
+    /// Standard deviation of the frequency (in radians per unit of time), or of what was varied [default: a hundredth of the usual step]
     #[arg(long, value_name = "VALUE")]
     pub place_sd: Option<f64>,
 

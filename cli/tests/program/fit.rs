@@ -134,7 +134,7 @@ fn what_is_wrong_is_one_clear_sentence() {
         ("", &["--free", "c"], format!("{data}:1: the table is empty")),
         ("omega,x:p2p\n1,2\n1,two\n", &["--free", "c"], format!("{data}:3: `two` in column 2 is not a number")),
         ("omega,x:p2p [mm]\n1,2\n", &["--free", "c"], format!("{data}:1: column 2, `x:p2p [mm]`: the model has no units: leave [mm] out, or declare units in the model")),
-        (&table, &[], "free parameter none: name at least one parameter to be free".to_owned()),
+        (&table, &[], "no parameter is free: name at least one".to_owned()),
         (&table, &["--free", "c"], "data set x:p2p drive=0.5: parameter k has no value".to_owned()),
         (&table, &["--free", "k"], "free parameter k: it has no value to start from, and no range: give one of both".to_owned()),
         (&table, &["--free", "c,k=2..6", "--set", "mass=1"], format!("{model}: there is no parameter mass; there are k, c, drive")),

@@ -245,14 +245,8 @@ fn what_cannot_be_fitted_is_refused_in_a_sentence() {
     let fit = || Fit::of(&Linear::default()).data(amplitudes(TRUTH));
     let refused = |fit: Fit| fit.run().expect_err("a refusal").to_string();
     let cases: [(Fit, &str); 12] = [
-        (
-            fit(),
-            "free parameter none: name at least one parameter to be free",
-        ),
-        (
-            Fit::of(&Linear::default()).free("k"),
-            "data set none: there are no data",
-        ),
+        (fit(), "no parameter is free: name at least one"),
+        (Fit::of(&Linear::default()).free("k"), "there are no data"),
         (
             fit().free("q"),
             "free parameter q: the model has none of that name: there are m, c, k, f",

@@ -124,6 +124,10 @@ fn what_is_wrong_is_said_with_its_line() {
             "line 1: column 3, `mass`: it is neither `omega`, `frequency [Hz]`, something measured as `x:p2p`, `sd`, `sweep`, `set`, nor a parameter; parameters are m, c, k, drive",
         ),
         (
+            "omega,x:p2p [um],sd [nm]\n1,2,3\n",
+            "line 1: [nm]: standard deviations are in the unit of what was measured, as its column has it",
+        ),
+        (
             "omega,x:p2p,x:rms,sd\n1,2,3,1\n",
             "line 1: several columns are measured: say `sd of x:p2p` instead of `sd`",
         ),
