@@ -1,6 +1,8 @@
 //! What is read off orbits at a fixed frequency.
 
-use hertzian::{FrequencyResponse, System};
+use hertzian::observe::Wanted;
+use hertzian::sensitivity::Sensitivities;
+use hertzian::{Branch, FrequencyResponse, Point, System};
 use hertzian_tests::{OneSided, TwoMasses};
 
 use super::{Make, assert_near, names, richardson, shot};
@@ -15,6 +17,7 @@ fn compare(name: &str, values: &[f64], omega: f64, range: [f64; 2], make: &Make)
     for (index, point) in branch.at(omega).unwrap().iter().enumerate() {
         let at_orbit = branch.sensitivities(point).unwrap();
         assert_eq!(at_orbit.variables, variables);
+        assert_quick_alike(&branch, point, &at_orbit);
         for (which, variable) in variables.iter().enumerate() {
             let value = at_orbit.values[which];
             let step = 4e-3 * value.abs();
@@ -84,6 +87,37 @@ fn compare(name: &str, values: &[f64], omega: f64, range: [f64; 2], make: &Make)
     assert!(
         compared > 100 && unsettled * 20 < compared,
         "{unsettled} of {compared}"
+    );
+}
+
+/// Those without errors are the same, by the last variable alone too.
+fn assert_quick_alike(branch: &Branch, point: &Point, all: &Sensitivities) {
+    let named = all.measured.iter().filter(|row| row.name != "power");
+    let wanted = named.clone().map(|row| row.name.parse().unwrap());
+    let wanted: Vec<Wanted> = wanted.collect();
+    let last = all.variables.len() - 1;
+    let by = [all.variables[last].as_str(), "omega"];
+    let quick = branch.quick_sensitivities_of(point, &wanted, &by).unwrap();
+    for (row, fine) in quick.measured.iter().zip(named) {
+        assert_eq!(row.name, fine.name);
+        for (quick, fine) in [(row.by[0], fine.by[last]), (row.by[1], fine.by[0])] {
+            let apart = (quick.value - fine.value).abs();
+            let noise = 1e-6 * (fine.value.abs() + row.value.abs());
+            assert!(
+                apart < noise,
+                "{}: {} {}",
+                row.name,
+                quick.value,
+                fine.value
+            );
+            assert_eq!(quick.error, f64::INFINITY);
+        }
+    }
+    let error = branch.quick_sensitivities_of(point, &wanted, &["nothing"]);
+    let error = error.unwrap_err().to_string();
+    assert!(
+        error.starts_with("there is no parameter nothing; there are "),
+        "{error}"
     );
 }
 
