@@ -98,13 +98,19 @@ fn assert_quick_alike(branch: &Branch, point: &Point, all: &Sensitivities) {
     let last = all.variables.len() - 1;
     let by = [all.variables[last].as_str(), "omega"];
     let quick = branch.quick_sensitivities_of(point, &wanted, &by).unwrap();
+    let mut before = 1.0;
     for (row, fine) in quick.measured.iter().zip(named) {
         assert_eq!(row.name, fine.name);
+        // The amplitude stands before its phase: that of nothing has none.
+        let is_phase = row.name.contains(":phase");
+        let size = if is_phase { f64::min(before, 1.0) } else { 1.0 };
+        before = row.value;
         for (quick, fine) in [(row.by[0], fine.by[last]), (row.by[1], fine.by[0])] {
             let apart = (quick.value - fine.value).abs();
-            let noise = 1e-6 * (fine.value.abs() + row.value.abs());
+            // A mean may be nothing but rounding.
+            let noise = 1e-6 * (fine.value.abs() + row.value.abs()) + 1e-9;
             assert!(
-                apart < noise,
+                apart <= noise / size,
                 "{}: {} {}",
                 row.name,
                 quick.value,
