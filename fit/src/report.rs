@@ -6,6 +6,8 @@ use crate::result::{Estimate, Fitted};
 
 /// Correlations that are said.
 const STRONG: f64 = 0.9;
+/// Leverages that are said.
+const DECISIVE: f64 = 0.9;
 /// Outliers, rejected trials and other lines that are said of each kind.
 const LINES: usize = 5;
 
@@ -87,6 +89,7 @@ impl fmt::Display for Fitted {
             writeln!(f, "correlated {a} and {b}: {:.3}", self.correlation[i][j])?;
         }
         self.outliers(f)?;
+        self.decisive(f)?;
         for (reason, count) in self.rejected.iter().take(LINES) {
             writeln!(f, "rejected   {count} of {} trials: {reason}", self.trials)?;
         }
@@ -157,6 +160,26 @@ impl Fitted {
         }
         if count > LINES {
             writeln!(f, "outliers   {} more", count - LINES)?;
+        }
+        Ok(())
+    }
+
+    /// Values that determine their own fit: next to a fold they know it better than derivatives say.
+    fn decisive(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let all = self.sets.iter().flat_map(|set| {
+            let decisive = set.values.iter().filter(|value| value.leverage > DECISIVE);
+            decisive.map(move |value| (set, value))
+        });
+        for (set, value) in all.take(LINES) {
+            writeln!(
+                f,
+                "decisive   {}, row {} at {} = {:.6} determines its own fit (leverage {:.2}): where it is next to a fold, intervals are too narrow; give the place of the jump",
+                set.name,
+                value.row + 1,
+                set.varied[0],
+                value.place,
+                value.leverage
+            )?;
         }
         Ok(())
     }
