@@ -21,12 +21,12 @@ const NEAR_ENOUGH: f64 = 0.5;
 /// the seventh digit.
 const NEAR: Until = Until {
     how: How::Near,
-    tolerance: [1e-3, 1e-3],
+    tolerance: [0.1, 1e-3],
     iterations: 25,
 };
 const EXACT: Until = Until {
     how: How::Exact,
-    tolerance: [1e-6, 1e-6],
+    tolerance: [1e-3, 1e-6],
     iterations: 40,
 };
 
