@@ -6,6 +6,8 @@ use crate::result::{Estimate, Fitted};
 
 /// Correlations that are said.
 const STRONG: f64 = 0.9;
+/// A scatter of residuals that is said, in hundredths of the largest value.
+const POOR: f64 = 5.0;
 /// Leverages that are said.
 const DECISIVE: f64 = 0.9;
 /// Outliers, rejected trials and other lines that are said of each kind.
@@ -135,6 +137,12 @@ impl Fitted {
             writeln!(
                 f,
                 "poor       the model does not describe the data to their deviations: errors of the estimates are too small"
+            )?;
+        }
+        if !self.is_absolute && self.scatter > POOR {
+            writeln!(
+                f,
+                "poor       the curve does not pass the data: the model does not describe them, or the search ended elsewhere; give other values to start from, or ranges"
             )?;
         }
         Ok(())

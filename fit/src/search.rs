@@ -14,7 +14,7 @@ use crate::result::{Fitted, Started};
 use crate::trial::{How, Trial};
 
 /// Besides the start that is given so many of the others are gone on with, the best.
-const KEPT: usize = 2;
+const KEPT: usize = 4;
 /// Where near residuals are this small, as those of data with some noise, no other start is gone on with.
 const NEAR_ENOUGH: f64 = 0.5;
 /// Iterations with near residuals end early; those with exact ones where nothing is gained any more that noise would show, or the next step is one of

@@ -185,7 +185,7 @@ fn a_parameter_ends_at_its_range_and_a_comparison_says_what_it_is_worth() {
         f: 0.9,
     };
     let fit = Fit::of(&model)
-        .data(amplitudes(TRUTH).deviation(0.01))
+        .data(amplitudes(TRUTH).deviation(0.1))
         .free_in("c", [0.16, 0.5])
         .free("k");
     let fitted = fit.run().expect("a fit");
@@ -197,7 +197,7 @@ fn a_parameter_ends_at_its_range_and_a_comparison_says_what_it_is_worth() {
     assert!(fitted.estimate("k").expect("k").error.is_some());
     // Without a wrong value of `c` the sum of squares is nothing.
     let free = Fit::of(&model)
-        .data(amplitudes(TRUTH).deviation(0.01))
+        .data(amplitudes(TRUTH).deviation(0.1))
         .free("c")
         .free("k")
         .run()
@@ -308,4 +308,20 @@ fn what_cannot_be_fitted_is_refused_in_a_sentence() {
     for (fit, said) in cases {
         assert_eq!(refused(fit), said);
     }
+}
+
+/// Of a curve with two peaks a linear oscillator has one.
+#[test]
+fn a_model_that_does_not_describe_the_data_is_said() {
+    let sizes: Vec<f64> = (0..16)
+        .map(|i| if i % 8 == 3 { 5.0 } else { 1.0 })
+        .collect();
+    let fit = Fit::of(&Linear::default()).data(DataSet::new("x:p2p", omegas(), sizes));
+    let fitted = fit.free("c").free("k").starts(2).run().expect("a fit");
+    assert!(fitted.scatter > 5.0, "{fitted}");
+    let said = fitted.to_string();
+    assert!(
+        said.contains("\npoor       the curve does not pass the data"),
+        "{said}"
+    );
 }
