@@ -195,8 +195,8 @@ impl Fit {
         self
     }
 
-    /// Starts from so many places: the values of the system, and others spread over the ranges. All of them are tried with coarse curves,
-    /// and the fit goes on from the best. Default: 8.
+    /// Starts from so many places at most: the values of the system, and if that leads nowhere others spread over the ranges, of which the best are
+    /// gone on with. Default: 8.
     #[must_use]
     pub fn starts(mut self, count: usize) -> Self {
         self.starts = count;
