@@ -1,7 +1,7 @@
 //! Whether equations fit the orbit of their last pass: switches are where its gaps have them, and what may meet is told in pairs.
 
 use super::equations::Equations;
-use super::gaps::is_lonely;
+use super::gaps::room;
 use super::motion::{GapExtreme, Motion};
 use super::placement::{Switch, Told};
 use super::plan;
@@ -73,7 +73,7 @@ impl Run<'_> {
         }
         let found = motion.extremes().gaps.concat();
         let mut fits = self.pairs_fit(u);
-        if self.meets_another(u, &found) {
+        if self.is_watched_in_vain(u, &found) {
             fits = Fits::Soon;
         }
         for extreme in &found {
@@ -105,11 +105,6 @@ impl Run<'_> {
                 return Fits::Soon;
             }
         }
-        for (index, switch) in skeleton.switches.iter().enumerate() {
-            if matches!(switch.told, Told::Second { .. }) && u[skeleton.slot(index)] < plan::FAR {
-                return Fits::Soon;
-            }
-        }
         let (Some(first), Some(last)) = (phases.first(), phases.last()) else {
             return Fits::Yes;
         };
@@ -124,8 +119,8 @@ impl Run<'_> {
         Fits::Yes
     }
 
-    /// Whether an extreme that is watched comes near another one, with which it may end.
-    fn meets_another(&self, u: &[f64], found: &[GapExtreme]) -> bool {
+    /// Whether an extreme that is watched is far from its level, or comes near another one, with which it may end.
+    fn is_watched_in_vain(&self, u: &[f64], found: &[GapExtreme]) -> bool {
         let skeleton = &self.equations.skeleton;
         skeleton.switches.iter().enumerate().any(|(index, switch)| {
             let Told::First { other, .. } = switch.told else {
@@ -138,8 +133,10 @@ impl Run<'_> {
                 gap: 0.0,
                 maximum: switch.rises,
             };
-            let short = u[skeleton.slot(other)] <= 0.0;
-            short && !is_lonely(&extreme, found, skeleton.length, plan::TOO_NEAR)
+            plan::is_far(
+                u[skeleton.slot(other)],
+                room(&extreme, found, skeleton.length),
+            )
         })
     }
 
@@ -189,8 +186,8 @@ impl Run<'_> {
             if beyond > if at_once { 0.0 } else { BEYOND * size } {
                 return Fits::No;
             }
-            let lonely = || is_lonely(extreme, all, skeleton.length, plan::LONELY);
-            if (above < 0.0) == maximum && lonely() && self.is_near(u, extreme, level) {
+            let room = || room(extreme, all, skeleton.length);
+            if (above < 0.0) == maximum && self.is_near(u, extreme, level, room) {
                 fits = Fits::Soon;
             }
         }
@@ -198,7 +195,13 @@ impl Run<'_> {
     }
 
     /// Whether an extreme that is short of a level is to be watched and is not yet.
-    fn is_near(&self, u: &[f64], extreme: &GapExtreme, level: usize) -> bool {
+    fn is_near(
+        &self,
+        u: &[f64],
+        extreme: &GapExtreme,
+        level: usize,
+        room: impl FnOnce() -> f64,
+    ) -> bool {
         let (contact, phase) = (extreme.contact, extreme.phase);
         let above = extreme.gap - self.equations.values.contacts[contact].levels[level];
         if self.is_watched(u, extreme, level) {
@@ -208,13 +211,15 @@ impl Run<'_> {
         let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
         let gaps = self.gaps(&at);
         let square = -above / gaps.bend(contact, phase);
-        (plan::NEAR..=0.0).contains(&square)
+        square <= 0.0 && plan::is_near(square, room())
     }
 
     /// Whether a pair of switches stands at an extreme: both at it, where it is short of the level, or else around it.
     fn is_watched(&self, u: &[f64], extreme: &GapExtreme, level: usize) -> bool {
         let skeleton = &self.equations.skeleton;
-        let place = (extreme.contact, level);
+        let place = (extreme.contact, level, extreme.maximum);
+        let others = &Motion::of(&self.equations).extremes().gaps[extreme.contact];
+        let same = SAME * room(extreme, others, skeleton.length).min(1.0);
         skeleton.switches.iter().enumerate().any(|(index, switch)| {
             let Told::First { other, .. } = switch.told else {
                 return false;
@@ -222,9 +227,10 @@ impl Run<'_> {
             let [first, second] = [index, other].map(|index| skeleton.phase(u, index));
             let apart = (first - extreme.phase).rem_euclid(skeleton.length);
             let around = (extreme.phase - first).rem_euclid(skeleton.length) <= second - first;
-            let near = apart.min(skeleton.length - apart) < SAME;
+            let near = apart.min(skeleton.length - apart) < same;
             let short = u[skeleton.slot(other)] <= 0.0;
-            (switch.contact, switch.level) == place && if short { near } else { around }
+            let own = (switch.contact, switch.level, switch.rises);
+            own == place && if short { near } else { around }
         })
     }
 }

@@ -130,18 +130,13 @@ fn look(
     }
 }
 
-/// Whether an extreme is away from those of the other kind of its gap. Two that meet are none any more.
-pub(super) fn is_lonely(
-    extreme: &GapExtreme,
-    extremes: &[GapExtreme],
-    length: f64,
-    distance: f64,
-) -> bool {
-    extremes.iter().all(|other| {
-        other.contact != extreme.contact
-            || other.maximum == extreme.maximum
-            || apart(other.phase, extreme.phase, length).abs() > distance
-    })
+/// How far an extreme is from the nearest one of the other kind of its gap. Two that meet are none any more.
+pub(super) fn room(extreme: &GapExtreme, extremes: &[GapExtreme], length: f64) -> f64 {
+    extremes
+        .iter()
+        .filter(|other| other.contact == extreme.contact && other.maximum != extreme.maximum)
+        .map(|other| apart(other.phase, extreme.phase, length).abs())
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The piece that a gap is on.

@@ -4,7 +4,7 @@
 //! that are short of a level.
 
 use super::equations::{Equations, Setting};
-use super::gaps::{BEND, Gaps, beginning, is_lonely, piece, seen};
+use super::gaps::{BEND, Gaps, beginning, piece, room, seen};
 use super::motion::GapExtreme;
 use super::placement::{Beginning, Placed, Placement, Resolution, Switch, Told, length};
 use super::skeleton::Skeleton;
@@ -18,14 +18,24 @@ pub(super) const SHORTER: f64 = 0.4;
 /// The beginning is not moved where the way around it is as short as this.
 pub(super) const CLOSE: f64 = 0.1;
 pub(super) const LONG: f64 = 1.4;
-/// An extreme is watched from this `H` on until it is less than the other one.
-pub(super) const NEAR: f64 = -0.4;
-pub(super) const FAR: f64 = -1.0;
+/// An extreme is watched from this `-H` on until it is more than the other one. With another extreme of its gap at the phase `d` beside it a gap
+/// falls by `g'' d^2 / 3` between both, so that `-H` is looked at in parts of `d^2` too: none is watched where both meet.
+const NEAR: f64 = 0.4;
+const FAR: f64 = 1.0;
+const NEAR_ANOTHER: f64 = 0.75;
+const FAR_FOR_ANOTHER: f64 = 1.5;
 /// Extremes of different gaps as near as this are in one place.
 const TOGETHER: f64 = 1e-6;
-/// Extremes are watched as long as those of the other kind are farther than this phase, and from the other one on.
-pub(super) const TOO_NEAR: f64 = 0.3;
-pub(super) const LONELY: f64 = 0.45;
+
+/// Whether an extreme that is short of a level by this `H` is to be watched, with so much room until the next one.
+pub(super) fn is_near(square: f64, room: f64) -> bool {
+    (-NEAR.min(NEAR_ANOTHER * room * room)..=0.0).contains(&square)
+}
+
+/// Whether one that is watched is to be watched no more.
+pub(super) fn is_far(square: f64, room: f64) -> bool {
+    square < -FAR.min(FAR_FOR_ANOTHER * room * room)
+}
 
 /// A switch with the value of its unknown, and the phase that it has in the order of time.
 #[derive(Debug, Clone, Copy)]
@@ -256,10 +266,9 @@ fn short_pairs(gaps: &Gaps<'_>, length: f64, extremes: &[GapExtreme]) -> Vec<[(P
     let mut short = Vec::new();
     for extreme in extremes {
         let levels = &gaps.values.contacts[extreme.contact].levels;
-        if is_lonely(extreme, extremes, length, LONELY) {
-            for level in 0..levels.len() {
-                short.extend(short_pair(gaps, extreme, level));
-            }
+        let room = room(extreme, extremes, length);
+        for level in 0..levels.len() {
+            short.extend(short_pair(gaps, extreme, level, room));
         }
     }
     short
@@ -285,14 +294,19 @@ fn nested(mut short: Vec<[(Placed, f64); 2]>) -> Vec<(Placed, f64)> {
 }
 
 /// The two switches that watch an extreme which is short of a level by little, both at its phase, with `H`.
-fn short_pair(gaps: &Gaps<'_>, extreme: &GapExtreme, level: usize) -> Option<[(Placed, f64); 2]> {
+fn short_pair(
+    gaps: &Gaps<'_>,
+    extreme: &GapExtreme,
+    level: usize,
+    room: f64,
+) -> Option<[(Placed, f64); 2]> {
     let short = extreme.gap - gaps.values.contacts[extreme.contact].levels[level];
     if (short < 0.0) != extreme.maximum {
         return None;
     }
     let bend = gaps.bend(extreme.contact, extreme.phase);
     let square = -short / bend;
-    if !(NEAR..=0.0).contains(&square) {
+    if !is_near(square, room) {
         return None;
     }
     let switch = |rises: bool, told: Told| Placed {
@@ -310,26 +324,27 @@ fn short_pair(gaps: &Gaps<'_>, extreme: &GapExtreme, level: usize) -> Option<[(P
     Some([(first, square), (second, square)])
 }
 
-/// Tells the two of every pair of each other: of a contact at a level the second follows the first.
+/// Tells the two of every pair of each other: of a contact at a level they stand like brackets, a pair within another one.
 fn join(planned: &mut [Planned]) {
-    for first in 0..planned.len() {
-        let own = planned[first].placed.switch;
-        let Told::First { bend, .. } = own.told else {
-            continue;
-        };
-        let is_second = |planned: &Planned| {
-            let switch = planned.placed.switch;
-            matches!(switch.told, Told::Second { .. })
-                && (switch.contact, switch.level) == (own.contact, own.level)
-        };
-        let Some(after) = planned[first + 1..].iter().position(is_second) else {
-            continue;
-        };
-        let second = first + 1 + after;
-        planned[first].placed.switch.told = Told::First {
-            other: second,
-            bend,
-        };
-        planned[second].placed.switch.told = Told::Second { other: first };
+    let mut open: Vec<usize> = Vec::new();
+    for index in 0..planned.len() {
+        let own = planned[index].placed.switch;
+        match own.told {
+            Told::Alone => {}
+            Told::First { .. } => open.push(index),
+            Told::Second { .. } => {
+                let place = |first: &usize| {
+                    let first = planned[*first].placed.switch;
+                    first.can_meet(&own)
+                };
+                let Some(first) = open.iter().rposition(place).map(|at| open.remove(at)) else {
+                    continue;
+                };
+                if let Told::First { other, .. } = &mut planned[first].placed.switch.told {
+                    *other = index;
+                }
+                planned[index].placed.switch.told = Told::Second { other: first };
+            }
+        }
     }
 }

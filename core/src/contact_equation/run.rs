@@ -19,7 +19,7 @@ use crate::numeric::spectrum::eigenvalues;
 /// Tangents in other unknowns are differences over so much of the largest entry.
 pub(super) const DIFFERENCE: f64 = 1e-5;
 
-/// An extreme belongs to a pair of switches whose middle is as near.
+/// An extreme belongs to a pair of switches whose middle is as near, in parts of the phase to the next extreme if that is less than one.
 pub(super) const SAME: f64 = 0.3;
 
 /// What a branch has gathered, and the equations that it is followed by.

@@ -265,8 +265,8 @@ impl Run<'_> {
         let images = self.images();
         let Recurrence { period, parts, .. } = *skeleton.recurrence();
         let whole = TAU * period as f64;
-        // The sign with which it is watched: a later part of the period may be the first one mirrored.
-        let sign_of = |index: usize, part: usize| {
+        // How far it is, and the sign with which it is watched: a later part of the period may be the first one mirrored.
+        let place_of = |index: usize, part: usize| {
             let switch = &skeleton.switches[index];
             let phase = skeleton.phase(u, index) + skeleton.length * part as f64;
             let apart = (TAU * phase / whole - extreme.tau).rem_euclid(TAU);
@@ -278,16 +278,19 @@ impl Run<'_> {
                 (levels - 1 - switch.level, !switch.rises)
             };
             let same = (contact, level, rises) == (extreme.contact, extreme.level, extreme.maximum);
-            (same && parts as f64 * apart.min(TAU - apart) < SAME).then_some(sign)
+            let apart = parts as f64 * apart.min(TAU - apart);
+            (same && apart < SAME).then_some((apart, sign))
         };
-        (0..skeleton.switches.len()).find_map(|index| {
+        let watching = (0..skeleton.switches.len()).filter_map(|index| {
             let Told::First { other, bend } = skeleton.switches[index].told else {
                 return None;
             };
             let square = skeleton.slot(other);
             let most = if extreme.jumps { BEYOND } else { TOUCHES };
-            let sign = (0..parts).find_map(|part| sign_of(index, part))?;
-            (u[square] <= most).then_some((square, sign * bend))
-        })
+            let (apart, sign) = (0..parts).find_map(|part| place_of(index, part))?;
+            (u[square] <= most).then_some((apart, square, sign * bend))
+        });
+        let nearest = watching.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map(|(_, square, bend)| (square, bend))
     }
 }
