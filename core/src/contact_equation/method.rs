@@ -32,8 +32,8 @@ pub(super) const VANISHED: f64 = 1e-14;
 pub(super) const VANISHING: f64 = 1e-9;
 /// A point is refused so often at most.
 pub(super) const REFUSALS: usize = 8;
-/// A step is made again shorter so often at most, where it leaps over a touch of a level where the force jumps, or over a touch and a change of
-/// the order of switches.
+/// A step is made again shorter so often at most, where it leaps over a touch of a level where the force jumps, over a touch and a change of
+/// the order of switches, or to where no equations are found.
 const SHORTENED: usize = 8;
 /// Multipliers that may be wrong by more are not compared with one.
 const COARSE: f64 = 1e-3;
@@ -329,8 +329,10 @@ impl BranchProblem for ContactBranch<'_, '_> {
                 return Read::TooFar;
             }
         }
-        // A touch is passed by equations that have the switches around it in their order.
-        if again && self.shortened < SHORTENED && self.run.equations.is_beyond_touch(&at.u) {
+        // A touch is passed by equations that have the switches around it in their order. Where those of the point behind it lead nowhere, it is
+        // come to from where it is watched, too.
+        let far = stuck || again && self.run.equations.is_beyond_touch(&at.u);
+        if far && self.shortened < SHORTENED {
             self.shortened += 1;
             return Read::TooFar;
         }
