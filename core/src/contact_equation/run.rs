@@ -5,6 +5,7 @@ use nalgebra::Complex;
 use super::equations::Equations;
 use super::gaps::{At, Gaps};
 use super::motion::Motion;
+use super::placement::Told;
 use super::plan::{Frame, Plan};
 use super::problem::{ContactProblem, RESOLUTIONS};
 use super::reading::Screened;
@@ -18,6 +19,9 @@ use crate::numeric::spectrum::eigenvalues;
 
 /// Tangents in other unknowns are differences over so much of the largest entry.
 pub(super) const DIFFERENCE: f64 = 1e-5;
+/// The same in parts of the way to where a pair of switches meets, and at least.
+const SHORT_OF_TOUCH: f64 = 0.1;
+const NOISE: f64 = 1e-11;
 
 /// An extreme belongs to a pair of switches whose middle is as near, in parts of the phase to the next extreme if that is less than one.
 pub(super) const SAME: f64 = 0.3;
@@ -136,12 +140,12 @@ impl<'r> Run<'r> {
         near: &[f64],
     ) -> Option<CurvePoint> {
         let u = self.transferred(&point.u, to, near)?;
+        let step = self.away_from_touches(point);
         let mut beside = |step: f64| {
             let moved = point.u.iter().zip(&point.tangent);
             let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
             self.transferred(&moved, to, near)
         };
-        let step = DIFFERENCE / point.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
         let ends = beside(step).zip(beside(-step));
         let tangent = ends.map_or_else(
             || {
@@ -162,6 +166,22 @@ impl<'r> Run<'r> {
             tangent,
             scale: point.scale,
         })
+    }
+
+    /// A step along a tangent for a difference. Where a gap begins to open within a stretch its ends move as the root of `H`, and forces at
+    /// nodes with them, which a tangent does not say.
+    fn away_from_touches(&self, point: &CurvePoint) -> f64 {
+        let skeleton = &self.equations.skeleton;
+        let step = DIFFERENCE / point.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
+        let touches = skeleton.switches.iter().filter_map(|switch| {
+            let Told::First { other, .. } = switch.told else {
+                return None;
+            };
+            let slot = skeleton.slot(other);
+            let ahead = (point.u[slot] / point.tangent[slot]).abs();
+            (ahead > 0.0).then_some(SHORT_OF_TOUCH * ahead)
+        });
+        touches.fold(step, f64::min).max(NOISE)
     }
 
     /// What the other multipliers make of a determinant that vanishes with the one nearest to a critical value.
