@@ -6,6 +6,7 @@
 use nalgebra::DMatrix;
 
 use super::equations::Equations;
+use super::fits::Fits;
 use super::integrals::add;
 use super::method::VANISHED;
 use super::run::Run;
@@ -317,37 +318,37 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
         return;
     };
     let mut error = touch.error + SAFETY * read.shift.abs();
-    if let Some((square, _)) = run.watched(&at.u, &touch.extreme) {
-        let mut finer: Option<Equations> = None;
-        let mut u = at.u.clone();
-        for _ in 0..FINER {
-            let from = finer.as_ref().unwrap_or(&run.equations);
-            let Some(mut next) = from.finer_equations(u[u.len() - 1]) else {
-                break;
-            };
-            let mut there = from.skeleton.interpolated(&next.skeleton, &u);
-            there[square] = 0.0;
-            let mut newton = Newton::new(&next);
-            if solve::with_held(&mut next, &mut newton, &mut there, square, OPTIONS).is_err() {
-                break;
-            }
-            let value = there[there.len() - 1];
-            error = SAFETY * (value - u[u.len() - 1]).abs();
+    run.equations.compute(&at.u, false);
+    let mut u = at.u.clone();
+    // A step may lead over a stretch that begins and ends in it: equations that have it are those of its end.
+    let mut former = None;
+    if run.watched(&u, &touch.extreme).is_none() && run.fits(&u) == Fits::No {
+        error = f64::INFINITY;
+        if let Some((equations, there)) = run.replanned(&u) {
+            former = Some(std::mem::replace(&mut run.equations, equations));
+            run.equations.compute(&there, false);
             u = there;
-            finer = Some(next);
-            if error <= KNOWN * value.abs() {
-                break;
-            }
         }
-        if let Some(mut equations) = finer {
-            equations.compute(&u, false);
-            let value = u[u.len() - 1];
-            read.point = Point {
-                stability: read.point.stability,
-                error: Some(run.error_at_event(at, &equations, value)),
-                ..run.observed(&equations, value)
-            };
-        }
+    }
+    let square = run.watched(&u, &touch.extreme);
+    let finer = square.and_then(|(square, _)| with_more_nodes(&run.equations, u, square));
+    if let Some(former) = former {
+        run.equations = former;
+    }
+    if let Some(Touching {
+        mut equations,
+        u,
+        changed,
+    }) = finer
+    {
+        error = SAFETY * changed;
+        equations.compute(&u, false);
+        let value = u[u.len() - 1];
+        read.point = Point {
+            stability: read.point.stability,
+            error: Some(run.error_at_event(at, &equations, value)),
+            ..run.observed(&equations, value)
+        };
     }
     run.record.events.push(Event {
         kind: EventKind::Grazing { turns: touch.turns },
@@ -358,4 +359,40 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
         contacts: touch.contacts,
         tangent: at.tangent.clone(),
     });
+}
+
+/// An orbit that touches a level, with more nodes, and by how much the last of them have changed its value.
+struct Touching {
+    equations: Equations,
+    u: Vec<f64>,
+    changed: f64,
+}
+
+/// An orbit of these equations, whose `H` of a pair is at this place, where that is zero: with more nodes until its value is known.
+fn with_more_nodes(equations: &Equations, mut u: Vec<f64>, square: usize) -> Option<Touching> {
+    let mut finer: Option<(Equations, f64)> = None;
+    for _ in 0..FINER {
+        let from = finer.as_ref().map_or(equations, |(finer, _)| finer);
+        let Some(mut next) = from.finer_equations(u[u.len() - 1]) else {
+            break;
+        };
+        let mut there = from.skeleton.interpolated(&next.skeleton, &u);
+        there[square] = 0.0;
+        let mut newton = Newton::new(&next);
+        if solve::with_held(&mut next, &mut newton, &mut there, square, OPTIONS).is_err() {
+            break;
+        }
+        let value = there[there.len() - 1];
+        let changed = (value - u[u.len() - 1]).abs();
+        u = there;
+        finer = Some((next, changed));
+        if SAFETY * changed <= KNOWN * value.abs() {
+            break;
+        }
+    }
+    finer.map(|(equations, changed)| Touching {
+        equations,
+        u,
+        changed,
+    })
 }
