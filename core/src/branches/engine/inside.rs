@@ -392,7 +392,7 @@ struct Descent<'s> {
 }
 
 /// The step from one orbit to another.
-fn step_between([a, b]: [&Seen; 2]) -> Step<'_> {
+pub(super) fn step_between([a, b]: [&Seen; 2]) -> Step<'_> {
     Step {
         before: &a.point,
         next: &b.point,

@@ -15,7 +15,8 @@
 //! 2. What changes its sign in a part is [located](zero) and read.
 //! 3. A step that [leaps](leap) over two folds is made again, shorter.
 //! 4. Where a step fails before the [corner] that a branch has at a touch, the walk goes on behind it.
-//! 5. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located.
+//! 5. What events that were located [hide](counted) is looked for beside them.
+//! 6. Where an extreme of a gap goes through a level, the orbit that [touches](touch) it is located.
 //!
 //! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapters 3 and 4 (test functions); Keller
 //! (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems (the bordered determinant).
@@ -24,6 +25,7 @@ mod approach;
 mod back;
 mod corner;
 mod corner_search;
+mod counted;
 mod explained;
 mod inside;
 mod inside_touch;
@@ -358,8 +360,13 @@ impl Engine {
         let mut turned = None;
         for pair in parts.windows(2) {
             let wanted = |_: &Change| true;
-            let turn = self.record_all(problem, newton, [&pair[0], &pair[1]], after, wanted);
+            let pair = [&pair[0], &pair[1]];
+            let located = problem.record().events.len();
+            let turn = self.record_all(problem, newton, pair, after, wanted);
             turned = turned.or(turn);
+            if self.ended.is_none() {
+                self.record_hidden(problem, newton, pair, [located, after]);
+            }
             if self.ended.is_some() {
                 return turned;
             }

@@ -1,0 +1,107 @@
+//! Multipliers outside of the unit circle, counted at the ends of a step and at the events that were located in it.
+//!
+//! A step in which a pair of multipliers leaves the circle and one of both comes back at minus one looks at its ends like one in which a
+//! single multiplier has left. At the event that was located, `k` multipliers besides that which crosses there are outside; where nothing else
+//! happens between it and an end of the step,
+//!
+//! ```text
+//! n in { k, k + 1 },    of a pair    n in { k, k + 2 }                                                        (1)
+//! ```
+//!
+//! are outside at that end. Where (1) does not hold the step is halved, and each half is looked at.
+//!
+//! Source: Govaerts (2000), Numerical Methods for Bifurcations of Dynamical Equilibria, chapter 4 (a bifurcation is where the number of
+//! multipliers outside of the circle changes).
+
+use super::Engine;
+use super::inside::step_between;
+use super::seen::{Seen, changes, is_modulus};
+use crate::branches::moduli;
+use crate::branches::point::Event;
+use crate::branches::problem::BranchProblem;
+use crate::continuation::locate::inside;
+use crate::continuation::newton::Newton;
+use crate::event::EventKind;
+
+/// A step is halved so often at most.
+const HALVINGS: usize = 8;
+/// Logarithms of moduli that are as small are those of multipliers that cross together, as copies do.
+const TOGETHER: f64 = 1e-6;
+
+impl Engine {
+    /// Records what passes the unit circle between two points beside the events from that number on, as far as (1) tells that something does.
+    pub(super) fn record_hidden(
+        &mut self,
+        problem: &mut dyn BranchProblem,
+        newton: &mut Newton,
+        pair: [&Seen; 2],
+        [known, after]: [usize; 2],
+    ) {
+        let mut parts = vec![[pair[0].clone(), pair[1].clone()]];
+        for _ in 0..HALVINGS {
+            let mut halves = Vec::new();
+            for [a, b] in parts {
+                let located = changes(problem, &a, &b);
+                let mut events = problem.record().events[known..].iter();
+                let hides = located.iter().any(|change| !is_modulus(change))
+                    && events.any(|event| hides(problem, [&a, &b], event));
+                let options = self.options.newton;
+                let middle = hides.then(|| step_between([&a, &b]));
+                let middle = middle
+                    .and_then(|step| inside(problem.equations(), newton, step, 0.5, options));
+                let Some(middle) = middle.map(|point| Seen::at(problem, &point, a.falls)) else {
+                    continue;
+                };
+                for pair in [[&a, &middle], [&middle, &b]] {
+                    self.record_all(problem, newton, pair, after, is_modulus);
+                    if self.ended.is_some() {
+                        return;
+                    }
+                }
+                halves.extend([[a, middle.clone()], [middle, b]]);
+            }
+            if halves.is_empty() {
+                return;
+            }
+            parts = halves;
+        }
+    }
+}
+
+/// Whether an event between two points does not agree with what is outside of the unit circle at both.
+fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
+    let multipliers = &event.point.stability.multipliers;
+    let (critical, _) = moduli::nearest(multipliers);
+    let crossing = if event.kind == EventKind::NeimarkSacker {
+        2
+    } else {
+        1
+    };
+    let conjugate = |place: usize| {
+        crossing == 2 && (multipliers[place] - multipliers[critical].conj()).norm() < TOGETHER
+    };
+    let others = (0..multipliers.len()).filter(|place| *place != critical && !conjugate(*place));
+    let others: Vec<f64> = others
+        .map(|place| moduli::logarithm(multipliers, place))
+        .collect();
+    let noise = TOGETHER.max(event.point.stability.error);
+    if multipliers.is_empty() || !others.iter().all(|modulus| modulus.abs() > noise) {
+        return false;
+    }
+    let others = others.iter().filter(|modulus| **modulus > 0.0).count();
+    let ends = pair.map(|seen| outside(problem, seen));
+    let fits = |outside: usize| outside == others || outside == others + crossing;
+    ends.iter().flatten().any(|outside| !fits(*outside))
+}
+
+/// Number of multipliers outside of the unit circle at a point, if that is known.
+fn outside(problem: &dyn BranchProblem, seen: &Seen) -> Option<usize> {
+    let watched = problem.watched().iter().enumerate();
+    let mut moduli =
+        watched.filter(|(_, watched)| !watched.bordered && watched.kind == EventKind::NeimarkSacker);
+    moduli.try_fold(0, |count, (index, _)| {
+        let value = seen.values[index];
+        let tells = value.is_known() && value.mantissa.abs() > problem.noise(index);
+        tells.then(|| count + usize::from(!value.is_negative()))
+    })
+}
