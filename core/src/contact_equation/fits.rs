@@ -133,10 +133,9 @@ impl Run<'_> {
                 gap: 0.0,
                 maximum: switch.rises,
             };
-            plan::is_far(
-                u[skeleton.slot(other)],
-                room(&extreme, found, skeleton.length),
-            )
+            let room = room(&extreme, found, skeleton.length);
+            let jumps = self.has_leap(switch.contact, switch.level);
+            plan::is_far(u[skeleton.slot(other)], room, jumps)
         })
     }
 
@@ -160,9 +159,7 @@ impl Run<'_> {
 
     /// Whether the force of a contact jumps at a level.
     pub(super) fn has_leap(&self, contact: usize, level: usize) -> bool {
-        let law = self.equations.values.contacts[contact].law;
-        let facts = self.equations.setting.system.law(law).facts();
-        facts.levels[level].force_jumps
+        self.equations.values.contacts[contact].jumps[level]
     }
 
     fn extreme_fits(&self, u: &[f64], extreme: &GapExtreme, all: &[GapExtreme]) -> Fits {
@@ -211,7 +208,7 @@ impl Run<'_> {
         let at = |phase: f64, state: &mut [f64]| motion.at(phase, state);
         let gaps = self.gaps(&at);
         let square = -above / gaps.bend(contact, phase);
-        square <= 0.0 && plan::is_near(square, room())
+        square <= 0.0 && plan::is_near(square, room(), self.has_leap(contact, level))
     }
 
     /// Whether a pair of switches stands at an extreme: both at it, where it is short of the level, or else around it.

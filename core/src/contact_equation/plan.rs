@@ -24,17 +24,31 @@ const NEAR: f64 = 0.4;
 const FAR: f64 = 1.0;
 const NEAR_ANOTHER: f64 = 0.75;
 const FAR_FOR_ANOTHER: f64 = 1.5;
+/// Where the force jumps at the level the orbit beyond it is another one at once, and extremes near each other change with it: there they are
+/// watched from this phase between them on, and until it is the other one.
+const LONELY: f64 = 0.45;
+const TOO_NEAR: f64 = 0.3;
 /// Extremes of different gaps as near as this are in one place.
 const TOGETHER: f64 = 1e-6;
 
 /// Whether an extreme that is short of a level by this `H` is to be watched, with so much room until the next one.
-pub(super) fn is_near(square: f64, room: f64) -> bool {
-    (-NEAR.min(NEAR_ANOTHER * room * room)..=0.0).contains(&square)
+pub(super) fn is_near(square: f64, room: f64, jumps: bool) -> bool {
+    let clear = if jumps {
+        room > LONELY
+    } else {
+        square >= -NEAR_ANOTHER * room * room
+    };
+    clear && (-NEAR..=0.0).contains(&square)
 }
 
 /// Whether one that is watched is to be watched no more.
-pub(super) fn is_far(square: f64, room: f64) -> bool {
-    square < -FAR.min(FAR_FOR_ANOTHER * room * room)
+pub(super) fn is_far(square: f64, room: f64, jumps: bool) -> bool {
+    let near = if jumps {
+        square <= 0.0 && room <= TOO_NEAR
+    } else {
+        square < -FAR_FOR_ANOTHER * room * room
+    };
+    near || square < -FAR
 }
 
 /// A switch with the value of its unknown, and the phase that it has in the order of time.
@@ -265,9 +279,8 @@ fn begun(gaps: &Gaps<'_>, length: f64, crossings: &[Placed], extremes: &[GapExtr
 fn short_pairs(gaps: &Gaps<'_>, length: f64, extremes: &[GapExtreme]) -> Vec<[(Placed, f64); 2]> {
     let mut short = Vec::new();
     for extreme in extremes {
-        let levels = &gaps.values.contacts[extreme.contact].levels;
         let room = room(extreme, extremes, length);
-        for level in 0..levels.len() {
+        for level in 0..gaps.values.contacts[extreme.contact].levels.len() {
             short.extend(short_pair(gaps, extreme, level, room));
         }
     }
@@ -306,7 +319,11 @@ fn short_pair(
     }
     let bend = gaps.bend(extreme.contact, extreme.phase);
     let square = -short / bend;
-    if !is_near(square, room) {
+    if !is_near(
+        square,
+        room,
+        gaps.values.contacts[extreme.contact].jumps[level],
+    ) {
         return None;
     }
     let switch = |rises: bool, told: Told| Placed {

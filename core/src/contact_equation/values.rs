@@ -112,6 +112,8 @@ pub(super) struct Contact {
     pub(super) law: usize,
     pub(super) arguments: Vec<f64>,
     pub(super) levels: Vec<f64>,
+    /// Whether the force jumps at them.
+    pub(super) jumps: Vec<bool>,
     /// `T^-1 [0; M^-1 e]`: what a unit force does to the states, with the sign of the right-hand side.
     pub(super) input: Moving,
     /// `d . q` and `d . q'` as rows over the states.
@@ -391,6 +393,12 @@ fn contact(
         law: of.law,
         arguments: vec![0.0; of.argument_count],
         levels: vec![0.0; law.facts().levels.len()],
+        jumps: law
+            .facts()
+            .levels
+            .iter()
+            .map(|level| level.force_jumps)
+            .collect(),
         ..Contact::default()
     };
     of.arguments(coefficients, &mut contact.arguments);

@@ -47,8 +47,8 @@ impl Engine {
                     && events.any(|event| hides(problem, [&a, &b], event));
                 let options = self.options.newton;
                 let middle = hides.then(|| step_between([&a, &b]));
-                let middle = middle
-                    .and_then(|step| inside(problem.equations(), newton, step, 0.5, options));
+                let middle =
+                    middle.and_then(|step| inside(problem.equations(), newton, step, 0.5, options));
                 let Some(middle) = middle.map(|point| Seen::at(problem, &point, a.falls)) else {
                     continue;
                 };
@@ -97,8 +97,8 @@ fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
 /// Number of multipliers outside of the unit circle at a point, if that is known.
 fn outside(problem: &dyn BranchProblem, seen: &Seen) -> Option<usize> {
     let watched = problem.watched().iter().enumerate();
-    let mut moduli =
-        watched.filter(|(_, watched)| !watched.bordered && watched.kind == EventKind::NeimarkSacker);
+    let mut moduli = watched
+        .filter(|(_, watched)| !watched.bordered && watched.kind == EventKind::NeimarkSacker);
     moduli.try_fold(0, |count, (index, _)| {
         let value = seen.values[index];
         let tells = value.is_known() && value.mantissa.abs() > problem.noise(index);
