@@ -23,8 +23,10 @@ use crate::continuation::locate::inside;
 use crate::continuation::newton::Newton;
 use crate::event::EventKind;
 
-/// A step is halved so often at most.
+/// A step is halved so often at most, and not where it is shorter than this part of its value: what is so near to an event, as beside a touch,
+/// is one with it.
 const HALVINGS: usize = 8;
+const SHORTEST: f64 = 1e-7;
 /// Logarithms of moduli that are as small are those of multipliers that cross together, as copies do.
 const TOGETHER: f64 = 1e-6;
 
@@ -43,7 +45,9 @@ impl Engine {
             for [a, b] in parts {
                 let located = changes(problem, &a, &b);
                 let mut events = problem.record().events[known..].iter();
-                let hides = located.iter().any(|change| !is_modulus(change))
+                let [from, to] = step_between([&a, &b]).parameters();
+                let hides = (to - from).abs() > SHORTEST * to.abs()
+                    && located.iter().any(|change| !is_modulus(change))
                     && events.any(|event| hides(problem, [&a, &b], event));
                 let options = self.options.newton;
                 let middle = hides.then(|| step_between([&a, &b]));
@@ -52,13 +56,17 @@ impl Engine {
                 let Some(middle) = middle.map(|point| Seen::at(problem, &point, a.falls)) else {
                     continue;
                 };
+                let turns = problem.record().turns.len();
                 for pair in [[&a, &middle], [&middle, &b]] {
                     self.record_all(problem, newton, pair, after, is_modulus);
                     if self.ended.is_some() {
                         return;
                     }
                 }
-                halves.extend([[a, middle.clone()], [middle, b]]);
+                // What is not located here will not be in a part of it.
+                if problem.record().turns.len() == turns {
+                    halves.extend([[a, middle.clone()], [middle, b]]);
+                }
             }
             if halves.is_empty() {
                 return;

@@ -6,10 +6,10 @@
 
 use hertzian::EventKind::{Fold, NeimarkSacker};
 use hertzian::structure::{Contact, DMatrix, Structure, assemble, parameter};
-use hertzian::{EventKind, FrequencyResponse, Shooting, Stop};
+use hertzian::{Branch, ContactEquation, EventKind, FrequencyResponse, Shooting, Stop};
 use nalgebra::{Cholesky, SymmetricEigen};
 
-use super::{all_found, of_shooting};
+use super::{all_found, from_either_end, of_shooting};
 
 hertzian::law! {
     /// Elastic stop
@@ -81,19 +81,12 @@ fn beam() -> Structure {
         .unwrap()
 }
 
-/// Every event between two values is found from the first one on.
-fn all_are_found(
-    beam: &Structure,
-    [from, to]: [f64; 2],
-    events: &[(EventKind, f64)],
-    touches: &[f64],
-) {
-    let request = FrequencyResponse::of(beam).by(Shooting::new());
-    let branch = request.from(from).to(to).run().unwrap();
+/// Every event of a branch that was followed to its end is found.
+fn all_are_found(branch: &Branch, events: &[(EventKind, f64)], touches: &[f64]) {
     let (points, seconds) = (branch.points.len(), branch.elapsed.as_secs_f64());
-    println!("{from} to {to}: {points} points, {seconds:.1} s");
+    println!("{points} points, {seconds:.1} s");
     assert_eq!(branch.stopped, Stop::ReachedEnd);
-    let found = of_shooting(&branch);
+    let found = of_shooting(branch);
     all_found(&found, events, 1e-9);
     for touch in touches {
         let mut grazing = found
@@ -106,7 +99,14 @@ fn all_are_found(
 
 #[test]
 fn two_folds_and_a_torus_of_the_second_impact_are_found() {
-    all_are_found(&beam(), PART, &EVENTS[..3], &TOUCHES[..1]);
+    let [from, to] = PART;
+    let beam = beam();
+    let request = FrequencyResponse::of(&beam).from(from).to(to);
+    let by_shooting = request.clone().by(Shooting::new()).run();
+    let by_contact_equation = request.by(ContactEquation::new()).run();
+    for branch in [by_shooting, by_contact_equation] {
+        all_are_found(&branch.unwrap(), &EVENTS[..3], &TOUCHES[..1]);
+    }
 }
 
 /// `HERTZIAN_BEAM=1` follows the whole range, from either end.
@@ -116,7 +116,10 @@ fn every_event_is_found_from_either_end() {
         return;
     }
     let beam = beam();
-    for ends in [RANGE, [RANGE[1], RANGE[0]]] {
-        all_are_found(&beam, ends, &EVENTS, &TOUCHES);
+    let request = FrequencyResponse::of(&beam);
+    let by_shooting = from_either_end(&request.clone().by(Shooting::new()), RANGE);
+    let by_contact_equation = from_either_end(&request.by(ContactEquation::new()), RANGE);
+    for branch in by_shooting.into_iter().chain(by_contact_equation) {
+        all_are_found(&branch, &EVENTS, &TOUCHES);
     }
 }

@@ -5,9 +5,9 @@
 
 use hertzian::EventKind::{Fold, NeimarkSacker, PeriodDoubling};
 use hertzian::structure::{Contact, DMatrix, Structure, parameter};
-use hertzian::{EventKind, FrequencyResponse, Shooting, Stop};
+use hertzian::{ContactEquation, EventKind, FrequencyResponse, Shooting, Stop};
 
-use super::{all_found, of_shooting};
+use super::{all_found, from_either_end, of_shooting};
 
 hertzian::law! {
     /// Elastic stop
@@ -53,13 +53,10 @@ fn chain() -> Structure {
 #[test]
 fn every_event_is_found_from_either_end() {
     let chain = chain();
-    for [from, to] in [RANGE, [RANGE[1], RANGE[0]]] {
-        let branch = FrequencyResponse::of(&chain)
-            .by(Shooting::new())
-            .from(from)
-            .to(to)
-            .run()
-            .unwrap();
+    let request = FrequencyResponse::of(&chain);
+    let by_shooting = from_either_end(&request.clone().by(Shooting::new()), RANGE);
+    let by_contact_equation = from_either_end(&request.by(ContactEquation::new()), RANGE);
+    for branch in by_shooting.into_iter().chain(by_contact_equation) {
         assert_eq!(branch.stopped, Stop::ReachedEnd);
         let found = of_shooting(&branch);
         all_found(&found, &EVENTS, 1e-13);

@@ -3,9 +3,9 @@
 //! The pieces are affine, but the stiffness varies, so motions are integrated. Shooting is the method for digits.
 
 use hertzian::EventKind::{Fold, PeriodDoubling};
-use hertzian::{EventKind, FrequencyResponse, Shooting};
+use hertzian::{ContactEquation, EventKind, FrequencyResponse, Shooting};
 
-use super::{all_found, of_shooting};
+use super::{all_found, from_either_end, of_shooting};
 
 hertzian::oscillator! {
     /// Relative displacement of the teeth; backlash from -1 to 1.
@@ -51,14 +51,11 @@ struct Known {
 fn every_event_is_found_from_either_end() {
     for known in [LARGE, SMALL] {
         let model = Gears { error: known.error };
-        let [from, to] = known.range;
-        for [from, to] in [[from, to], [to, from]] {
-            let request = FrequencyResponse::of(&model)
-                .by(Shooting::new())
-                .from(from)
-                .to(to);
-            let found = of_shooting(&request.run().unwrap());
-            all_found(&found, known.events, DIGITS);
+        let request = FrequencyResponse::of(&model);
+        let by_shooting = from_either_end(&request.clone().by(Shooting::new()), known.range);
+        let by_contact_equation = from_either_end(&request.by(ContactEquation::new()), known.range);
+        for branch in by_shooting.into_iter().chain(by_contact_equation) {
+            all_found(&of_shooting(&branch), known.events, DIGITS);
         }
     }
 }

@@ -10,7 +10,7 @@ mod chain;
 mod gears;
 mod two_masses;
 
-use hertzian::{Branch, EventKind};
+use hertzian::{Branch, EventKind, FrequencyResponse, OrbitMethod};
 
 /// An event of a branch, by either method.
 #[derive(Debug, Clone)]
@@ -18,6 +18,14 @@ struct Found {
     kind: EventKind,
     value: f64,
     error: f64,
+}
+
+/// A request from either end of a range, by one method.
+fn from_either_end<M: OrbitMethod + Clone>(
+    request: &FrequencyResponse<M>,
+    [from, to]: [f64; 2],
+) -> [Branch; 2] {
+    [[from, to], [to, from]].map(|[from, to]| request.clone().from(from).to(to).run().unwrap())
 }
 
 fn of_shooting(branch: &Branch) -> Vec<Found> {
@@ -43,4 +51,20 @@ fn all_found(found: &[Found], known: &[(EventKind, f64)], digits: f64) {
             event.error
         );
     }
+}
+
+/// As near to a touch at which the branch turns a fold may be one event with it, and others beside any touch too.
+const ONE_WITH_TOUCH: f64 = 2e-8;
+
+/// The same where what is beside a touch may be one event with it.
+fn all_found_or_touched(found: &[Found], known: &[(EventKind, f64)], digits: f64) {
+    let touched = |value: f64| {
+        found.iter().any(|event| {
+            let touches = matches!(event.kind, EventKind::Grazing { .. });
+            touches && (event.value - value).abs() <= ONE_WITH_TOUCH
+        })
+    };
+    let apart = known.iter().filter(|(_, value)| !touched(*value));
+    let apart: Vec<(EventKind, f64)> = apart.copied().collect();
+    all_found(found, &apart, digits);
 }
