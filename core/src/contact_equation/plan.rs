@@ -98,12 +98,13 @@ impl Plan {
         extremes: &[GapExtreme],
     ) -> Self {
         let length = length(recurrence);
-        let short = short_pairs(gaps, length, extremes);
         let within = |phase: f64| begin + (phase - begin).rem_euclid(length);
         for placed in &mut crossings {
             placed.phase = within(placed.phase);
         }
         crossings.sort_by(|a, b| a.phase.total_cmp(&b.phase));
+        let mut short = short_pairs(gaps, length, extremes);
+        short.retain(|[(first, _), _]| is_short(&crossings, &first.switch, within(first.phase)));
         let mut planned: Vec<Planned> = crossings
             .into_iter()
             .map(|placed| Planned {
@@ -285,6 +286,25 @@ fn short_pairs(gaps: &Gaps<'_>, length: f64, extremes: &[GapExtreme]) -> Vec<[(P
         }
     }
     short
+}
+
+/// Whether crossings in the order of time agree that the extreme which a pair begins at is short of its level. Where it touches, rounding may say
+/// so of one that the crossings around it are beyond.
+fn is_short(crossings: &[Placed], first: &Switch, phase: f64) -> bool {
+    let place = (first.contact, first.level);
+    let mut before = None;
+    for placed in crossings {
+        if (placed.switch.contact, placed.switch.level) != place {
+            continue;
+        }
+        if placed.phase > phase {
+            return before.map_or(placed.switch.rises == first.rises, |rises: bool| {
+                rises != first.rises
+            });
+        }
+        before = Some(placed.switch.rises);
+    }
+    before.is_none_or(|rises| rises != first.rises)
 }
 
 /// The switches of pairs in the order that they have where they are in one place: those of the gap that is nearest to its level, which

@@ -19,7 +19,7 @@ impl Engine {
         let stop = Stop::StepTooShort {
             step: self.options.steps.smallest,
             value: last.unwrap_or(self.options.from),
-            reason: NewtonError::NotFinite { iterations: 0 },
+            reason: NewtonError::NoEquations {},
         };
         self.named(problem, stop)
     }

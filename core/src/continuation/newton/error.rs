@@ -39,6 +39,9 @@ pub enum NewtonError {
         /// After this many updates.
         iterations: usize,
     },
+    /// The contacts of the orbit open and close in another order than its equations have, and none that have that order lead to it.
+    #[error("its contacts open and close in another order, and no equations were found that have it")]
+    NoEquations {},
     /// The work was [cancelled](crate::Cancel).
     #[error("cancelled after {iterations} iterations")]
     Cancelled {
@@ -52,6 +55,7 @@ crate::error::room_error! {
     NotConverged { iterations, update, residual }
     Singular { iterations, column, pivot }
     NotFinite { iterations }
+    NoEquations {}
     Cancelled { iterations }
     ;
 }
@@ -65,7 +69,7 @@ impl NewtonError {
                 pivot,
             },
             Self::NotFinite { .. } => Self::NotFinite { iterations },
-            other @ (Self::NotConverged { .. } | Self::Cancelled { .. }) => other,
+            other @ (Self::NotConverged { .. } | Self::NoEquations {} | Self::Cancelled { .. }) => other,
         }
     }
 }

@@ -127,6 +127,7 @@ fn in_words(reason: NewtonError) -> &'static str {
         NewtonError::NotConverged { .. } => "not converged",
         NewtonError::Singular { .. } => "singular",
         NewtonError::NotFinite { .. } => "not finite",
+        NewtonError::NoEquations { .. } => "no equations",
         _ => "otherwise",
     }
 }
