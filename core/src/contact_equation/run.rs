@@ -19,9 +19,8 @@ use crate::numeric::spectrum::eigenvalues;
 
 /// Tangents in other unknowns are differences over so much of the largest entry.
 pub(super) const DIFFERENCE: f64 = 1e-5;
-/// The same in parts of the way to where a pair of switches meets, and at least.
-const SHORT_OF_TOUCH: f64 = 0.1;
-const NOISE: f64 = 1e-11;
+/// A step that changes `H` of a pair by a larger part of it may lead over its touch.
+const MOVED: f64 = 0.1;
 
 /// An extreme belongs to a pair of switches whose middle is as near, in parts of the phase to the next extreme if that is less than one.
 pub(super) const SAME: f64 = 0.3;
@@ -140,9 +139,10 @@ impl<'r> Run<'r> {
         near: &[f64],
     ) -> Option<CurvePoint> {
         let u = self.transferred(&point.u, to, near)?;
-        let step = self.away_from_touches(point);
+        let step = DIFFERENCE / point.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
+        let along = self.beside_touches(point, step);
         let mut beside = |step: f64| {
-            let moved = point.u.iter().zip(&point.tangent);
+            let moved = point.u.iter().zip(&along);
             let moved: Vec<f64> = moved.map(|(x, t)| x + step * t).collect();
             self.transferred(&moved, to, near)
         };
@@ -168,20 +168,20 @@ impl<'r> Run<'r> {
         })
     }
 
-    /// A step along a tangent for a difference. Where a gap begins to open within a stretch its ends move as the root of `H`, and forces at
-    /// nodes with them, which a tangent does not say.
-    fn away_from_touches(&self, point: &CurvePoint) -> f64 {
+    /// A tangent along which differences over a step are taken. Where a gap begins to open within a stretch, its ends move as the root of `H`, and
+    /// forces at nodes with them, which a tangent does not say; what the opening does to the rest vanishes as that root, so that `H` stays.
+    fn beside_touches(&self, point: &CurvePoint, step: f64) -> Vec<f64> {
         let skeleton = &self.equations.skeleton;
-        let step = DIFFERENCE / point.tangent.iter().fold(1e-3, |m: f64, t| m.max(t.abs()));
-        let touches = skeleton.switches.iter().filter_map(|switch| {
-            let Told::First { other, .. } = switch.told else {
-                return None;
-            };
-            let slot = skeleton.slot(other);
-            let ahead = (point.u[slot] / point.tangent[slot]).abs();
-            (ahead > 0.0).then_some(SHORT_OF_TOUCH * ahead)
-        });
-        touches.fold(step, f64::min).max(NOISE)
+        let mut tangent = point.tangent.clone();
+        for switch in &skeleton.switches {
+            if let Told::First { other, .. } = switch.told {
+                let slot = skeleton.slot(other);
+                if step * tangent[slot].abs() > MOVED * point.u[slot].abs() {
+                    tangent[slot] = 0.0;
+                }
+            }
+        }
+        tangent
     }
 
     /// What the other multipliers make of a determinant that vanishes with the one nearest to a critical value.

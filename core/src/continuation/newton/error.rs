@@ -40,7 +40,9 @@ pub enum NewtonError {
         iterations: usize,
     },
     /// The contacts of the orbit open and close in another order than its equations have, and none that have that order lead to it.
-    #[error("its contacts open and close in another order, and no equations were found that have it")]
+    #[error(
+        "its contacts open and close in another order, and no equations were found that have it"
+    )]
     NoEquations {},
     /// The work was [cancelled](crate::Cancel).
     #[error("cancelled after {iterations} iterations")]
@@ -69,7 +71,9 @@ impl NewtonError {
                 pivot,
             },
             Self::NotFinite { .. } => Self::NotFinite { iterations },
-            other @ (Self::NotConverged { .. } | Self::NoEquations {} | Self::Cancelled { .. }) => other,
+            other @ (Self::NotConverged { .. } | Self::NoEquations {} | Self::Cancelled { .. }) => {
+                other
+            }
         }
     }
 }
