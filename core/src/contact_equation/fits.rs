@@ -12,6 +12,9 @@ const BEYOND: f64 = 1e-9;
 /// What rounding leaves of the phase between two switches in one place.
 const BACK: f64 = 1e-9;
 
+/// Switches are told in other pairs where the way between two of them is this part of those that they are told by.
+const NEARER: f64 = 0.5;
+
 /// What the gaps of an orbit say of its equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fits {
@@ -99,9 +102,16 @@ impl Run<'_> {
             };
             let (b, way) = (&skeleton.switches[second], phases[second] - phases[first]);
             let same = a.can_meet(b);
-            let alone = a.told == Told::Alone && b.told == Told::Alone;
-            let pair = matches!(a.told, Told::First { .. });
-            if same && alone && way < plan::SHORTER || same && pair && way > plan::LONG {
+            // Pairs that they are of with others have longer ways by now.
+            let pair = matches!(a.told, Told::First { other, .. } if other == second);
+            let others = [first, second].map(|index| match skeleton.switches[index].told {
+                Told::Alone => f64::INFINITY,
+                Told::First { other, .. } | Told::Second { other } => {
+                    (phases[other] - phases[index]).abs()
+                }
+            });
+            let nearer = way < plan::SHORTER.min(NEARER * others[0].min(others[1]));
+            if same && !pair && nearer || same && pair && way > plan::LONG {
                 return Fits::Soon;
             }
         }
