@@ -65,7 +65,7 @@ pub struct Options {
     pub period: usize,
 
     /// How the orbits of the curve are computed; --bifurcations and --track go by shooting [default: balance; of a --structure
-    /// shooting where its laws are made of straight lines, else contact-equation]
+    /// shooting where its laws are made of straight lines or a force jumps, else contact-equation]
     #[arg(long, value_enum, value_name = "METHOD")]
     pub by: Option<By>,
 

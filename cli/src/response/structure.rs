@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use hertzian::System;
+use hertzian::law::LawFacts;
 use serde::Serialize;
 
 use super::options::{By, Options};
@@ -70,10 +71,13 @@ pub fn resolved(options: &Options) -> Options {
     options
 }
 
-/// How orbits are computed where nothing was asked for: by shooting where all motions are known in closed form between switches, else by the
-/// contact equation.
-fn method(is_affine: bool) -> By {
-    if is_affine {
+/// How orbits are computed where nothing was asked for: by shooting where all motions are known in closed form between switches, or where a force
+/// jumps at a level, at which the contact equation may end a branch of many modes; else by the contact equation.
+fn method(model: &dyn System) -> By {
+    let laws = (0..model.facts().laws).map(|law| model.law(law).facts());
+    let jumps = |law: &LawFacts| law.levels.iter().any(|level| level.force_jumps);
+    let is_affine = |law: &LawFacts| law.pieces.iter().all(|piece| piece.affine);
+    if laws.clone().all(is_affine) || laws.clone().any(jumps) {
         By::Shooting
     } else {
         By::ContactEquation
@@ -89,9 +93,7 @@ pub fn completed(options: &Options, model: &dyn System) -> Options {
         options.accuracy_of = first.map(|output| output.name.to_string());
     }
     if options.structure.file.is_some() && options.by.is_none() {
-        let laws = (0..model.facts().laws).map(|law| model.law(law).facts());
-        let is_affine = laws.flat_map(|law| &*law.pieces).all(|piece| piece.affine);
-        options.by = Some(method(is_affine));
+        options.by = Some(method(model));
     }
     options
 }

@@ -21,12 +21,14 @@ pub(crate) struct Located {
     pub(crate) jump: f64,
 }
 
+/// Parts of a bracket that are tried where corrections fail in the middle of it.
+const ASIDE: [f64; 4] = [0.1, 0.9, 0.02, 0.98];
 /// Points closer together than this part of the arc length are the same.
 const CLOSEST: f64 = 1e-14;
 
 /// Where a test function changes sign between two points: its zero, or the place where it jumps.
 ///
-/// `None` if corrections fail on the way, or a tangent is not that of the whole system.
+/// `None` if corrections fail wherever they are tried, or a tangent is not that of the whole system.
 pub(crate) fn locate<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
@@ -55,10 +57,9 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
             Some((s, point))
         };
         // Where a correction fails, another place may do.
-        let (x, point) = match at(bracket.part()) {
-            Some(found) => found,
-            None => at(0.5 * bracket.part() + 0.2)?,
-        };
+        let part = bracket.part();
+        let parts = [part, 0.5 * part + 0.2].into_iter().chain(ASIDE);
+        let (x, point) = parts.into_iter().find_map(&mut at)?;
         let value = test(problem, &point);
         if value.abs() <= tolerance {
             return Some(Located {

@@ -181,14 +181,16 @@ impl<'s> Search<'s> {
         (kept, Some(zero.root.located))
     }
 
-    /// Whether a test function that is not driven to zero is continuous there all the same, and steep, as beside a touch where the stiffness
-    /// is unbounded: on both sides little is left of it, as near as points can be to each other. Where a level may be a corner it may be a short
-    /// jump.
+    /// Whether a test function that is not driven to zero is continuous there all the same, and steep, as close to a touch, from which multipliers
+    /// move away as a root: on both sides little is left of it, as near as points can be to each other. Where a level may be a corner it may be a
+    /// short jump.
     fn is_steep(&self, problem: &mut dyn BranchProblem, located: &Located) -> bool {
         let [a, b] = self.sizes();
-        let left_little = located.jump > 0.0 && located.jump <= STEEP * a.min(b);
-        if !left_little || !problem.corners() {
+        if !(located.jump > 0.0 && located.jump <= STEEP * a.min(b)) {
             return false;
+        }
+        if !problem.corners() {
+            return true;
         }
         let mut extremes = Vec::new();
         let known = problem.extremes(&located.point.u, &mut extremes);
