@@ -322,7 +322,8 @@ pub(super) fn touch(run: &mut Run<'_>, touch: &Touch) {
     let mut u = at.u.clone();
     // A step may lead over a stretch that begins and ends in it: equations that have it are those of its end.
     let mut former = None;
-    if run.watched(&u, &touch.extreme).is_none() && run.fits(&u) == Fits::No {
+    let unfit = |run: &Run<'_>| run.equations.failed || run.fits(&at.u) == Fits::No;
+    if run.watched(&u, &touch.extreme).is_none() && unfit(run) {
         error = f64::INFINITY;
         if let Some((equations, there)) = run.replanned(&u) {
             former = Some(std::mem::replace(&mut run.equations, equations));

@@ -102,7 +102,7 @@ impl Run<'_> {
             };
             let (b, way) = (&skeleton.switches[second], phases[second] - phases[first]);
             let same = a.can_meet(b);
-            // Pairs that they are of with others have longer ways by now.
+            // Where they are told in pairs with others, those may have longer ways by now.
             let pair = matches!(a.told, Told::First { other, .. } if other == second);
             let others = [first, second].map(|index| match skeleton.switches[index].told {
                 Told::Alone => f64::INFINITY,
@@ -111,9 +111,13 @@ impl Run<'_> {
                 }
             });
             let nearer = way < plan::SHORTER.min(NEARER * others[0].min(others[1]));
-            if same && !pair && nearer || same && pair && way > plan::LONG {
+            if same && !pair && nearer {
                 return Fits::Soon;
             }
+        }
+        let long = |(first, switch): (usize, &Switch)| matches!(switch.told, Told::First { other, .. } if phases[other] - phases[first] > plan::LONG);
+        if skeleton.switches.iter().enumerate().any(long) {
+            return Fits::Soon;
         }
         let (Some(first), Some(last)) = (phases.first(), phases.last()) else {
             return Fits::Yes;
@@ -225,8 +229,6 @@ impl Run<'_> {
     fn is_watched(&self, u: &[f64], extreme: &GapExtreme, level: usize) -> bool {
         let skeleton = &self.equations.skeleton;
         let place = (extreme.contact, level, extreme.maximum);
-        let others = &Motion::of(&self.equations).extremes().gaps[extreme.contact];
-        let same = SAME * room(extreme, others, skeleton.length).min(1.0);
         skeleton.switches.iter().enumerate().any(|(index, switch)| {
             let Told::First { other, .. } = switch.told else {
                 return false;
@@ -234,10 +236,14 @@ impl Run<'_> {
             let [first, second] = [index, other].map(|index| skeleton.phase(u, index));
             let apart = (first - extreme.phase).rem_euclid(skeleton.length);
             let around = (extreme.phase - first).rem_euclid(skeleton.length) <= second - first;
-            let near = apart.min(skeleton.length - apart) < same;
             let short = u[skeleton.slot(other)] <= 0.0;
+            let near = || {
+                let others = &Motion::of(&self.equations).extremes().gaps[extreme.contact];
+                let same = SAME * room(extreme, others, skeleton.length).min(1.0);
+                apart.min(skeleton.length - apart) < same
+            };
             let own = (switch.contact, switch.level, switch.rises);
-            own == place && if short { near } else { around }
+            own == place && if short { near() } else { around }
         })
     }
 }

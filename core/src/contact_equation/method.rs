@@ -34,7 +34,7 @@ pub(super) const VANISHING: f64 = 1e-9;
 pub(super) const REFUSALS: usize = 8;
 /// A step is made again shorter so often at most, where it leaps over a touch of a level where the force jumps, over a touch and a change of
 /// the order of switches, or to where no equations are found.
-const SHORTENED: usize = 8;
+pub(super) const SHORTENED: usize = 8;
 /// Multipliers that may be wrong by more are not compared with one.
 const COARSE: f64 = 1e-3;
 /// Multipliers may be wrong by so many times as much as peak-to-peak. Where they are wrong by more than they are away from the unit circle,
@@ -334,6 +334,7 @@ impl BranchProblem for ContactBranch<'_, '_> {
         let far = stuck || again && self.run.equations.is_beyond_touch(&at.u);
         if far && self.shortened < SHORTENED {
             self.shortened += 1;
+            self.refused = 0;
             return Read::TooFar;
         }
         if !again || !self.prepare(&at.u, self.run.resolution) {

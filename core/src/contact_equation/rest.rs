@@ -1,7 +1,7 @@
 //! Where a run by the contact equation is, as data: what is left of it follows from that.
 
 use super::equations::Equations;
-use super::method::{ContactBranch, HELD, Last, REFUSALS};
+use super::method::{ContactBranch, HELD, Last, REFUSALS, SHORTENED};
 use super::placement::Placement;
 use super::plan::Frame;
 use super::problem::{ContactProblem, RESOLUTIONS};
@@ -38,6 +38,9 @@ pub(crate) struct Rest {
     stuck: bool,
     /// How often the last point was refused.
     refused: usize,
+    /// How often the step to the next one was made again, shorter.
+    #[cfg_attr(feature = "serde", serde(default))]
+    shortened: usize,
     /// Points that are followed before fewer nodes are tried.
     held: usize,
 }
@@ -53,6 +56,7 @@ impl Rest {
         let possible = numbers.all(|x| x.is_finite())
             && self.screened.iter().all(Screened::is_possible)
             && self.refused <= REFUSALS
+            && self.shortened <= SHORTENED
             && self.held <= HELD
             && self.size > 0.0
             && self.reference.len() == 2 * coordinates
@@ -118,6 +122,7 @@ impl ContactBranch<'_, '_> {
             last: self.last.clone(),
             stuck: self.stuck,
             refused: self.refused,
+            shortened: self.shortened,
             held: self.held,
         }
     }
@@ -125,6 +130,7 @@ impl ContactBranch<'_, '_> {
     /// As it was there.
     pub(super) fn take_up(&mut self, rest: &Rest) {
         (self.stuck, self.refused, self.held) = (rest.stuck, rest.refused, rest.held);
+        self.shortened = rest.shortened;
         self.last.clone_from(&rest.last);
     }
 }

@@ -42,10 +42,13 @@ pub(super) fn transferred(
             Told::First { other, bend } => {
                 let from = new.begin + near[slot];
                 let pair = [switch, &new.switches[other]];
+                let extreme = extreme_of(&extremes, gaps, switch, [from, bend, new.length]);
                 let ends = pair.map(|switch| nearest(&known, switch, from, new.length));
-                let [by, square] = match ends {
-                    [Some(a), Some(b)] if a < b => [0.5 * (a + b), 0.25 * (b - a) * (b - a)],
-                    _ => short_of(&extremes, gaps, switch, [from, bend, new.length])?,
+                let [by, square] = match (extreme, ends) {
+                    // Crossings are those of a neighbour then.
+                    (Some(short @ [_, square]), _) if square <= 0.0 => short,
+                    (_, [Some(a), Some(b)]) if a < b => [0.5 * (a + b), 0.25 * (b - a) * (b - a)],
+                    _ => return None,
                 };
                 to[slot] = near[slot] + by;
                 to[new.slot(other)] = new.opened(other).unknown(square);
@@ -68,8 +71,8 @@ fn nearest(known: &[Placed], switch: &Switch, from: f64, length: f64) -> Option<
         .filter(|apart| apart.abs() < MOVED)
 }
 
-/// How far the extreme that is short of a level is from a phase, and its `H`.
-fn short_of(
+/// How far the nearest extreme of a switch's gap is from a phase, and its `H`.
+fn extreme_of(
     extremes: &[GapExtreme],
     gaps: &Gaps<'_>,
     switch: &Switch,
@@ -86,7 +89,7 @@ fn short_of(
             ]
         })
         .min_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))?;
-    (found[0].abs() < MOVED && found[1] <= 0.0).then_some(found)
+    (found[0].abs() < MOVED).then_some(found)
 }
 
 /// The crossings of an orbit.

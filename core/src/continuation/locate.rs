@@ -23,6 +23,8 @@ pub(crate) struct Located {
 
 /// Parts of a bracket that are tried where corrections fail in the middle of it.
 const ASIDE: [f64; 4] = [0.1, 0.9, 0.02, 0.98];
+/// So often at most.
+const MOST_ASIDE: usize = 20;
 /// Points closer together than this part of the arc length are the same.
 const CLOSEST: f64 = 1e-14;
 
@@ -49,17 +51,22 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
     };
     let (mut far, mut near) = (side(0.0, a), side(length, b));
     let mut bracket = Bracket::new(far.place, near.place, CLOSEST * length.abs());
+    let mut aside = 0;
     for _ in 0..STEPS {
-        let mut at = |part: f64| {
+        let mut at = |part: f64, near_by: bool| {
             let s = bracket.at(part);
             let trial = between([&near, &far], s, &arc);
+            let known = near_by.then(|| trial.clone());
             let point = arc.corrected(problem.problem(), newton, trial, s, options)?;
-            Some((s, point))
+            let moved = known.map_or(0.0, |known| arc.apart(newton, &point.u, &known));
+            (moved <= length.abs()).then_some((s, point))
         };
-        // Where a correction fails, another place may do.
         let part = bracket.part();
-        let parts = [part, 0.5 * part + 0.2].into_iter().chain(ASIDE);
-        let (x, point) = parts.into_iter().find_map(&mut at)?;
+        // Where a correction fails, another place may do, as long as it leads to an orbit beside those that are known.
+        let found = at(part, false).or_else(|| at(0.5 * part + 0.2, false));
+        aside += usize::from(found.is_none());
+        let found = found.or_else(|| ASIDE.iter().find_map(|part| at(*part, true)));
+        let (x, point) = found.filter(|_| aside <= MOST_ASIDE)?;
         let value = test(problem, &point);
         if value.abs() <= tolerance {
             return Some(Located {
@@ -77,6 +84,9 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
         if bracket.is_closed() {
             break;
         }
+    }
+    if aside > 0 && !bracket.is_closed() {
+        return None;
     }
     let jump = if bracket.is_closed() {
         near.place.value.abs() + far.place.value.abs()
@@ -142,6 +152,12 @@ impl ArcLength {
     /// The same, from the linear form.
     pub(super) fn at(&self, u: &[f64]) -> f64 {
         dot(&self.border, u) - self.origin
+    }
+
+    /// How far two points are apart.
+    fn apart(&self, newton: &Newton, u: &[f64], v: &[f64]) -> f64 {
+        let difference: Vec<f64> = u.iter().zip(v).map(|(x, y)| x - y).collect();
+        newton.norm().length(self.scale, &difference)
     }
 
     /// How fast it grows in a direction.

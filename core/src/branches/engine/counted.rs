@@ -31,24 +31,34 @@ const SHORTEST: f64 = 1e-7;
 const TOGETHER: f64 = 1e-6;
 
 impl Engine {
-    /// Records what passes the unit circle between two points beside the events from that number on, as far as (1) tells that something does.
+    /// Records what passes the unit circle between two points beside the events from that number on, as far as (1) tells that something does; not if
+    /// there are more turns than that by now.
     pub(super) fn record_hidden(
         &mut self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
         pair: [&Seen; 2],
-        [known, after]: [usize; 2],
+        [known, turns, after]: [usize; 3],
     ) {
+        // What was not located will not be in a part of it.
+        if problem.record().turns.len() > turns {
+            return;
+        }
         let mut parts = vec![[pair[0].clone(), pair[1].clone()]];
         for _ in 0..HALVINGS {
             let mut halves = Vec::new();
             for [a, b] in parts {
                 let located = changes(problem, &a, &b);
-                let mut events = problem.record().events[known..].iter();
+                let events = problem.record().events.get(known..).unwrap_or_default();
                 let [from, to] = step_between([&a, &b]).parameters();
                 let hides = (to - from).abs() > SHORTEST * to.abs()
                     && located.iter().any(|change| !is_modulus(change))
-                    && events.any(|event| hides(problem, [&a, &b], event));
+                    && events.iter().any(|event| {
+                        // A fold may be beyond both ends.
+                        let between = (event.point.value - from) * (event.point.value - to) <= 0.0;
+                        (between || event.kind == EventKind::Fold)
+                            && hides(problem, [&a, &b], event)
+                    });
                 let options = self.options.newton;
                 let middle = hides.then(|| step_between([&a, &b]));
                 let middle =
@@ -56,14 +66,12 @@ impl Engine {
                 let Some(middle) = middle.map(|point| Seen::at(problem, &point, a.falls)) else {
                     continue;
                 };
-                let turns = problem.record().turns.len();
                 for pair in [[&a, &middle], [&middle, &b]] {
                     self.record_all(problem, newton, pair, after, is_modulus);
                     if self.ended.is_some() {
                         return;
                     }
                 }
-                // What is not located here will not be in a part of it.
                 if problem.record().turns.len() == turns {
                     halves.extend([[a, middle.clone()], [middle, b]]);
                 }
@@ -105,8 +113,10 @@ fn hides(problem: &dyn BranchProblem, pair: [&Seen; 2], event: &Event) -> bool {
 /// Number of multipliers outside of the unit circle at a point, if that is known.
 fn outside(problem: &dyn BranchProblem, seen: &Seen) -> Option<usize> {
     let watched = problem.watched().iter().enumerate();
-    let mut moduli = watched
+    let moduli = watched
         .filter(|(_, watched)| !watched.bordered && watched.kind == EventKind::NeimarkSacker);
+    let mut moduli = moduli.peekable();
+    moduli.peek()?;
     moduli.try_fold(0, |count, (index, _)| {
         let value = seen.values[index];
         let tells = value.is_known() && value.mantissa.abs() > problem.noise(index);

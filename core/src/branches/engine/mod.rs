@@ -361,11 +361,12 @@ impl Engine {
         for pair in parts.windows(2) {
             let wanted = |_: &Change| true;
             let pair = [&pair[0], &pair[1]];
-            let located = problem.record().events.len();
+            let known = problem.record();
+            let (located, turns) = (known.events.len(), known.turns.len());
             let turn = self.record_all(problem, newton, pair, after, wanted);
             turned = turned.or(turn);
             if self.ended.is_none() {
-                self.record_hidden(problem, newton, pair, [located, after]);
+                self.record_hidden(problem, newton, pair, [located, turns, after]);
             }
             if self.ended.is_some() {
                 return turned;

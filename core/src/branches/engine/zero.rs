@@ -100,13 +100,16 @@ impl<'s> Search<'s> {
     /// Locates an event, with what the matrix has now or else with more of the equations in it, and keeps it; or the place where the test
     /// function jumps.
     pub(crate) fn record(&self, problem: &mut dyn BranchProblem, newton: &mut Newton) -> Recorded {
-        let (mut kept, jump) = self.search(problem, newton);
-        let stronger = kept == ZeroOutcome::Unread && !is_crossing(problem, self.change);
-        if stronger && problem.couple_fully_once(true) {
-            let mut newton = Newton::new(problem.equations());
-            kept = self.search(problem, &mut newton).0;
-            problem.count(&newton);
-            problem.couple_fully_once(false);
+        let (mut kept, jump) = self.search(problem, newton, false);
+        if kept == ZeroOutcome::Unread && !is_crossing(problem, self.change) {
+            if problem.couple_fully_once(true) {
+                let mut newton = Newton::new(problem.equations());
+                kept = self.search(problem, &mut newton, false).0;
+                problem.count(&newton);
+                problem.couple_fully_once(false);
+            } else if !problem.corners() {
+                kept = self.search(problem, newton, true).0;
+            }
         }
         match kept {
             ZeroOutcome::Event => return Recorded::Found,
@@ -155,16 +158,18 @@ impl<'s> Search<'s> {
         slopes.fold(f64::INFINITY, f64::min)
     }
 
-    /// What became of the zero, and where the function jumps instead.
+    /// What became of the zero, and where the function jumps instead. It may be `steep` where no level is a corner.
     fn search(
         &self,
         problem: &mut dyn BranchProblem,
         newton: &mut Newton,
+        steep: bool,
     ) -> (ZeroOutcome, Option<Located>) {
         let Some(root) = self.root(problem, newton) else {
             return (ZeroOutcome::Unread, None);
         };
-        if !problem.vanishes(self.change, &root.located) && !self.is_steep(problem, &root.located) {
+        let vanishes = problem.vanishes(self.change, &root.located);
+        if !vanishes && !self.is_steep(problem, &root.located, steep) {
             return (ZeroOutcome::Unread, Some(root.located));
         }
         let value = root.located.point.parameter();
@@ -184,13 +189,13 @@ impl<'s> Search<'s> {
     /// Whether a test function that is not driven to zero is continuous there all the same, and steep, as close to a touch, from which multipliers
     /// move away as a root: on both sides little is left of it, as near as points can be to each other. Where a level may be a corner it may be a
     /// short jump.
-    fn is_steep(&self, problem: &mut dyn BranchProblem, located: &Located) -> bool {
+    fn is_steep(&self, problem: &mut dyn BranchProblem, located: &Located, steep: bool) -> bool {
         let [a, b] = self.sizes();
         if !(located.jump > 0.0 && located.jump <= STEEP * a.min(b)) {
             return false;
         }
         if !problem.corners() {
-            return true;
+            return steep;
         }
         let mut extremes = Vec::new();
         let known = problem.extremes(&located.point.u, &mut extremes);
