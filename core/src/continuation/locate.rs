@@ -24,19 +24,43 @@ pub(crate) struct Located {
 /// Parts of a bracket that are tried where corrections fail in the middle of it.
 const ASIDE: [f64; 4] = [0.1, 0.9, 0.02, 0.98];
 /// So often at most.
-const MOST_ASIDE: usize = 20;
+const MOST_ASIDE: usize = 60;
 /// Points closer together than this part of the arc length are the same.
 const CLOSEST: f64 = 1e-14;
 
 /// Where a test function changes sign between two points: its zero, or the place where it jumps.
 ///
-/// `None` if corrections fail wherever they are tried, or a tangent is not that of the whole system.
+/// `None` if corrections fail on the way, or a tangent is not that of the whole system.
 pub(crate) fn locate<P: AsProblem + ?Sized>(
     problem: &mut P,
     newton: &mut Newton,
     step: Step<'_>,
     options: NewtonOptions,
     tolerance: f64,
+    test: impl FnMut(&mut P, &CurvePoint) -> f64,
+) -> Option<Located> {
+    search(problem, newton, step, options, tolerance, &[], test)
+}
+
+/// The same where corrections may fail in the middle of a step, as where unknowns move as a root: other places near its ends are tried then.
+pub(crate) fn locate_beside<P: AsProblem + ?Sized>(
+    problem: &mut P,
+    newton: &mut Newton,
+    step: Step<'_>,
+    options: NewtonOptions,
+    tolerance: f64,
+    test: impl FnMut(&mut P, &CurvePoint) -> f64,
+) -> Option<Located> {
+    search(problem, newton, step, options, tolerance, &ASIDE, test)
+}
+
+fn search<P: AsProblem + ?Sized>(
+    problem: &mut P,
+    newton: &mut Newton,
+    step: Step<'_>,
+    options: NewtonOptions,
+    tolerance: f64,
+    others: &[f64],
     mut test: impl FnMut(&mut P, &CurvePoint) -> f64,
 ) -> Option<Located> {
     let Step { before: a, next: b } = step;
@@ -65,7 +89,7 @@ pub(crate) fn locate<P: AsProblem + ?Sized>(
         // Where a correction fails, another place may do, as long as it leads to an orbit beside those that are known.
         let found = at(part, false).or_else(|| at(0.5 * part + 0.2, false));
         aside += usize::from(found.is_none());
-        let found = found.or_else(|| ASIDE.iter().find_map(|part| at(*part, true)));
+        let found = found.or_else(|| others.iter().find_map(|part| at(*part, true)));
         let (x, point) = found.filter(|_| aside <= MOST_ASIDE)?;
         let value = test(problem, &point);
         if value.abs() <= tolerance {

@@ -6,7 +6,7 @@ use crate::branches::extreme::Bend;
 use crate::branches::problem::{BranchProblem, Change, Root, Test, TestValue, Zero, ZeroOutcome};
 use crate::continuation::crossing::locate_crossing;
 use crate::continuation::follow::{CurvePoint, Step, Stop};
-use crate::continuation::locate::{Located, locate};
+use crate::continuation::locate::{Located, locate_beside};
 use crate::continuation::newton::{Newton, NewtonOptions};
 use crate::continuation::problem::AsProblem;
 use crate::event::{EventKind, Turn};
@@ -250,7 +250,7 @@ pub(crate) fn root<P: AsProblem + ?Sized>(
             Some(Root { located, error })
         }
         Aim::Below(tolerance) => {
-            let located = locate(problem, newton, step, options, tolerance, value)?;
+            let located = locate_beside(problem, newton, step, options, tolerance, value)?;
             let error = 0.0;
             Some(Root { located, error })
         }
